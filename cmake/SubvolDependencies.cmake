@@ -1,0 +1,37 @@
+# Every dependency, found once. The pitfalls of Debian's packages are dealt with here and nowhere else.
+find_package(Threads REQUIRED)
+find_package(TBB CONFIG REQUIRED)
+find_package(glm CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
+
+# FindOpenVDB sets BUILD_SHARED_LIBS in its caller and its folder shadows FindTBB: a function keeps both in.
+function(subvol_find_openvdb)
+  list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
+  find_package(OpenVDB 10 MODULE REQUIRED)
+  set_target_properties(OpenVDB::openvdb PROPERTIES IMPORTED_GLOBAL TRUE)
+endfunction()
+if(SUBVOL_VDB)
+  subvol_find_openvdb()
+endif()
+
+if(SUBVOL_RENDER)
+  find_package(embree 3.13 CONFIG REQUIRED)
+  pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
+endif()
+
+if(SUBVOL_COMPARE)
+  find_package(OpenImageIO CONFIG REQUIRED)
+  # Debian's package names an include folder (opencv4) that does not exist.
+  get_target_property(oiio_includes OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+  list(FILTER oiio_includes EXCLUDE REGEX opencv)
+  set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_includes}")
+endif()
+
+if(SUBVOL_CLI)
+  find_package(CLI11 CONFIG REQUIRED)
+endif()
+if(SUBVOL_TESTS)
+  find_package(GTest CONFIG REQUIRED)
+endif()

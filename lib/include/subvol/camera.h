@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "subvol/vec.h"
+
+namespace subvol {
+
+/// A camera without a lens, in a right-handed world. Rays go through pixel centres; pixel (0,0) is the top left.
+///
+/// fovy_deg:     vertical field of view, (0,180), of a perspective camera
+/// ortho_height: height of the picture in world units of an orthographic camera; 0: the camera is a perspective one
+struct Camera {
+    Vec3 eye{0, 0, 1};
+    Vec3 target{0, 0, 0};
+    Vec3 up{0, 1, 0};
+    double fovy_deg = 40;
+    double ortho_height = 0;
+};
+
+/// x(z) = origin + z · direction, z the eye depth: |direction| ≥ 1 is the world length of a unit of depth.
+struct Ray {
+    Vec3 origin;
+    Vec3 direction;
+};
+
+/// A camera with a picture size: the mapping between pixels, eye space (x right, y up, z = depth along the view) and world.
+class View {
+public:
+    /// throws: Error(InvalidInput) if eye and target coincide, up is parallel to the view, the field of view is out of range or
+    ///         the size is not in 1..65536
+    View(const Camera& camera, int width, int height);
+
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int height() const { return height_; }
+    [[nodiscard]] bool perspective() const { return perspective_; }
+    [[nodiscard]] Vec3 to_eye(const Vec3& world) const;
+
+    /// Rows right, up, forward: rotates a world vector into eye space.
+    [[nodiscard]] const std::array<Vec3, 3>& axes() const { return axes_; }
+    [[nodiscard]] const Vec3& eye() const { return eye_; }
+
+    /// Slopes (perspective) or eye-space offsets (orthographic) of a point of the picture in pixels: eye x,y at depth z are
+    /// (a,b)·z in perspective and (a,b) in an orthographic view.
+    [[nodiscard]] Vec2 slopes(double x_px, double y_px) const {
+        return {(x_px - 0.5 * width_) * pixel_, (0.5 * height_ - y_px) * pixel_};
+    }
+    /// Size of a pixel in slopes: per unit depth (perspective) or in world units (orthographic).
+    [[nodiscard]] double pixel() const { return pixel_; }
+
+    /// Pixel coordinates of an eye-space point (depth > 0 in perspective).
+    [[nodiscard]] Vec2 to_pixels(const Vec3& eye_point) const;
+
+    /// The ray through the point (x_px, y_px) of the picture; the centre of pixel (i,j) is (i+.5, j+.5).
+    [[nodiscard]] Ray ray(double x_px, double y_px) const;
+
+private:
+    int width_, height_;
+    bool perspective_;
+    double pixel_;
+    Vec3 eye_;
+    std::array<Vec3, 3> axes_;
+};
+
+/// A perspective camera that sees a whole box. direction: from the eye to the box, e.g. (0,-1,0) for the view `-y`
+[[nodiscard]] Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg = 30, double aspect = 1);
+
+/// A camera from text: a view name (±x ±y ±z iso), ten numbers "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", or a JSON file with the keys
+/// eye, target, up, fovy_deg, ortho_height.
+///
+/// throws: Error(InvalidInput), Error(Io)
+[[nodiscard]] Camera parse_camera(const std::string& text, const Box& box, double aspect = 1);
+
+}  // namespace subvol

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol {
+
+/// An array as it stood in a file. location: "point" or "cell"; min and max over finite values (vectors: of the length)
+struct FieldInfo {
+    std::string name;
+    std::string location;
+    int components = 1;
+    double min = 0;
+    double max = 0;
+};
+
+struct ReadResult {
+    HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
+    std::vector<FieldInfo> fields;
+    std::vector<std::string> warnings;  // what was left out, turned round or converted, one sentence each
+};
+
+/// Reads a hexahedral mesh; the format follows from the file name: MEDIT `.mesh` (ASCII), legacy VTK `.vtk` (ASCII).
+///
+/// throws: Error(Io) if the file cannot be opened; Error(InvalidInput) if it is malformed, naming the line, and the cell or
+///         point as the file counts them; never allocates by a number from the file that the file's size does not bear out
+[[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path);
+
+/// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (appended raw, with all attributes). Written beside and
+/// renamed, so that there is never half a file.
+///
+/// returns: warnings, such as attributes that the format cannot hold
+/// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if it cannot be written
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh);
+
+}  // namespace subvol

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "subvol/surface.h"
+#include "subvol/vec.h"
+
+namespace subvol {
+
+/// The kernel of all points of a volume: w(e) = (1 − e)³ for e < 1, else 0, with e = (x−μ)ᵀ S⁻¹ (x−μ).
+///
+/// radius: R in sample intervals, already within the frames S = R² J Jᵀ; below 1.2 the kernels leave holes
+struct Kernel {
+    double radius = 1.43;
+};
+
+/// One scalar channel. A kernel's value at x is values + gradients·(x−μ) + moments·e.
+///
+/// gradients: world⁻¹; moments: R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
+struct RbfChannel {
+    std::string name;
+    std::vector<float> values;
+    std::vector<std::array<float, 3>> gradients;
+    std::vector<float> moments;
+};
+
+/// A subdivision volume as radial basis functions: what every renderer and exporter takes.
+///
+/// centers:  world
+/// frames:   xx xy xz yy yz zz of S = R² J Jᵀ (world²), J's columns the world displacement per sample interval
+/// boundary: the solid's surface, outward; outside it there is nothing. Empty: the points have no known boundary
+struct RbfVolume {
+    std::vector<Vec3> centers;
+    std::vector<std::array<float, 6>> frames;
+    std::vector<RbfChannel> channels;
+    Kernel kernel;
+    Surface boundary;
+    Box bounds;
+
+    [[nodiscard]] std::size_t size() const { return centers.size(); }
+};
+
+}  // namespace subvol

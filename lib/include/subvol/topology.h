@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol {
+
+/// Rows of varying length in one flat array: row i is values[offsets[i] .. offsets[i+1]).
+struct IndexRows {
+    std::vector<std::size_t> offsets{0};
+    std::vector<Index> values;
+
+    [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+    [[nodiscard]] std::span<const Index> operator[](std::size_t row) const {
+        return std::span(values).subspan(offsets[row], offsets[row + 1] - offsets[row]);
+    }
+};
+
+/// Corner numbers of a cell's 12 edges: 4 along u, 4 along v, 4 along w; each from its lower to its upper parameter.
+inline constexpr std::array<std::array<int, 2>, 12> kCellEdges{
+    {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2}, {4, 7}, {5, 6}, {0, 4}, {1, 5}, {3, 7}, {2, 6}}};
+
+/// Corner numbers of a cell's 6 faces (u=0, u=1, v=0, v=1, w=0, w=1), cyclic, seen counter-clockwise from outside.
+inline constexpr std::array<std::array<int, 4>, 6> kCellFaces{
+    {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}};
+
+/// The edges and faces of a hexahedral mesh and who meets whom, as flat arrays.
+///
+/// Edges and faces are numbered in the order of their point ids, so they do not depend on the order of the cells.
+/// edges:      two point ids, smaller first
+/// faces:      four point ids in cyclic order, the smallest first and then the smaller of its two neighbours
+/// face_edges: edge k of a face joins its points k and k+1
+/// face_cells: one or two cells (smaller first); the second is kNone on the boundary
+/// edge_faces: the ring about an edge. About an interior edge cyclic, starting at the smallest face and going on to the
+///             smaller of its two neighbours; about a boundary edge fan by fan, each from boundary face to boundary face
+/// edge_cells: cell j of an interior ring lies between faces j and j+1; on a boundary edge the cells of the fans in order
+/// boundary:   the faces with one cell, their edges, their points
+struct Topology {
+    std::size_t point_count = 0;
+    std::vector<std::array<Index, 8>> cells;
+    std::vector<std::array<Index, 2>> edges;
+    std::vector<std::array<Index, 4>> faces;
+    std::vector<std::array<Index, 12>> cell_edges;
+    std::vector<std::array<Index, 6>> cell_faces;
+    std::vector<std::array<Index, 4>> face_edges;
+    std::vector<std::array<Index, 2>> face_cells;
+    IndexRows edge_faces;
+    IndexRows edge_cells;
+    IndexRows point_edges;
+    std::vector<std::uint8_t> edge_on_boundary;
+    std::vector<std::uint8_t> point_on_boundary;
+    std::vector<std::uint8_t> edge_is_crease;  // boundary edges kept sharp: one cell, non-manifold, or tagged
+    std::size_t nonmanifold_edges = 0;         // boundary edges with more than two boundary faces
+
+    [[nodiscard]] bool face_on_boundary(Index face) const { return face_cells[face][1] == kNone; }
+    [[nodiscard]] std::optional<Index> find_edge(Index a, Index b) const;
+};
+
+/// Builds the topology of a mesh, in parallel; the result does not depend on the number of threads.
+///
+/// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners; names them
+/// cost:   O(n log n) time, about 500 bytes a cell
+[[nodiscard]] Topology build_topology(const HexMesh& mesh);
+
+}  // namespace subvol

@@ -1,0 +1,184 @@
+#include "subvol/hex_mesh.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "subvol/error.h"
+#include "subvol/mesh_report.h"
+
+namespace subvol {
+
+namespace {
+
+std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
+    std::array<Vec3, 8> corners;
+    for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[cell[k]];
+    return corners;
+}
+
+std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size());
+    for (const auto& cell : mesh.cells) {
+        for (const Index p : cell) used[p] = 1;
+    }
+    return used;
+}
+
+void validate_cells(const HexMesh& mesh) {
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        const std::string where = "cell " + std::to_string(c);
+        auto corners = mesh.cells[c];
+        for (std::size_t k = 0; k < 8; ++k) {
+            if (corners[k] >= mesh.points.size()) {
+                throw Error(ErrorCode::InvalidInput,
+                            "corner " + std::to_string(k) + " is " + std::to_string(corners[k]) + "; the mesh has " +
+                                std::to_string(mesh.points.size()) + " points",
+                            where);
+            }
+        }
+        std::sort(corners.begin(), corners.end());
+        const auto twice = std::adjacent_find(corners.begin(), corners.end());
+        if (twice != corners.end()) {
+            throw Error(ErrorCode::InvalidInput, "point " + std::to_string(*twice) + " is listed twice", where,
+                        "a hexahedron needs 8 different points");
+        }
+    }
+}
+
+}  // namespace
+
+const Attribute* HexMesh::find_attribute(std::string_view name) const {
+    const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
+    return found == attributes.end() ? nullptr : &*found;
+}
+
+void validate(const HexMesh& mesh) {
+    if (mesh.cells.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra");
+    validate_cells(mesh);
+    const auto used = used_points(mesh);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const Vec3& x = mesh.points[p];
+        if (used[p] && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
+            throw Error(ErrorCode::InvalidInput, "a coordinate is not finite", "point " + std::to_string(p));
+        }
+    }
+    for (const auto& attribute : mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        if (attribute.channels < 1 || attribute.values.size() != channels * mesh.points.size()) {
+            throw Error(ErrorCode::InvalidInput, "has " + std::to_string(attribute.values.size()) + " values",
+                        "attribute \"" + attribute.name + "\"",
+                        std::to_string(mesh.points.size()) + " points of " + std::to_string(attribute.channels) + " channels");
+        }
+        for (std::size_t i = 0; i < attribute.values.size(); ++i) {
+            if (used[i / channels] && !std::isfinite(attribute.values[i])) {
+                throw Error(ErrorCode::InvalidInput, "the value at point " + std::to_string(i / channels) + " is not finite",
+                            "attribute \"" + attribute.name + "\"");
+            }
+        }
+    }
+}
+
+HexMesh without_unused_points(const HexMesh& mesh) {
+    const auto used = used_points(mesh);
+    std::vector<Index> renumbered(mesh.points.size(), kNone);
+    Index count = 0;
+    for (std::size_t p = 0; p < used.size(); ++p) {
+        if (used[p]) renumbered[p] = count++;
+    }
+    if (count == mesh.points.size()) return mesh;
+
+    HexMesh result;
+    result.points.reserve(count);
+    for (const auto& attribute : mesh.attributes) result.attributes.push_back({attribute.name, attribute.channels, {}});
+    for (std::size_t p = 0; p < used.size(); ++p) {
+        if (!used[p]) continue;
+        result.points.push_back(mesh.points[p]);
+        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+            const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
+            const auto first = mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
+            result.attributes[a].values.insert(result.attributes[a].values.end(), first,
+                                               first + static_cast<std::ptrdiff_t>(channels));
+        }
+    }
+    result.cells = mesh.cells;
+    for (auto& cell : result.cells) {
+        for (auto& p : cell) p = renumbered[p];
+    }
+    for (const auto& [a, b] : mesh.creases) {
+        if (used[a] && used[b]) result.creases.push_back({renumbered[a], renumbered[b]});
+    }
+    return result;
+}
+
+std::size_t orient_cells(HexMesh& mesh) {
+    std::size_t turned = 0;
+    for (auto& cell : mesh.cells) {
+        if (cell_volume(corners_of(mesh, cell)) >= 0) continue;
+        std::swap_ranges(cell.begin(), cell.begin() + 4, cell.begin() + 4);
+        ++turned;
+    }
+    return turned;
+}
+
+Box bounds(const HexMesh& mesh) {
+    Box box;
+    for (const auto& cell : mesh.cells) {
+        for (const Index p : cell) box.add(mesh.points[p]);
+    }
+    return box;
+}
+
+namespace {
+
+Attribute length_of(const Attribute& vector) {
+    const auto channels = static_cast<std::size_t>(vector.channels);
+    Attribute result{vector.name, 1, std::vector<double>(vector.values.size() / channels)};
+    for (std::size_t p = 0; p < result.values.size(); ++p) {
+        double sum = 0;
+        for (std::size_t c = 0; c < channels; ++c) sum += vector.values[p * channels + c] * vector.values[p * channels + c];
+        result.values[p] = std::sqrt(sum);
+    }
+    return result;
+}
+
+std::optional<Attribute> channel_of(const HexMesh& mesh, const std::string& name) {
+    const auto dot = name.rfind('.');
+    if (dot == std::string::npos) return std::nullopt;
+    const Attribute* vector = mesh.find_attribute(std::string_view(name).substr(0, dot));
+    int channel = -1;
+    std::from_chars(name.data() + dot + 1, name.data() + name.size(), channel);
+    if (!vector || channel < 0 || channel >= vector->channels) return std::nullopt;
+    const auto channels = static_cast<std::size_t>(vector->channels);
+    Attribute result{name, 1, std::vector<double>(vector->values.size() / channels)};
+    for (std::size_t p = 0; p < result.values.size(); ++p) {
+        result.values[p] = vector->values[p * channels + static_cast<std::size_t>(channel)];
+    }
+    return result;
+}
+
+}  // namespace
+
+SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name) {
+    if (name) {
+        if (const Attribute* found = mesh.find_attribute(*name)) {
+            if (found->channels == 1) return {*found, {}};
+            return {length_of(*found), "field \"" + *name + "\" is a vector: its length is taken"};
+        }
+        if (auto channel = channel_of(mesh, *name)) return {std::move(*channel), {}};
+        std::string known;
+        for (const auto& attribute : mesh.attributes) known += (known.empty() ? "" : ", ") + attribute.name;
+        throw Error(ErrorCode::InvalidInput, "there is no field \"" + *name + "\"", {},
+                    known.empty() ? "the mesh has no fields" : "the mesh has: " + known);
+    }
+    for (const auto& attribute : mesh.attributes) {
+        if (attribute.channels == 1) return {attribute, {}};
+    }
+    if (!mesh.attributes.empty()) {
+        const auto& first = mesh.attributes.front();
+        return {length_of(first), "no scalar field: the length of \"" + first.name + "\" is taken"};
+    }
+    return {{"density", 1, std::vector<double>(mesh.points.size(), 1.0)}, "no field: density 1 everywhere"};
+}
+
+}  // namespace subvol

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "subvol/camera.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/image.h"
+#include "subvol/optics.h"
+#include "subvol/progress.h"
+#include "subvol/rbf_volume.h"
+
+namespace subvol {
+
+enum class Backend { Auto, Gl, Cpu };
+
+/// sheets:  planes of constant eye depth over the volume's depth range, 2..65536
+/// channel: which channel of the volume is shown
+struct SplatOptions {
+    Backend backend = Backend::Auto;
+    int sheets = 200;
+    std::size_t channel = 0;
+    Progress* progress = nullptr;
+};
+
+struct SplatReport {
+    std::string backend;  // "gl" or "cpu"
+    std::string device;   // GL renderer string, or the number of CPU threads
+    std::size_t points = 0;
+    std::size_t bin_entries = 0;    // (tile, sheet batch, kernel) triples
+    std::size_t boundary_hits = 0;  // entries and exits over all pixels
+    double seconds_prepare = 0, seconds_draw = 0;
+};
+
+struct SplatResult {
+    Image image;
+    SplatReport report;
+};
+
+/// Draws an RBF volume: kernels summed on image-aligned sheets, clipped per pixel to the boundary's entry and exit depths, the
+/// transfer function applied after reconstruction, intervals pre-integrated, composited front to back.
+///
+/// Bitwise the same for any number of threads. `Auto` takes a hardware GPU if there is one, else the CPU.
+/// throws: Error(InvalidInput) for options out of range; Error(MissingCapability) if Backend::Gl finds no OpenGL 4.3
+/// source: SCIENCE §3, §3.1
+[[nodiscard]] SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics,
+                                        const SplatOptions& options = {});
+
+/// samples: n × n rays a pixel on a regular grid, 1..16
+struct TetsOptions {
+    int samples = 1;
+    Progress* progress = nullptr;
+};
+
+struct TetsReport {
+    std::size_t tets = 0;
+    std::size_t degenerate_tets = 0;  // of zero volume: crossed, never sampled
+    std::size_t inverted_tets = 0;
+    std::size_t rays = 0;       // that met the volume
+    std::size_t segments = 0;   // tetrahedra crossed, over all rays
+    std::size_t lost_rays = 0;  // that met the volume and could not be followed to its other side
+    double seconds_build = 0, seconds_draw = 0;
+};
+
+struct TetsResult {
+    Image image;
+    TetsReport report;
+};
+
+/// The reference: rays through the mesh split into tetrahedra, Embree for the entry, then from cell to cell through shared
+/// faces, each segment integrated exactly with the value linear in the tetrahedron.
+///
+/// scalar: one value a point of the mesh
+/// throws: Error(InvalidInput) if scalar.size() != mesh.points.size() or samples is out of range
+/// source: SCIENCE §4
+[[nodiscard]] TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view,
+                                     const Optics& optics, const TetsOptions& options = {});
+
+}  // namespace subvol
