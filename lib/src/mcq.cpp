@@ -1,0 +1,311 @@
+// MCQ-G: interpolatory subdivision of hexahedral meshes, MCQ inside and a generalisation of ours at irregular edges, boundaries
+// and creases. Terms that would lie beyond the boundary are replaced by quadratic extrapolation from their partner term.
+#include <algorithm>
+
+#include "antipode.h"
+#include "boundary_rings.h"
+#include "schemes.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Pair = std::array<Index, 2>;
+
+class McqRules final : public SchemeRules {
+public:
+    McqRules(const Topology& topology, double tension)
+        : topology_(topology), omega_(tension), kinds_(classify_points(topology)) {}
+
+    void edge_point(Index edge, StencilBuilder& row) const override {
+        if (!topology_.edge_on_boundary[edge]) {
+            interior_edge(edge, row);
+        } else if (topology_.edge_is_crease[edge]) {
+            crease_edge(edge, row);
+        } else {
+            surface_edge(edge, row);
+        }
+    }
+
+    void face_point(Index face, StencilBuilder& row) const override {
+        if (topology_.face_on_boundary(face)) {
+            surface_face(face, row);
+        } else {
+            interior_face(face, row);
+        }
+    }
+
+    void cell_point(Index cell, StencilBuilder& row) const override {
+        add(row, topology_.cells[cell], (1 + 6 * omega_) / 8);
+        for (std::size_t side = 0; side < 6; ++side) {
+            const auto near = side_points(cell, side), far = side_points(cell, side ^ 1);
+            extrapolated(row, -omega_ / 4, near, far, far_points(cell, side), far_points(cell, side ^ 1));
+        }
+    }
+
+private:
+    /// A term of a rule: its points and weights; `known` is false where the mesh ends.
+    struct Term {
+        bool known = false;
+        StencilBuilder points;
+    };
+
+    template <class Points>
+    static void add(StencilBuilder& row, const Points& points, double weight) {
+        for (const Index p : points) row.add(p, weight);
+    }
+
+    /// weight · term, or its ghost: 3 near − 3 far + partner, without a known partner 2 near − far.
+    template <class Points>
+    static void extrapolated(StencilBuilder& row, double weight, const Points& near, const Points& far, Term term, Term partner) {
+        const auto add_term = [&](Term& known) {
+            for (const auto& [p, w] : known.points.finish()) row.add(p, weight * w);
+        };
+        if (term.known) {
+            add_term(term);
+        } else if (partner.known) {
+            add(row, near, 3 * weight);
+            add(row, far, -3 * weight);
+            add_term(partner);
+        } else {
+            add(row, near, 2 * weight);
+            add(row, far, -weight);
+        }
+    }
+
+    /// A pair of terms at the two ends of a line, each the other's partner.
+    static void both_ways(StencilBuilder& row, double weight, Index near_a, Index near_b, const Term& beyond_a,
+                          const Term& beyond_b) {
+        const std::array<Index, 1> a{near_a}, b{near_b};
+        extrapolated(row, weight, a, b, beyond_a, beyond_b);
+        extrapolated(row, weight, b, a, beyond_b, beyond_a);
+    }
+
+    // --- inside -------------------------------------------------------------------------------------------------------------
+
+    void interior_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        add(row, topology_.edges[edge], 0.5);
+        const auto faces = topology_.edge_faces[edge];
+        if (!topology_.edge_has_ring[edge]) return;
+        const double weight = omega_ / static_cast<double>(faces.size());
+        for (const Index face : faces) {
+            const Index d = beside(face, a, b), c = beside(face, b, a);
+            add(row, Pair{c, d}, weight);
+            both_ways(row, -weight, d, c, across_edge(face, a, d), across_edge(face, b, c));
+        }
+    }
+
+    /// R^A: over the ring of faces about edge (a,d), the neighbours of d other than a, antipodally weighted.
+    Term across_edge(Index face, Index a, Index d) const {
+        const Index edge = edge_in_face(face, a, d);
+        Term term;
+        if (!topology_.edge_has_ring[edge]) return term;
+        term.known = true;
+        const auto ring = topology_.edge_faces[edge];
+        const std::size_t m = ring.size(), start = slot_of(ring, face);
+        for (std::size_t j = 0; j < m; ++j) {
+            const double c = antipodal_(m, j);
+            if (c != 0) term.points.add(beside(ring[(start + j) % m], d, a), c);
+        }
+        return term;
+    }
+
+    void interior_face(Index face, StencilBuilder& row) const {
+        add(row, topology_.faces[face], (1 + 2 * omega_) / 4);
+        for (const Index cell : topology_.face_cells[face]) add(row, opposite_points(cell, face), omega_ / 4);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Pair g{topology_.faces[face][k], topology_.faces[face][(k + 1) % 4]};
+            const Pair h{topology_.faces[face][(k + 3) % 4], topology_.faces[face][(k + 2) % 4]};
+            const Index edge_g = topology_.face_edges[face][k], edge_h = topology_.face_edges[face][(k + 2) % 4];
+            extrapolated(row, -omega_ / 4, g, h, in_plane(face, edge_g), in_plane(face, edge_h));
+            extrapolated(row, -omega_ / 8, lifted(face, g), lifted(face, h), diagonal(face, edge_g), diagonal(face, edge_h));
+        }
+    }
+
+    /// R_g: over the ring of faces about an edge, their two points not on it, antipodally weighted.
+    Term in_plane(Index face, Index edge) const {
+        Term term;
+        if (!topology_.edge_has_ring[edge]) return term;
+        term.known = true;
+        const auto ring = topology_.edge_faces[edge];
+        const std::size_t m = ring.size(), start = slot_of(ring, face);
+        for (std::size_t j = 0; j < m; ++j) {
+            const double c = antipodal_(m, j);
+            if (c == 0) continue;
+            for (const Index p : far_side(ring[(start + j) % m], edge)) term.points.add(p, c);
+        }
+        return term;
+    }
+
+    /// S_g: in the cells next to those of the face, the two points diagonally opposite the edge.
+    Term diagonal(Index face, Index edge) const {
+        Term term;
+        if (!topology_.edge_has_ring[edge]) return term;
+        term.known = true;
+        const auto faces = topology_.edge_faces[edge];
+        const auto cells = topology_.edge_cells[edge];
+        const std::size_t m = faces.size(), start = slot_of(faces, face);
+        for (const std::size_t j : {std::size_t{1}, m - 2}) {
+            for (const Index p : opposite_edge(cells[(start + j) % m], edge)) term.points.add(p, 1);
+        }
+        return term;
+    }
+
+    // --- on the boundary ------------------------------------------------------------------------------------------------------
+
+    void crease_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        add(row, topology_.edges[edge], 0.5 + omega_);
+        both_ways(row, -omega_, a, b, along_crease(edge, a), along_crease(edge, b));
+    }
+
+    /// A': the far end of the other crease edge at a.
+    Term along_crease(Index edge, Index a) const {
+        Term term;
+        if (kinds_[a] != PointKind::Crease) return term;
+        for (const Index e : topology_.point_edges[a]) {
+            if (e == edge || !topology_.edge_is_crease[e]) continue;
+            term.known = true;
+            term.points.add(other_end(topology_, e, a), 1);
+        }
+        return term;
+    }
+
+    void surface_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        add(row, topology_.edges[edge], 0.5 + omega_ / 2);
+        both_ways(row, -omega_ / 2, a, b, across_spokes(edge, a), across_spokes(edge, b));
+        const auto [f0, f1] = boundary_faces_of(topology_, edge);
+        for (const Index face : {f0, f1}) {
+            const Index d = beside(face, a, b), c = beside(face, b, a);
+            add(row, Pair{c, d}, omega_ / 4);
+            both_ways(row, -omega_ / 4, d, c, across_surface_edge(face, a, d), across_surface_edge(face, b, c));
+        }
+    }
+
+    /// A*: over the ring of boundary edges at a smooth point, their far ends, antipodally weighted.
+    Term across_spokes(Index edge, Index a) const {
+        Term term;
+        if (kinds_[a] != PointKind::Smooth) return term;
+        std::vector<Index> ring;
+        ring_of_spokes(topology_, a, edge, ring);
+        if (ring.size() < 3) return term;
+        term.known = true;
+        for (std::size_t j = 0; j < ring.size(); ++j) {
+            const double c = antipodal_(ring.size(), j);
+            if (c != 0) term.points.add(other_end(topology_, ring[j], a), c);
+        }
+        return term;
+    }
+
+    Term across_surface_edge(Index face, Index a, Index d) const {
+        const Index edge = edge_in_face(face, a, d);
+        Term term;
+        if (topology_.edge_is_crease[edge]) return term;
+        term.known = true;
+        term.points.add(beside(other_boundary_face(topology_, edge, face), d, a), 1);
+        return term;
+    }
+
+    void surface_face(Index face, StencilBuilder& row) const {
+        add(row, topology_.faces[face], (1 + 4 * omega_) / 4);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Pair g{topology_.faces[face][k], topology_.faces[face][(k + 1) % 4]};
+            const Pair h{topology_.faces[face][(k + 3) % 4], topology_.faces[face][(k + 2) % 4]};
+            const Index edge_g = topology_.face_edges[face][k], edge_h = topology_.face_edges[face][(k + 2) % 4];
+            extrapolated(row, -omega_ / 2, g, h, over_surface(face, edge_g), over_surface(face, edge_h));
+        }
+    }
+
+    Term over_surface(Index face, Index edge) const {
+        Term term;
+        if (topology_.edge_is_crease[edge]) return term;
+        term.known = true;
+        for (const Index p : far_side(other_boundary_face(topology_, edge, face), edge)) term.points.add(p, 1);
+        return term;
+    }
+
+    // --- neighbours within a face or a cell -----------------------------------------------------------------------------------
+
+    /// The neighbour of `point` in a face, other than `not_this` (which must be its other neighbour).
+    Index beside(Index face, Index point, Index not_this) const {
+        const auto& quad = topology_.faces[face];
+        const std::size_t k = slot_of(quad, point);
+        const Index next = quad[(k + 1) % 4];
+        return next == not_this ? quad[(k + 3) % 4] : next;
+    }
+
+    Index edge_in_face(Index face, Index a, Index b) const {
+        const auto& quad = topology_.faces[face];
+        const std::size_t k = slot_of(quad, a);
+        return topology_.face_edges[face][quad[(k + 1) % 4] == b ? k : (k + 3) % 4];
+    }
+
+    /// The two points of a face that are not on one of its edges, in the order of the edge's ends.
+    Pair far_side(Index face, Index edge) const {
+        const auto [a, b] = topology_.edges[edge];
+        return {beside(face, a, b), beside(face, b, a)};
+    }
+
+    Pair opposite_edge(Index cell, Index edge) const {
+        const std::size_t k = slot_of(topology_.cell_edges[cell], edge);
+        // The four edges along an axis are listed 00, 10, 01, 11 over the other two axes: the opposite one is 3 − i.
+        return topology_.edges[topology_.cell_edges[cell][k / 4 * 4 + 3 - k % 4]];
+    }
+
+    std::array<Index, 4> side_points(Index cell, std::size_t side) const {
+        std::array<Index, 4> points;
+        for (std::size_t k = 0; k < 4; ++k) points[k] = topology_.cells[cell][static_cast<std::size_t>(kCellFaces[side][k])];
+        return points;
+    }
+
+    /// The four points of a cell that are not on one of its faces.
+    std::array<Index, 4> opposite_points(Index cell, Index face) const {
+        return side_points(cell, slot_of(topology_.cell_faces[cell], face) ^ 1);
+    }
+
+    /// Across a side of a cell, the far points of its neighbour.
+    Term far_points(Index cell, std::size_t side) const {
+        const Index face = topology_.cell_faces[cell][side];
+        Term term;
+        if (topology_.face_on_boundary(face)) return term;
+        term.known = true;
+        const auto [c0, c1] = topology_.face_cells[face];
+        add(term.points, opposite_points(c0 == cell ? c1 : c0, face), 1);
+        return term;
+    }
+
+    /// In both cells of a face, the points over two of its points.
+    std::array<Index, 4> lifted(Index face, const Pair& points) const {
+        std::array<Index, 4> result{};
+        std::size_t count = 0;
+        for (const Index cell : topology_.face_cells[face]) {
+            const std::size_t side = slot_of(topology_.cell_faces[cell], face);
+            const auto axis = static_cast<std::size_t>(side / 2);
+            for (const Index p : points) {
+                for (std::size_t k = 4 * axis; k < 4 * axis + 4; ++k) {
+                    const auto& edge = kCellEdges[k];
+                    const Index a = topology_.cells[cell][static_cast<std::size_t>(edge[0])];
+                    const Index b = topology_.cells[cell][static_cast<std::size_t>(edge[1])];
+                    if (a == p) result[count++] = b;
+                    if (b == p) result[count++] = a;
+                }
+            }
+        }
+        return result;
+    }
+
+    const Topology& topology_;
+    double omega_;
+    std::vector<PointKind> kinds_;
+    AntipodalWeights antipodal_;
+};
+
+}  // namespace
+
+std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double tension) {
+    return std::make_unique<McqRules>(topology, tension);
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,100 @@
+#include "subvol/mesh_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/topology.h"
+
+namespace subvol {
+
+namespace {
+
+/// The neighbours of each corner along u, v, w, ordered so that their determinant is positive in a right-handed cell.
+constexpr std::array<std::array<std::size_t, 3>, 8> kCornerNeighbours{
+    {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
+
+struct CellQuality {
+    double volume = 0;
+    double min_scaled_jacobian = 1;
+    bool inverted = false;
+    bool degenerate = false;
+};
+
+CellQuality measure(const std::array<Vec3, 8>& corners) {
+    CellQuality quality;
+    quality.volume = cell_volume(corners);
+    quality.degenerate = quality.volume == 0;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto& [a, b, c] = kCornerNeighbours[k];
+        const Vec3 u = corners[a] - corners[k], v = corners[b] - corners[k], w = corners[c] - corners[k];
+        const double det = glm::dot(u, glm::cross(v, w));
+        const double lengths = glm::length(u) * glm::length(v) * glm::length(w);
+        quality.inverted |= det < 0;
+        quality.degenerate |= lengths == 0;
+        quality.min_scaled_jacobian = std::min(quality.min_scaled_jacobian, lengths > 0 ? det / lengths : 0.0);
+    }
+    return quality;
+}
+
+void count_edges(const Topology& topology, MeshReport& report) {
+    std::vector<std::uint32_t> irregular(topology.point_count);
+    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+        if (topology.edge_on_boundary[e]) continue;
+        const auto valence = topology.edge_cells[e].size();
+        ++report.interior_edges;
+        ++report.interior_edge_valence[static_cast<int>(valence)];
+        if (valence != 4) {
+            for (const Index p : topology.edges[e]) ++irregular[p];
+        }
+    }
+    for (std::size_t p = 0; p < topology.point_count; ++p) {
+        report.singular_nodes += !topology.point_on_boundary[p] && irregular[p] != 0 && irregular[p] != 2;
+    }
+}
+
+}  // namespace
+
+double cell_volume(const std::array<Vec3, 8>& c) {
+    const double g = 0.5 / std::sqrt(3.0);
+    double volume = 0;
+    for (int point = 0; point < 8; ++point) {
+        const double u = 0.5 + ((point & 1) ? g : -g), v = 0.5 + ((point & 2) ? g : -g), w = 0.5 + ((point & 4) ? g : -g);
+        const auto mix = [](const Vec3& a, const Vec3& b, double t) { return (1 - t) * a + t * b; };
+        const Vec3 du = mix(mix(c[1] - c[0], c[2] - c[3], v), mix(c[5] - c[4], c[6] - c[7], v), w);
+        const Vec3 dv = mix(mix(c[3] - c[0], c[2] - c[1], u), mix(c[7] - c[4], c[6] - c[5], u), w);
+        const Vec3 dw = mix(mix(c[4] - c[0], c[5] - c[1], u), mix(c[7] - c[3], c[6] - c[2], u), v);
+        volume += glm::dot(du, glm::cross(dv, dw)) / 8;
+    }
+    return volume;
+}
+
+MeshReport inspect(const HexMesh& mesh) {
+    validate(mesh);
+    const Topology topology = build_topology(mesh);
+    MeshReport report;
+    report.points = mesh.points.size();
+    report.cells = mesh.cells.size();
+    report.edges = topology.edges.size();
+    report.faces = topology.faces.size();
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) report.points_used += !topology.point_edges[p].empty();
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        report.boundary_faces += topology.face_on_boundary(static_cast<Index>(f));
+    }
+    report.nonmanifold_edges = topology.nonmanifold_edges;
+    report.bounds = bounds(mesh);
+    count_edges(topology, report);
+
+    report.min_scaled_jacobian = 1;
+    for (const auto& cell : mesh.cells) {
+        std::array<Vec3, 8> corners;
+        for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[cell[k]];
+        const CellQuality quality = measure(corners);
+        report.volume += quality.volume;
+        report.inverted_cells += quality.inverted;
+        report.degenerate_cells += quality.degenerate;
+        report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, quality.min_scaled_jacobian);
+    }
+    return report;
+}
+
+}  // namespace subvol

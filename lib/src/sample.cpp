@@ -1,0 +1,300 @@
+#include "subvol/sample.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "boundary_rings.h"
+#include "bucket_sort.h"
+#include "cell_block.h"
+#include "corner_parameters.h"
+#include "sample_counts.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using detail::CellBlocks;
+using detail::kCornerParameters;
+using detail::SampleCounts;
+
+namespace {
+
+void check(const SampleOptions& options) {
+    if (options.per_edge < 1 || options.per_edge > 64) {
+        throw Error(ErrorCode::InvalidInput, "sample intervals per edge: " + std::to_string(options.per_edge), {}, "1 to 64");
+    }
+    if (!(options.spacing_world >= 0 && std::isfinite(options.spacing_world))) {
+        throw Error(ErrorCode::InvalidInput, "the spacing is " + std::to_string(options.spacing_world), {}, "a positive length");
+    }
+    if (!(options.kernel.radius >= 1.2 && options.kernel.radius <= 4)) {
+        throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(options.kernel.radius), {},
+                    "1.2 to 4 sample intervals: smaller kernels leave holes");
+    }
+    if (options.boundary_levels < 0 || options.boundary_levels > CellBlocks::kLevels) {
+        throw Error(ErrorCode::InvalidInput, "boundary levels: " + std::to_string(options.boundary_levels), {}, "0 to 2");
+    }
+}
+
+detail::Buckets<std::pair<Index, Index>> cells_of_points(const Topology& topology) {
+    return detail::bucket_sort<std::pair<Index, Index>>(
+        topology.cells.size(), topology.point_count,
+        [&](std::size_t c, const auto& sink) {
+            for (const Index p : topology.cells[c]) sink({p, static_cast<Index>(c)});
+        },
+        [](const auto& record) { return record.first; });
+}
+
+/// Where a point of an edge or face (one or two parameters from its first corner) lies in one of the cells about it.
+template <std::size_t N>
+std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, const std::array<Index, N>& ends,
+                              const std::array<double, N>& parameters) {
+    const auto& o = kCornerParameters[detail::slot_of(cell, origin)];
+    std::array<double, 3> uvw{double(o[0]), double(o[1]), double(o[2])};
+    for (std::size_t n = 0; n < N; ++n) {
+        const auto& e = kCornerParameters[detail::slot_of(cell, ends[n])];
+        for (std::size_t a = 0; a < 3; ++a) uvw[a] += parameters[n] * (e[a] - o[a]);
+    }
+    return uvw;
+}
+
+Mat3 outer(const Vec3& v) { return glm::outerProduct(v, v); }
+
+/// Writes one kernel from the jets of the cells about its point.
+class KernelWriter {
+public:
+    KernelWriter(const SampleCounts& counts, const CellBlocks& blocks, const SampleOptions& options, RbfVolume& volume)
+        : counts_(counts), blocks_(blocks), options_(options), volume_(volume) {
+        metric_gradient_.resize(blocks.channels());
+        laplacian_.resize(blocks.channels());
+    }
+
+    void begin(std::size_t point) {
+        point_ = point;
+        cells_ = 0;
+        metric_ = Mat3(0.0);
+        bend_ = Vec3(0.0);
+        std::fill(metric_gradient_.begin(), metric_gradient_.end(), Vec3(0.0));
+        std::fill(laplacian_.begin(), laplacian_.end(), 0.0);
+    }
+
+    void add_cell(std::size_t cell, const CellBlocks::Block& block, const std::array<double, 3>& uvw) {
+        blocks_.evaluate(block, uvw, jet_);
+        if (cells_++ == 0) {
+            volume_.centers[point_] = jet_.position;
+            for (std::size_t c = 0; c < jet_.value.size(); ++c) volume_.channels[c].values[point_] = static_cast<float>(jet_.value[c]);
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double n = counts_.near(cell, a, uvw);  // derivatives are wanted per sample interval
+            const Vec3 column = jet_.d_position[a] / n;
+            metric_ += outer(column);
+            bend_ += jet_.dd_position[a] / (n * n);
+            for (std::size_t c = 0; c < jet_.value.size(); ++c) {
+                metric_gradient_[c] += column * (jet_.d_value[c][a] / n);
+                laplacian_[c] += jet_.dd_value[c][a] / (n * n);
+            }
+        }
+    }
+
+    /// Returns whether the frame was flat and had to be thickened.
+    bool finish() {
+        const double scale = (metric_[0][0] + metric_[1][1] + metric_[2][2]) / 3;
+        const bool flat = !(glm::determinant(metric_) > kFlat * scale * scale * scale);
+        if (flat) metric_ += Mat3(kThickness * (scale > 0 ? scale : 1));
+        const Mat3 inverse = glm::inverse(metric_);
+        const double r2 = options_.kernel.radius * options_.kernel.radius, cells = cells_;
+        const Mat3 s = metric_ * (r2 / cells);
+        volume_.frames[point_] = {static_cast<float>(s[0][0]), static_cast<float>(s[1][0]), static_cast<float>(s[2][0]),
+                                  static_cast<float>(s[1][1]), static_cast<float>(s[2][1]), static_cast<float>(s[2][2])};
+        for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
+            if (options_.correction == Correction::None || flat) continue;
+            const Vec3 g = inverse * metric_gradient_[c];
+            volume_.channels[c].gradients[point_] = {static_cast<float>(g.x), static_cast<float>(g.y), static_cast<float>(g.z)};
+            if (options_.correction != Correction::Second) continue;
+            // The mean over the cells of Σ ∂²f − g·Σ ∂²x is H : J Jᵀ on any neighbourhood: no axes need to be paired.
+            volume_.channels[c].moments[point_] = static_cast<float>(r2 / 6 * (laplacian_[c] - glm::dot(g, bend_)) / cells);
+        }
+        return flat;
+    }
+
+private:
+    static constexpr double kFlat = 1e-9;       // of a cube's determinant: a thousandth of its thickness
+    static constexpr double kThickness = 1e-3;  // of the mean square extent
+
+    const SampleCounts& counts_;
+    const CellBlocks& blocks_;
+    const SampleOptions& options_;
+    RbfVolume& volume_;
+    CellBlocks::Jet jet_;
+    std::size_t point_ = 0;
+    int cells_ = 0;
+    Mat3 metric_{0.0};
+    Vec3 bend_{0.0};
+    std::vector<Vec3> metric_gradient_;
+    std::vector<double> laplacian_;
+};
+
+/// Samples all entities of a mesh.
+class Sampler {
+public:
+    Sampler(const HexMesh& mesh, const HexMesh& twice_refined, const SampleOptions& options)
+        : options_(options),
+          topology_(build_topology(mesh)),
+          counts_(mesh, topology_, options),
+          blocks_(twice_refined),
+          point_cells_(cells_of_points(topology_)) {}
+
+    SampleResult run(const HexMesh& mesh) {
+        const auto first_edge = prefix(topology_.point_count, topology_.edges.size(),
+                                       [&](std::size_t e) { return std::size_t(counts_.edge(e)) - 1; });
+        const auto first_face = prefix(first_edge.back(), topology_.faces.size(), [&](std::size_t f) {
+            const auto n = counts_.face(f);
+            return std::size_t(n[0] - 1) * std::size_t(n[1] - 1);
+        });
+        const auto first_cell = prefix(first_face.back(), topology_.cells.size(), [&](std::size_t c) {
+            const auto n = counts_.cell(c);
+            return std::size_t(n[0] - 1) * std::size_t(n[1] - 1) * std::size_t(n[2] - 1);
+        });
+        auto& report = result_.report;
+        report.at_vertices = topology_.point_count;
+        report.on_edges = first_edge.back() - topology_.point_count;
+        report.on_faces = first_face.back() - first_edge.back();
+        report.in_cells = first_cell.back() - first_face.back();
+        report.points = first_cell.back();
+        allocate(mesh, report.points);
+
+        each(topology_.point_count, "sample vertices", [&](std::size_t p, auto& writer) { return sample_vertex(p, writer); });
+        each(topology_.edges.size(), "sample edges", [&](std::size_t e, auto& writer) { return sample_edge(e, first_edge[e], writer); });
+        each(topology_.faces.size(), "sample faces", [&](std::size_t f, auto& writer) { return sample_face(f, first_face[f], writer); });
+        each(topology_.cells.size(), "sample cells", [&](std::size_t c, auto& writer) { return sample_cell(c, first_cell[c], writer); });
+        return std::move(result_);
+    }
+
+private:
+    template <class Count>
+    static std::vector<std::size_t> prefix(std::size_t start, std::size_t count, const Count& entries) {
+        std::vector<std::size_t> first(count + 1, start);
+        for (std::size_t i = 0; i < count; ++i) first[i + 1] = first[i] + entries(i);
+        return first;
+    }
+
+    void allocate(const HexMesh& mesh, std::size_t count) {
+        if (count >= kNone) throw Error(ErrorCode::InvalidInput, std::to_string(count) + " samples are too many", {}, "fewer than 2³²");
+        auto& volume = result_.volume;
+        volume.kernel = options_.kernel;
+        volume.centers.resize(count);
+        volume.frames.resize(count);
+        for (const auto& attribute : mesh.attributes) {
+            for (int c = 0; c < attribute.channels; ++c) {
+                RbfChannel channel;
+                channel.name = attribute.channels == 1 ? attribute.name : attribute.name + "." + std::to_string(c);
+                channel.values.resize(count);
+                channel.gradients.resize(count);
+                channel.moments.resize(count);
+                volume.channels.push_back(std::move(channel));
+            }
+        }
+    }
+
+    template <class Sample>
+    void each(std::size_t count, const char* stage, const Sample& sample) {
+        report_progress(options_.progress, stage, 0);
+        std::atomic<std::size_t> flat{0};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
+            KernelWriter writer(counts_, blocks_, options_, result_.volume);
+            std::size_t flat_here = 0;
+            for (std::size_t i = range.begin(); i != range.end(); ++i) flat_here += sample(i, writer);
+            flat += flat_here;
+        });
+        result_.report.flat_frames += flat;
+        report_progress(options_.progress, stage, 1);
+    }
+
+    std::size_t sample_vertex(std::size_t p, KernelWriter& writer) const {
+        writer.begin(p);
+        for (std::size_t i = point_cells_.offsets[p]; i < point_cells_.offsets[p + 1]; ++i) {
+            const Index cell = point_cells_.records[i].second;
+            writer.add_cell(cell, blocks_.block(cell),
+                            in_cell<0>(topology_.cells[cell], static_cast<Index>(p), {}, {}));
+        }
+        return writer.finish();
+    }
+
+    std::size_t sample_edge(std::size_t e, std::size_t first, KernelWriter& writer) const {
+        const int n = counts_.edge(e);
+        const auto [a, b] = topology_.edges[e];
+        std::size_t flat = 0;
+        for (int i = 1; i < n; ++i) {
+            writer.begin(first++);
+            for (const Index cell : topology_.edge_cells[e]) {
+                writer.add_cell(cell, blocks_.block(cell), in_cell<1>(topology_.cells[cell], a, {b}, {double(i) / n}));
+            }
+            flat += writer.finish();
+        }
+        return flat;
+    }
+
+    std::size_t sample_face(std::size_t f, std::size_t first, KernelWriter& writer) const {
+        const auto n = counts_.face(f);
+        const auto& quad = topology_.faces[f];
+        std::size_t flat = 0;
+        for (int j = 1; j < n[1]; ++j) {
+            for (int i = 1; i < n[0]; ++i) {
+                writer.begin(first++);
+                for (const Index cell : topology_.face_cells[f]) {
+                    if (cell == kNone) continue;
+                    writer.add_cell(cell, blocks_.block(cell),
+                                    in_cell<2>(topology_.cells[cell], quad[0], {quad[1], quad[3]}, {double(i) / n[0], double(j) / n[1]}));
+                }
+                flat += writer.finish();
+            }
+        }
+        return flat;
+    }
+
+    std::size_t sample_cell(std::size_t c, std::size_t first, KernelWriter& writer) const {
+        const auto n = counts_.cell(c);
+        std::size_t flat = 0;
+        if (n[0] == 1 || n[1] == 1 || n[2] == 1) return flat;
+        const auto block = blocks_.block(c);
+        for (int k = 1; k < n[2]; ++k) {
+            for (int j = 1; j < n[1]; ++j) {
+                for (int i = 1; i < n[0]; ++i) {
+                    writer.begin(first++);
+                    writer.add_cell(c, block, {double(i) / n[0], double(j) / n[1], double(k) / n[2]});
+                    flat += writer.finish();
+                }
+            }
+        }
+        return flat;
+    }
+
+    const SampleOptions& options_;
+    Topology topology_;
+    SampleCounts counts_;
+    CellBlocks blocks_;
+    detail::Buckets<std::pair<Index, Index>> point_cells_;
+    SampleResult result_;
+};
+
+}  // namespace
+
+SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options) {
+    check(options);
+    RefineOptions refine_options{.scheme = options.scheme, .levels = 0, .crease_angle_deg = {}, .progress = options.progress};
+    const HexMesh control = refine(mesh, refine_options);
+    refine_options.levels = 1;
+    refine_options.crease_angle_deg = options.crease_angle_deg;
+    const HexMesh once = refine(control, refine_options);
+    refine_options.crease_angle_deg.reset();  // the first level has tagged what is sharp
+    const HexMesh twice = refine(once, refine_options);
+
+    SampleResult result = Sampler(control, twice, options).run(control);
+    const std::array<const HexMesh*, 3> levels{&control, &once, &twice};
+    result.volume.boundary = boundary_surface(*levels[static_cast<std::size_t>(options.boundary_levels)]);
+    result.volume.bounds = bounds(twice);
+    return result;
+}
+
+}  // namespace subvol

@@ -1,0 +1,247 @@
+#include "subvol/topology.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "bucket_sort.h"
+#include "edge_rings.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using detail::bucket_sort;
+using detail::parallel_each;
+
+namespace {
+
+using Quad = std::array<Index, 4>;
+
+struct FaceRecord {
+    Quad points;
+    Index cell;
+    std::uint8_t side;
+    auto operator<=>(const FaceRecord&) const = default;
+};
+
+struct EdgeRecord {
+    std::array<Index, 2> points;
+    Index face;
+    std::uint8_t slot;
+    auto operator<=>(const EdgeRecord&) const = default;
+};
+
+Quad canonical_quad(const std::array<Index, 8>& cell, std::size_t side) {
+    Quad quad;
+    for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
+    std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
+    if (quad[1] > quad[3]) std::swap(quad[1], quad[3]);
+    return quad;
+}
+
+std::string name_cells(const Topology& topology, Index a, Index b) {
+    auto corners_a = topology.cells[a], corners_b = topology.cells[b];
+    std::sort(corners_a.begin(), corners_a.end());
+    std::sort(corners_b.begin(), corners_b.end());
+    if (corners_a != corners_b) return {};
+    return "cells " + std::to_string(a) + " and " + std::to_string(b) + " have the same corners (cells counted from 0)";
+}
+
+[[noreturn]] void refuse_face(const Topology& topology, std::span<const FaceRecord> sharing) {
+    for (std::size_t i = 0; i < sharing.size(); ++i) {
+        for (std::size_t j = i + 1; j < sharing.size(); ++j) {
+            const auto text = name_cells(topology, sharing[i].cell, sharing[j].cell);
+            if (!text.empty()) throw Error(ErrorCode::InvalidInput, text, {}, "each cell may be there once");
+        }
+    }
+    std::string points, cells;
+    for (const Index p : sharing[0].points) points += (points.empty() ? "" : " ") + std::to_string(p);
+    for (const auto& record : sharing) cells += (cells.empty() ? "" : ", ") + std::to_string(record.cell);
+    throw Error(ErrorCode::InvalidInput,
+                "face (" + points + ") has " + std::to_string(sharing.size()) + " cells: " + cells +
+                    " (points and cells counted from 0)",
+                {}, "at most two cells share a face");
+}
+
+/// Starts of the groups of equal keys in sorted records, plus the end.
+template <class Record, class Same>
+std::vector<std::size_t> group_starts(const std::vector<Record>& records, const Same& same) {
+    std::vector<std::size_t> starts;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (i == 0 || !same(records[i - 1], records[i])) starts.push_back(i);
+    }
+    starts.push_back(records.size());
+    return starts;
+}
+
+void build_faces(Topology& topology) {
+    const auto sorted = bucket_sort<FaceRecord>(
+        topology.cells.size(), topology.point_count,
+        [&](std::size_t c, const auto& sink) {
+            for (std::size_t side = 0; side < 6; ++side) {
+                sink({canonical_quad(topology.cells[c], side), static_cast<Index>(c), static_cast<std::uint8_t>(side)});
+            }
+        },
+        [](const FaceRecord& record) { return record.points[0]; });
+    const auto& records = sorted.records;
+    const auto starts = group_starts(records, [](const auto& a, const auto& b) { return a.points == b.points; });
+
+    const std::size_t count = starts.size() - 1;
+    for (std::size_t f = 0; f < count; ++f) {
+        if (starts[f + 1] - starts[f] > 2) refuse_face(topology, std::span(records).subspan(starts[f], starts[f + 1] - starts[f]));
+    }
+    topology.faces.resize(count);
+    topology.face_cells.resize(count);
+    topology.cell_faces.resize(topology.cells.size());
+    parallel_each(count, [&](std::size_t f) {
+        topology.faces[f] = records[starts[f]].points;
+        topology.face_cells[f] = {records[starts[f]].cell, kNone};
+        for (std::size_t i = starts[f]; i < starts[f + 1]; ++i) {
+            topology.face_cells[f][i - starts[f]] = records[i].cell;
+            topology.cell_faces[records[i].cell][records[i].side] = static_cast<Index>(f);
+        }
+    });
+}
+
+/// Two cells with the same corners and no third neighbour share all six faces, which no face shows by itself.
+void refuse_twins(const Topology& topology) {
+    for (const auto& sides : topology.cell_faces) {
+        const auto first = topology.face_cells[sides[0]];
+        if (first[1] == kNone) continue;
+        if (std::all_of(sides.begin(), sides.end(), [&](Index f) { return topology.face_cells[f] == first; })) {
+            throw Error(ErrorCode::InvalidInput, name_cells(topology, first[0], first[1]), {}, "each cell may be there once");
+        }
+    }
+}
+
+void build_edges(Topology& topology) {
+    const auto sorted = bucket_sort<EdgeRecord>(
+        topology.faces.size(), topology.point_count,
+        [&](std::size_t f, const auto& sink) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                const Index a = topology.faces[f][k], b = topology.faces[f][(k + 1) % 4];
+                sink({{std::min(a, b), std::max(a, b)}, static_cast<Index>(f), static_cast<std::uint8_t>(k)});
+            }
+        },
+        [](const EdgeRecord& record) { return record.points[0]; });
+    const auto& records = sorted.records;
+    auto starts = group_starts(records, [](const auto& a, const auto& b) { return a.points == b.points; });
+
+    const std::size_t count = starts.size() - 1;
+    topology.edges.resize(count);
+    topology.face_edges.resize(topology.faces.size());
+    topology.edge_faces.values.resize(records.size());
+    parallel_each(count, [&](std::size_t e) {
+        topology.edges[e] = records[starts[e]].points;
+        for (std::size_t i = starts[e]; i < starts[e + 1]; ++i) {
+            topology.face_edges[records[i].face][records[i].slot] = static_cast<Index>(e);
+            topology.edge_faces.values[i] = records[i].face;
+        }
+    });
+    topology.edge_faces.offsets = std::move(starts);
+}
+
+void build_cell_edges(Topology& topology) {
+    topology.cell_edges.resize(topology.cells.size());
+    parallel_each(topology.cells.size(), [&](std::size_t c) {
+        for (std::size_t k = 0; k < 12; ++k) {
+            const Index a = topology.cells[c][static_cast<std::size_t>(kCellEdges[k][0])];
+            const Index b = topology.cells[c][static_cast<std::size_t>(kCellEdges[k][1])];
+            topology.cell_edges[c][k] = *topology.find_edge(a, b);
+        }
+    });
+}
+
+void build_point_edges(Topology& topology) {
+    struct End {
+        Index point, edge;
+        auto operator<=>(const End&) const = default;
+    };
+    auto sorted = bucket_sort<End>(
+        topology.edges.size(), topology.point_count,
+        [&](std::size_t e, const auto& sink) {
+            for (const Index p : topology.edges[e]) sink(End{p, static_cast<Index>(e)});
+        },
+        [](const End& end) { return end.point; });
+    topology.point_edges.offsets = std::move(sorted.offsets);
+    topology.point_edges.values.resize(sorted.records.size());
+    parallel_each(sorted.records.size(), [&](std::size_t i) { topology.point_edges.values[i] = sorted.records[i].edge; });
+}
+
+void mark_boundary(Topology& topology) {
+    topology.edge_on_boundary.assign(topology.edges.size(), 0);
+    topology.point_on_boundary.assign(topology.point_count, 0);
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_boundary(static_cast<Index>(f))) continue;
+        for (const Index e : topology.face_edges[f]) topology.edge_on_boundary[e] = 1;
+        for (const Index p : topology.faces[f]) topology.point_on_boundary[p] = 1;
+    }
+}
+
+/// The default rule, and the mesh's own tags. A boundary edge with several fans of cells is non-manifold.
+void mark_creases(Topology& topology, std::span<const std::array<Index, 2>> tagged) {
+    topology.edge_is_crease.assign(topology.edges.size(), 0);
+    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+        if (!topology.edge_on_boundary[e]) continue;
+        const auto cells = topology.edge_cells[e].size();
+        const auto fans = topology.edge_faces[e].size() - cells;
+        topology.nonmanifold_edges += fans > 1;
+        topology.edge_is_crease[e] = cells == 1 || fans > 1;
+    }
+    for (const auto& [a, b] : tagged) {
+        const auto e = topology.find_edge(a, b);
+        if (!e || !topology.edge_on_boundary[*e]) {
+            throw Error(ErrorCode::InvalidInput, "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge",
+                        "crease", "creases are edges of the boundary");
+        }
+        topology.edge_is_crease[*e] = 1;
+    }
+}
+
+/// Cells differ in their faces, and face numbers do not depend on the order of the cells.
+void rank_cells(Topology& topology) {
+    struct Key {
+        std::array<Index, 6> faces;
+        Index cell;
+        auto operator<=>(const Key&) const = default;
+    };
+    const auto sorted = bucket_sort<Key>(
+        topology.cells.size(), topology.faces.size(),
+        [&](std::size_t c, const auto& sink) {
+            auto faces = topology.cell_faces[c];
+            std::sort(faces.begin(), faces.end());
+            sink(Key{faces, static_cast<Index>(c)});
+        },
+        [](const Key& key) { return key.faces[0]; });
+    topology.cell_rank.resize(topology.cells.size());
+    parallel_each(sorted.records.size(), [&](std::size_t rank) {
+        topology.cell_rank[sorted.records[rank].cell] = static_cast<Index>(rank);
+    });
+}
+
+}  // namespace
+
+std::optional<Index> Topology::find_edge(Index a, Index b) const {
+    const std::array<Index, 2> key{std::min(a, b), std::max(a, b)};
+    const auto found = std::lower_bound(edges.begin(), edges.end(), key);
+    if (found == edges.end() || *found != key) return std::nullopt;
+    return static_cast<Index>(found - edges.begin());
+}
+
+Topology build_topology(const HexMesh& mesh) {
+    Topology topology;
+    topology.point_count = mesh.points.size();
+    topology.cells = mesh.cells;
+    build_faces(topology);
+    refuse_twins(topology);
+    rank_cells(topology);
+    build_edges(topology);
+    build_cell_edges(topology);
+    build_point_edges(topology);
+    mark_boundary(topology);
+    detail::order_edge_rings(topology);
+    mark_creases(topology, mesh.creases);
+    return topology;
+}
+
+}  // namespace subvol

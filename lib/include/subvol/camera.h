@@ -63,11 +63,19 @@ private:
     std::array<Vec3, 3> axes_;
 };
 
-/// A perspective camera that sees a whole box. direction: from the eye to the box, e.g. (0,-1,0) for the view `-y`
+/// A perspective camera that sees a whole box: its eight corners, with a margin of 5 % and the box's centre in the middle. Up
+/// is z; y for a view along z.
+///
+/// direction: from the eye to the box, e.g. (0,1,0) for the view `-y`
+/// aspect:    the picture's width / height
+/// throws:    Error(InvalidInput) if the box is empty or a number is out of range
 [[nodiscard]] Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg = 30, double aspect = 1);
 
 /// A camera from text: a view name (±x ±y ±z iso), ten numbers "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", or a JSON file with the keys
-/// eye, target, up, fovy_deg, ortho_height.
+/// eye, target (both needed), up, fovy_deg, ortho_height.
+///
+/// A view is named for the side that the eye stands on: `-y` is an eye at negative y that looks towards +y; `iso` stands at
+/// (+1,-1,+1) from the centre. Views have a field of view of 30°.
 ///
 /// throws: Error(InvalidInput), Error(Io)
 [[nodiscard]] Camera parse_camera(const std::string& text, const Box& box, double aspect = 1);

@@ -40,12 +40,21 @@ public:
     [[nodiscard]] Segment integrate(double front, double back, double length) const;
 
 private:
-    [[nodiscard]] Segment integrate_piece(double front, double back, double length) const;
+    /// Between neighbouring knots colour and opacity are linear in (value − begin) · inverse_width; beyond the ends constant.
+    struct Span {
+        double begin = 0, inverse_width = 0;
+        double alpha = 0, alpha_step = 0;
+        Vec3 color{0.0}, color_step{0.0};
+        double integral = 0;  // of the extinction, from the first knot to begin
+        bool transparent = false;
+    };
+    [[nodiscard]] const Span& span_at(double value) const;
+    [[nodiscard]] Segment integrate_piece(const Span& span, double front, double back, double length) const;
 
     TransferFunction function_;
     double unit_;
     std::vector<double> knots_;
-    std::vector<double> integral_at_knots_;
+    std::vector<Span> spans_;  // span i ends at knot i; the last has no end
 };
 
 /// Composites `behind` under `front` (front to back).

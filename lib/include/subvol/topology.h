@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -53,7 +54,9 @@ struct Topology {
     IndexRows point_edges;
     std::vector<std::uint8_t> edge_on_boundary;
     std::vector<std::uint8_t> point_on_boundary;
+    std::vector<std::uint8_t> edge_has_ring;   // interior edges whose cells form one ring of at least three
     std::vector<std::uint8_t> edge_is_crease;  // boundary edges kept sharp: one cell, non-manifold, or tagged
+    std::vector<Index> cell_rank;              // a number for each cell that does not depend on the order of the cells
     std::size_t nonmanifold_edges = 0;         // boundary edges with more than two boundary faces
 
     [[nodiscard]] bool face_on_boundary(Index face) const { return face_cells[face][1] == kNone; }

@@ -1,0 +1,72 @@
+#include "boundary_rings.h"
+
+#include <algorithm>
+
+#include "bucket_sort.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// The edge of `face` at `point` that is not `edge`.
+Index next_spoke(const Topology& topology, Index face, Index point, Index edge) {
+    const std::size_t k = slot_of(topology.faces[face], point);
+    const Index before = topology.face_edges[face][(k + 3) % 4], after = topology.face_edges[face][k];
+    return before == edge ? after : before;
+}
+
+std::size_t boundary_edges_at(const Topology& topology, Index point) {
+    const auto edges = topology.point_edges[point];
+    return static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), [&](Index e) { return topology.edge_on_boundary[e]; }));
+}
+
+PointKind classify(const Topology& topology, Index point) {
+    if (!topology.point_on_boundary[point]) return PointKind::Interior;
+    int creases = 0;
+    Index start = kNone;
+    bool manifold = true;
+    for (const Index e : topology.point_edges[point]) {
+        if (!topology.edge_on_boundary[e]) continue;
+        creases += topology.edge_is_crease[e];
+        manifold &= topology.edge_faces[e].size() - topology.edge_cells[e].size() == 1;
+        if (start == kNone) start = e;
+    }
+    if (!manifold || (creases != 0 && creases != 2)) return PointKind::Corner;
+    thread_local std::vector<Index> ring;
+    ring_of_spokes(topology, point, start, ring);
+    if (ring.size() != boundary_edges_at(topology, point)) return PointKind::Corner;  // several fans of faces
+    return creases == 0 ? PointKind::Smooth : PointKind::Crease;
+}
+
+}  // namespace
+
+std::pair<Index, Index> boundary_faces_of(const Topology& topology, Index edge) {
+    const auto faces = topology.edge_faces[edge];
+    return {faces.front(), faces.back()};
+}
+
+Index other_boundary_face(const Topology& topology, Index edge, Index face) {
+    const auto [first, last] = boundary_faces_of(topology, edge);
+    return first == face ? last : first;
+}
+
+void ring_of_spokes(const Topology& topology, Index point, Index start, std::vector<Index>& ring) {
+    ring.clear();
+    Index edge = start;
+    // A canonical sense of turning: over the smaller of the start's two faces.
+    const auto [f0, f1] = boundary_faces_of(topology, start);
+    Index face = std::min(f0, f1);
+    do {
+        ring.push_back(edge);
+        edge = next_spoke(topology, face, point, edge);
+        face = other_boundary_face(topology, edge, face);
+    } while (edge != start && ring.size() <= topology.point_edges[point].size());
+}
+
+std::vector<PointKind> classify_points(const Topology& topology) {
+    std::vector<PointKind> kinds(topology.point_count);
+    parallel_each(kinds.size(), [&](std::size_t p) { kinds[p] = classify(topology, static_cast<Index>(p)); });
+    return kinds;
+}
+
+}  // namespace subvol::detail

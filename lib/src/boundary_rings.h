@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
+
+/// Every point's place on the boundary: smooth without crease edges, on a crease with exactly two, else a corner; a point where
+/// several fans of boundary faces touch is a corner.
+std::vector<PointKind> classify_points(const Topology& topology);
+
+/// The boundary face on the other side of a boundary edge that is no crease.
+Index other_boundary_face(const Topology& topology, Index edge, Index face);
+
+/// The boundary faces of a boundary edge (two where it is manifold).
+std::pair<Index, Index> boundary_faces_of(const Topology& topology, Index edge);
+
+/// The boundary edges about a smooth boundary point in cyclic order, starting at `start`, written to `ring`.
+void ring_of_spokes(const Topology& topology, Index point, Index start, std::vector<Index>& ring);
+
+/// Position of an element in a small array.
+template <class Range>
+std::size_t slot_of(const Range& range, Index element) {
+    return static_cast<std::size_t>(std::find(range.begin(), range.end(), element) - range.begin());
+}
+
+inline Index other_end(const Topology& topology, Index edge, Index point) {
+    const auto [a, b] = topology.edges[edge];
+    return a == point ? b : a;
+}
+
+}  // namespace subvol::detail

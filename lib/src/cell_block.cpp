@@ -1,0 +1,74 @@
+#include "cell_block.h"
+
+#include "corner_parameters.h"
+
+namespace subvol::detail {
+
+CellBlocks::CellBlocks(const HexMesh& twice_refined) : mesh_(twice_refined) {
+    for (std::size_t a = 0; a < mesh_.attributes.size(); ++a) {
+        for (std::size_t c = 0; c < static_cast<std::size_t>(mesh_.attributes[a].channels); ++c) source_.emplace_back(a, c);
+    }
+    channels_ = source_.size();
+}
+
+CellBlocks::Block CellBlocks::block(std::size_t cell) const {
+    Block block{};
+    for (std::size_t child = 0; child < 8; ++child) {
+        for (std::size_t grandchild = 0; grandchild < 8; ++grandchild) {
+            const auto& points = mesh_.cells[64 * cell + 8 * child + grandchild];
+            for (std::size_t k = 0; k < 8; ++k) {
+                std::array<std::size_t, 3> at;
+                for (std::size_t a = 0; a < 3; ++a) {
+                    at[a] = static_cast<std::size_t>(2 * kCornerParameters[child][a] + kCornerParameters[grandchild][a] +
+                                                     kCornerParameters[k][a]);
+                }
+                block[at[0] + 5 * (at[1] + 5 * at[2])] = points[k];
+            }
+        }
+    }
+    return block;
+}
+
+double CellBlocks::channel_value(Index point, std::size_t channel) const {
+    const auto [attribute, c] = source_[channel];
+    const auto& values = mesh_.attributes[attribute];
+    return values.values[point * static_cast<std::size_t>(values.channels) + c];
+}
+
+void CellBlocks::evaluate(const Block& block, const std::array<double, 3>& uvw, Jet& jet) const {
+    const std::array<QuarticBasis, 3> basis{QuarticBasis(uvw[0]), QuarticBasis(uvw[1]), QuarticBasis(uvw[2])};
+    jet.position = Vec3(0.0);
+    jet.d_position = jet.dd_position = {Vec3(0.0), Vec3(0.0), Vec3(0.0)};
+    jet.value.assign(channels_, 0);
+    jet.d_value.assign(channels_, {0, 0, 0});
+    jet.dd_value.assign(channels_, {0, 0, 0});
+
+    constexpr std::array<std::size_t, 3> stride{1, 5, 25};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
+        for (std::size_t j = 0; j < 5; ++j) {
+            if (basis[b].value[j] == 0) continue;  // on corners, edges and faces most weights vanish
+            for (std::size_t k = 0; k < 5; ++k) {
+                const double across = basis[b].value[j] * basis[c].value[k];
+                if (across == 0) continue;
+                for (std::size_t i = 0; i < 5; ++i) {
+                    const Index p = block[i * stride[axis] + j * stride[b] + k * stride[c]];
+                    const double w = across * basis[axis].value[i], d = across * basis[axis].first[i];
+                    const double dd = across * basis[axis].second[i];
+                    const Vec3& x = mesh_.points[p];
+                    jet.d_position[axis] += d * x;
+                    jet.dd_position[axis] += dd * x;
+                    if (axis == 0) jet.position += w * x;
+                    for (std::size_t ch = 0; ch < channels_; ++ch) {
+                        const double f = channel_value(p, ch);
+                        jet.d_value[ch][axis] += d * f;
+                        jet.dd_value[ch][axis] += dd * f;
+                        if (axis == 0) jet.value[ch] += w * f;
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace subvol::detail

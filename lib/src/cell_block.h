@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "quartic.h"
+#include "subvol/hex_mesh.h"
+
+namespace subvol::detail {
+
+/// Geometry and channels of a twice refined mesh, seen from its control cells: each is a block of 5×5×5 points, interpolated by
+/// quartics along each axis. Neighbouring blocks agree on what they share.
+class CellBlocks {
+public:
+    static constexpr int kLevels = 2;
+
+    /// twice_refined: what `refine` makes of the control mesh in two levels; kept by reference
+    explicit CellBlocks(const HexMesh& twice_refined);
+
+    /// Value and derivatives at a point of a cell. Channels are those of all attributes, one after the other.
+    struct Jet {
+        Vec3 position;
+        std::array<Vec3, 3> d_position, dd_position;          // by u, v, w
+        std::vector<double> value;                            // a channel
+        std::vector<std::array<double, 3>> d_value, dd_value; // a channel, by u, v, w
+    };
+
+    /// The 125 points of a cell, u fastest.
+    using Block = std::array<Index, 125>;
+    [[nodiscard]] Block block(std::size_t cell) const;
+
+    void evaluate(const Block& block, const std::array<double, 3>& uvw, Jet& jet) const;
+
+    [[nodiscard]] std::size_t channels() const { return channels_; }
+
+private:
+    [[nodiscard]] double channel_value(Index point, std::size_t channel) const;
+
+    const HexMesh& mesh_;
+    std::size_t channels_ = 0;
+    std::vector<std::pair<std::size_t, std::size_t>> source_;  // channel → attribute, channel of it
+};
+
+}  // namespace subvol::detail
