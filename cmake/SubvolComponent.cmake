@@ -17,4 +17,7 @@ endfunction()
 
 function(subvol_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow $<$<BOOL:${SUBVOL_WERROR}>:-Werror>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(${target} PRIVATE -Wno-restrict) # GCC 12 reports it for `"text" + std::to_string(n)` (PR 105651)
+  endif()
 endfunction()

@@ -35,8 +35,10 @@ double CellBlocks::channel_value(Index point, std::size_t channel) const {
     return values.values[point * static_cast<std::size_t>(values.channels) + c];
 }
 
-void CellBlocks::evaluate(const Block& block, const std::array<double, 3>& uvw, Jet& jet) const {
-    const std::array<QuarticBasis, 3> basis{QuarticBasis(uvw[0]), QuarticBasis(uvw[1]), QuarticBasis(uvw[2])};
+void CellBlocks::evaluate(const Block& block, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+                          Jet& jet) const {
+    const std::array<SampleStencil, 3> basis{SampleStencil(uvw[0], step[0]), SampleStencil(uvw[1], step[1]),
+                                             SampleStencil(uvw[2], step[2])};
     jet.position = Vec3(0.0);
     jet.d_position = jet.dd_position = {Vec3(0.0), Vec3(0.0), Vec3(0.0)};
     jet.value.assign(channels_, 0);

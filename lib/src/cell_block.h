@@ -17,7 +17,8 @@ public:
     /// twice_refined: what `refine` makes of the control mesh in two levels; kept by reference
     explicit CellBlocks(const HexMesh& twice_refined);
 
-    /// Value and derivatives at a point of a cell. Channels are those of all attributes, one after the other.
+    /// Value, derivatives and second differences per sample interval at a point of a cell, as SampleStencil has them. Channels are
+    /// those of all attributes, one after the other.
     struct Jet {
         Vec3 position;
         std::array<Vec3, 3> d_position, dd_position;          // by u, v, w
@@ -29,7 +30,8 @@ public:
     using Block = std::array<Index, 125>;
     [[nodiscard]] Block block(std::size_t cell) const;
 
-    void evaluate(const Block& block, const std::array<double, 3>& uvw, Jet& jet) const;
+    /// step: the sample interval along u, v, w
+    void evaluate(const Block& block, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
 
     [[nodiscard]] std::size_t channels() const { return channels_; }
 

@@ -80,19 +80,19 @@ public:
     }
 
     void add_cell(std::size_t cell, const CellBlocks::Block& block, const std::array<double, 3>& uvw) {
-        blocks_.evaluate(block, uvw, jet_);
+        const std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
+                                         1.0 / counts_.near(cell, 2, uvw)};
+        blocks_.evaluate(block, uvw, step, jet_);
         if (cells_++ == 0) {
             volume_.centers[point_] = jet_.position;
             for (std::size_t c = 0; c < jet_.value.size(); ++c) volume_.channels[c].values[point_] = static_cast<float>(jet_.value[c]);
         }
         for (std::size_t a = 0; a < 3; ++a) {
-            const double n = counts_.near(cell, a, uvw);  // derivatives are wanted per sample interval
-            const Vec3 column = jet_.d_position[a] / n;
-            metric_ += outer(column);
-            bend_ += jet_.dd_position[a] / (n * n);
+            metric_ += outer(jet_.d_position[a]);
+            bend_ += jet_.dd_position[a];
             for (std::size_t c = 0; c < jet_.value.size(); ++c) {
-                metric_gradient_[c] += column * (jet_.d_value[c][a] / n);
-                laplacian_[c] += jet_.dd_value[c][a] / (n * n);
+                metric_gradient_[c] += jet_.d_position[a] * jet_.d_value[c][a];
+                laplacian_[c] += jet_.dd_value[c][a];
             }
         }
     }

@@ -13,9 +13,9 @@ namespace subvol {
 /// throws: Error(InvalidInput) for another extension, Error(Io)
 void write_image(const std::filesystem::path& path, const Image& image, const Vec3& background = Vec3(0.0));
 
-/// Reads an image that OpenImageIO knows into linear premultiplied RGBA; 8-bit files are taken as sRGB.
+/// Reads an image that OpenImageIO knows into linear premultiplied RGBA; integer samples are taken as sRGB.
 ///
-/// throws: Error(Io), Error(InvalidInput)
+/// throws: Error(Io) if there is no such file, Error(InvalidInput) if it is no whole image or has more than 2²⁸ pixels
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
 
 }  // namespace subvol

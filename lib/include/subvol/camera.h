@@ -72,7 +72,7 @@ private:
 [[nodiscard]] Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg = 30, double aspect = 1);
 
 /// A camera from text: a view name (±x ±y ±z iso), ten numbers "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", or a JSON file with the keys
-/// eye, target (both needed), up, fovy_deg, ortho_height.
+/// eye, target (both needed), up (default: as a view's), fovy_deg, ortho_height.
 ///
 /// A view is named for the side that the eye stands on: `-y` is an eye at negative y that looks towards +y; `iso` stands at
 /// (+1,-1,+1) from the centre. Views have a field of view of 30°.

@@ -19,9 +19,9 @@ struct SampleOptions {
     int per_edge = 1;
     double spacing_world = 0;
     Correction correction = Correction::Second;
-    Kernel kernel;
+    Kernel kernel{};
     int boundary_levels = 1;
-    std::optional<double> crease_angle_deg;
+    std::optional<double> crease_angle_deg{};
     Progress* progress = nullptr;
 };
 

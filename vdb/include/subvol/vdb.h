@@ -28,6 +28,7 @@ struct GridReport {
     double voxel_size_world = 0;
     std::size_t bytes = 0;  // of the tree in memory
     double min = 0, max = 0;
+    Box bounds{};  // of the active voxels' centres, world; empty if there are none
 };
 
 /// An OpenVDB float grid, and a field that can be sampled. Voxel centres lie at world = h·ijk.
@@ -54,8 +55,11 @@ private:
 /// Rasterizes one-channel attributes of a hexahedral mesh: cubic voxels, values at voxel centres, active where the centre lies
 /// inside the mesh. The first field becomes a fog volume (named as the attribute), the others plain float grids.
 ///
-/// Where cells overlap or meet, the cell with the smallest id counts; leaf-parallel, the same for any number of threads.
-/// throws: Error(InvalidInput) if a field is missing or the voxel size is not positive, or makes more than 2³¹ voxels a side
+/// A centre on the boundary counts as if it lay 1e-6 voxels further up all axes: a box that fits the voxels fills its volume
+/// exactly, and boxes that touch share none. Where cells overlap, the cell with the smallest id counts; leaf-parallel, the same
+/// for any number of threads.
+/// throws: Error(InvalidInput) if the mesh is not valid, a field is missing, has several channels or does not fit its float, or
+///         the voxel size is not positive, makes more than 2·10⁹ voxels or voxel numbers beyond 2³⁰; Error(Cancelled)
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 

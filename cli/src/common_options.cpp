@@ -1,0 +1,28 @@
+#include "common_options.h"
+
+namespace subvol::cli {
+
+void add_common_options(CLI::App& app, CommonOptions& options) {
+    const std::string group = "Common options";
+    auto* field = app.add_option("--field", options.field,
+                                 "the attribute to take; a vector stands for its length, v.k for its channel k; without it the "
+                                 "first scalar, else the first vector's length, else density 1");
+    field->group(group)->type_name("NAME");
+    app.add_option("--density", options.density, "an expression in x, y, z to take instead, e.g. \"sin(3*x)+z\"")
+        ->group(group)
+        ->type_name("EXPR")
+        ->excludes(field);
+    app.add_option("--threads", options.threads, "number of threads, 0 takes all; results do not depend on it")
+        ->group(group)
+        ->type_name("N")
+        ->check(CLI::Range(0, 4096));
+    app.add_flag("--json", options.json, "print one JSON object on standard output")->group(group);
+    app.add_flag("--quiet", options.quiet, "print nothing but errors (and the JSON object)")->group(group);
+    app.add_option("--progress", options.progress, "a progress bar on standard error: auto (on a terminal), on, off")
+        ->group(group)
+        ->type_name("WHEN")
+        ->check(CLI::IsMember({"auto", "on", "off"}));
+    app.add_option("--seed", options.seed, "seed of what is random; nothing is, so far")->group(group)->type_name("N");
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace subvol::cli {
+
+/// The options that every verb has.
+struct CommonOptions {
+    std::optional<std::string> field;
+    std::optional<std::string> density;  // an expression in x, y, z
+    int threads = 0;                     // 0: all
+    bool json = false;
+    bool quiet = false;
+    std::string progress = "auto";
+    std::uint64_t seed = 0;
+};
+
+void add_common_options(CLI::App& app, CommonOptions& options);
+
+}  // namespace subvol::cli

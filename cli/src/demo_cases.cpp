@@ -1,0 +1,38 @@
+#include "demo_cases.h"
+
+#include "input.h"
+#include "subvol/model.h"
+
+namespace subvol::cli {
+namespace {
+
+/// The camera and the smooth transfer function of the twisted block as a benchmark, so that figures compare with others'.
+const Camera kTwistCamera{.eye = {2.6, -4.2, 2.0}, .target = {-0.55, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 40};
+
+Optics twist_optics() {
+    return {{.color = {{-1, {.1, .2, .9}}, {0, {.9, .9, .9}}, {1, {.9, .2, .1}}},
+             .opacity = {{-1, .30}, {-.3, .05}, {0, 0}, {.3, .05}, {1, .40}}},
+            0.1};
+}
+
+Optics preset_optics(const std::string& preset, const HexMesh& mesh) {
+    const auto [min, max] = first_field_range(mesh);
+    return {transfer_function_preset(preset, min, max), bounds(mesh).diagonal() / 100};
+}
+
+}  // namespace
+
+std::vector<std::string> demo_names() {
+    return {"pawn", "ball", "twist"};
+}
+
+DemoCase make_demo_case(const std::string& name, int resolution, double aspect) {
+    HexMesh mesh = make_model(name, resolution);
+    if (name == "twist") return {name, std::move(mesh), kTwistCamera, twist_optics(), 200, 1};
+    const Camera camera = parse_camera("iso", bounds(mesh), aspect);
+    Optics optics = preset_optics(name == "pawn" ? "surface" : "coolwarm", mesh);
+    const int sheets = name == "pawn" ? 400 : 200;  // an opaque surface shows every step in depth
+    return {name, std::move(mesh), camera, std::move(optics), sheets, 1};
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,80 @@
+#include "input.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "subvol/error.h"
+#include "subvol/expression.h"
+#include "subvol/model.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+const std::string kModelPrefix = "model:";
+
+void put_density_first(HexMesh& mesh, const std::string& expression) {
+    std::erase_if(mesh.attributes, [](const Attribute& a) { return a.name == "density"; });
+    mesh.attributes.insert(mesh.attributes.begin(), Attribute{"density", 1, evaluate_expression(expression, mesh.points)});
+}
+
+/// description: "NAME" or "NAME:RESOLUTION"
+ReadResult generate(const std::string& description) {
+    const std::size_t colon = description.find(':');
+    int resolution = 0;
+    if (colon != std::string::npos) {
+        const std::string number = description.substr(colon + 1);
+        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), resolution);
+        if (error != std::errc() || end != number.data() + number.size() || resolution == 0) {
+            throw Error(ErrorCode::InvalidInput, "'" + number + "' is no resolution", "model:" + description, "2..512");
+        }
+    }
+    ReadResult result;
+    result.mesh = make_model(description.substr(0, colon), resolution);
+    for (const Attribute& field : result.mesh.attributes) {
+        const auto [min, max] = std::ranges::minmax(field.values);
+        result.fields.push_back({field.name, "point", field.channels, min, max});
+    }
+    return result;
+}
+
+}  // namespace
+
+ReadResult read_input(const std::string& input, Report& report) {
+    report["input"] = input;
+    const bool model = input.starts_with(kModelPrefix);
+    ReadResult read =
+        report.timed("read", [&] { return model ? generate(input.substr(kModelPrefix.size())) : read_mesh(input); });
+    for (const std::string& warning : read.warnings) report.warn(warning);
+    return read;
+}
+
+HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report) {
+    HexMesh mesh = without_unused_points(read_input(input, report).mesh);
+    if (options.density) put_density_first(mesh, *options.density);
+    return mesh;
+}
+
+HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report) {
+    SelectedField selected = select_field(mesh, options.density ? std::optional<std::string>("density") : options.field);
+    report.warn(selected.warning);
+    report["field"] = selected.scalar.name;
+    mesh.attributes = {std::move(selected.scalar)};
+    return mesh;
+}
+
+Range first_field_range(const HexMesh& mesh) {
+    const auto [min, max] = std::ranges::minmax(mesh.attributes.front().values);
+    return {min, max};
+}
+
+void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions,
+                  const std::vector<std::string>& planned) {
+    check_choice(path.string(), path.extension().string(), extensions, planned);
+    const std::filesystem::path folder = path.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+        throw Error(ErrorCode::Io, "the folder " + folder.string() + " does not exist", path.string());
+    }
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common_options.h"
+#include "report.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/mesh_io.h"
+
+namespace subvol::cli {
+
+inline constexpr const char* kInputHelp = "a hexahedral mesh (.mesh, .vtk), or model:NAME or model:NAME:RESOLUTION";
+
+/// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
+[[nodiscard]] ReadResult read_input(const std::string& input, Report& report);
+
+/// `read_input` without the unused points; --density becomes the first attribute.
+[[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
+
+/// The mesh with nothing but the field that the options select, as its one scalar.
+[[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report);
+
+struct Range {
+    double min = 0, max = 0;
+};
+
+/// The range of the mesh's first attribute.
+[[nodiscard]] Range first_field_range(const HexMesh& mesh);
+
+/// Refuses an output before any work is done for it: a file name that ends in none of `extensions`, a folder that is not there.
+///
+/// throws: Error(InvalidInput), Error(Io)
+void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions,
+                  const std::vector<std::string>& planned = {});
+
+}  // namespace subvol::cli

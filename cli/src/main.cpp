@@ -1,0 +1,101 @@
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <new>
+
+#include "subvol/error.h"
+#include "text.h"
+#include "verb.h"
+
+namespace {
+
+using subvol::Error;
+using subvol::ErrorCode;
+
+constexpr int kBadInput = 2;
+constexpr int kEnvironment = 3;
+constexpr int kInterrupted = 130;
+
+constexpr const char* kDescription = "Subdivision volumes: refine hexahedral meshes, splat them, turn them into OpenVDB grids.";
+constexpr const char* kFooter = R"(Start here:
+  subvol model --list                    models to play with
+  subvol info part.vtk                   what is in a mesh, is it sound
+  subvol render model:ball -o ball.png   a picture of a model (or of part.vtk)
+  subvol vdb part.vtk -o part.vdb        an OpenVDB grid
+  subvol VERB --help                     everything about a verb
+
+Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the environment lacks something, 130 interrupted.)";
+
+int exit_code(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::MissingCapability:
+            return kEnvironment;
+        case ErrorCode::Cancelled:
+            return kInterrupted;
+        case ErrorCode::InvalidInput:
+        case ErrorCode::Io:
+            break;
+    }
+    return kBadInput;
+}
+
+int complain(const std::string& message, int code) {
+    std::cerr << "subvol: " << message << '\n';
+    return code;
+}
+
+/// A mistyped verb deserves the list of verbs rather than the parser's "argument was not expected".
+void check_verb(const CLI::App& program, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    std::vector<std::string> known;
+    for (const CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; }))
+        known.push_back(verb->get_name());
+    if (std::ranges::find(known, argv[1]) == known.end()) {
+        throw Error(ErrorCode::InvalidInput, std::string("'") + argv[1] + "' is no verb", {}, subvol::cli::join(known));
+    }
+}
+
+int run(CLI::App& program, int argc, char** argv) {
+    program.set_version_flag("--version", SUBVOL_VERSION);
+    program.require_subcommand(1);
+    program.footer(kFooter);
+    program.get_formatter()->column_width(36);
+    const auto verbs = subvol::cli::make_verbs(program);
+
+    check_verb(program, argc, argv);
+    program.parse(argc, argv);
+    for (const auto& verb : verbs) {
+        if (!verb->chosen()) continue;
+        const auto threads = static_cast<std::size_t>(verb->common().threads);
+        const tbb::global_control limit(
+            tbb::global_control::max_allowed_parallelism,
+            threads > 0 ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+        subvol::cli::catch_interrupts();
+        subvol::cli::Report report(verb->common());
+        const int code = verb->run(report);
+        report.finish();
+        return code;
+    }
+    return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App program(kDescription, "subvol");
+    try {
+        return run(program, argc, argv);
+    } catch (const CLI::Success& wanted) {  // --help, --version
+        return program.exit(wanted);
+    } catch (const CLI::ParseError& error) {
+        return complain(std::string(error.what()) + " (see subvol --help)", kBadInput);
+    } catch (const Error& error) {
+        return complain(error.what(), exit_code(error.code()));
+    } catch (const std::bad_alloc&) {
+        return complain("not enough memory for this; try a lower resolution or fewer levels", kEnvironment);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return complain(error.what(), kBadInput);
+    }
+}

@@ -1,0 +1,66 @@
+#include "picture_arguments.h"
+
+#include <filesystem>
+#include <sstream>
+
+#include "subvol/error.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kOpacityUnitsPerDiagonal = 100;
+
+TransferFunction find_transfer_function(const std::string& name, const Range& range) {
+    const std::filesystem::path path(name);
+    if (path.has_extension() || path.has_parent_path()) return read_transfer_function(path);
+    return transfer_function_preset(name, range.min, range.max);
+}
+
+}  // namespace
+
+PictureSize parse_size(const std::string& text) {
+    std::istringstream in(text);
+    PictureSize size;
+    char cross = 'x';
+    in >> size.width;
+    size.height = size.width;
+    if (!in.fail() && !in.eof()) in >> cross >> size.height;
+    if (in.fail() || !in.eof() || cross != 'x' || size.width < 1 || size.height < 1) {
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is no picture size", "--size", "write it as 640x480 or 512");
+    }
+    return size;
+}
+
+void PictureArguments::add_to(CLI::App& app) {
+    app.add_option("--size", size, "width and height of the picture in pixels (default 512x512)")->type_name("WxH");
+    auto* place = app.add_option("--camera", camera,
+                                 "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a "
+                                 "JSON file with eye, target, up, fovy_deg or ortho_height");
+    place->type_name("CAMERA");
+    app.add_option("--view", view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
+        ->type_name("SIDE")
+        ->excludes(place);
+    app.add_option("--tf", transfer_function,
+                   "colour map: viridis (default), coolwarm, grey, surface or constant over the field's range, or a ParaView "
+                   "colour-map JSON file")
+        ->type_name("FILE|NAME");
+    app.add_option("--opacity-unit", opacity_unit_world,
+                   "world distance that the opacities are for (default: 1/100 of the bounding box's diagonal)")
+        ->type_name("D")
+        ->check(CLI::PositiveNumber);
+    app.add_option("--background", background, "what .png is laid over, linear red, green, blue in 0..1 (default 0,0,0)")
+        ->type_name("R,G,B");
+}
+
+View PictureArguments::make_view(const Box& box) const {
+    const auto [width, height] = parse_size(size);
+    const double aspect = static_cast<double>(width) / height;
+    return {parse_camera(camera.value_or(view), box, aspect), width, height};
+}
+
+Optics PictureArguments::make_optics(const Box& box, const Range& range) const {
+    return {find_transfer_function(transfer_function, range),
+            opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
+}
+
+}  // namespace subvol::cli

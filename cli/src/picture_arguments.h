@@ -1,0 +1,38 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "input.h"
+#include "subvol/camera.h"
+#include "subvol/optics.h"
+
+namespace subvol::cli {
+
+struct PictureSize {
+    int width = 512;
+    int height = 512;
+};
+
+/// "512x384", or "512" for a square.
+///
+/// throws: Error(InvalidInput)
+[[nodiscard]] PictureSize parse_size(const std::string& text);
+
+/// What a picture shows and how.
+struct PictureArguments {
+    std::string size = "512x512";
+    std::optional<std::string> camera;
+    std::string view = "iso";
+    std::string transfer_function = "viridis";
+    std::optional<double> opacity_unit_world;
+    std::string background = "0,0,0";
+
+    void add_to(CLI::App& app);
+
+    [[nodiscard]] View make_view(const Box& box) const;
+    [[nodiscard]] Optics make_optics(const Box& box, const Range& range) const;
+};
+
+}  // namespace subvol::cli

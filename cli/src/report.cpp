@@ -1,0 +1,89 @@
+#include "report.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <iomanip>
+#include <iostream>
+
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+bool progress_visible(const CommonOptions& options) {
+    if (options.quiet || options.progress == "off") return false;
+    return options.progress == "on" || isatty(STDERR_FILENO) != 0;
+}
+
+/// In bytes; Linux counts it in KiB.
+std::int64_t peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+/// A value for people: text without quotes, real numbers with six digits, an object as "key value, key value".
+std::string for_people(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_number_float()) return text(std::setprecision(6), value.get<double>());
+    if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+    if (value.is_null()) return "none";
+    if (!value.is_structured()) return value.dump();
+    std::vector<std::string> parts;
+    for (const auto& [key, part] : value.items())
+        parts.push_back(value.is_object() ? key + " " + for_people(part) : for_people(part));
+    return value.is_array() ? "(" + join(parts) + ")" : join(parts);
+}
+
+void print_table(const Json& json) {
+    for (const auto& [key, value] : json.items()) {
+        const bool list = value.is_array() && !value.empty() && value.front().is_object();
+        const Json rows = list ? value : Json::array({value});
+        for (const Json& row : rows) std::cout << std::left << std::setw(24) << key << for_people(row) << '\n';
+    }
+}
+
+}  // namespace
+
+Report::Stopwatch::~Stopwatch() {
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    report.add_seconds(stage, elapsed.count());
+}
+
+Report::Report(const CommonOptions& options)
+    : print_json_(options.json), quiet_(options.quiet), progress_(progress_visible(options)) {
+}
+
+void Report::warn(const std::string& warning) {
+    if (warning.empty()) return;
+    json_["warnings"].push_back(warning);
+    if (print_json_ || quiet_) return;
+    progress_.clear();
+    std::cerr << "subvol: warning: " << warning << '\n';
+}
+
+void Report::add_seconds(const std::string& stage, double seconds) {
+    Json& all = json_["seconds"];
+    all[stage] = all.is_null() ? seconds : all.value(stage, 0.0) + seconds;
+}
+
+void Report::say(const std::string& line) {
+    if (print_json_ || quiet_) return;
+    progress_.clear();
+    std::cout << line << std::endl;
+}
+
+void Report::finish() {
+    progress_.clear();
+    if (json_.contains("seconds")) json_["peak_bytes"] = peak_memory();
+    if (print_json_) {
+        if (!json_.contains("warnings")) json_["warnings"] = Json::array();
+        std::cout << json_.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
+    } else if (!quiet_ && !all_said_) {
+        json_.erase("warnings");
+        print_table(json_);
+    }
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+
+#include "common_options.h"
+#include "terminal_progress.h"
+
+namespace subvol::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// What a verb tells: collected as one JSON object; at the end printed as such, or as a table for people.
+class Report {
+public:
+    explicit Report(const CommonOptions& options);
+
+    Json& operator[](const char* key) { return json_[key]; }
+    [[nodiscard]] const Json& json() const { return json_; }
+    [[nodiscard]] Progress* progress() { return &progress_; }
+
+    /// For people on standard error and under "warnings". An empty warning is none.
+    void warn(const std::string& warning);
+
+    /// A line for people; not printed with --json or --quiet.
+    void say(const std::string& line);
+
+    /// Adds to a stage's seconds, which go under "seconds".
+    void add_seconds(const std::string& stage, double seconds);
+
+    /// Runs a stage of the work; adds its seconds. Stops before it if the user wants to.
+    template <class Work>
+    auto timed(const char* stage, Work&& work) {
+        report_progress(&progress_, stage, 0);
+        const Stopwatch watch{*this, stage};
+        return std::forward<Work>(work)();
+    }
+
+    /// People have been told all of it by `say`: no table at the end.
+    void all_said() { all_said_ = true; }
+
+    /// Prints; to be called once, when the verb is done.
+    void finish();
+
+private:
+    /// Adds to the stage's seconds when the stage ends, whatever it returns.
+    struct Stopwatch {
+        Report& report;
+        const char* stage;
+        std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+        ~Stopwatch();
+    };
+
+    bool print_json_;
+    bool quiet_;
+    bool all_said_ = false;
+    Json json_ = Json::object();
+    TerminalProgress progress_;
+};
+
+}  // namespace subvol::cli

@@ -1,0 +1,62 @@
+#include "sample_arguments.h"
+
+#include <algorithm>
+
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kPaperBox = 200;  // --spacing-voxels counts in 1/200 of the longest side
+
+Correction correction_named(const std::string& name) {
+    check_choice("--correction", name, {"none", "gradient", "second"});
+    return name == "none" ? Correction::None : name == "gradient" ? Correction::Gradient : Correction::Second;
+}
+
+}  // namespace
+
+void SampleArguments::add_to(CLI::App& app) {
+    auto* edges = app.add_option("--per-edge", per_edge, "sample intervals per cell edge; 1 is one kernel a control point");
+    edges->type_name("N")->check(CLI::Range(1, 64));
+    auto* world = app.add_option("--spacing", spacing_world, "distance of the samples, in world units, instead of --per-edge");
+    world->type_name("H")->check(CLI::PositiveNumber)->excludes(edges);
+    app.add_option("--spacing-voxels", spacing_voxels, "the same in 1/200 of the longest side of the bounding box")
+        ->type_name("S")
+        ->check(CLI::PositiveNumber)
+        ->excludes(edges)
+        ->excludes(world);
+    app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default)")
+        ->type_name("NAME");
+}
+
+SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refinement) const {
+    const Vec3 size = box.size();
+    const double voxel = std::max({size.x, size.y, size.z}) / kPaperBox;
+    return {.scheme = refinement.scheme,
+            .per_edge = per_edge,
+            .spacing_world = spacing_voxels > 0 ? spacing_voxels * voxel : spacing_world,
+            .correction = correction_named(correction),
+            .crease_angle_deg = refinement.crease_angle_deg,
+            .progress = refinement.progress};
+}
+
+RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments, const RefineArguments& refinement,
+                          Report& report) {
+    const RefineOptions refine_options = refinement.options(0, report);
+    SampleOptions options = arguments.options(bounds(mesh), refine_options);
+    HexMesh level;
+    if (refinement.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
+        level = refine_reported(mesh, refine_options, report);
+        options.scheme = Scheme::Linear;
+        options.boundary_levels = 0;
+    }
+    SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(refinement.levels ? level : mesh, options); });
+    report["points"] = sampled.volume.size();
+    if (sampled.report.flat_frames > 0) {
+        report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
+    }
+    return std::move(sampled.volume);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "subvol/progress.h"
+
+namespace subvol::cli {
+
+/// From here on an interrupt (Ctrl-C) asks the running work to stop; a second one ends the program at once.
+void catch_interrupts();
+
+/// A bar on standard error, and the interrupt as a wish to stop.
+class TerminalProgress : public Progress {
+public:
+    explicit TerminalProgress(bool visible) : visible_(visible) {}
+    ~TerminalProgress() override { clear(); }
+    TerminalProgress(const TerminalProgress&) = delete;
+    TerminalProgress& operator=(const TerminalProgress&) = delete;
+
+    void report(std::string_view stage, double fraction) override;
+    [[nodiscard]] bool cancelled() const override;
+
+    /// Takes the bar away, so that a line can be printed.
+    void clear();
+
+private:
+    bool visible_;
+    bool drawn_ = false;
+    std::string stage_;
+    std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace subvol::cli

@@ -1,0 +1,36 @@
+#include "text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/error.h"
+
+namespace subvol::cli {
+
+std::string join(const std::vector<std::string>& parts) {
+    std::string all;
+    for (const std::string& part : parts) all += (all.empty() ? "" : ", ") + part;
+    return all;
+}
+
+Vec3 parse_vector(const std::string& option, const std::string& value) {
+    std::istringstream in(value);
+    Vec3 v(0.0);
+    char first = 0, second = 0;
+    in >> v.x >> first >> v.y >> second >> v.z;
+    const bool finite = std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+    if (in.fail() || !(in >> std::ws).eof() || first != ',' || second != ',' || !finite) {
+        throw Error(ErrorCode::InvalidInput, "'" + value + "' is not three numbers", option, "write it as 1,2,3");
+    }
+    return v;
+}
+
+void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported,
+                  const std::vector<std::string>& planned) {
+    if (std::ranges::find(supported, value) != supported.end()) return;
+    const bool known = std::ranges::find(planned, value) != planned.end();
+    throw Error(ErrorCode::InvalidInput, "'" + value + "' is " + (known ? "not supported yet" : "unknown"), option,
+                "supported: " + join(supported));
+}
+
+}  // namespace subvol::cli

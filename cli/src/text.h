@@ -1,0 +1,31 @@
+#pragma once
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "subvol/vec.h"
+
+namespace subvol::cli {
+
+/// All parts one after the other.
+template <class... Part>
+[[nodiscard]] std::string text(const Part&... parts) {
+    std::ostringstream out;
+    (out << ... << parts);
+    return out.str();
+}
+
+/// "a, b, c"
+[[nodiscard]] std::string join(const std::vector<std::string>& parts);
+
+/// "1,2,3" as three numbers. option: named in the error
+///
+/// throws: Error(InvalidInput) if it is anything else
+[[nodiscard]] Vec3 parse_vector(const std::string& option, const std::string& value);
+
+/// throws: Error(InvalidInput) unless `value` is one of `supported`; says so for what is only `planned`
+void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported,
+                  const std::vector<std::string>& planned = {});
+
+}  // namespace subvol::cli

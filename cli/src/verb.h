@@ -1,0 +1,48 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common_options.h"
+#include "report.h"
+
+namespace subvol::cli {
+
+/// One verb of the command: the constructor of a derived class declares its arguments, `run` does its work.
+class Verb {
+public:
+    /// examples: shown below the help, one command a line
+    Verb(CLI::App& program, const std::string& name, const std::string& description, const std::string& examples);
+    virtual ~Verb() = default;
+    Verb(const Verb&) = delete;
+    Verb& operator=(const Verb&) = delete;
+
+    [[nodiscard]] bool chosen() const { return app_.parsed(); }
+    [[nodiscard]] const CommonOptions& common() const { return common_; }
+
+    /// returns: the exit code
+    virtual int run(Report& report) = 0;
+
+protected:
+    [[nodiscard]] CLI::App& app() { return app_; }
+
+private:
+    CLI::App& app_;
+    CommonOptions common_;
+};
+
+[[nodiscard]] std::unique_ptr<Verb> make_model_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_info_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_subdivide_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_points_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_vdb_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_render_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_compare_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_demo_verb(CLI::App& program);
+
+/// All verbs, in the order of the help.
+[[nodiscard]] std::vector<std::unique_ptr<Verb>> make_verbs(CLI::App& program);
+
+}  // namespace subvol::cli

@@ -1,0 +1,67 @@
+#include <iomanip>
+
+#include "input.h"
+#include "subvol/error.h"
+#include "subvol/mesh_io.h"
+#include "subvol/model.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class ModelVerb : public Verb {
+public:
+    explicit ModelVerb(CLI::App& program)
+        : Verb(program, "model", "Generate a model.",
+               "  subvol model --list\n"
+               "  subvol model twist --resolution 40 -o twist.vtu") {
+        app().add_option("NAME", name_, "the model's name");
+        app().add_option("-o,--output", output_, "the mesh to write (.vtu with its field, .mesh without)")->type_name("FILE");
+        app()
+            .add_option("--resolution", resolution_, "cells along the main direction, 2..512")
+            ->type_name("N")
+            ->check(CLI::Range(2, 512));
+        app().add_flag("--list", list_, "list the models");
+    }
+
+    int run(Report& report) override {
+        list_ ? list(report) : generate(report);
+        return 0;
+    }
+
+private:
+    static void list(Report& report) {
+        for (const ModelInfo& model : list_models()) {
+            report["models"].push_back(
+                {{"name", model.name}, {"resolution", model.default_resolution}, {"description", model.description}});
+            report.say(text(std::left, std::setw(8), model.name, model.description, "; N = ", model.default_resolution));
+        }
+        report.all_said();
+    }
+
+    void generate(Report& report) {
+        if (name_.empty()) throw Error(ErrorCode::InvalidInput, "needs the name of a model", "model", "see --list");
+        if (output_.empty()) throw Error(ErrorCode::InvalidInput, "needs a file to write", "model", "-o FILE");
+        check_output(output_, {".vtu", ".mesh"});
+        const HexMesh mesh = report.timed("generate", [&] { return make_model(name_, resolution_); });
+        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, mesh); }))
+            report.warn(warning);
+        report["output"] = output_;
+        report["points"] = mesh.points.size();
+        report["cells"] = mesh.cells.size();
+    }
+
+    std::string name_;
+    std::string output_;
+    int resolution_ = 0;
+    bool list_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_model_verb(CLI::App& program) {
+    return std::make_unique<ModelVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,117 @@
+#include "input.h"
+#include "picture_arguments.h"
+#include "sample_arguments.h"
+#include "subvol/error.h"
+#include "subvol/image_io.h"
+#include "subvol/render.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr int kTetsLevel = 1;
+
+Backend backend_named(const std::string& name) {
+    check_choice("--backend", name, {"auto", "gl", "cpu"});
+    return name == "gl" ? Backend::Gl : name == "cpu" ? Backend::Cpu : Backend::Auto;
+}
+
+class RenderVerb : public Verb {
+public:
+    explicit RenderVerb(CLI::App& program)
+        : Verb(program, "render", "Make a picture.",
+               "  subvol render model:ball -o ball.png\n"
+               "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
+               "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2") {
+        app().add_option("FILE", input_, kInputHelp)->required();
+        app()
+            .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats)")
+            ->type_name("IMAGE")
+            ->required();
+        app()
+            .add_option("--method", method_, "splat (kernels, the default) or tets (rays through tetrahedra)")
+            ->type_name("NAME");
+        app().add_option("--backend", backend_, "where to splat: auto (default), gl, cpu")->type_name("NAME");
+        picture_.add_to(app());
+        app()
+            .add_option("--sheets", sheets_, "splat: planes over the volume's depth (default 200)")
+            ->type_name("N")
+            ->check(CLI::Range(2, 65536));
+        app()
+            .add_option("--samples", samples_, "tets: n x n rays a pixel (default 1)")
+            ->type_name("N")
+            ->check(CLI::Range(1, 16));
+        sample_.add_to(app());
+        refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; splat: omitted shows the limit)");
+    }
+
+    int run(Report& report) override {
+        check_choice("--method", method_, {"splat", "tets"}, {"sheets", "dense", "grid", "pt"});
+        check_output(output_, {".png", ".exr"});
+        const Vec3 background = parse_vector("--background", picture_.background);
+        const Backend backend = backend_named(backend_);
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        const Box box = bounds(mesh);
+        const View view = picture_.make_view(box);
+        const Optics optics = picture_.make_optics(box, first_field_range(mesh));
+
+        const Image image =
+            method_ == "splat" ? splat(mesh, view, optics, backend, report) : tets(mesh, view, optics, backend, report);
+        report.timed("write", [&] { write_image(output_, image, background); });
+        report["output"] = output_;
+        return 0;
+    }
+
+private:
+    [[nodiscard]] Image splat(const HexMesh& mesh, const View& view, const Optics& optics, Backend backend,
+                              Report& report) const {
+        const RbfVolume volume = sample_reported(mesh, sample_, refine_, report);
+        SplatResult drawn =
+            render_splats(volume, view, optics, {.backend = backend, .sheets = sheets_, .progress = report.progress()});
+        report.add_seconds("prepare", drawn.report.seconds_prepare);
+        report.add_seconds("draw", drawn.report.seconds_draw);
+        report["method"] = method_;
+        report["backend"] = drawn.report.backend;
+        report["device"] = drawn.report.device;
+        report["sheets"] = sheets_;
+        return std::move(drawn.image);
+    }
+
+    [[nodiscard]] Image tets(const HexMesh& mesh, const View& view, const Optics& optics, Backend backend,
+                             Report& report) const {
+        if (backend == Backend::Gl) throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
+        const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), report);
+        TetsResult drawn = render_tets(fine, fine.attributes.front().values, view, optics,
+                                       {.samples = samples_, .progress = report.progress()});
+        report.add_seconds("prepare", drawn.report.seconds_build);
+        report.add_seconds("draw", drawn.report.seconds_draw);
+        report["method"] = method_;
+        report["backend"] = "cpu";
+        report["tets"] = drawn.report.tets;
+        report["degenerate_tets"] = drawn.report.degenerate_tets;
+        report["inverted_tets"] = drawn.report.inverted_tets;
+        report["rays"] = drawn.report.rays;
+        report["lost_rays"] = drawn.report.lost_rays;
+        if (drawn.report.lost_rays > 0) report.warn(text(drawn.report.lost_rays, " rays were lost inside the mesh"));
+        return std::move(drawn.image);
+    }
+
+    std::string input_;
+    std::string output_;
+    std::string method_ = "splat";
+    std::string backend_ = "auto";
+    int sheets_ = 200;
+    int samples_ = 1;
+    PictureArguments picture_;
+    SampleArguments sample_;
+    RefineArguments refine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_render_verb(CLI::App& program) {
+    return std::make_unique<RenderVerb>(program);
+}
+
+}  // namespace subvol::cli

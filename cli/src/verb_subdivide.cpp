@@ -1,0 +1,47 @@
+#include "input.h"
+#include "refine_arguments.h"
+#include "subvol/mesh_io.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class SubdivideVerb : public Verb {
+public:
+    explicit SubdivideVerb(CLI::App& program)
+        : Verb(program, "subdivide", "Refine a mesh; every level splits a cell into eight.",
+               "  subvol subdivide model:ball -o fine.vtu --levels 2\n"
+               "  subvol subdivide part.mesh -o fine.vtu --density \"exp(-(x^2+y^2+z^2))\"") {
+        app().add_option("FILE", input_, kInputHelp)->required();
+        app()
+            .add_option("-o,--output", output_, "the mesh to write (.vtu with its fields, .mesh without)")
+            ->type_name("FILE")
+            ->required();
+        refine_.add_to(app(), "how many times (default 1)");
+    }
+
+    int run(Report& report) override {
+        const RefineOptions options = refine_.options(1, report);
+        check_output(output_, {".vtu", ".mesh"});
+        const HexMesh mesh = load_mesh(input_, common(), report);
+        const HexMesh fine = refine_reported(mesh, options, report);
+        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine); }))
+            report.warn(warning);
+        report["output"] = output_;
+        report["points"] = fine.points.size();
+        return 0;
+    }
+
+private:
+    std::string input_;
+    std::string output_;
+    RefineArguments refine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_subdivide_verb(CLI::App& program) {
+    return std::make_unique<SubdivideVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,58 @@
+#include "model_parts.h"
+
+#include <cmath>
+
+namespace subvol::model {
+namespace {
+
+Vec2 turned(double x, double y, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * x - s * y, s * x + c * y};
+}
+
+}  // namespace
+
+Vec3 BentBlock::position(const Vec3& p) const {
+    const Vec2 section = half_width * turned(p.x, p.y, twist_rad * (p.z + 1));
+    const double arm = radius + section.x, t = bend_rad * p.z;
+    return {arm * std::cos(t) - radius, section.y, arm * std::sin(t)};
+}
+
+Vec3 BentBlock::parameter(const Vec3& x) const {
+    // atan2 is in (-π,π] and bend < π: beyond the block |z| > 1 follows on both sides of the cut.
+    const double z = std::atan2(x.z, x.x + radius) / bend_rad;
+    const double across = std::hypot(x.x + radius, x.z) - radius;
+    const Vec2 section = turned(across, x.y, -twist_rad * (z + 1)) / half_width;
+    return {section.x, section.y, z};
+}
+
+bool in_block(const Vec3& p) {
+    return std::abs(p.x) <= 1 && std::abs(p.y) <= 1 && std::abs(p.z) <= 1;
+}
+
+HexMesh parameter_block(const std::array<Index, 3>& cells) {
+    const auto [nx, ny, nz] = cells;
+    const auto coordinate = [](Index i, Index n) { return -1 + 2.0 * i / n; };
+    HexMesh mesh;
+    mesh.points.reserve(std::size_t{nx + 1} * (ny + 1) * (nz + 1));
+    for (Index k = 0; k <= nz; ++k) {
+        for (Index j = 0; j <= ny; ++j) {
+            for (Index i = 0; i <= nx; ++i) {
+                mesh.points.emplace_back(coordinate(i, nx), coordinate(j, ny), coordinate(k, nz));
+            }
+        }
+    }
+    const Index row = nx + 1, layer = row * (ny + 1);
+    mesh.cells.reserve(std::size_t{nx} * ny * nz);
+    for (Index k = 0; k < nz; ++k) {
+        for (Index j = 0; j < ny; ++j) {
+            for (Index i = 0; i < nx; ++i) {
+                const Index p = i + row * j + layer * k, q = p + layer;
+                mesh.cells.push_back({p, p + 1, p + 1 + row, p + row, q, q + 1, q + 1 + row, q + row});
+            }
+        }
+    }
+    return mesh;
+}
+
+}  // namespace subvol::model

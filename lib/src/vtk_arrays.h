@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh_file.h"
+
+namespace subvol {
+
+/// Skips what follows the word METADATA: the lines up to an empty one.
+void skip_metadata(TextScanner& in);
+
+/// The arrays of legacy VTK: the sections behind POINT_DATA and CELL_DATA, and FIELD anywhere.
+class VtkArrayReader {
+public:
+    VtkArrayReader(TextScanner& in, MeshFile& found) : in_(in), found_(found) {}
+
+    /// Reads the section whose keyword (in capitals) was the last word, if it is one of arrays.
+    ///
+    /// returns: whether it was
+    bool read_section(const std::string& keyword);
+
+    /// The arrays that follow have one tuple a point, or one a cell.
+    void start_data(bool at_cells, std::size_t tuples);
+
+    /// Refuses a word that is no VTK data type.
+    void read_type(const std::string& what);
+
+private:
+    void read_scalars();
+    void read_attribute(const std::string& keyword, std::size_t components);
+    void read_field();
+    void read_lookup_table();
+    void read_values(const std::string& name, std::size_t components);
+    void skip_values(const std::string& name, std::size_t components, std::size_t tuples);
+
+    TextScanner& in_;
+    MeshFile& found_;
+    bool in_data_ = false;
+    bool at_cells_ = false;
+    std::size_t tuples_ = 0;
+};
+
+}  // namespace subvol

@@ -1,0 +1,206 @@
+#include "boundary_intervals.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "clip_triangle.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr int kBandRows = 8;
+constexpr double kSnap = 4096;          // units a pixel
+constexpr double kGuard_px = 1 << 17;   // beyond it edge functions could overflow 64 bits: such triangles are clipped
+constexpr std::size_t kChunks = 64;
+
+struct SnappedPoint {
+    std::int64_t x, y;
+};
+
+/// A triangle on the picture with its plane in eye space.
+struct ScreenTriangle {
+    std::array<SnappedPoint, 3> corners;  // turned so that its area is positive
+    std::int8_t sign;                     // +1 where a ray enters the solid
+    Vec3 normal;
+    double offset, z_min, z_max;
+};
+
+/// A crossing of the surface by the ray of a pixel.
+struct Hit {
+    std::uint32_t pixel;
+    float depth;
+    std::int8_t sign;
+    auto operator<=>(const Hit&) const = default;
+};
+
+std::int64_t snap(double px) { return static_cast<std::int64_t>(std::llround(px * kSnap)); }
+
+/// Twice the area of (a, b, p); the sign says on which side of ab p lies.
+std::int64_t area(const SnappedPoint& a, const SnappedPoint& b, const SnappedPoint& p) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+/// Of two triangles that share an edge, exactly one owns the points on it.
+bool owns_edge(const SnappedPoint& a, const SnappedPoint& b) { return a.y != b.y ? b.y > a.y : b.x < a.x; }
+
+class TriangleSetup {
+public:
+    TriangleSetup(const View& view, double near) : view_(view) {
+        planes_.push_back({{0, 0, 1}, -near});
+        const double reach = kGuard_px * view.pixel();
+        for (const auto& side : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+            planes_.push_back(view.perspective() ? ClipPlane{side + Vec3(0, 0, reach), 0} : ClipPlane{side, reach});
+        }
+    }
+
+    void add(const std::array<Vec3, 3>& eye, std::vector<ScreenTriangle>& out) {
+        polygon_.assign(eye.begin(), eye.end());
+        for (const auto& plane : planes_) {
+            const bool cut = std::any_of(polygon_.begin(), polygon_.end(),
+                                         [&](const Vec3& p) { return glm::dot(plane.normal, p) + plane.offset < 0; });
+            if (cut) clip_polygon(polygon_, plane, scratch_);
+        }
+        const Vec3 normal = glm::cross(eye[1] - eye[0], eye[2] - eye[0]);
+        for (std::size_t i = 2; i < polygon_.size(); ++i) emit({polygon_[0], polygon_[i - 1], polygon_[i]}, eye, normal, out);
+    }
+
+private:
+    void emit(const std::array<Vec3, 3>& part, const std::array<Vec3, 3>& eye, const Vec3& normal, std::vector<ScreenTriangle>& out) {
+        ScreenTriangle t;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec2 px = view_.to_pixels(part[k]);
+            t.corners[k] = {snap(px.x), snap(px.y)};
+        }
+        const std::int64_t twice_area = area(t.corners[0], t.corners[1], t.corners[2]);
+        if (twice_area == 0) return;
+        // Counter-clockwise from outside has negative area where it faces us: picture rows run downwards.
+        t.sign = twice_area < 0 ? 1 : -1;
+        if (twice_area < 0) std::swap(t.corners[1], t.corners[2]);
+        t.normal = normal;
+        t.offset = glm::dot(normal, eye[0]);
+        t.z_min = std::min({part[0].z, part[1].z, part[2].z});
+        t.z_max = std::max({part[0].z, part[1].z, part[2].z});
+        out.push_back(t);
+    }
+
+    const View& view_;
+    std::vector<ClipPlane> planes_;
+    std::vector<Vec3> polygon_, scratch_;
+};
+
+double depth_at(const ScreenTriangle& t, const View& view, double x_px, double y_px) {
+    const Vec2 s = view.slopes(x_px, y_px);
+    const double z = view.perspective() ? t.offset / (t.normal.x * s.x + t.normal.y * s.y + t.normal.z)
+                                        : (t.offset - t.normal.x * s.x - t.normal.y * s.y) / t.normal.z;
+    return std::isfinite(z) ? std::clamp(z, t.z_min, t.z_max) : t.z_min;  // seen edge-on
+}
+
+int first_pixel(std::int64_t snapped) { return static_cast<int>(std::ceil(static_cast<double>(snapped) / kSnap - 0.5)); }
+int last_pixel(std::int64_t snapped) { return static_cast<int>(std::floor(static_cast<double>(snapped) / kSnap - 0.5)); }
+
+void rasterize(const ScreenTriangle& t, const View& view, int y_begin, int y_end, std::vector<Hit>& hits) {
+    const auto [x_low, x_high] = std::minmax({t.corners[0].x, t.corners[1].x, t.corners[2].x});
+    const auto [y_low, y_high] = std::minmax({t.corners[0].y, t.corners[1].y, t.corners[2].y});
+    const int x0 = std::max(0, first_pixel(x_low)), x1 = std::min(view.width() - 1, last_pixel(x_high));
+    const int y0 = std::max(y_begin, first_pixel(y_low)), y1 = std::min(y_end - 1, last_pixel(y_high));
+    std::array<std::int64_t, 3> bias;
+    for (std::size_t k = 0; k < 3; ++k) bias[k] = owns_edge(t.corners[k], t.corners[(k + 1) % 3]) ? 0 : -1;
+    for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+            const SnappedPoint p{snap(x + 0.5), snap(y + 0.5)};
+            bool inside = true;
+            for (std::size_t k = 0; k < 3 && inside; ++k) inside = area(t.corners[k], t.corners[(k + 1) % 3], p) + bias[k] >= 0;
+            if (!inside) continue;
+            const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view.width()) + static_cast<std::uint32_t>(x);
+            hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5)), t.sign});
+        }
+    }
+}
+
+/// Turns the sorted hits of one pixel into intervals.
+void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths) {
+    int inside = 0;  // how many solids the eye is in
+    for (const Hit& hit : hits) inside -= hit.sign;
+    inside = std::max(inside, 0);
+    float enter = near;
+    for (const Hit& hit : hits) {
+        if (hit.sign > 0 && inside++ == 0) enter = hit.depth;
+        if (hit.sign < 0 && inside > 0 && --inside == 0 && hit.depth > enter) depths.insert(depths.end(), {enter, hit.depth});
+    }
+}
+
+std::vector<std::vector<ScreenTriangle>> project(const Surface& surface, const View& view, double near) {
+    std::vector<std::vector<ScreenTriangle>> chunks(kChunks);
+    const std::size_t count = surface.triangles.size();
+    tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
+        TriangleSetup setup(view, near);
+        for (std::size_t i = count * chunk / kChunks; i < count * (chunk + 1) / kChunks; ++i) {
+            const auto& t = surface.triangles[i];
+            setup.add({view.to_eye(surface.points[t[0]]), view.to_eye(surface.points[t[1]]), view.to_eye(surface.points[t[2]])},
+                      chunks[chunk]);
+        }
+    });
+    return chunks;
+}
+
+struct Band {
+    std::vector<std::uint32_t> counts;  // intervals a pixel
+    std::vector<float> depths;
+    std::size_t hits = 0;
+};
+
+}  // namespace
+
+PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near) {
+    const auto chunks = project(surface, view, near);
+    const int band_count = (view.height() + kBandRows - 1) / kBandRows;
+    // Which triangles a band meets, so that each band looks at its own only.
+    std::vector<std::vector<const ScreenTriangle*>> of_band(static_cast<std::size_t>(band_count));
+    for (const auto& chunk : chunks) {
+        for (const auto& t : chunk) {
+            const auto [low, high] = std::minmax({t.corners[0].y, t.corners[1].y, t.corners[2].y});
+            const int first = std::max(0, first_pixel(low)), last = std::min(view.height() - 1, last_pixel(high));
+            for (int band = first / kBandRows; first <= last && band <= last / kBandRows; ++band) {
+                of_band[static_cast<std::size_t>(band)].push_back(&t);
+            }
+        }
+    }
+
+    std::vector<Band> bands(static_cast<std::size_t>(band_count));
+    tbb::parallel_for(0, band_count, [&](int b) {
+        const int y0 = b * kBandRows, y1 = std::min(view.height(), y0 + kBandRows);
+        const std::uint32_t first_pixel_id = static_cast<std::uint32_t>(y0) * static_cast<std::uint32_t>(view.width());
+        Band& band = bands[static_cast<std::size_t>(b)];
+        std::vector<Hit> hits;
+        for (const auto* t : of_band[static_cast<std::size_t>(b)]) rasterize(*t, view, y0, y1, hits);
+        std::sort(hits.begin(), hits.end(), [](const Hit& l, const Hit& r) {
+            // Where two shells touch, leaving comes after entering: no gap opens between them.
+            return l.pixel != r.pixel ? l.pixel < r.pixel : l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
+        });
+        band.hits = hits.size();
+        band.counts.resize(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(view.width()));
+        for (std::size_t i = 0; i < hits.size();) {
+            std::size_t end = i;
+            while (end < hits.size() && hits[end].pixel == hits[i].pixel) ++end;
+            const std::size_t before = band.depths.size();
+            resolve(std::span(hits).subspan(i, end - i), static_cast<float>(near), band.depths);
+            band.counts[hits[i].pixel - first_pixel_id] = static_cast<std::uint32_t>((band.depths.size() - before) / 2);
+            i = end;
+        }
+    });
+
+    PixelIntervals result;
+    result.offsets.push_back(0);
+    for (const Band& band : bands) {
+        for (const auto count : band.counts) result.offsets.push_back(result.offsets.back() + count);
+        result.depths.insert(result.depths.end(), band.depths.begin(), band.depths.end());
+        result.hits += band.hits;
+    }
+    return result;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "subvol/camera.h"
+#include "subvol/surface.h"
+
+namespace subvol::detail {
+
+/// Where the ray of each pixel is inside a closed surface: pixel p (row by row) has the depth pairs {enter, exit}
+/// depths[2·offsets[p] .. 2·offsets[p+1]), ascending and disjoint.
+struct PixelIntervals {
+    std::vector<std::uint32_t> offsets;
+    std::vector<float> depths;
+    std::size_t hits = 0;
+};
+
+/// Rasterizes a closed surface, watertight: vertices are snapped to 1/4096 px and a pixel centre on a shared edge counts once.
+/// A ray is inside while it has entered more often than left, so shells may be nested, overlap or enclose the eye.
+///
+/// near: depth below which nothing is seen
+[[nodiscard]] PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near);
+
+}  // namespace subvol::detail

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include <mutex>
+
+#include "subvol/camera.h"
+#include "subvol/error.h"
+#include "subvol/image.h"
+#include "subvol/optics.h"
+#include "subvol/progress.h"
+
+namespace subvol {
+
+inline constexpr int kMaxSamples = 16;
+
+/// throws: Error(InvalidInput) unless samples is in 1..16
+inline void check_samples(int samples) {
+    if (samples < 1 || samples > kMaxSamples) {
+        throw Error(ErrorCode::InvalidInput, "samples is " + std::to_string(samples), {}, "1..16 along each side of a pixel");
+    }
+}
+
+/// The mean over a regular n × n grid of rays in pixel (x,y).
+template <class Trace>
+Segment trace_pixel(const View& view, int x, int y, int samples, Trace& trace) {
+    Segment sum{.color = Vec3(0.0), .transmittance = 0};
+    for (int j = 0; j < samples; ++j) {
+        for (int i = 0; i < samples; ++i) {
+            const Segment one = trace(view.ray(x + (i + 0.5) / samples, y + (j + 0.5) / samples));
+            sum.color += one.color;
+            sum.transmittance += one.transmittance;
+        }
+    }
+    const double rays = static_cast<double>(samples) * samples;
+    return {sum.color / rays, sum.transmittance / rays};
+}
+
+/// Draws a picture in tiles, on all threads. Every pixel depends on its own rays only, so threads change nothing.
+///
+/// make_tracer: makes what turns a Ray into a Segment; called once a tile, so that a tracer may keep scratch memory and count
+template <class MakeTracer>
+Image draw_in_tiles(const View& view, int samples, Progress* progress, const MakeTracer& make_tracer) {
+    constexpr int kTile = 16;
+    const int columns = (view.width() + kTile - 1) / kTile;
+    const int rows = (view.height() + kTile - 1) / kTile;
+    Image image(view.width(), view.height());
+    std::mutex reporting;
+    int tiles_done = 0;
+    const auto draw_tile = [&](int column, int row) {
+        auto trace = make_tracer();
+        for (int y = row * kTile; y < std::min((row + 1) * kTile, view.height()); ++y) {
+            for (int x = column * kTile; x < std::min((column + 1) * kTile, view.width()); ++x) {
+                const Segment mean = trace_pixel(view, x, y, samples, trace);
+                const auto pixel = image.pixel(x, y);
+                for (int c = 0; c < 3; ++c) pixel[static_cast<std::size_t>(c)] = static_cast<float>(mean.color[c]);
+                pixel[3] = static_cast<float>(1 - mean.transmittance);
+            }
+        }
+        if (!progress) return;
+        const std::lock_guard lock(reporting);
+        report_progress(progress, "draw", static_cast<double>(++tiles_done) / (static_cast<double>(columns) * rows));
+    };
+    tbb::parallel_for(tbb::blocked_range2d<int>(0, rows, 1, 0, columns, 1), [&](const auto& range) {
+        for (int row = range.rows().begin(); row < range.rows().end(); ++row) {
+            for (int column = range.cols().begin(); column < range.cols().end(); ++column) draw_tile(column, row);
+        }
+    });
+    return image;
+}
+
+}  // namespace subvol

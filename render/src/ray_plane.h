@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/camera.h"
+#include "subvol/hex_mesh.h"
+
+namespace subvol {
+
+/// A mesh point as a ray sees it: (x,y) off the ray, in the plane across its dominant axis, and t along it.
+struct SeenPoint {
+    Index id = kNone;
+    double x = 0, y = 0, t = 0;
+    double value = 0;
+};
+
+/// Twice the signed area of (ray, a, b), and its sign, which is exact for the seen coordinates and never zero: ties are decided
+/// as if the ray were moved by (ε, ε²), points seen as one by their ids. So the signs of all edges fit together, and every ray
+/// goes through the inside of the faces that it crosses, through vertices and along edges too.
+struct Side {
+    double area = 0;
+    bool left = false;
+
+    [[nodiscard]] Side reversed() const { return {-area, !left}; }
+};
+
+/// Shears space so that the ray becomes the t axis.
+class RayPlane {
+public:
+    explicit RayPlane(const Ray& ray) : origin_(ray.origin) {
+        const Vec3 size = glm::abs(ray.direction);
+        z_ = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
+        x_ = (z_ + 1) % 3;
+        y_ = (z_ + 2) % 3;
+        per_depth_ = 1 / ray.direction[z_];
+        slope_x_ = ray.direction[x_] * per_depth_;
+        slope_y_ = ray.direction[y_] * per_depth_;
+    }
+
+    [[nodiscard]] SeenPoint see(Index id, const Vec3& position, double value) const {
+        const Vec3 p = position - origin_;
+        return {id, p[x_] - slope_x_ * p[z_], p[y_] - slope_y_ * p[z_], p[z_] * per_depth_, value};
+    }
+
+private:
+    Vec3 origin_;
+    int x_, y_, z_;
+    double slope_x_, slope_y_, per_depth_;
+};
+
+/// a·d − b·c to a relative error of two roundings, so with its exact sign: Kahan's algorithm (Jeannerod, Louvet, Muller 2013).
+[[nodiscard]] inline double exact_difference(double a, double d, double b, double c) {
+    const double bc = b * c;
+    return std::fma(a, d, -bc) + std::fma(-b, c, bc);
+}
+
+[[nodiscard]] inline Side side_of(const SeenPoint& a, const SeenPoint& b) {
+    constexpr double kErrorBound = 3.4e-16;  // (3 + 16ε)ε of Shewchuk's 2-D orientation test
+    const double left = a.x * b.y, right = b.x * a.y;
+    const double area = left - right;
+    if (std::abs(area) > kErrorBound * (std::abs(left) + std::abs(right))) return {area, area > 0};
+    const double exact = exact_difference(a.x, b.y, b.x, a.y);
+    if (exact != 0) return {exact, exact > 0};
+    if (a.y != b.y) return {0, a.y > b.y};
+    if (a.x != b.x) return {0, b.x > a.x};
+    return {0, a.id < b.id};
+}
+
+}  // namespace subvol

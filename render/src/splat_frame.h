@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "boundary_intervals.h"
+#include "subvol/camera.h"
+#include "subvol/rbf_volume.h"
+#include "subvol/render.h"
+
+namespace subvol::detail {
+
+/// A kernel in eye space, ready to be cut by a plane of constant depth z: with z_s = z − depth, its section has the centre
+/// center + shear·z_s, and e = z_s²·inv_szz + Δᵀ·conic·Δ for an offset Δ from that centre. Laid out as the shader has it.
+struct EyeSplat {
+    float center_x, center_y, depth, inv_szz;
+    float shear_x, shear_y, conic_xx, conic_xy;
+    float conic_yy, value, gradient_x, gradient_y;
+    float value_slope, moment, extent_x, extent_y;  // value_slope: change of the section's central value with z_s
+};
+static_assert(sizeof(EyeSplat) == 64);
+
+/// Everything about a frame that does not depend on who draws it. Kernels are binned by (tile, batch of sheets), by ascending
+/// id: bin = tile · batches + batch.
+struct SplatFrame {
+    static constexpr int kBatch = 8;  // sheets a batch
+
+    int tile_px = 16;
+    int tiles_x = 0, tiles_y = 0;
+    int sheets = 0, batches = 0;
+    float first_depth = 0, sheet_distance = 0;  // depth of sheet k = first_depth + k · sheet_distance
+    std::vector<EyeSplat> splats;
+    std::vector<std::uint32_t> bin_offsets;
+    std::vector<std::uint32_t> bin_splats;
+    PixelIntervals intervals;
+
+    [[nodiscard]] float depth(int sheet) const { return first_depth + static_cast<float>(sheet) * sheet_distance; }
+};
+
+/// throws: Error(InvalidInput) if the volume has no boundary or no such channel
+[[nodiscard]] SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const SplatOptions& options, int tile_px);
+
+/// The section of a kernel by a sheet, in slopes; empty (half < 0) where the sheet misses it.
+struct Section {
+    float x, y, half_x, half_y;
+};
+
+[[nodiscard]] inline Section section(const EyeSplat& s, float depth, bool perspective) {
+    const float zs = depth - s.depth;
+    const float left = 1.0f - zs * zs * s.inv_szz;
+    if (left <= 0) return {0, 0, -1, -1};
+    const float scale = perspective ? 1.0f / depth : 1.0f, root = std::sqrt(left);
+    return {(s.center_x + s.shear_x * zs) * scale, (s.center_y + s.shear_y * zs) * scale, s.extent_x * root * scale,
+            s.extent_y * root * scale};
+}
+
+}  // namespace subvol::detail

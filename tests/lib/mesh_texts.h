@@ -1,0 +1,55 @@
+#pragma once
+
+#include <charconv>
+#include <string>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol::test {
+
+inline std::string number(double value) {
+    char digits[32];
+    return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+/// The points, one a line; each followed by `suffix`.
+inline std::string point_lines(const HexMesh& mesh, const std::string& suffix = "") {
+    std::string text;
+    for (const Vec3& x : mesh.points) text += number(x.x) + " " + number(x.y) + " " + number(x.z) + suffix + "\n";
+    return text;
+}
+
+/// The cells, one a line between `prefix` and `suffix`, counted from `first`.
+inline std::string cell_lines(const HexMesh& mesh, Index first, const std::string& prefix = "",
+                              const std::string& suffix = "") {
+    std::string text;
+    for (const auto& cell : mesh.cells) {
+        text += prefix;
+        for (std::size_t k = 0; k < 8; ++k) text += (k > 0 ? " " : "") + std::to_string(cell[k] + first);
+        text += suffix + "\n";
+    }
+    return text;
+}
+
+inline std::string medit_text(const HexMesh& mesh) {
+    return "MeshVersionFormatted 1\nDimension 3\nVertices\n" + std::to_string(mesh.points.size()) + "\n" +
+           point_lines(mesh, " 0") + "Hexahedra\n" + std::to_string(mesh.cells.size()) + "\n" + cell_lines(mesh, 1, "", " 0") +
+           "End\n";
+}
+
+/// Legacy VTK 3.0 without arrays: what follows may be appended.
+inline std::string vtk_text(const HexMesh& mesh, const std::string& type = "12") {
+    const std::string cells = std::to_string(mesh.cells.size());
+    std::string text = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+                       std::to_string(mesh.points.size()) + " double\n" + point_lines(mesh) + "CELLS " + cells + " " +
+                       std::to_string(9 * mesh.cells.size()) + "\n" + cell_lines(mesh, 0, "8 ") + "CELL_TYPES " + cells + "\n";
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) text += type + "\n";
+    return text;
+}
+
+/// `text` with the first `from` turned into `to`.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
+}  // namespace subvol::test

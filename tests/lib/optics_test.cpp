@@ -1,0 +1,176 @@
+#include "subvol/optics.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "subvol/error.h"
+
+namespace subvol {
+namespace {
+
+TransferFunction constant(const Vec3& rgb, double alpha) {
+    return {{{0.0, rgb}}, {{0.0, alpha}}};
+}
+
+// Knots off one another, transparent stretches, a narrow peak and a nearly opaque end.
+TransferFunction sharp() {
+    return {{{0.0, {1, 0, 0}}, {0.3, {0, 1, 0.2}}, {0.55, {0.1, 0.2, 1}}, {1.0, {1, 1, 0.5}}},
+            {{0.1, 0.0}, {0.4, 0.02}, {0.42, 0.6}, {0.44, 0.0}, {0.6, 0.0}, {0.8, 0.3}, {1.0, 1.0}}};
+}
+
+// The emission–absorption integral by midpoints, knowing nothing of the closed forms.
+Segment brute_force(const Optics& optics, double front, double back, double length, int steps) {
+    Segment total;
+    const double step = length / steps;
+    double depth = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double value = front + (back - front) * (i + 0.5) / steps;
+        const double own = optics.extinction(value) * step;
+        total.color += std::exp(-depth) * -std::expm1(-own) * optics.color(value);
+        depth += own;
+    }
+    total.transmittance = std::exp(-depth);
+    return total;
+}
+
+void expect_near(const Segment& a, const Segment& b, double tolerance) {
+    EXPECT_NEAR(a.transmittance, b.transmittance, tolerance);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.color[c], b.color[c], tolerance);
+}
+
+TEST(Optics, ExtinctionFollowsOpacityPerUnit) {
+    const Optics optics(sharp(), 0.25);
+    EXPECT_NEAR(optics.extinction(0.42), -std::log(0.4) / 0.25, 1e-12);
+    EXPECT_NEAR(optics.extinction(0.43), -std::log(0.7) / 0.25, 1e-12);  // α, not τ, is linear
+    EXPECT_NEAR(optics.extinction(2.0), -std::log(1e-6) / 0.25, 1e-6);   // α = 1 is clamped to 1 − 1e-6
+    EXPECT_EQ(optics.extinction(-1.0), 0);
+    EXPECT_NEAR(optics.color(0.15).g, 0.5, 1e-15);
+    EXPECT_NEAR(glm::length(optics.color(9.0) - Vec3(1, 1, 0.5)), 0, 1e-15);
+}
+
+TEST(Optics, ConstantFunctionIsBeerLambert) {
+    const Vec3 rgb(0.9, 0.5, 0.1);
+    const Optics optics(constant(rgb, 0.3), 2.0);
+    for (const double length : {1e-9, 1e-3, 0.5, 7.0, 100.0, 1e6, 1e300}) {
+        const Segment s = optics.integrate(-4, 17, length);
+        const double alpha = -std::expm1(length / 2 * std::log1p(-0.3));
+        // 1e-11 relative: the polynomial of the exponential and three-point quadrature.
+        EXPECT_NEAR(1 - s.transmittance, alpha, 1e-11 * alpha + 1e-16) << length;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(s.color[c], rgb[c] * alpha, 1e-11 * alpha) << length;
+    }
+}
+
+TEST(Optics, TransparentStretchLetsAllLightPass) {
+    const Optics optics(sharp(), 0.1);
+    const Segment s = optics.integrate(0.45, 0.59, 1e9);
+    EXPECT_EQ(s.transmittance, 1);
+    EXPECT_EQ(s.color, Vec3(0.0));
+}
+
+TEST(Optics, MatchesBruteForceOnASharpFunction) {
+    // Midpoints of 1e6 steps err by about (step · slope)²: 1e-9 where τ·L is moderate.
+    const Optics optics(sharp(), 0.7);
+    for (const auto& [front, back, length] : {std::array{0.0, 0.9, 2.0},
+                                              {0.9, 0.0, 2.0},
+                                              {0.35, 0.5, 0.5},
+                                              {0.41, 0.415, 3.0},
+                                              {0.41, 0.43, 0.1},
+                                              {0.7, 0.7, 1.3},
+                                              {0.65, 0.95, 10.0},
+                                              {-1.0, 0.7, 4.0}}) {
+        SCOPED_TRACE(testing::Message() << front << " to " << back << " over " << length);
+        expect_near(optics.integrate(front, back, length), brute_force(optics, front, back, length, 1'000'000), 2e-9);
+    }
+    // Up to the clamped α = 1 the extinction has a logarithmic peak, which midpoints see to 1e-6 only.
+    expect_near(optics.integrate(0.9, 1.1, 0.2), brute_force(optics, 0.9, 1.1, 0.2, 1'000'000), 1e-6);
+}
+
+TEST(Optics, SplittingAStretchChangesNothing) {
+    const Optics optics(sharp(), 0.31);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> value(-0.2, 1.2), part(0, 1), log_length(-4, 3);
+    for (int i = 0; i < 20000; ++i) {
+        const double front = value(random), back = value(random), s = part(random), length = std::pow(10, log_length(random));
+        const double middle = front + s * (back - front);
+        Segment two = optics.integrate(front, middle, s * length);
+        composite(two, optics.integrate(middle, back, (1 - s) * length));
+        expect_near(two, optics.integrate(front, back, length), 1e-10);
+        if (HasFailure()) FAIL() << front << ' ' << back << ' ' << s << ' ' << length;
+    }
+}
+
+TEST(Optics, ColorStaysWithinOpacity) {
+    const Optics optics(sharp(), 0.01);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> value(-0.2, 1.2), log_length(-6, 6);
+    for (int i = 0; i < 20000; ++i) {
+        const double front = value(random), back = value(random), length = std::pow(10, log_length(random));
+        const Segment s = optics.integrate(front, back, length);
+        ASSERT_GE(s.transmittance, 0);
+        ASSERT_LE(s.transmittance, 1);
+        for (int c = 0; c < 3; ++c) {
+            ASSERT_GE(s.color[c], -1e-15);
+            ASSERT_LE(s.color[c], 1 - s.transmittance + 1e-12);  // rgb ≤ 1; the quadrature's relative 1e-11
+        }
+    }
+}
+
+TEST(Optics, ExtinctionIntegralIsTheAntiderivative) {
+    const Optics optics(sharp(), 0.5);
+    EXPECT_EQ(optics.extinction_integral(0.0), 0);
+    for (const auto& [from, to] : {std::pair{-0.5, 0.2}, {0.39, 0.45}, {0.41, 0.4100001}, {0.7, 0.99}, {1.0, 1.5}}) {
+        const Segment s = optics.integrate(from, to, to - from);
+        EXPECT_NEAR(std::exp(optics.extinction_integral(from) - optics.extinction_integral(to)), s.transmittance, 1e-11);
+    }
+    const Optics below(constant({1, 1, 1}, 0.5), 1.0);
+    EXPECT_NEAR(below.extinction_integral(-2.0), -2 * std::log(2.0), 1e-12);
+}
+
+TEST(Optics, RefusesAnImpossibleUnit) {
+    for (const double unit : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        EXPECT_THROW(Optics(constant({1, 1, 1}, 0.5), unit), Error);
+    }
+}
+
+TEST(Optics, NotANumberComesBack) {
+    const Optics optics(sharp(), 1.0);
+    EXPECT_TRUE(std::isnan(optics.integrate(std::nan(""), std::nan(""), 1.0).transmittance));
+}
+
+TEST(PreintegratedTable, DifferencesAreOpticalDepthAndEmission) {
+    const Optics optics(sharp(), 0.8);
+    const PreintegratedTable table = make_preintegrated_table(optics);
+    ASSERT_EQ(table.entries.size(), static_cast<std::size_t>(PreintegratedTable::kSize));
+    EXPECT_EQ(table.min, 0.0);
+    EXPECT_EQ(table.max, 1.0);
+    const auto value_at = [&](std::size_t i) {
+        return table.min + (table.max - table.min) * static_cast<double>(i) / (PreintegratedTable::kSize - 1);
+    };
+    const double float_step = 2e-7 * table.entries.back()[0];  // entries are single precision
+    for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 4095}, {1500, 1900}, {1719, 1721}, {3000, 4000}}) {
+        const double from = value_at(i), to = value_at(j);
+        const double depth = double{table.entries[j][0]} - double{table.entries[i][0]};
+        EXPECT_NEAR(std::exp(-depth), optics.integrate(from, to, to - from).transmittance, float_step);
+        // Emission without absorption: that of a thousandth of the length, a thousand times; its own absorption is 1e-3·T/2.
+        const Segment thin = optics.integrate(from, to, 1e-3 * (to - from));
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double emitted = double{table.entries[j][c + 1]} - double{table.entries[i][c + 1]};
+            EXPECT_NEAR(emitted, 1e3 * thin.color[static_cast<int>(c)], 1e-3 * depth * depth + 2 * float_step);
+        }
+    }
+}
+
+TEST(PreintegratedTable, OneKnotStillSpansARange) {
+    const PreintegratedTable table = make_preintegrated_table(Optics(constant({0.5, 1, 0}, 0.5), 1.0));
+    ASSERT_LT(table.min, table.max);
+    const auto& last = table.entries.back();
+    EXPECT_NEAR(last[0], (table.max - table.min) * std::log(2.0), 1e-6);
+    EXPECT_NEAR(last[1], 0.5 * last[0], 1e-6);
+}
+
+}  // namespace
+}  // namespace subvol

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol::test {
+
+/// A lattice of n.x × n.y × n.z cells over [0,1]³, those that `keep` (given a cell's lower corner in the lattice) wants.
+inline HexMesh lattice(
+    std::array<Index, 3> n, const std::function<bool(Index, Index, Index)>& keep = [](Index, Index, Index) { return true; }) {
+    HexMesh mesh;
+    for (Index k = 0; k <= n[2]; ++k) {
+        for (Index j = 0; j <= n[1]; ++j) {
+            for (Index i = 0; i <= n[0]; ++i) mesh.points.push_back({double(i) / n[0], double(j) / n[1], double(k) / n[2]});
+        }
+    }
+    const auto id = [&](Index i, Index j, Index k) { return i + (n[0] + 1) * (j + (n[1] + 1) * k); };
+    for (Index k = 0; k < n[2]; ++k) {
+        for (Index j = 0; j < n[1]; ++j) {
+            for (Index i = 0; i < n[0]; ++i) {
+                if (!keep(i, j, k)) continue;
+                mesh.cells.push_back({id(i, j, k), id(i + 1, j, k), id(i + 1, j + 1, k), id(i, j + 1, k),  //
+                                      id(i, j, k + 1), id(i + 1, j, k + 1), id(i + 1, j + 1, k + 1), id(i, j + 1, k + 1)});
+            }
+        }
+    }
+    return mesh;
+}
+
+inline HexMesh box(Index n) {
+    return lattice({n, n, n});
+}
+
+/// A box whose inner points are moved by up to `amount` cell widths.
+inline HexMesh jittered_box(Index n, double amount, unsigned seed) {
+    HexMesh mesh = box(n);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> move(-amount / n, amount / n);
+    for (Vec3& p : mesh.points) {
+        const bool inside = p.x > 0 && p.x < 1 && p.y > 0 && p.y < 1 && p.z > 0 && p.z < 1;
+        if (inside) p += Vec3(move(random), move(random), move(random));
+    }
+    return mesh;
+}
+
+/// Two thirds of a box: the cells with x < ½ or z < ½ are there, so rays along the top leave the mesh.
+inline HexMesh l_shape(Index n) {
+    return lattice({n, n, n}, [n](Index i, Index, Index k) { return 2 * i < n || 2 * k < n; });
+}
+
+/// The ball of radius 1 about the origin: concentric cubes to concentric spheres.
+inline HexMesh ball(Index n) {
+    HexMesh mesh = box(n);
+    for (Vec3& p : mesh.points) {
+        const Vec3 q = 2.0 * p - 1.0;
+        const double cube = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+        const double radius = glm::length(q);
+        p = radius > 0 ? q * (cube / radius) : q;
+    }
+    return mesh;
+}
+
+inline std::vector<double> evaluate(const HexMesh& mesh, const std::function<double(const Vec3&)>& field) {
+    std::vector<double> values;
+    for (const Vec3& p : mesh.points) values.push_back(field(p));
+    return values;
+}
+
+}  // namespace subvol::test
