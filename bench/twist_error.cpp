@@ -22,7 +22,9 @@ namespace {
 
 using namespace subvol;
 
-double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+double cpu_seconds() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 TransferFunction transfer_function(bool sharp) {
     TransferFunction f;
@@ -32,9 +34,12 @@ TransferFunction transfer_function(bool sharp) {
     return f;
 }
 
-const char* name(Correction c) { return c == Correction::None ? "none" : c == Correction::Gradient ? "gradient" : "second"; }
+const char* name(Correction c) {
+    return c == Correction::None ? "none" : c == Correction::Gradient ? "gradient" : "second";
+}
 
-void print(const char* method, const std::string& detail, bool sharp, const Image& image, const Image& exact, double cpu, double wall) {
+void print(const char* method, const std::string& detail, bool sharp, const Image& image, const Image& exact, double cpu,
+           double wall) {
     const auto m = compare_images(image, exact);
     std::printf("%-6s %-22s %-6s rmse %.5f  max %.4f  psnr %5.1f dB  cpu %6.2f s  wall %6.2f s\n", method, detail.c_str(),
                 sharp ? "sharp" : "smooth", m.rmse, m.max, m.psnr, cpu, wall);
@@ -58,7 +63,8 @@ int main(int argc, char** argv) {
         const Optics optics(transfer_function(sharp), 0.1);
         const int sheets = sharp ? 400 : 200;
         const TwistField field;
-        const Image exact = render_field([&](const Vec3& x) { return field.value(x); }, box, view, optics, {.step_world = 0.002});
+        const Image exact =
+            render_field([&](const Vec3& x) { return field.value(x); }, box, view, optics, {.step_world = 0.002});
         const auto keep = [&](const std::string& file, const Image& image) {
             if (!folder.empty()) write_image(folder / (file + (sharp ? "_sharp.exr" : "_smooth.exr")), image);
         };
@@ -67,7 +73,8 @@ int main(int argc, char** argv) {
             const HexMesh refined = refine(mesh, {.levels = levels});
             const double start = cpu_seconds();
             const auto tets = render_tets(refined, refined.attributes[0].values, view, optics);
-            print("tets", "level " + std::to_string(levels), sharp, tets.image, exact, cpu_seconds() - start, tets.report.seconds_build + tets.report.seconds_draw);
+            print("tets", "level " + std::to_string(levels), sharp, tets.image, exact, cpu_seconds() - start,
+                  tets.report.seconds_build + tets.report.seconds_draw);
             keep("tets_" + std::to_string(levels), tets.image);
         }
         for (const int per_edge : {1, 2}) {
@@ -76,7 +83,8 @@ int main(int argc, char** argv) {
                 const double start = cpu_seconds();
                 const auto splat = render_splats(points.volume, view, optics, {.backend = Backend::Cpu, .sheets = sheets});
                 const std::string detail = "n=" + std::to_string(per_edge) + " " + name(correction);
-                print("splat", detail, sharp, splat.image, exact, cpu_seconds() - start, splat.report.seconds_prepare + splat.report.seconds_draw);
+                print("splat", detail, sharp, splat.image, exact, cpu_seconds() - start,
+                      splat.report.seconds_prepare + splat.report.seconds_draw);
                 keep("splat_" + std::to_string(per_edge) + "_" + name(correction), splat.image);
             }
         }

@@ -57,6 +57,18 @@ void check_verb(const CLI::App& program, int argc, char** argv) {
     }
 }
 
+/// The library speaks of cells and points; a person who reads the message wants to know of which file.
+int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
+    try {
+        return verb.run(report);
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        const std::string input = report.json().value("input", "");
+        if (error.code() != ErrorCode::InvalidInput || message.find(input) != std::string::npos) throw;
+        throw Error(error.code(), message, input);
+    }
+}
+
 int run(CLI::App& program, int argc, char** argv) {
     program.set_version_flag("--version", SUBVOL_VERSION);
     program.require_subcommand(1);
@@ -74,7 +86,7 @@ int run(CLI::App& program, int argc, char** argv) {
             threads > 0 ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
         subvol::cli::catch_interrupts();
         subvol::cli::Report report(verb->common());
-        const int code = verb->run(report);
+        const int code = run_naming_input(*verb, report);
         report.finish();
         return code;
     }

@@ -51,13 +51,15 @@ public:
         check_output(output_, {".png", ".exr"});
         const Vec3 background = parse_vector("--background", picture_.background);
         const Backend backend = backend_named(backend_);
+        if (method_ == "tets" && backend == Backend::Gl) {
+            throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
+        }
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
         const Box box = bounds(mesh);
         const View view = picture_.make_view(box);
         const Optics optics = picture_.make_optics(box, first_field_range(mesh));
 
-        const Image image =
-            method_ == "splat" ? splat(mesh, view, optics, backend, report) : tets(mesh, view, optics, backend, report);
+        const Image image = method_ == "splat" ? splat(mesh, view, optics, backend, report) : tets(mesh, view, optics, report);
         report.timed("write", [&] { write_image(output_, image, background); });
         report["output"] = output_;
         return 0;
@@ -78,9 +80,7 @@ private:
         return std::move(drawn.image);
     }
 
-    [[nodiscard]] Image tets(const HexMesh& mesh, const View& view, const Optics& optics, Backend backend,
-                             Report& report) const {
-        if (backend == Backend::Gl) throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
+    [[nodiscard]] Image tets(const HexMesh& mesh, const View& view, const Optics& optics, Report& report) const {
         const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), report);
         TetsResult drawn = render_tets(fine, fine.attributes.front().values, view, optics,
                                        {.samples = samples_, .progress = report.progress()});

@@ -18,7 +18,9 @@ public:
         }
     }
 
-    [[nodiscard]] double operator()(std::size_t m, std::size_t j) const { return m <= kTabulated ? table_[m][j] : weight(m, j); }
+    [[nodiscard]] double operator()(std::size_t m, std::size_t j) const {
+        return m <= kTabulated ? table_[m][j] : weight(m, j);
+    }
 
 private:
     static constexpr std::size_t kTabulated = 16;

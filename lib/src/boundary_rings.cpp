@@ -17,7 +17,8 @@ Index next_spoke(const Topology& topology, Index face, Index point, Index edge) 
 
 std::size_t boundary_edges_at(const Topology& topology, Index point) {
     const auto edges = topology.point_edges[point];
-    return static_cast<std::size_t>(std::count_if(edges.begin(), edges.end(), [&](Index e) { return topology.edge_on_boundary[e]; }));
+    return static_cast<std::size_t>(
+        std::count_if(edges.begin(), edges.end(), [&](Index e) { return topology.edge_on_boundary[e]; }));
 }
 
 PointKind classify(const Topology& topology, Index point) {

@@ -17,13 +17,13 @@ public:
     /// twice_refined: what `refine` makes of the control mesh in two levels; kept by reference
     explicit CellBlocks(const HexMesh& twice_refined);
 
-    /// Value, derivatives and second differences per sample interval at a point of a cell, as SampleStencil has them. Channels are
-    /// those of all attributes, one after the other.
+    /// Value, derivatives and second differences per sample interval at a point of a cell, as SampleStencil has them. Channels
+    /// are those of all attributes, one after the other.
     struct Jet {
         Vec3 position;
-        std::array<Vec3, 3> d_position, dd_position;          // by u, v, w
-        std::vector<double> value;                            // a channel
-        std::vector<std::array<double, 3>> d_value, dd_value; // a channel, by u, v, w
+        std::array<Vec3, 3> d_position, dd_position;           // by u, v, w
+        std::vector<double> value;                             // a channel
+        std::vector<std::array<double, 3>> d_value, dd_value;  // a channel, by u, v, w
     };
 
     /// The 125 points of a cell, u fastest.

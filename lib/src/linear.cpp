@@ -21,6 +21,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<SchemeRules> make_linear_rules(const Topology& topology) { return std::make_unique<LinearRules>(topology); }
+std::unique_ptr<SchemeRules> make_linear_rules(const Topology& topology) {
+    return std::make_unique<LinearRules>(topology);
+}
 
 }  // namespace subvol::detail

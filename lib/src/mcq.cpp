@@ -57,7 +57,8 @@ private:
 
     /// weight · term, or its ghost: 3 near − 3 far + partner, without a known partner 2 near − far.
     template <class Points>
-    static void extrapolated(StencilBuilder& row, double weight, const Points& near, const Points& far, Term term, Term partner) {
+    static void extrapolated(StencilBuilder& row, double weight, const Points& near, const Points& far, Term term,
+                             Term partner) {
         const auto add_term = [&](Term& known) {
             for (const auto& [p, w] : known.points.finish()) row.add(p, weight * w);
         };
@@ -152,7 +153,8 @@ private:
         return term;
     }
 
-    // --- on the boundary ------------------------------------------------------------------------------------------------------
+    // --- on the boundary
+    // ------------------------------------------------------------------------------------------------------
 
     void crease_edge(Index edge, StencilBuilder& row) const {
         const auto [a, b] = topology_.edges[edge];
@@ -226,7 +228,8 @@ private:
         return term;
     }
 
-    // --- neighbours within a face or a cell -----------------------------------------------------------------------------------
+    // --- neighbours within a face or a cell
+    // -----------------------------------------------------------------------------------
 
     /// The neighbour of `point` in a face, other than `not_this` (which must be its other neighbour).
     Index beside(Index face, Index point, Index not_this) const {

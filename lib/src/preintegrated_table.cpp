@@ -32,20 +32,26 @@ Vec3 emission_across_knots(const Optics& optics, double from, double to) {
     return sum + emission(optics, from, to);
 }
 
+std::array<float, 4> row(double extinction, const Vec3& color) {
+    return {static_cast<float>(extinction), static_cast<float>(color.x), static_cast<float>(color.y),
+            static_cast<float>(color.z)};
+}
+
 }  // namespace
 
 PreintegratedTable make_preintegrated_table(const Optics& optics) {
     constexpr int kLast = PreintegratedTable::kSize - 1;
-    PreintegratedTable table{.min = optics.knots().front(), .max = optics.knots().back(), .entries = {}};
+    PreintegratedTable table{.min = optics.knots().front(), .max = optics.knots().back(), .prefixes = {}, .points = {}};
     if (!(table.min < table.max)) table.max = table.min + 1;  // a constant function: any range shows it
-    table.entries.reserve(PreintegratedTable::kSize);
+    table.prefixes.reserve(PreintegratedTable::kSize);
+    table.points.reserve(PreintegratedTable::kSize);
     const auto value_at = [&](int i) { return table.min + (table.max - table.min) * i / kLast; };
     Vec3 emitted(0.0);
     for (int i = 0; i <= kLast; ++i) {
         if (i > 0) emitted += emission_across_knots(optics, value_at(i - 1), value_at(i));
         const double depth = optics.extinction_integral(value_at(i));
-        table.entries.push_back({static_cast<float>(depth), static_cast<float>(emitted.x), static_cast<float>(emitted.y),
-                                 static_cast<float>(emitted.z)});
+        table.prefixes.push_back(row(depth, emitted));
+        table.points.push_back(row(optics.extinction(value_at(i)), optics.color(value_at(i))));
     }
     return table;
 }

@@ -27,8 +27,8 @@ struct QuarticBasis {
     }
 };
 
-/// What a kernel needs to know along one axis of a cell, per sample interval: weights of the value, of the derivative, and of the
-/// second difference between samples.
+/// What a kernel needs to know along one axis of a cell, per sample interval: weights of the value, of the derivative, and of
+/// the second difference between samples.
 ///
 /// The second difference is that of the neighbouring samples, not the second derivative: a kernel reaches over them, and limit
 /// curves need not have a second derivative. At a side of the cell, where one neighbour is missing, the derivative stands in:

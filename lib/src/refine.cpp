@@ -23,8 +23,10 @@ namespace {
 
 std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const RefineOptions& options) {
     switch (options.scheme) {
-        case Scheme::Linear: return detail::make_linear_rules(topology);
-        case Scheme::Mcq: return detail::make_mcq_rules(topology, options.tension);
+        case Scheme::Linear:
+            return detail::make_linear_rules(topology);
+        case Scheme::Mcq:
+            return detail::make_mcq_rules(topology, options.tension);
     }
     throw Error(ErrorCode::InvalidInput, "unknown subdivision scheme");
 }
@@ -56,7 +58,8 @@ void for_each_stencil(const Topology& topology, const SchemeRules& rules, Progre
     report_progress(progress, stage, 0.5);
     run(topology.faces.size(), [&](Index f, auto& row) { return rules.face_point(f, row), first.faces + f; });
     report_progress(progress, stage, 0.8);
-    run(topology.cells.size(), [&](Index c, auto& row) { return rules.cell_point(c, row), first.cells + topology.cell_rank[c]; });
+    run(topology.cells.size(),
+        [&](Index c, auto& row) { return rules.cell_point(c, row), first.cells + topology.cell_rank[c]; });
     report_progress(progress, stage, 1);
 }
 
@@ -94,17 +97,26 @@ std::vector<std::array<Index, 8>> child_cells(const Topology& topology) {
         for (std::size_t i = 0; i < 27; ++i) {
             const auto [kind, k] = kLattice[i];
             switch (kind) {
-                case LatticePlace::Corner: points[i] = topology.cells[c][k]; break;
-                case LatticePlace::Edge: points[i] = static_cast<Index>(first.edges + topology.cell_edges[c][k]); break;
-                case LatticePlace::Face: points[i] = static_cast<Index>(first.faces + topology.cell_faces[c][k]); break;
-                case LatticePlace::Cell: points[i] = static_cast<Index>(first.cells + topology.cell_rank[c]); break;
+                case LatticePlace::Corner:
+                    points[i] = topology.cells[c][k];
+                    break;
+                case LatticePlace::Edge:
+                    points[i] = static_cast<Index>(first.edges + topology.cell_edges[c][k]);
+                    break;
+                case LatticePlace::Face:
+                    points[i] = static_cast<Index>(first.faces + topology.cell_faces[c][k]);
+                    break;
+                case LatticePlace::Cell:
+                    points[i] = static_cast<Index>(first.cells + topology.cell_rank[c]);
+                    break;
             }
         }
         for (std::size_t child = 0; child < 8; ++child) {
             for (std::size_t k = 0; k < 8; ++k) {
                 const auto& o = kCornerParameters[child];
                 const auto& p = kCornerParameters[k];
-                children[8 * c + child][k] = points[static_cast<std::size_t>(o[0] + p[0] + 3 * (o[1] + p[1]) + 9 * (o[2] + p[2]))];
+                children[8 * c + child][k] =
+                    points[static_cast<std::size_t>(o[0] + p[0] + 3 * (o[1] + p[1]) + 9 * (o[2] + p[2]))];
             }
         }
     });
@@ -128,8 +140,8 @@ HexMesh refine_once(const HexMesh& parent, const RefineOptions& options, int lev
     const auto rules = make_rules(topology, options);
     const std::size_t count = ChildNumbering(topology).end;
     if (count >= kNone) {
-        throw Error(ErrorCode::InvalidInput, "level " + std::to_string(level) + " needs " + std::to_string(count) + " points", {},
-                    "at most 4294967294: use fewer levels");
+        throw Error(ErrorCode::InvalidInput, "level " + std::to_string(level) + " needs " + std::to_string(count) + " points",
+                    {}, "at most 4294967294: use fewer levels");
     }
 
     HexMesh child;
@@ -165,7 +177,8 @@ Vec3 quad_normal(const HexMesh& mesh, const std::array<Index, 4>& q) {
 /// Tags the smooth boundary edges whose two faces meet at more than `angle_deg`.
 void tag_sharp_edges(HexMesh& mesh, double angle_deg) {
     if (!(angle_deg > 0 && angle_deg < 180)) {
-        throw Error(ErrorCode::InvalidInput, "the crease angle is " + std::to_string(angle_deg), {}, "between 0 and 180 degrees");
+        throw Error(ErrorCode::InvalidInput, "the crease angle is " + std::to_string(angle_deg), {},
+                    "between 0 and 180 degrees");
     }
     const Topology topology = build_topology(mesh);
     const double limit = std::cos(angle_deg * std::numbers::pi / 180);

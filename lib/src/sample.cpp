@@ -26,7 +26,8 @@ void check(const SampleOptions& options) {
         throw Error(ErrorCode::InvalidInput, "sample intervals per edge: " + std::to_string(options.per_edge), {}, "1 to 64");
     }
     if (!(options.spacing_world >= 0 && std::isfinite(options.spacing_world))) {
-        throw Error(ErrorCode::InvalidInput, "the spacing is " + std::to_string(options.spacing_world), {}, "a positive length");
+        throw Error(ErrorCode::InvalidInput, "the spacing is " + std::to_string(options.spacing_world), {},
+                    "a positive length");
     }
     if (!(options.kernel.radius >= 1.2 && options.kernel.radius <= 4)) {
         throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(options.kernel.radius), {},
@@ -59,7 +60,9 @@ std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, co
     return uvw;
 }
 
-Mat3 outer(const Vec3& v) { return glm::outerProduct(v, v); }
+Mat3 outer(const Vec3& v) {
+    return glm::outerProduct(v, v);
+}
 
 /// Writes one kernel from the jets of the cells about its point.
 class KernelWriter {
@@ -85,7 +88,8 @@ public:
         blocks_.evaluate(block, uvw, step, jet_);
         if (cells_++ == 0) {
             volume_.centers[point_] = jet_.position;
-            for (std::size_t c = 0; c < jet_.value.size(); ++c) volume_.channels[c].values[point_] = static_cast<float>(jet_.value[c]);
+            for (std::size_t c = 0; c < jet_.value.size(); ++c)
+                volume_.channels[c].values[point_] = static_cast<float>(jet_.value[c]);
         }
         for (std::size_t a = 0; a < 3; ++a) {
             metric_ += outer(jet_.d_position[a]);
@@ -165,9 +169,12 @@ public:
         allocate(mesh, report.points);
 
         each(topology_.point_count, "sample vertices", [&](std::size_t p, auto& writer) { return sample_vertex(p, writer); });
-        each(topology_.edges.size(), "sample edges", [&](std::size_t e, auto& writer) { return sample_edge(e, first_edge[e], writer); });
-        each(topology_.faces.size(), "sample faces", [&](std::size_t f, auto& writer) { return sample_face(f, first_face[f], writer); });
-        each(topology_.cells.size(), "sample cells", [&](std::size_t c, auto& writer) { return sample_cell(c, first_cell[c], writer); });
+        each(topology_.edges.size(), "sample edges",
+             [&](std::size_t e, auto& writer) { return sample_edge(e, first_edge[e], writer); });
+        each(topology_.faces.size(), "sample faces",
+             [&](std::size_t f, auto& writer) { return sample_face(f, first_face[f], writer); });
+        each(topology_.cells.size(), "sample cells",
+             [&](std::size_t c, auto& writer) { return sample_cell(c, first_cell[c], writer); });
         return std::move(result_);
     }
 
@@ -180,7 +187,8 @@ private:
     }
 
     void allocate(const HexMesh& mesh, std::size_t count) {
-        if (count >= kNone) throw Error(ErrorCode::InvalidInput, std::to_string(count) + " samples are too many", {}, "fewer than 2³²");
+        if (count >= kNone)
+            throw Error(ErrorCode::InvalidInput, std::to_string(count) + " samples are too many", {}, "fewer than 2³²");
         auto& volume = result_.volume;
         volume.kernel = options_.kernel;
         volume.centers.resize(count);
@@ -215,8 +223,7 @@ private:
         writer.begin(p);
         for (std::size_t i = point_cells_.offsets[p]; i < point_cells_.offsets[p + 1]; ++i) {
             const Index cell = point_cells_.records[i].second;
-            writer.add_cell(cell, blocks_.block(cell),
-                            in_cell<0>(topology_.cells[cell], static_cast<Index>(p), {}, {}));
+            writer.add_cell(cell, blocks_.block(cell), in_cell<0>(topology_.cells[cell], static_cast<Index>(p), {}, {}));
         }
         return writer.finish();
     }
@@ -244,8 +251,9 @@ private:
                 writer.begin(first++);
                 for (const Index cell : topology_.face_cells[f]) {
                     if (cell == kNone) continue;
-                    writer.add_cell(cell, blocks_.block(cell),
-                                    in_cell<2>(topology_.cells[cell], quad[0], {quad[1], quad[3]}, {double(i) / n[0], double(j) / n[1]}));
+                    writer.add_cell(
+                        cell, blocks_.block(cell),
+                        in_cell<2>(topology_.cells[cell], quad[0], {quad[1], quad[3]}, {double(i) / n[0], double(j) / n[1]}));
                 }
                 flat += writer.finish();
             }

@@ -28,7 +28,8 @@ int intervals(double length, const SampleOptions& options) {
 
 SampleCounts::SampleCounts(const HexMesh& mesh, const Topology& topology, const SampleOptions& options) : topology_(topology) {
     edges_.reserve(topology.edges.size());
-    for (const auto& [a, b] : topology.edges) edges_.push_back(intervals(glm::distance(mesh.points[a], mesh.points[b]), options));
+    for (const auto& [a, b] : topology.edges)
+        edges_.push_back(intervals(glm::distance(mesh.points[a], mesh.points[b]), options));
 }
 
 std::array<int, 2> SampleCounts::face(std::size_t f) const {

@@ -18,8 +18,8 @@ public:
     [[nodiscard]] std::array<int, 2> face(std::size_t f) const;
     [[nodiscard]] std::array<int, 3> cell(std::size_t c) const;
 
-    /// Intervals along an axis of a cell near a point of it: the largest of the edges parallel to the axis that bound the entity
-    /// on which the point lies. uvw: 0, 1 where the point lies on the cell's side, else between
+    /// Intervals along an axis of a cell near a point of it: the largest of the edges parallel to the axis that bound the
+    /// entity on which the point lies. uvw: 0, 1 where the point lies on the cell's side, else between
     [[nodiscard]] int near(std::size_t c, std::size_t axis, const std::array<double, 3>& uvw) const;
 
 private:

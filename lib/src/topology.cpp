@@ -88,7 +88,8 @@ void build_faces(Topology& topology) {
 
     const std::size_t count = starts.size() - 1;
     for (std::size_t f = 0; f < count; ++f) {
-        if (starts[f + 1] - starts[f] > 2) refuse_face(topology, std::span(records).subspan(starts[f], starts[f + 1] - starts[f]));
+        if (starts[f + 1] - starts[f] > 2)
+            refuse_face(topology, std::span(records).subspan(starts[f], starts[f + 1] - starts[f]));
     }
     topology.faces.resize(count);
     topology.face_cells.resize(count);
@@ -191,8 +192,9 @@ void mark_creases(Topology& topology, std::span<const std::array<Index, 2>> tagg
     for (const auto& [a, b] : tagged) {
         const auto e = topology.find_edge(a, b);
         if (!e || !topology.edge_on_boundary[*e]) {
-            throw Error(ErrorCode::InvalidInput, "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge",
-                        "crease", "creases are edges of the boundary");
+            throw Error(ErrorCode::InvalidInput,
+                        "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge", "crease",
+                        "creases are edges of the boundary");
         }
         topology.edge_is_crease[*e] = 1;
     }
@@ -214,9 +216,8 @@ void rank_cells(Topology& topology) {
         },
         [](const Key& key) { return key.faces[0]; });
     topology.cell_rank.resize(topology.cells.size());
-    parallel_each(sorted.records.size(), [&](std::size_t rank) {
-        topology.cell_rank[sorted.records[rank].cell] = static_cast<Index>(rank);
-    });
+    parallel_each(sorted.records.size(),
+                  [&](std::size_t rank) { topology.cell_rank[sorted.records[rank].cell] = static_cast<Index>(rank); });
 }
 
 }  // namespace

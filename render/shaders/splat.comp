@@ -14,8 +14,9 @@ layout(std430, binding = 1) readonly buffer BinOffsets { uint bin_offsets[]; };
 layout(std430, binding = 2) readonly buffer BinSplats { uint bin_splats[]; };
 layout(std430, binding = 3) readonly buffer IntervalOffsets { uint interval_offsets[]; };
 layout(std430, binding = 4) readonly buffer IntervalDepths { vec2 intervals[]; };  // enter, exit
-layout(std430, binding = 5) readonly buffer Table { vec4 table[]; };
-layout(std430, binding = 6) writeonly buffer Picture { vec4 picture[]; };
+layout(std430, binding = 5) readonly buffer Prefixes { vec4 prefixes[]; };  // integrals of extinction, emission
+layout(std430, binding = 6) readonly buffer Points { vec4 points[]; };      // extinction, colour
+layout(std430, binding = 7) writeonly buffer Picture { vec4 picture[]; };
 
 uniform ivec2 size;
 uniform ivec2 tiles;
@@ -33,24 +34,35 @@ const float kLeastWeight = SPLAT_LEAST_WEIGHT;
 const float kLeastDifference = SPLAT_LEAST_DIFFERENCE;
 const float kOpaque = SPLAT_OPAQUE;
 
-vec4 lookup(float f) {
-    float at = (f - table_range.x) * float(table.length() - 1) / (table_range.y - table_range.x);
-    float cell = clamp(floor(at), 0.0, float(table.length() - 2));
-    vec4 low = table[int(cell)], high = table[int(cell) + 1];
-    return low + (at - cell) * (high - low);
+// Table rows about a value: the lower row's number, and how far the value lies from it towards the next (beyond [0,1] outside).
+vec2 place(float f) {
+    float at = (f - table_range.x) * float(prefixes.length() - 1) / (table_range.y - table_range.x);
+    float cell = clamp(floor(at), 0.0, float(prefixes.length() - 2));
+    return vec2(cell, at - cell);
+}
+
+vec4 prefix(float f) {
+    vec2 p = place(f);
+    vec4 low = prefixes[int(p.x)];
+    return low + p.y * (prefixes[int(p.x) + 1] - low);
+}
+
+vec4 point(float f) {
+    vec2 p = place(f);
+    vec4 low = points[int(p.x)];
+    return low + clamp(p.y, 0.0, 1.0) * (points[int(p.x) + 1] - low);
 }
 
 // Optical depth (x) and emitted colour (yzw) of a stretch from value f0 to f1.
 vec4 interval(float f0, float f1, float len) {
-    float least = kLeastDifference * (table_range.y - table_range.x);
-    if (abs(f1 - f0) < least) {
-        float middle = 0.5 * (f0 + f1);
-        f0 = middle - 0.5 * least;
-        f1 = middle + 0.5 * least;
+    if (abs(f1 - f0) < kLeastDifference * (table_range.y - table_range.x)) {
+        vec4 middle = point(0.5 * (f0 + f1));
+        float depth = len * max(middle.x, 0.0);
+        return vec4(depth, (1.0 - exp(-depth)) * middle.yzw);
     }
-    vec4 difference = lookup(f1) - lookup(f0);
-    float depth = len * difference.x / (f1 - f0);
-    float emission = abs(difference.x) > 1e-12 ? 1.0 / difference.x : 0.0;
+    vec4 difference = prefix(f1) - prefix(f0);
+    float depth = max(len * difference.x / (f1 - f0), 0.0);
+    float emission = difference.x != 0.0 ? 1.0 / difference.x : 0.0;
     return vec4(depth, (1.0 - exp(-depth)) * difference.yzw * emission);
 }
 

@@ -13,8 +13,8 @@ namespace subvol::detail {
 namespace {
 
 constexpr int kBandRows = 8;
-constexpr double kSnap = 4096;          // units a pixel
-constexpr double kGuard_px = 1 << 17;   // beyond it edge functions could overflow 64 bits: such triangles are clipped
+constexpr double kSnap = 4096;         // units a pixel
+constexpr double kGuard_px = 1 << 17;  // beyond it edge functions could overflow 64 bits: such triangles are clipped
 constexpr std::size_t kChunks = 64;
 
 struct SnappedPoint {
@@ -37,7 +37,9 @@ struct Hit {
     auto operator<=>(const Hit&) const = default;
 };
 
-std::int64_t snap(double px) { return static_cast<std::int64_t>(std::llround(px * kSnap)); }
+std::int64_t snap(double px) {
+    return static_cast<std::int64_t>(std::llround(px * kSnap));
+}
 
 /// Twice the area of (a, b, p); the sign says on which side of ab p lies.
 std::int64_t area(const SnappedPoint& a, const SnappedPoint& b, const SnappedPoint& p) {
@@ -45,7 +47,9 @@ std::int64_t area(const SnappedPoint& a, const SnappedPoint& b, const SnappedPoi
 }
 
 /// Of two triangles that share an edge, exactly one owns the points on it.
-bool owns_edge(const SnappedPoint& a, const SnappedPoint& b) { return a.y != b.y ? b.y > a.y : b.x < a.x; }
+bool owns_edge(const SnappedPoint& a, const SnappedPoint& b) {
+    return a.y != b.y ? b.y > a.y : b.x < a.x;
+}
 
 class TriangleSetup {
 public:
@@ -69,7 +73,8 @@ public:
     }
 
 private:
-    void emit(const std::array<Vec3, 3>& part, const std::array<Vec3, 3>& eye, const Vec3& normal, std::vector<ScreenTriangle>& out) {
+    void emit(const std::array<Vec3, 3>& part, const std::array<Vec3, 3>& eye, const Vec3& normal,
+              std::vector<ScreenTriangle>& out) {
         ScreenTriangle t;
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec2 px = view_.to_pixels(part[k]);
@@ -99,8 +104,12 @@ double depth_at(const ScreenTriangle& t, const View& view, double x_px, double y
     return std::isfinite(z) ? std::clamp(z, t.z_min, t.z_max) : t.z_min;  // seen edge-on
 }
 
-int first_pixel(std::int64_t snapped) { return static_cast<int>(std::ceil(static_cast<double>(snapped) / kSnap - 0.5)); }
-int last_pixel(std::int64_t snapped) { return static_cast<int>(std::floor(static_cast<double>(snapped) / kSnap - 0.5)); }
+int first_pixel(std::int64_t snapped) {
+    return static_cast<int>(std::ceil(static_cast<double>(snapped) / kSnap - 0.5));
+}
+int last_pixel(std::int64_t snapped) {
+    return static_cast<int>(std::floor(static_cast<double>(snapped) / kSnap - 0.5));
+}
 
 void rasterize(const ScreenTriangle& t, const View& view, int y_begin, int y_end, std::vector<Hit>& hits) {
     const auto [x_low, x_high] = std::minmax({t.corners[0].x, t.corners[1].x, t.corners[2].x});
@@ -115,7 +124,8 @@ void rasterize(const ScreenTriangle& t, const View& view, int y_begin, int y_end
             bool inside = true;
             for (std::size_t k = 0; k < 3 && inside; ++k) inside = area(t.corners[k], t.corners[(k + 1) % 3], p) + bias[k] >= 0;
             if (!inside) continue;
-            const auto pixel = static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view.width()) + static_cast<std::uint32_t>(x);
+            const auto pixel =
+                static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view.width()) + static_cast<std::uint32_t>(x);
             hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5)), t.sign});
         }
     }

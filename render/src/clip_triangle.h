@@ -17,9 +17,7 @@ struct ClipPlane {
 /// share it stay joined.
 inline void clip_polygon(std::vector<Vec3>& polygon, const ClipPlane& plane, std::vector<Vec3>& scratch) {
     const auto height = [&](const Vec3& p) { return glm::dot(plane.normal, p) + plane.offset; };
-    const auto less = [](const Vec3& a, const Vec3& b) {
-        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-    };
+    const auto less = [](const Vec3& a, const Vec3& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; };
     scratch.clear();
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Vec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];

@@ -21,8 +21,9 @@ struct Made {
 Made make_context(EGLDisplay display) {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return {};
     if (!eglBindAPI(EGL_OPENGL_API)) return {};
-    const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3,
-                                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const std::array<EGLint, 7> attributes{
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (context == EGL_NO_CONTEXT) return {};
     if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
@@ -32,7 +33,9 @@ Made make_context(EGLDisplay display) {
     return {display, context};
 }
 
-bool has_extension(const char* list, const char* name) { return list && std::strstr(list, name); }
+bool has_extension(const char* list, const char* name) {
+    return list && std::strstr(list, name);
+}
 
 std::vector<EGLDeviceEXT> hardware_devices() {
     if (!has_extension(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_enumeration") &&
@@ -45,7 +48,8 @@ std::vector<EGLDeviceEXT> hardware_devices() {
     std::vector<EGLDeviceEXT> result;
     for (EGLint i = 0; i < count; ++i) {
         const EGLDeviceEXT device = devices[static_cast<std::size_t>(i)];
-        if (!has_extension(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software")) result.push_back(device);
+        if (!has_extension(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software"))
+            result.push_back(device);
     }
     return result;
 }
@@ -98,9 +102,10 @@ GlBuffer::GlBuffer(GLuint binding, std::size_t bytes, const void* data) {
     GLint64 most = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
     if (room > static_cast<std::size_t>(most)) {
-        throw Error(ErrorCode::MissingCapability,
-                    "the GL device takes buffers of " + std::to_string(most) + " bytes, this picture needs " + std::to_string(room),
-                    {}, "use the CPU backend");
+        throw Error(
+            ErrorCode::MissingCapability,
+            "the GL device takes buffers of " + std::to_string(most) + " bytes, this picture needs " + std::to_string(room), {},
+            "use the CPU backend");
     }
     while (glGetError() != GL_NO_ERROR) {
     }
@@ -115,7 +120,9 @@ GlBuffer::GlBuffer(GLuint binding, std::size_t bytes, const void* data) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
 }
 
-GlBuffer::~GlBuffer() { glDeleteBuffers(1, &id_); }
+GlBuffer::~GlBuffer() {
+    glDeleteBuffers(1, &id_);
+}
 
 void GlBuffer::read(std::size_t bytes, void* to) const {
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, id_);
@@ -147,6 +154,8 @@ GlProgram::GlProgram(const std::string& file, const std::string& source, const s
     }
 }
 
-GlProgram::~GlProgram() { glDeleteProgram(id_); }
+GlProgram::~GlProgram() {
+    glDeleteProgram(id_);
+}
 
 }  // namespace subvol::detail

@@ -51,8 +51,8 @@ SplatResult render_splats(const RbfVolume& volume, const View& view, const Optic
     report.seconds_prepare = seconds_since(start);
 
     const auto drawing = std::chrono::steady_clock::now();
-    result.image = choice.gl ? detail::draw_splats_gl(frame, view, table)
-                             : detail::draw_splats_cpu(frame, view, table, options.progress);
+    result.image =
+        choice.gl ? detail::draw_splats_gl(frame, view, table) : detail::draw_splats_cpu(frame, view, table, options.progress);
     report.seconds_draw = seconds_since(drawing);
     report.backend = choice.gl ? "gl" : "cpu";
     report.device = choice.device;

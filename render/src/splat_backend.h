@@ -13,19 +13,21 @@ namespace subvol::detail {
 
 /// Least weight of a sum that counts, and the floor of its denominator: below it a sheet knows no value at that pixel.
 inline constexpr float kLeastWeight = 0.02f;
-/// Optical depth is a quotient of differences of the table; values nearer than this part of the table's range are pulled apart.
+/// Values nearer than this part of the table's range are taken as one: quotients of small differences would lose their digits.
 inline constexpr float kLeastDifference = 1e-3f;
 /// Transmittance at which a ray is done.
 inline constexpr float kOpaque = 1e-4f;
 
-[[nodiscard]] Image draw_splats_cpu(const SplatFrame& frame, const View& view, const PreintegratedTable& table, Progress* progress);
+[[nodiscard]] Image draw_splats_cpu(const SplatFrame& frame, const View& view, const PreintegratedTable& table,
+                                    Progress* progress);
 
 struct GlInfo {
     std::string renderer;
     bool hardware = false;
 };
 
-/// What OpenGL there is without a display, hardware first; throws Error(MissingCapability) if there is none with compute shaders.
+/// What OpenGL there is without a display, hardware first; throws Error(MissingCapability) if there is none with compute
+/// shaders.
 [[nodiscard]] GlInfo find_gl();
 
 [[nodiscard]] Image draw_splats_gl(const SplatFrame& frame, const View& view, const PreintegratedTable& table);

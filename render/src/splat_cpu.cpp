@@ -24,26 +24,28 @@ public:
     /// A stretch of ray from value f0 to f1: optical depth and emitted colour, given its world length.
     void interval(float f0, float f1, float length, float& depth, std::array<float, 3>& color) const {
         if (std::abs(f1 - f0) < least_) {
-            const float middle = 0.5f * (f0 + f1);
-            f0 = middle - 0.5f * least_;
-            f1 = middle + 0.5f * least_;
+            const Entry middle = lookup(table_.points, 0.5f * (f0 + f1));
+            depth = length * std::max(middle[0], 0.0f);
+            const float opacity = 1.0f - std::exp(-depth);
+            for (std::size_t c = 0; c < 3; ++c) color[c] = opacity * middle[c + 1];
+            return;
         }
-        const Entry a = lookup(f0), b = lookup(f1);
+        const Entry a = lookup(table_.prefixes, f0), b = lookup(table_.prefixes, f1);
         const float difference = b[0] - a[0];
-        depth = length * difference / (f1 - f0);
-        const float emission = std::abs(difference) > 1e-12f ? 1.0f / difference : 0.0f;
+        depth = std::max(length * difference / (f1 - f0), 0.0f);
+        const float emission = difference != 0.0f ? 1.0f / difference : 0.0f;
         const float opacity = 1.0f - std::exp(-depth);
         for (std::size_t c = 0; c < 3; ++c) color[c] = opacity * (b[c + 1] - a[c + 1]) * emission;
     }
 
 private:
-    /// Beyond its ends the table goes on with the slope of its end.
-    [[nodiscard]] Entry lookup(float f) const {
+    /// Beyond its ends a function is constant: points keep their last row, prefixes go on with the slope of their last step.
+    [[nodiscard]] Entry lookup(const std::vector<Entry>& rows, float f) const {
         const float at = (f - min_) * scale_;
         const float cell = std::clamp(std::floor(at), 0.0f, static_cast<float>(PreintegratedTable::kSize - 2));
-        const auto& low = table_.entries[static_cast<std::size_t>(cell)];
-        const auto& high = table_.entries[static_cast<std::size_t>(cell) + 1];
-        const float t = at - cell;
+        const auto& low = rows[static_cast<std::size_t>(cell)];
+        const auto& high = rows[static_cast<std::size_t>(cell) + 1];
+        const float t = &rows == &table_.points ? std::clamp(at - cell, 0.0f, 1.0f) : at - cell;
         Entry entry;
         for (std::size_t c = 0; c < 4; ++c) entry[c] = low[c] + t * (high[c] - low[c]);
         return entry;
@@ -133,8 +135,8 @@ private:
 };
 
 /// Advances one pixel from the sheet at `near` to the sheet at `far`, cut to what lies inside the boundary.
-void composite_interval(PixelState& pixel, const SplatFrame& frame, const Classifier& classifier, float near, float far, float value,
-                        bool known, float ray_length) {
+void composite_interval(PixelState& pixel, const SplatFrame& frame, const Classifier& classifier, float near, float far,
+                        float value, bool known, float ray_length) {
     const auto& depths = frame.intervals.depths;
     while (pixel.interval < pixel.intervals_end && depths[2 * pixel.interval] < far) {
         const float enter = std::max(depths[2 * pixel.interval], near), exit = std::min(depths[2 * pixel.interval + 1], far);
@@ -201,9 +203,8 @@ private:
     }
 
     [[nodiscard]] bool done() const {
-        return std::all_of(pixels_.begin(), pixels_.begin() + static_cast<std::ptrdiff_t>(width_ * height_), [](const PixelState& p) {
-            return p.interval >= p.intervals_end || p.transmittance < kOpaque;
-        });
+        return std::all_of(pixels_.begin(), pixels_.begin() + static_cast<std::ptrdiff_t>(width_ * height_),
+                           [](const PixelState& p) { return p.interval >= p.intervals_end || p.transmittance < kOpaque; });
     }
 
     void sum_batch(std::size_t bin, int batch) {
@@ -254,9 +255,8 @@ Image draw_splats_cpu(const SplatFrame& frame, const View& view, const Preintegr
     // One report and one look at the cancel flag a row of tiles.
     for (int row = 0; row < frame.tiles_y; ++row) {
         report_progress(progress, "splat", static_cast<double>(row) / frame.tiles_y);
-        tbb::parallel_for(0, frame.tiles_x, [&](int column) {
-            TileRenderer(frame, view, table).draw(row * frame.tiles_x + column, image);
-        });
+        tbb::parallel_for(0, frame.tiles_x,
+                          [&](int column) { TileRenderer(frame, view, table).draw(row * frame.tiles_x + column, image); });
     }
     report_progress(progress, "splat", 1);
     return image;

@@ -155,7 +155,8 @@ SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const Splat
     report_progress(options.progress, "prepare splats", 0.4);
     frame.splats.resize(volume.size());
     const auto& channel = volume.channels[options.channel];
-    tbb::parallel_for(std::size_t{0}, volume.size(), [&](std::size_t i) { frame.splats[i] = to_eye(volume, channel, i, view); });
+    tbb::parallel_for(std::size_t{0}, volume.size(),
+                      [&](std::size_t i) { frame.splats[i] = to_eye(volume, channel, i, view); });
     report_progress(options.progress, "prepare splats", 0.6);
     fill_bins(frame, view);
     report_progress(options.progress, "prepare splats", 1);

@@ -51,8 +51,9 @@ Image draw_splats_gl(const SplatFrame& frame, const View& view, const Preintegra
     const GlBuffer bin_splats(2, bytes(frame.bin_splats), frame.bin_splats.data());
     const GlBuffer interval_offsets(3, bytes(frame.intervals.offsets), frame.intervals.offsets.data());
     const GlBuffer interval_depths(4, bytes(frame.intervals.depths), frame.intervals.depths.data());
-    const GlBuffer entries(5, bytes(table.entries), table.entries.data());
-    const GlBuffer picture(6, bytes(image.rgba), nullptr);
+    const GlBuffer prefixes(5, bytes(table.prefixes), table.prefixes.data());
+    const GlBuffer points(6, bytes(table.points), table.points.data());
+    const GlBuffer picture(7, bytes(image.rgba), nullptr);
 
     set_uniforms(program, frame, view, table);
     const int tiles = frame.tiles_x * frame.tiles_y;
@@ -62,7 +63,8 @@ Image draw_splats_gl(const SplatFrame& frame, const View& view, const Preintegra
     }
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     picture.read(bytes(image.rgba), image.rgba.data());
-    if (glGetError() != GL_NO_ERROR) throw Error(ErrorCode::MissingCapability, "the GL device failed while drawing", context.renderer());
+    if (glGetError() != GL_NO_ERROR)
+        throw Error(ErrorCode::MissingCapability, "the GL device failed while drawing", context.renderer());
     return image;
 }
 

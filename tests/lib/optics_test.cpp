@@ -144,21 +144,21 @@ TEST(Optics, NotANumberComesBack) {
 TEST(PreintegratedTable, DifferencesAreOpticalDepthAndEmission) {
     const Optics optics(sharp(), 0.8);
     const PreintegratedTable table = make_preintegrated_table(optics);
-    ASSERT_EQ(table.entries.size(), static_cast<std::size_t>(PreintegratedTable::kSize));
+    ASSERT_EQ(table.prefixes.size(), static_cast<std::size_t>(PreintegratedTable::kSize));
     EXPECT_EQ(table.min, 0.0);
     EXPECT_EQ(table.max, 1.0);
     const auto value_at = [&](std::size_t i) {
         return table.min + (table.max - table.min) * static_cast<double>(i) / (PreintegratedTable::kSize - 1);
     };
-    const double float_step = 2e-7 * table.entries.back()[0];  // entries are single precision
+    const double float_step = 2e-7 * table.prefixes.back()[0];  // entries are single precision
     for (const auto& [i, j] : {std::pair<std::size_t, std::size_t>{0, 4095}, {1500, 1900}, {1719, 1721}, {3000, 4000}}) {
         const double from = value_at(i), to = value_at(j);
-        const double depth = double{table.entries[j][0]} - double{table.entries[i][0]};
+        const double depth = double{table.prefixes[j][0]} - double{table.prefixes[i][0]};
         EXPECT_NEAR(std::exp(-depth), optics.integrate(from, to, to - from).transmittance, float_step);
         // Emission without absorption: that of a thousandth of the length, a thousand times; its own absorption is 1e-3·T/2.
         const Segment thin = optics.integrate(from, to, 1e-3 * (to - from));
         for (std::size_t c = 0; c < 3; ++c) {
-            const double emitted = double{table.entries[j][c + 1]} - double{table.entries[i][c + 1]};
+            const double emitted = double{table.prefixes[j][c + 1]} - double{table.prefixes[i][c + 1]};
             EXPECT_NEAR(emitted, 1e3 * thin.color[static_cast<int>(c)], 1e-3 * depth * depth + 2 * float_step);
         }
     }
@@ -167,7 +167,7 @@ TEST(PreintegratedTable, DifferencesAreOpticalDepthAndEmission) {
 TEST(PreintegratedTable, OneKnotStillSpansARange) {
     const PreintegratedTable table = make_preintegrated_table(Optics(constant({0.5, 1, 0}, 0.5), 1.0));
     ASSERT_LT(table.min, table.max);
-    const auto& last = table.entries.back();
+    const auto& last = table.prefixes.back();
     EXPECT_NEAR(last[0], (table.max - table.min) * std::log(2.0), 1e-6);
     EXPECT_NEAR(last[1], 0.5 * last[0], 1e-6);
 }

@@ -29,8 +29,8 @@ inline HexMesh make_box(Index nx, Index ny, Index nz) {
     return mesh;
 }
 
-/// The cube [-1,1]³ as one inner cube and six sectors of n³ cells each: 8 extraordinary points, valence-3 edges between them and
-/// the corners. Points are shared by position.
+/// The cube [-1,1]³ as one inner cube and six sectors of n³ cells each: 8 extraordinary points, valence-3 edges between them
+/// and the corners. Points are shared by position.
 inline HexMesh make_nested_cubes(Index n) {
     HexMesh mesh;
     std::vector<std::pair<std::array<long, 3>, Index>> known;
@@ -47,7 +47,8 @@ inline HexMesh make_nested_cubes(Index n) {
         const auto at = [&](Index i, Index j, Index k) {
             const double u = double(i) / n, v = double(j) / n, w = double(k) / n;
             const auto mix = [](const Vec3& a, const Vec3& b, double t) { return (1 - t) * a + t * b; };
-            return point(mix(mix(mix(c[0], c[1], u), mix(c[3], c[2], u), v), mix(mix(c[4], c[5], u), mix(c[7], c[6], u), v), w));
+            return point(
+                mix(mix(mix(c[0], c[1], u), mix(c[3], c[2], u), v), mix(mix(c[4], c[5], u), mix(c[7], c[6], u), v), w));
         };
         for (Index k = 0; k < n; ++k) {
             for (Index j = 0; j < n; ++j) {

@@ -15,9 +15,7 @@ struct Image {
     Image() = default;
     Image(int w, int h) : width(w), height(h), rgba(4 * static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
 
-    [[nodiscard]] std::span<float, 4> pixel(int x, int y) {
-        return std::span<float, 4>(rgba.data() + 4 * offset(x, y), 4);
-    }
+    [[nodiscard]] std::span<float, 4> pixel(int x, int y) { return std::span<float, 4>(rgba.data() + 4 * offset(x, y), 4); }
     [[nodiscard]] std::span<const float, 4> pixel(int x, int y) const {
         return std::span<const float, 4>(rgba.data() + 4 * offset(x, y), 4);
     }

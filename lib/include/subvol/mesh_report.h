@@ -18,10 +18,10 @@ struct MeshReport {
     std::size_t boundary_faces = 0;
     std::size_t interior_edges = 0;
     std::map<int, std::size_t> interior_edge_valence;  // number of cells about an interior edge → how many such edges
-    std::size_t singular_nodes = 0;     // interior points where some irregular edges meet and their number is not 2
-    std::size_t inverted_cells = 0;     // cells with a negative Jacobian at a corner
-    std::size_t degenerate_cells = 0;   // cells whose volume, or an edge of which, is zero
-    double min_scaled_jacobian = 0;     // over the corners of all cells: det of the unit edge vectors
+    std::size_t singular_nodes = 0;    // interior points where some irregular edges meet and their number is not 2
+    std::size_t inverted_cells = 0;    // cells with a negative Jacobian at a corner
+    std::size_t degenerate_cells = 0;  // cells whose volume, or an edge of which, is zero
+    double min_scaled_jacobian = 0;    // over the corners of all cells: det of the unit edge vectors
     std::size_t nonmanifold_edges = 0;
     std::size_t nonmanifold_faces = 0;  // always 0 in a mesh that could be read
     double volume = 0;                  // of the trilinear cells, exact, world³

@@ -66,12 +66,14 @@ inline void composite(Segment& front, const Segment& behind) {
 /// Prefix integrals of extinction and emission over the value, for pre-integrated classification: the renderers that sample
 /// planes take the optical depth of an interval as Δz·Δ𝒯/Δf and its colour as Δ𝒦/Δ𝒯.
 ///
-/// entries: kSize rows {𝒯, 𝒦r, 𝒦g, 𝒦b} at equally spaced values in [min,max], which spans all knots
+/// prefixes: kSize rows {𝒯, 𝒦r, 𝒦g, 𝒦b} at equally spaced values in [min,max], which spans all knots
+/// points:   kSize rows {τ, r, g, b} at the same values, for intervals on which the value hardly changes
 struct PreintegratedTable {
     static constexpr int kSize = 4096;
     double min = 0;
     double max = 1;
-    std::vector<std::array<float, 4>> entries;
+    std::vector<std::array<float, 4>> prefixes;
+    std::vector<std::array<float, 4>> points;
 };
 
 [[nodiscard]] PreintegratedTable make_preintegrated_table(const Optics& optics);

@@ -21,7 +21,7 @@ struct FieldOptions {
 /// samples inside and outside; what is thinner than a step may be missed.
 ///
 /// box: where the field may have values
-[[nodiscard]] Image render_field(const std::function<std::optional<double>(const Vec3&)>& field, const Box& box, const View& view,
-                                 const Optics& optics, const FieldOptions& options = {});
+[[nodiscard]] Image render_field(const std::function<std::optional<double>(const Vec3&)>& field, const Box& box,
+                                 const View& view, const Optics& optics, const FieldOptions& options = {});
 
 }  // namespace subvol

@@ -1,0 +1,125 @@
+"""What a user meets first: help, exit codes, one sentence for a mistake, nothing left behind, the same result again."""
+
+import signal
+import subprocess
+import time
+import unittest
+
+from command import COMMAND, InFolder, subvol
+
+VERBS = ["model", "info", "subdivide", "points", "vdb", "render", "compare", "demo"]
+
+# One mesh of one cell: MEDIT, counted from 1.
+CUBE = """MeshVersionFormatted 2
+Dimension 3
+Vertices
+8
+0 0 0 0
+1 0 0 0
+1 1 0 0
+0 1 0 0
+0 0 1 0
+1 0 1 0
+1 1 1 0
+0 1 1 0
+Hexahedra
+1
+1 2 3 4 5 6 7 {last} 0
+End
+"""
+
+
+class Help(unittest.TestCase):
+    def test_every_verb_explains_itself_with_examples(self):
+        for verb in VERBS:
+            done = subvol(verb, "--help")
+            self.assertEqual(done.code, 0, done.err)
+            self.assertIn("Examples:\n  subvol " + verb, done.out)
+
+    def test_the_program_names_every_verb(self):
+        done = subvol("--help")
+        self.assertEqual(done.code, 0)
+        for verb in VERBS:
+            self.assertIn("\n  " + verb, done.out)
+
+    def test_version(self):
+        self.assertRegex(subvol("--version").out, r"^\d+\.\d+\.\d+\n$")
+
+
+class Mistakes(InFolder):
+    """Exit code 2, one sentence on standard error, nothing on standard output and no file."""
+
+    def assert_refused(self, *arguments, naming):
+        before = self.files()
+        done = subvol(*arguments, folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertEqual(done.out, "")
+        self.assertRegex(done.err, r"^subvol: [^\n]+\n$")
+        self.assertIn(naming, done.err)
+        self.assertEqual(self.files(), before)
+
+    def test_arguments(self):
+        self.assert_refused("frobnicate", naming="frobnicate")
+        self.assert_refused(naming="--help")
+        self.assert_refused("info", naming="FILE")
+        self.assert_refused("info", "a.mesh", "--frobnicate", naming="--frobnicate")
+        self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--levels", "-1", naming="--levels")
+        self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--scheme", "cc", naming="not supported yet")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--size", "12y12", naming="--size")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--method", "dense", naming="splat, tets")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--view", "up", naming="up")
+        self.assert_refused("compare", "a.png", "b.png", "--fail-under", "psnr", naming="--fail-under")
+
+    def test_files(self):
+        self.assert_refused("info", "missing.mesh", naming="missing.mesh")
+        self.assert_refused("subdivide", "model:ball:2", "-o", "a.obj", naming=".vtu")
+        self.assert_refused("points", "model:ball:2", "-o", "a.vdb", naming="not supported yet")
+        self.assert_refused("vdb", "model:ball:2", "-o", "nowhere/a.vdb", naming="nowhere")
+        self.assert_refused("compare", "missing.png", "missing.png", naming="missing.png")
+
+    def test_fields(self):
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--field", "heat", naming="density")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--density", "x+", naming="x+")
+        self.assert_refused("vdb", "model:ball:2", "-o", "a.vdb", "--fields", "density,heat", naming="heat")
+
+    def test_malformed_mesh(self):
+        (self.folder / "bad.mesh").write_text(CUBE.format(last=9))
+        for verb, output in [("subdivide", "a.vtu"), ("points", "a.ply"), ("vdb", "a.vdb"), ("render", "a.png")]:
+            self.assert_refused(verb, "bad.mesh", "-o", output, naming="bad.mesh")
+
+    def test_cancelled_output_is_not_truncated_output(self):
+        (self.folder / "a.vtu").write_text("what was there before")
+        (self.folder / "bad.mesh").write_text(CUBE.format(last=9))
+        self.assert_refused("subdivide", "bad.mesh", "-o", "a.vtu", naming="bad.mesh")
+        self.assertEqual((self.folder / "a.vtu").read_text(), "what was there before")
+
+
+class Interrupt(InFolder):
+    def test_ctrl_c_stops_and_leaves_nothing(self):
+        process = subprocess.Popen([COMMAND, "render", "model:twist", "-o", "a.png", "--method", "tets", "--samples", "16",
+                                    "--size", "4096"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        time.sleep(1)  # into the work: uninterrupted it takes minutes
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, err)
+        self.assertEqual(self.files(), [])
+
+
+class SameForAnyNumberOfThreads(InFolder):
+    def assert_same(self, verb, ending, *options):
+        outputs = []
+        for threads in (1, 3):
+            name = f"{threads}{ending}"
+            self.run_ok(verb, "model:ball:4", "-o", name, "--threads", threads, *options)
+            outputs.append((self.folder / name).read_bytes())
+        self.assertEqual(*outputs)
+
+    def test_meshes_points_and_pictures(self):
+        self.assert_same("subdivide", ".vtu")
+        self.assert_same("points", ".ply")
+        self.assert_same("render", ".png", "--size", "64", "--backend", "cpu")
+        self.assert_same("render", ".png", "--size", "64", "--method", "tets")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,59 @@
+"""Runs the command that SUBVOL_COMMAND names; shared by the tests of this folder."""
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+import unittest
+from dataclasses import dataclass
+from pathlib import Path
+
+COMMAND = os.environ["SUBVOL_COMMAND"]
+
+
+@dataclass
+class Run:
+    code: int
+    out: str
+    err: str
+    seconds: float = 0
+    peak_mib: float = 0
+
+    def json(self):
+        return json.loads(self.out)
+
+
+def subvol(*arguments, folder=None):
+    done = subprocess.run([COMMAND, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=120)
+    return Run(done.returncode, done.stdout, done.stderr)
+
+
+def subvol_measured(*arguments, folder=None):
+    """As `subvol`, with the seconds and the peak memory of this one process."""
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+", errors="replace") as err:
+        start = time.monotonic()
+        process = subprocess.Popen([COMMAND, *map(str, arguments)], cwd=folder, stdout=out, stderr=err)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        seconds = time.monotonic() - start
+        out.seek(0)
+        err.seek(0)
+        return Run(process.returncode, out.read(), err.read(), seconds, usage.ru_maxrss / 1024)
+
+
+class InFolder(unittest.TestCase):
+    """A test with a folder of its own, that fails with what the command said."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def run_ok(self, *arguments):
+        done = subvol(*arguments, folder=self.folder)
+        self.assertEqual(done.code, 0, f"subvol {' '.join(map(str, arguments))}: {done.err}")
+        return done
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())

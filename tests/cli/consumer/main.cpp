@@ -1,0 +1,19 @@
+// Calls into every component, so that each must have been installed with what it links to.
+#include <subvol/image_metrics.h>
+#include <subvol/model.h>
+#include <subvol/refine.h>
+#include <subvol/render.h>
+#include <subvol/vdb.h>
+
+int main() {
+    const subvol::HexMesh mesh = subvol::make_model("ball", 2);
+    const subvol::HexMesh fine = subvol::refine(mesh, {.levels = 1});
+    const subvol::Attribute& density = fine.attributes.front();
+    const auto grids = subvol::rasterize(fine, std::vector{density.name}, {.resolution = 16});
+    const subvol::View view(subvol::parse_camera("iso", bounds(fine)), 16, 16);
+    const subvol::Optics optics(subvol::transfer_function_preset("viridis", 0, 1), 0.1);
+    const subvol::Image image = render_tets(fine, density.values, view, optics).image;
+    const bool right = fine.cells.size() == 8 * mesh.cells.size() && grids.front().report().active_voxels > 0 &&
+                       compare_images(image, image).max == 0;
+    return right ? 0 : 1;
+}
