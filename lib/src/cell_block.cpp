@@ -11,22 +11,38 @@ CellBlocks::CellBlocks(const HexMesh& twice_refined) : mesh_(twice_refined) {
     channels_ = source_.size();
 }
 
-CellBlocks::Block CellBlocks::block(std::size_t cell) const {
-    Block block{};
+namespace {
+
+/// Where a node of the 5×5×5 block stands in the twice refined mesh: in which of the 64 descendants of its cell, at which
+/// corner.
+struct NodePlace {
+    std::uint8_t descendant, corner;
+};
+
+constexpr std::array<NodePlace, 125> make_node_places() {
+    std::array<NodePlace, 125> places{};
     for (std::size_t child = 0; child < 8; ++child) {
         for (std::size_t grandchild = 0; grandchild < 8; ++grandchild) {
-            const auto& points = mesh_.cells[64 * cell + 8 * child + grandchild];
             for (std::size_t k = 0; k < 8; ++k) {
-                std::array<std::size_t, 3> at;
-                for (std::size_t a = 0; a < 3; ++a) {
-                    at[a] = static_cast<std::size_t>(2 * kCornerParameters[child][a] + kCornerParameters[grandchild][a] +
-                                                     kCornerParameters[k][a]);
+                std::size_t node = 0, stride = 1;
+                for (std::size_t a = 0; a < 3; ++a, stride *= 5) {
+                    node += stride * static_cast<std::size_t>(2 * kCornerParameters[child][a] +
+                                                              kCornerParameters[grandchild][a] + kCornerParameters[k][a]);
                 }
-                block[at[0] + 5 * (at[1] + 5 * at[2])] = points[k];
+                places[node] = {static_cast<std::uint8_t>(8 * child + grandchild), static_cast<std::uint8_t>(k)};
             }
         }
     }
-    return block;
+    return places;
+}
+
+constexpr auto kNodePlaces = make_node_places();
+
+}  // namespace
+
+Index CellBlocks::point(std::size_t cell, std::size_t node) const {
+    const auto [descendant, corner] = kNodePlaces[node];
+    return mesh_.cells[64 * cell + descendant][corner];
 }
 
 double CellBlocks::channel_value(Index point, std::size_t channel) const {
@@ -35,7 +51,7 @@ double CellBlocks::channel_value(Index point, std::size_t channel) const {
     return values.values[point * static_cast<std::size_t>(values.channels) + c];
 }
 
-void CellBlocks::evaluate(const Block& block, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+void CellBlocks::evaluate(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
                           Jet& jet) const {
     const std::array<SampleStencil, 3> basis{SampleStencil(uvw[0], step[0]), SampleStencil(uvw[1], step[1]),
                                              SampleStencil(uvw[2], step[2])};
@@ -54,7 +70,7 @@ void CellBlocks::evaluate(const Block& block, const std::array<double, 3>& uvw, 
                 const double across = basis[b].value[j] * basis[c].value[k];
                 if (across == 0) continue;
                 for (std::size_t i = 0; i < 5; ++i) {
-                    const Index p = block[i * stride[axis] + j * stride[b] + k * stride[c]];
+                    const Index p = point(cell, i * stride[axis] + j * stride[b] + k * stride[c]);
                     const double w = across * basis[axis].value[i], d = across * basis[axis].first[i];
                     const double dd = across * basis[axis].second[i];
                     const Vec3& x = mesh_.points[p];

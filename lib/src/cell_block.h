@@ -26,16 +26,14 @@ public:
         std::vector<std::array<double, 3>> d_value, dd_value;  // a channel, by u, v, w
     };
 
-    /// The 125 points of a cell, u fastest.
-    using Block = std::array<Index, 125>;
-    [[nodiscard]] Block block(std::size_t cell) const;
-
     /// step: the sample interval along u, v, w
-    void evaluate(const Block& block, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
+    void evaluate(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
 
     [[nodiscard]] std::size_t channels() const { return channels_; }
 
 private:
+    /// Point `node` of a cell's 125, u fastest.
+    [[nodiscard]] Index point(std::size_t cell, std::size_t node) const;
     [[nodiscard]] double channel_value(Index point, std::size_t channel) const;
 
     const HexMesh& mesh_;

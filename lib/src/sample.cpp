@@ -82,10 +82,10 @@ public:
         std::fill(laplacian_.begin(), laplacian_.end(), 0.0);
     }
 
-    void add_cell(std::size_t cell, const CellBlocks::Block& block, const std::array<double, 3>& uvw) {
+    void add_cell(std::size_t cell, const std::array<double, 3>& uvw) {
         const std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
                                          1.0 / counts_.near(cell, 2, uvw)};
-        blocks_.evaluate(block, uvw, step, jet_);
+        blocks_.evaluate(cell, uvw, step, jet_);
         if (cells_++ == 0) {
             volume_.centers[point_] = jet_.position;
             for (std::size_t c = 0; c < jet_.value.size(); ++c)
@@ -223,7 +223,7 @@ private:
         writer.begin(p);
         for (std::size_t i = point_cells_.offsets[p]; i < point_cells_.offsets[p + 1]; ++i) {
             const Index cell = point_cells_.records[i].second;
-            writer.add_cell(cell, blocks_.block(cell), in_cell<0>(topology_.cells[cell], static_cast<Index>(p), {}, {}));
+            writer.add_cell(cell, in_cell<0>(topology_.cells[cell], static_cast<Index>(p), {}, {}));
         }
         return writer.finish();
     }
@@ -235,7 +235,7 @@ private:
         for (int i = 1; i < n; ++i) {
             writer.begin(first++);
             for (const Index cell : topology_.edge_cells[e]) {
-                writer.add_cell(cell, blocks_.block(cell), in_cell<1>(topology_.cells[cell], a, {b}, {double(i) / n}));
+                writer.add_cell(cell, in_cell<1>(topology_.cells[cell], a, {b}, {double(i) / n}));
             }
             flat += writer.finish();
         }
@@ -265,12 +265,11 @@ private:
         const auto n = counts_.cell(c);
         std::size_t flat = 0;
         if (n[0] == 1 || n[1] == 1 || n[2] == 1) return flat;
-        const auto block = blocks_.block(c);
         for (int k = 1; k < n[2]; ++k) {
             for (int j = 1; j < n[1]; ++j) {
                 for (int i = 1; i < n[0]; ++i) {
                     writer.begin(first++);
-                    writer.add_cell(c, block, {double(i) / n[0], double(j) / n[1], double(k) / n[2]});
+                    writer.add_cell(c, {double(i) / n[0], double(j) / n[1], double(k) / n[2]});
                     flat += writer.finish();
                 }
             }

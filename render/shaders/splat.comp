@@ -34,23 +34,27 @@ const float kLeastWeight = SPLAT_LEAST_WEIGHT;
 const float kLeastDifference = SPLAT_LEAST_DIFFERENCE;
 const float kOpaque = SPLAT_OPAQUE;
 
-// Table rows about a value: the lower row's number, and how far the value lies from it towards the next (beyond [0,1] outside).
+// Table rows about a value: the lower row's number, and how far the value lies from it towards the next.
 vec2 place(float f) {
-    float at = (f - table_range.x) * float(prefixes.length() - 1) / (table_range.y - table_range.x);
-    float cell = clamp(floor(at), 0.0, float(prefixes.length() - 2));
+    float at = clamp((f - table_range.x) * float(prefixes.length() - 1) / (table_range.y - table_range.x), 0.0,
+                     float(prefixes.length() - 1));
+    float cell = min(floor(at), float(prefixes.length() - 2));
     return vec2(cell, at - cell);
-}
-
-vec4 prefix(float f) {
-    vec2 p = place(f);
-    vec4 low = prefixes[int(p.x)];
-    return low + p.y * (prefixes[int(p.x) + 1] - low);
 }
 
 vec4 point(float f) {
     vec2 p = place(f);
     vec4 low = points[int(p.x)];
-    return low + clamp(p.y, 0.0, 1.0) * (points[int(p.x) + 1] - low);
+    return low + p.y * (points[int(p.x) + 1] - low);
+}
+
+// Beyond the table's ends extinction and colour are constant and the integrals go on with them.
+vec4 prefix(float f) {
+    vec2 p = place(f);
+    vec4 low = prefixes[int(p.x)];
+    float beyond = f - clamp(f, table_range.x, table_range.y);
+    vec4 end = points[beyond < 0.0 ? 0 : points.length() - 1];
+    return low + p.y * (prefixes[int(p.x) + 1] - low) + beyond * vec4(end.x, end.x * end.yzw);
 }
 
 // Optical depth (x) and emitted colour (yzw) of a stretch from value f0 to f1.

@@ -18,6 +18,7 @@ public:
     explicit Classifier(const PreintegratedTable& table)
         : table_(table),
           min_(static_cast<float>(table.min)),
+          max_(static_cast<float>(table.max)),
           scale_(static_cast<float>((PreintegratedTable::kSize - 1) / (table.max - table.min))),
           least_(kLeastDifference * static_cast<float>(table.max - table.min)) {}
 
@@ -30,7 +31,7 @@ public:
             for (std::size_t c = 0; c < 3; ++c) color[c] = opacity * middle[c + 1];
             return;
         }
-        const Entry a = lookup(table_.prefixes, f0), b = lookup(table_.prefixes, f1);
+        const Entry a = prefix(f0), b = prefix(f1);
         const float difference = b[0] - a[0];
         depth = std::max(length * difference / (f1 - f0), 0.0f);
         const float emission = difference != 0.0f ? 1.0f / difference : 0.0f;
@@ -39,20 +40,29 @@ public:
     }
 
 private:
-    /// Beyond its ends a function is constant: points keep their last row, prefixes go on with the slope of their last step.
     [[nodiscard]] Entry lookup(const std::vector<Entry>& rows, float f) const {
-        const float at = (f - min_) * scale_;
-        const float cell = std::clamp(std::floor(at), 0.0f, static_cast<float>(PreintegratedTable::kSize - 2));
+        const float at = std::clamp((f - min_) * scale_, 0.0f, static_cast<float>(PreintegratedTable::kSize - 1));
+        const float cell = std::min(std::floor(at), static_cast<float>(PreintegratedTable::kSize - 2));
         const auto& low = rows[static_cast<std::size_t>(cell)];
         const auto& high = rows[static_cast<std::size_t>(cell) + 1];
-        const float t = &rows == &table_.points ? std::clamp(at - cell, 0.0f, 1.0f) : at - cell;
         Entry entry;
-        for (std::size_t c = 0; c < 4; ++c) entry[c] = low[c] + t * (high[c] - low[c]);
+        for (std::size_t c = 0; c < 4; ++c) entry[c] = low[c] + (at - cell) * (high[c] - low[c]);
+        return entry;
+    }
+
+    /// Beyond the table's ends extinction and colour are constant and the integrals go on with them.
+    [[nodiscard]] Entry prefix(float f) const {
+        Entry entry = lookup(table_.prefixes, f);
+        const float beyond = f - std::clamp(f, min_, max_);
+        if (beyond == 0.0f) return entry;
+        const Entry& end = beyond < 0.0f ? table_.points.front() : table_.points.back();
+        entry[0] += beyond * end[0];
+        for (std::size_t c = 1; c < 4; ++c) entry[c] += beyond * end[0] * end[c];
         return entry;
     }
 
     const PreintegratedTable& table_;
-    float min_, scale_, least_;
+    float min_, max_, scale_, least_;
 };
 
 struct PixelState {

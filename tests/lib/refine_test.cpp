@@ -49,7 +49,9 @@ TEST(Refine, CommutesWithAffineMaps) {
 TEST(Refine, ReproducesCubicsInsideAndQuadraticsEverywhereInABox) {
     const Index n = 6;
     HexMesh mesh = test::make_box(n, n, n);
-    const auto cubic = [](const Vec3& p) { return p.x * p.x * p.x - 2 * p.x * p.y * p.z + p.y * p.z * p.z + p.z * p.z * p.z - p.x; };
+    const auto cubic = [](const Vec3& p) {
+        return p.x * p.x * p.x - 2 * p.x * p.y * p.z + p.y * p.z * p.z + p.z * p.z * p.z - p.x;
+    };
     const auto quadratic = [](const Vec3& p) { return p.x * p.x - 3 * p.y * p.z + p.z * p.z + p.x * p.y - p.y; };
     const auto quartic = [](const Vec3& p) { return p.x * p.x * p.x * p.x; };
     test::add_field(mesh, "cubic", cubic);
@@ -157,7 +159,8 @@ TEST(Refine, CreasesStaySharp) {
     };
     EXPECT_NEAR(middle_height(sharp), 1.4, 1e-12);  // straight to the ridge: quadratic extrapolation of two points is linear
     EXPECT_GT(middle_height(smooth), middle_height(sharp) + .05);
-    EXPECT_EQ(refine(sharp).creases.size(), 4 * refine(mesh, {.levels = 0, .crease_angle_deg = 40}).creases.size() + 2 * sharp.creases.size());
+    EXPECT_EQ(refine(sharp).creases.size(),
+              4 * refine(mesh, {.levels = 0, .crease_angle_deg = 40}).creases.size() + 2 * sharp.creases.size());
 }
 
 TEST(Refine, RefusesWhatIsNotAMesh) {

@@ -18,10 +18,12 @@ TEST(Sample, CountsEveryEntityOnce) {
     const auto m = inspect(mesh);
     for (const std::size_t n : {1, 2, 3, 5}) {
         const auto result = sample_rbf_points(mesh, {.per_edge = static_cast<int>(n)});
-        EXPECT_EQ(result.report.points, m.points + m.edges * (n - 1) + m.faces * (n - 1) * (n - 1) + m.cells * (n - 1) * (n - 1) * (n - 1));
+        EXPECT_EQ(result.report.points,
+                  m.points + m.edges * (n - 1) + m.faces * (n - 1) * (n - 1) + m.cells * (n - 1) * (n - 1) * (n - 1));
         EXPECT_EQ(result.volume.size(), result.report.points);
         std::set<std::array<long, 3>> places;
-        for (const auto& c : result.volume.centers) places.insert({std::lround(c.x * 1e7), std::lround(c.y * 1e7), std::lround(c.z * 1e7)});
+        for (const auto& c : result.volume.centers)
+            places.insert({std::lround(c.x * 1e7), std::lround(c.y * 1e7), std::lround(c.z * 1e7)});
         EXPECT_EQ(places.size(), result.report.points) << "no two samples at one place";
     }
     const auto cell = sample_rbf_points(test::make_box(1, 1, 1), {.per_edge = 4});
@@ -57,7 +59,8 @@ TEST(Sample, QuadraticFieldsHaveExactDerivativesOnACurvedMesh) {
         // L = Σ ∂²f − g·Σ ∂²x per interval of one half; f has no pure second derivatives.
         const double l = -.25 * glm::dot(g, Vec3(.1, 0, .06));
         const auto& channel = volume.channels[0];
-        for (int a = 0; a < 3; ++a) EXPECT_NEAR(channel.gradients[i][static_cast<std::size_t>(a)], g[a], 1e-5);  // stored as float
+        for (int a = 0; a < 3; ++a)
+            EXPECT_NEAR(channel.gradients[i][static_cast<std::size_t>(a)], g[a], 1e-5);  // stored as float
         EXPECT_NEAR(channel.moments[i], r2 / 6 * l, 1e-5);
         const Mat3 s = jacobian * glm::transpose(jacobian) * (r2 / 4);
         const auto& f = volume.frames[i];

@@ -26,13 +26,18 @@ HexMesh make_ball(Index n) {
     return mesh;
 }
 
-RbfVolume sample(const HexMesh& mesh, int per_edge = 1) { return sample_rbf_points(mesh, {.per_edge = per_edge}).volume; }
+RbfVolume sample(const HexMesh& mesh, int per_edge = 1) {
+    return sample_rbf_points(mesh, {.per_edge = per_edge}).volume;
+}
 
-Camera orthographic(double height, const Vec3& eye = {2, -10, 2}) { return {.eye = eye, .target = eye + Vec3(0, 1, 0), .up = {0, 0, 1}, .ortho_height = height}; }
+Camera orthographic(double height, const Vec3& eye = {2, -10, 2}) {
+    return {.eye = eye, .target = eye + Vec3(0, 1, 0), .up = {0, 0, 1}, .ortho_height = height};
+}
 
 double largest_difference(const Image& a, const Image& b) {
     double largest = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) largest = std::max(largest, std::abs(double(a.rgba[i]) - double(b.rgba[i])));
+    for (std::size_t i = 0; i < a.rgba.size(); ++i)
+        largest = std::max(largest, std::abs(double(a.rgba[i]) - double(b.rgba[i])));
     return largest;
 }
 
@@ -55,7 +60,8 @@ TEST(RenderSplats, AConstantFieldIsExactlyThatConstant) {
     test::add_field(box, "f", [](const Vec3&) { return .7; });
     const double alpha = 1 - std::pow(1 - .3, 3 / 1.5);
     for (const Backend backend : backends()) {
-        const auto image = render_splats(sample(box), View(orthographic(6), 64, 64), constant_optics(.3, 1.5), {.backend = backend}).image;
+        const auto image =
+            render_splats(sample(box), View(orthographic(6), 64, 64), constant_optics(.3, 1.5), {.backend = backend}).image;
         for (int y = 0; y < 64; ++y) {
             for (int x = 0; x < 64; ++x) {
                 const bool inside = x >= 11 && x < 53 && y >= 11 && y < 53;  // the box covers pixels 10.67 to 53.33
@@ -77,8 +83,8 @@ TEST(RenderSplats, ABallHasItsClosedFormOpticalDepth) {
             const double b2 = p.x * p.x + p.y * p.y;
             if (b2 > .97) continue;  // the silhouette is that of facets
             const double chord = 2 * std::sqrt(1 - b2);
-            // The refined boundary's facets have sides h ≤ .16 and lie up to h²/4 = .0064 inside the sphere: twice that in chord
-            // length, over the cosine of the angle to the surface.
+            // The refined boundary's facets have sides h ≤ .16 and lie up to h²/4 = .0064 inside the sphere: twice that in
+            // chord length, over the cosine of the angle to the surface.
             EXPECT_NEAR(image.pixel(x, y)[3], 1 - std::pow(.5, chord), 2 * .0064 * std::numbers::ln2 / std::sqrt(1 - b2));
         }
     }
@@ -87,7 +93,8 @@ TEST(RenderSplats, ABallHasItsClosedFormOpticalDepth) {
 TEST(RenderSplats, BackendsDrawTheSameImage) {
     HexMesh ball = make_ball(4);
     test::add_field(ball, "f", [](const Vec3& p) { return .5 + .4 * std::sin(3 * p.x) * std::cos(2 * p.y) + .1 * p.z; });
-    const Optics optics({.color = {{0, {0, 0, 1}}, {1, {1, 0, 0}}}, .opacity = {{0, 0}, {.4, .1}, {.5, .9}, {.6, .1}, {1, .3}}}, .3);
+    const Optics optics({.color = {{0, {0, 0, 1}}, {1, {1, 0, 0}}}, .opacity = {{0, 0}, {.4, .1}, {.5, .9}, {.6, .1}, {1, .3}}},
+                        .3);
     const View view({.eye = {2, -3, 1.5}, .target = {0, 0, 0}, .up = {0, 0, 1}}, 100, 90);
     const RbfVolume volume = sample(ball);
     const auto cpu = render_splats(volume, view, optics, {.backend = Backend::Cpu}).image;
@@ -112,7 +119,8 @@ TEST(RenderSplats, TheImageDoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(RenderSplats, AHoleLetsTheBackgroundThrough) {
-    // A ring of cells about a square hole: a ray through it sees nothing, one beside it sees the ring, one across it sees two walls.
+    // A ring of cells about a square hole: a ray through it sees nothing, one beside it sees the ring, one across it sees two
+    // walls.
     HexMesh ring = test::make_box(3, 3, 1);
     ring.cells.erase(ring.cells.begin() + 4);
     test::add_field(ring, "f", [](const Vec3&) { return .5; });
@@ -141,7 +149,9 @@ TEST(RenderSplats, HalvingTheSheetDistanceQuartersTheError) {
     const RbfVolume volume = sample(box);
     const Optics optics({.color = {{0, {0, 0, 1}}, {1, {1, 0, 0}}}, .opacity = {{0, 0}, {1, .5}}}, 1);
     const View view({.eye = {15, -12, 9}, .target = {3, 3, 3}, .up = {0, 0, 1}, .fovy_deg = 30}, 64, 64);
-    const auto draw = [&](int sheets) { return render_splats(volume, view, optics, {.backend = Backend::Cpu, .sheets = sheets}).image; };
+    const auto draw = [&](int sheets) {
+        return render_splats(volume, view, optics, {.backend = Backend::Cpu, .sheets = sheets}).image;
+    };
     const auto exact = draw(1025);
     const auto rmse = [&](const Image& image) {
         double sum = 0;
@@ -151,6 +161,22 @@ TEST(RenderSplats, HalvingTheSheetDistanceQuartersTheError) {
     const double coarse = rmse(draw(33)), fine = rmse(draw(65));
     EXPECT_GT(coarse / fine, 3.0);  // second order is 4; entries and exits between sheets take a little of it
     EXPECT_LT(fine, 1e-3);
+}
+
+TEST(RenderSplats, ValuesBeyondTheKnotsKeepTheEndsOpacity) {
+    // The function has its knots far above the field, which is steep: nothing may be seen. Then far below: the last opacity.
+    HexMesh box = test::make_box(3, 3, 3);
+    test::add_field(box, "f", [](const Vec3& p) { return p.x + p.y; });
+    const RbfVolume volume = sample(box);
+    const std::vector<TransferFunction::ColorKnot> white{{10, {1, 1, 1}}};
+    for (const Backend backend : backends()) {
+        const auto draw = [&](double low, double a0, double a1) {
+            const Optics optics({.color = white, .opacity = {{low, a0}, {low + 1, a1}}}, 1);
+            return render_splats(volume, View(orthographic(4), 20, 20), optics, {.backend = backend}).image;
+        };
+        EXPECT_EQ(draw(10, 0, .9).pixel(10, 10)[3], 0);
+        EXPECT_NEAR(draw(-20, .9, .5).pixel(10, 10)[3], 1 - std::pow(.5, 3), 1e-5);  // float quotients of differences
+    }
 }
 
 TEST(RenderSplats, RefusesWhatItCannotDraw) {
