@@ -35,20 +35,11 @@ public:
         }
     }
 
-    void cell_point(Index cell, StencilBuilder& row) const override {
-        add(row, topology_.cells[cell], (1 + 6 * omega_) / 8);
-        for (std::size_t side = 0; side < 6; ++side) {
-            const auto near = side_points(cell, side), far = side_points(cell, side ^ 1);
-            extrapolated(row, -omega_ / 4, near, far, far_points(cell, side), far_points(cell, side ^ 1));
-        }
-    }
+    void cell_point(Index cell, StencilBuilder& row) const override { interior_cell(cell, row); }
 
 private:
-    /// A term of a rule: its points and weights; `known` is false where the mesh ends.
-    struct Term {
-        bool known = false;
-        StencilBuilder points;
-    };
+    // The terms of the rules are functions: they add themselves with a weight, or add nothing and return false where the mesh
+    // ends.
 
     template <class Points>
     static void add(StencilBuilder& row, const Points& points, double weight) {
@@ -56,30 +47,124 @@ private:
     }
 
     /// weight · term, or its ghost: 3 near − 3 far + partner, without a known partner 2 near − far.
-    template <class Points>
-    static void extrapolated(StencilBuilder& row, double weight, const Points& near, const Points& far, Term term,
-                             Term partner) {
-        const auto add_term = [&](Term& known) {
-            for (const auto& [p, w] : known.points.finish()) row.add(p, weight * w);
-        };
-        if (term.known) {
-            add_term(term);
-        } else if (partner.known) {
-            add(row, near, 3 * weight);
-            add(row, far, -3 * weight);
-            add_term(partner);
-        } else {
-            add(row, near, 2 * weight);
-            add(row, far, -weight);
-        }
+    template <class Points, class Term, class Partner>
+    static void extrapolated(StencilBuilder& row, double weight, const Points& near, const Points& far, const Term& term,
+                             const Partner& partner) {
+        if (term(row, weight)) return;
+        const bool quadratic = partner(row, weight);
+        add(row, near, quadratic ? 3 * weight : 2 * weight);
+        add(row, far, quadratic ? -3 * weight : -weight);
     }
 
     /// A pair of terms at the two ends of a line, each the other's partner.
-    static void both_ways(StencilBuilder& row, double weight, Index near_a, Index near_b, const Term& beyond_a,
-                          const Term& beyond_b) {
+    template <class TermA, class TermB>
+    static void both_ways(StencilBuilder& row, double weight, Index near_a, Index near_b, const TermA& beyond_a,
+                          const TermB& beyond_b) {
         const std::array<Index, 1> a{near_a}, b{near_b};
         extrapolated(row, weight, a, b, beyond_a, beyond_b);
         extrapolated(row, weight, b, a, beyond_b, beyond_a);
+    }
+
+    // --- terms
+    // -----------------------------------------------------------------------------------------------------------------
+
+    /// R^A: over the ring of faces about edge (a,d), the neighbours of d other than a, antipodally weighted.
+    [[nodiscard]] auto across_edge(Index face, Index a, Index d) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            const Index edge = edge_in_face(face, a, d);
+            if (!topology_.edge_has_ring[edge]) return false;
+            const auto ring = topology_.edge_faces[edge];
+            const std::size_t m = ring.size(), start = slot_of(ring, face);
+            for (std::size_t j = 0; j < m; ++j) {
+                const double c = antipodal_(m, j);
+                if (c != 0) row.add(beside(ring[(start + j) % m], d, a), c * weight);
+            }
+            return true;
+        };
+    }
+
+    /// R_g: over the ring of faces about an edge, their two points not on it, antipodally weighted.
+    [[nodiscard]] auto in_plane(Index face, Index edge) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (!topology_.edge_has_ring[edge]) return false;
+            const auto ring = topology_.edge_faces[edge];
+            const std::size_t m = ring.size(), start = slot_of(ring, face);
+            for (std::size_t j = 0; j < m; ++j) {
+                const double c = antipodal_(m, j);
+                if (c == 0) continue;
+                for (const Index p : far_side(ring[(start + j) % m], edge)) row.add(p, c * weight);
+            }
+            return true;
+        };
+    }
+
+    /// S_g: in the cells next to those of the face, the two points diagonally opposite the edge.
+    [[nodiscard]] auto diagonal(Index face, Index edge) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (!topology_.edge_has_ring[edge]) return false;
+            const auto faces = topology_.edge_faces[edge];
+            const auto cells = topology_.edge_cells[edge];
+            const std::size_t m = faces.size(), start = slot_of(faces, face);
+            for (const std::size_t j : {std::size_t{1}, m - 2}) {
+                for (const Index p : opposite_edge(cells[(start + j) % m], edge)) row.add(p, weight);
+            }
+            return true;
+        };
+    }
+
+    /// Across a side of a cell, the far points of its neighbour.
+    [[nodiscard]] auto far_points(Index cell, std::size_t side) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            const Index face = topology_.cell_faces[cell][side];
+            if (topology_.face_on_boundary(face)) return false;
+            const auto [c0, c1] = topology_.face_cells[face];
+            add(row, opposite_points(c0 == cell ? c1 : c0, face), weight);
+            return true;
+        };
+    }
+
+    /// A': the far end of the other crease edge at a.
+    [[nodiscard]] auto along_crease(Index edge, Index a) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (kinds_[a] != PointKind::Crease) return false;
+            for (const Index e : topology_.point_edges[a]) {
+                if (e == edge || !topology_.edge_is_crease[e]) continue;
+                row.add(other_end(topology_, e, a), weight);
+            }
+            return true;
+        };
+    }
+
+    /// A*: over the ring of boundary edges at a smooth point, their far ends, antipodally weighted.
+    [[nodiscard]] auto across_spokes(Index edge, Index a) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (kinds_[a] != PointKind::Smooth) return false;
+            std::vector<Index> ring;
+            ring_of_spokes(topology_, a, edge, ring);
+            if (ring.size() < 3) return false;
+            for (std::size_t j = 0; j < ring.size(); ++j) {
+                const double c = antipodal_(ring.size(), j);
+                if (c != 0) row.add(other_end(topology_, ring[j], a), c * weight);
+            }
+            return true;
+        };
+    }
+
+    [[nodiscard]] auto across_surface_edge(Index face, Index a, Index d) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            const Index edge = edge_in_face(face, a, d);
+            if (topology_.edge_is_crease[edge]) return false;
+            row.add(beside(other_boundary_face(topology_, edge, face), d, a), weight);
+            return true;
+        };
+    }
+
+    [[nodiscard]] auto over_surface(Index face, Index edge) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (topology_.edge_is_crease[edge]) return false;
+            for (const Index p : far_side(other_boundary_face(topology_, edge, face), edge)) row.add(p, weight);
+            return true;
+        };
     }
 
     // --- inside -------------------------------------------------------------------------------------------------------------
@@ -97,21 +182,6 @@ private:
         }
     }
 
-    /// R^A: over the ring of faces about edge (a,d), the neighbours of d other than a, antipodally weighted.
-    Term across_edge(Index face, Index a, Index d) const {
-        const Index edge = edge_in_face(face, a, d);
-        Term term;
-        if (!topology_.edge_has_ring[edge]) return term;
-        term.known = true;
-        const auto ring = topology_.edge_faces[edge];
-        const std::size_t m = ring.size(), start = slot_of(ring, face);
-        for (std::size_t j = 0; j < m; ++j) {
-            const double c = antipodal_(m, j);
-            if (c != 0) term.points.add(beside(ring[(start + j) % m], d, a), c);
-        }
-        return term;
-    }
-
     void interior_face(Index face, StencilBuilder& row) const {
         add(row, topology_.faces[face], (1 + 2 * omega_) / 4);
         for (const Index cell : topology_.face_cells[face]) add(row, opposite_points(cell, face), omega_ / 4);
@@ -124,33 +194,12 @@ private:
         }
     }
 
-    /// R_g: over the ring of faces about an edge, their two points not on it, antipodally weighted.
-    Term in_plane(Index face, Index edge) const {
-        Term term;
-        if (!topology_.edge_has_ring[edge]) return term;
-        term.known = true;
-        const auto ring = topology_.edge_faces[edge];
-        const std::size_t m = ring.size(), start = slot_of(ring, face);
-        for (std::size_t j = 0; j < m; ++j) {
-            const double c = antipodal_(m, j);
-            if (c == 0) continue;
-            for (const Index p : far_side(ring[(start + j) % m], edge)) term.points.add(p, c);
+    void interior_cell(Index cell, StencilBuilder& row) const {
+        add(row, topology_.cells[cell], (1 + 6 * omega_) / 8);
+        for (std::size_t side = 0; side < 6; ++side) {
+            const auto near = side_points(cell, side), far = side_points(cell, side ^ 1);
+            extrapolated(row, -omega_ / 4, near, far, far_points(cell, side), far_points(cell, side ^ 1));
         }
-        return term;
-    }
-
-    /// S_g: in the cells next to those of the face, the two points diagonally opposite the edge.
-    Term diagonal(Index face, Index edge) const {
-        Term term;
-        if (!topology_.edge_has_ring[edge]) return term;
-        term.known = true;
-        const auto faces = topology_.edge_faces[edge];
-        const auto cells = topology_.edge_cells[edge];
-        const std::size_t m = faces.size(), start = slot_of(faces, face);
-        for (const std::size_t j : {std::size_t{1}, m - 2}) {
-            for (const Index p : opposite_edge(cells[(start + j) % m], edge)) term.points.add(p, 1);
-        }
-        return term;
     }
 
     // --- on the boundary
@@ -160,18 +209,6 @@ private:
         const auto [a, b] = topology_.edges[edge];
         add(row, topology_.edges[edge], 0.5 + omega_);
         both_ways(row, -omega_, a, b, along_crease(edge, a), along_crease(edge, b));
-    }
-
-    /// A': the far end of the other crease edge at a.
-    Term along_crease(Index edge, Index a) const {
-        Term term;
-        if (kinds_[a] != PointKind::Crease) return term;
-        for (const Index e : topology_.point_edges[a]) {
-            if (e == edge || !topology_.edge_is_crease[e]) continue;
-            term.known = true;
-            term.points.add(other_end(topology_, e, a), 1);
-        }
-        return term;
     }
 
     void surface_edge(Index edge, StencilBuilder& row) const {
@@ -186,30 +223,6 @@ private:
         }
     }
 
-    /// A*: over the ring of boundary edges at a smooth point, their far ends, antipodally weighted.
-    Term across_spokes(Index edge, Index a) const {
-        Term term;
-        if (kinds_[a] != PointKind::Smooth) return term;
-        std::vector<Index> ring;
-        ring_of_spokes(topology_, a, edge, ring);
-        if (ring.size() < 3) return term;
-        term.known = true;
-        for (std::size_t j = 0; j < ring.size(); ++j) {
-            const double c = antipodal_(ring.size(), j);
-            if (c != 0) term.points.add(other_end(topology_, ring[j], a), c);
-        }
-        return term;
-    }
-
-    Term across_surface_edge(Index face, Index a, Index d) const {
-        const Index edge = edge_in_face(face, a, d);
-        Term term;
-        if (topology_.edge_is_crease[edge]) return term;
-        term.known = true;
-        term.points.add(beside(other_boundary_face(topology_, edge, face), d, a), 1);
-        return term;
-    }
-
     void surface_face(Index face, StencilBuilder& row) const {
         add(row, topology_.faces[face], (1 + 4 * omega_) / 4);
         for (std::size_t k = 0; k < 4; ++k) {
@@ -218,14 +231,6 @@ private:
             const Index edge_g = topology_.face_edges[face][k], edge_h = topology_.face_edges[face][(k + 2) % 4];
             extrapolated(row, -omega_ / 2, g, h, over_surface(face, edge_g), over_surface(face, edge_h));
         }
-    }
-
-    Term over_surface(Index face, Index edge) const {
-        Term term;
-        if (topology_.edge_is_crease[edge]) return term;
-        term.known = true;
-        for (const Index p : far_side(other_boundary_face(topology_, edge, face), edge)) term.points.add(p, 1);
-        return term;
     }
 
     // --- neighbours within a face or a cell
@@ -266,17 +271,6 @@ private:
     /// The four points of a cell that are not on one of its faces.
     std::array<Index, 4> opposite_points(Index cell, Index face) const {
         return side_points(cell, slot_of(topology_.cell_faces[cell], face) ^ 1);
-    }
-
-    /// Across a side of a cell, the far points of its neighbour.
-    Term far_points(Index cell, std::size_t side) const {
-        const Index face = topology_.cell_faces[cell][side];
-        Term term;
-        if (topology_.face_on_boundary(face)) return term;
-        term.known = true;
-        const auto [c0, c1] = topology_.face_cells[face];
-        add(term.points, opposite_points(c0 == cell ? c1 : c0, face), 1);
-        return term;
     }
 
     /// In both cells of a face, the points over two of its points.

@@ -251,9 +251,8 @@ private:
                 writer.begin(first++);
                 for (const Index cell : topology_.face_cells[f]) {
                     if (cell == kNone) continue;
-                    writer.add_cell(
-                        cell, blocks_.block(cell),
-                        in_cell<2>(topology_.cells[cell], quad[0], {quad[1], quad[3]}, {double(i) / n[0], double(j) / n[1]}));
+                    writer.add_cell(cell, in_cell<2>(topology_.cells[cell], quad[0], {quad[1], quad[3]},
+                                                     {double(i) / n[0], double(j) / n[1]}));
                 }
                 flat += writer.finish();
             }
