@@ -20,6 +20,15 @@ Optics preset_optics(const std::string& preset, const HexMesh& mesh) {
     return {transfer_function_preset(preset, min, max), bounds(mesh).diagonal() / 100};
 }
 
+/// The box of what can be seen: the pawn fills a small part of its block.
+Box visible_bounds(const HexMesh& mesh, const Optics& optics) {
+    Box box;
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        if (optics.extinction(mesh.attributes[0].values[p]) > 0) box.add(mesh.points[p]);
+    }
+    return box;
+}
+
 }  // namespace
 
 std::vector<std::string> demo_names() {
@@ -29,8 +38,8 @@ std::vector<std::string> demo_names() {
 DemoCase make_demo_case(const std::string& name, int resolution, double aspect) {
     HexMesh mesh = make_model(name, resolution);
     if (name == "twist") return {name, std::move(mesh), kTwistCamera, twist_optics(), 200, 1};
-    const Camera camera = parse_camera("iso", bounds(mesh), aspect);
     Optics optics = preset_optics(name == "pawn" ? "surface" : "coolwarm", mesh);
+    const Camera camera = parse_camera("iso", visible_bounds(mesh, optics), aspect);
     const int sheets = name == "pawn" ? 400 : 200;  // an opaque surface shows every step in depth
     return {name, std::move(mesh), camera, std::move(optics), sheets, 1};
 }

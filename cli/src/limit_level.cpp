@@ -64,7 +64,8 @@ double value_deviation(const HexMesh& parent, const HexMesh& child, std::size_t 
     const std::vector<double>& old = parent.attributes[attribute].values;
     const std::vector<double>& refined = child.attributes[attribute].values;
     const auto [min, max] = std::ranges::minmax(old);
-    if (!(max > min)) return 0;
+    constexpr double kRounding = 1e-12;  // relative: a field that varies less is constant
+    if (!(max - min > kRounding * std::max(std::abs(min), std::abs(max)))) return 0;
     const double most = largest(parent, child, [&](const auto& cell, Index point, const Weights& weights) {
         double middle = 0;
         for (std::size_t k = 0; k < 8; ++k) middle += weights[k] * old[cell[k]];

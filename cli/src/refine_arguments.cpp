@@ -1,8 +1,31 @@
 #include "refine_arguments.h"
 
+#include <unistd.h>
+
+#include <cmath>
+
+#include "subvol/error.h"
 #include "text.h"
 
 namespace subvol::cli {
+namespace {
+
+/// At the last step: the new mesh (about 70 bytes a cell with one field), and its parent with the topology (600), of which
+/// there is one for eight cells.
+constexpr double kBytesPerCell = 70 + 600.0 / 8;
+
+/// A few levels too many would fill the memory and have the system end the program without a word.
+void check_memory(std::size_t cells, int levels) {
+    const double fine_cells = static_cast<double>(cells) * std::pow(8.0, levels);
+    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (levels == 0 || fine_cells * kBytesPerCell < memory) return;
+    throw Error(ErrorCode::MissingCapability,
+                text("level ", levels, " has ", fine_cells, " cells, which need about ",
+                     std::ceil(fine_cells * kBytesPerCell / 1e9), " GB of memory; this machine has ", std::floor(memory / 1e9)),
+                "--levels");
+}
+
+}  // namespace
 
 void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     app.add_option("--scheme", scheme, "mcq (smooth, through the control points; the default) or linear")->type_name("NAME");
@@ -21,6 +44,7 @@ RefineOptions RefineArguments::options(int default_levels, Report& report) const
 }
 
 HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Report& report) {
+    check_memory(mesh.cells.size(), options.levels);
     HexMesh fine = report.timed("refine", [&] { return refine(mesh, options); });
     report["levels"] = options.levels;
     report["cells"] = fine.cells.size();

@@ -23,6 +23,8 @@ struct RefineArguments {
 };
 
 /// `refine`, timed and with its cells in the report.
+///
+/// throws: Error(MissingCapability) if the machine has not the memory for so many levels
 [[nodiscard]] HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Report& report);
 
 }  // namespace subvol::cli

@@ -5,7 +5,7 @@ import subprocess
 import time
 import unittest
 
-from command import COMMAND, InFolder, subvol
+from command import COMMAND, SANITIZED, InFolder, Run, subvol
 
 VERBS = ["model", "info", "subdivide", "points", "vdb", "render", "compare", "demo"]
 
@@ -92,6 +92,24 @@ class Mistakes(InFolder):
         (self.folder / "bad.mesh").write_text(CUBE.format(last=9))
         self.assert_refused("subdivide", "bad.mesh", "-o", "a.vtu", naming="bad.mesh")
         self.assertEqual((self.folder / "a.vtu").read_text(), "what was there before")
+
+
+class TooMuch(InFolder):
+    """Exit code 3 and one sentence, instead of an end by the system."""
+
+    def assert_beyond_the_machine(self, done):
+        self.assertEqual(done.code, 3, done.err)
+        self.assertRegex(done.err, r"^subvol: [^\n]*memory[^\n]*\n$")
+        self.assertEqual(self.files(), [])
+
+    def test_more_levels_than_memory(self):
+        self.assert_beyond_the_machine(subvol("subdivide", "model:twist", "-o", "a.vtu", "--levels", "8", folder=self.folder))
+
+    @unittest.skipIf(SANITIZED, "the sanitizer needs all addresses")
+    def test_memory_that_runs_out_on_the_way(self):
+        limited = f"ulimit -v 900000; exec '{COMMAND}' subdivide model:twist -o a.vtu --levels 3"  # needs some 5 GB
+        done = subprocess.run(["bash", "-c", limited], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        self.assert_beyond_the_machine(Run(done.returncode, done.stdout, done.stderr))
 
 
 class Interrupt(InFolder):

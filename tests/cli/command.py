@@ -11,6 +11,9 @@ from pathlib import Path
 
 COMMAND = os.environ["SUBVOL_COMMAND"]
 
+# A sanitized program is slow and reserves terabytes of addresses: bounds on time and memory say nothing about it.
+SANITIZED = "-fsanitize" in os.environ.get("SUBVOL_FLAGS", "")
+
 
 @dataclass
 class Run:
