@@ -6,9 +6,9 @@
 
 #include "image_difference.h"
 #include "pixel_text.h"
-#include "srgb_codec.h"
 #include "subvol/error.h"
 #include "subvol/image_metrics.h"
+#include "subvol/srgb.h"
 
 namespace subvol {
 
@@ -37,7 +37,7 @@ std::array<float, 4> heat_color(double fraction) {
     std::array<float, 4> rgba{0, 0, 0, 1};
     for (std::size_t c = 0; c < 3; ++c) {
         const double encoded = (1 - beyond) * kInferno[knot][c] + beyond * kInferno[knot + 1][c];
-        rgba[c] = static_cast<float>(decode_srgb(encoded / 255));
+        rgba[c] = static_cast<float>(linear_from_srgb(encoded / 255));
     }
     return rgba;
 }

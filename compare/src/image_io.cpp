@@ -12,9 +12,9 @@
 #include <system_error>
 #include <vector>
 
-#include "srgb_codec.h"
 #include "subvol/atomic_file.h"
 #include "subvol/error.h"
+#include "subvol/srgb.h"
 
 namespace subvol {
 
@@ -41,7 +41,7 @@ void check_image(const Image& image) {
 
 std::uint8_t encoded_byte(double linear) {
     if (!(linear > 0)) return 0;  // not a number too
-    return static_cast<std::uint8_t>(std::lround(255 * encode_srgb(std::min(linear, 1.0))));
+    return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::min(linear, 1.0))));
 }
 
 std::vector<std::uint8_t> bytes_over(const Image& image, const Vec3& background) {
@@ -105,7 +105,7 @@ Image linear_image(const OIIO::ImageSpec& spec, const std::vector<float>& pixels
         rgba[3] = channels[3] < 0 ? 1.0f : pixel[channels[3]];
         for (std::size_t c = 0; c < 3; ++c) {
             const float value = pixel[channels[c]];
-            rgba[c] = encoded ? static_cast<float>(decode_srgb(static_cast<double>(value))) : value;
+            rgba[c] = encoded ? static_cast<float>(linear_from_srgb(static_cast<double>(value))) : value;
             if (unassociated && channels[3] >= 0) rgba[c] *= rgba[3];
         }
     }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "srgb.h"
+#include "subvol/srgb.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -1,7 +1,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "srgb.h"
+#include "subvol/srgb.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
 
