@@ -142,6 +142,12 @@ void build_edges(Topology& topology) {
     topology.edge_faces.offsets = std::move(starts);
 }
 
+void build_edge_offsets(Topology& topology) {
+    topology.edge_offsets.assign(topology.point_count + 1, 0);
+    for (const auto& edge : topology.edges) ++topology.edge_offsets[edge[0] + 1];
+    for (std::size_t p = 0; p < topology.point_count; ++p) topology.edge_offsets[p + 1] += topology.edge_offsets[p];
+}
+
 void build_cell_edges(Topology& topology) {
     topology.cell_edges.resize(topology.cells.size());
     parallel_each(topology.cells.size(), [&](std::size_t c) {
@@ -224,8 +230,10 @@ void rank_cells(Topology& topology) {
 
 std::optional<Index> Topology::find_edge(Index a, Index b) const {
     const std::array<Index, 2> key{std::min(a, b), std::max(a, b)};
-    const auto found = std::lower_bound(edges.begin(), edges.end(), key);
-    if (found == edges.end() || *found != key) return std::nullopt;
+    if (key[1] >= point_count) return std::nullopt;
+    const auto begin = edges.begin() + edge_offsets[key[0]], end = edges.begin() + edge_offsets[key[0] + 1];
+    const auto found = std::lower_bound(begin, end, key);
+    if (found == end || *found != key) return std::nullopt;
     return static_cast<Index>(found - edges.begin());
 }
 
@@ -237,6 +245,7 @@ Topology build_topology(const HexMesh& mesh) {
     refuse_twins(topology);
     rank_cells(topology);
     build_edges(topology);
+    build_edge_offsets(topology);
     build_cell_edges(topology);
     build_point_edges(topology);
     mark_boundary(topology);

@@ -32,7 +32,7 @@ inline constexpr std::array<std::array<int, 4>, 6> kCellFaces{
 /// The edges and faces of a hexahedral mesh and who meets whom, as flat arrays.
 ///
 /// Edges and faces are numbered in the order of their point ids, so they do not depend on the order of the cells.
-/// edges:      two point ids, smaller first
+/// edges:      two point ids, smaller first; those of smaller point p are edge_offsets[p] to edge_offsets[p+1]
 /// faces:      four point ids in cyclic order, the smallest first and then the smaller of its two neighbours
 /// face_edges: edge k of a face joins its points k and k+1
 /// face_cells: one or two cells (smaller first); the second is kNone on the boundary
@@ -44,6 +44,7 @@ struct Topology {
     std::size_t point_count = 0;
     std::vector<std::array<Index, 8>> cells;
     std::vector<std::array<Index, 2>> edges;
+    std::vector<Index> edge_offsets;
     std::vector<std::array<Index, 4>> faces;
     std::vector<std::array<Index, 12>> cell_edges;
     std::vector<std::array<Index, 6>> cell_faces;
