@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "subvol/surface.h"
-#include "subvol/topology.h"
+#include "topology_faces.h"
 
 namespace subvol {
 
@@ -20,7 +20,10 @@ std::array<Index, 4> outward_quad(const Topology& topology, Index cell, Index fa
 }  // namespace
 
 Surface boundary_surface(const HexMesh& mesh) {
-    const Topology topology = build_topology(mesh);
+    Topology topology;  // of its faces only
+    topology.point_count = mesh.points.size();
+    topology.cells = mesh.cells;
+    detail::build_faces(topology);
     Surface surface;
     std::vector<Index> renumbered(mesh.points.size(), kNone);
     const auto point = [&](Index p) {

@@ -57,4 +57,15 @@ Buckets<Record> bucket_sort(std::size_t count, std::size_t bucket_count, const E
     return result;
 }
 
+/// Starts of the groups of equal keys in sorted records, plus the end.
+template <class Record, class Same>
+std::vector<std::size_t> group_starts(const std::vector<Record>& records, const Same& same) {
+    std::vector<std::size_t> starts;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (i == 0 || !same(records[i - 1], records[i])) starts.push_back(i);
+    }
+    starts.push_back(records.size());
+    return starts;
+}
+
 }  // namespace subvol::detail
