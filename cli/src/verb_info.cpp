@@ -1,6 +1,7 @@
 #include "input.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
+#include "subvol/render.h"
 #include "subvol/vdb.h"
 #include "text.h"
 #include "verb.h"
@@ -42,8 +43,10 @@ public:
     explicit InfoVerb(CLI::App& program)
         : Verb(program, "info", "What is in a mesh or a .vdb file, and is it sound?",
                "  subvol info model:ball\n"
-               "  subvol info ball.vdb --at 0,0,0 --at .5,0,0") {
-        app().add_option("FILE", input_, text(kInputHelp, ", or a .vdb file"))->required();
+               "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
+               "  subvol info --gl") {
+        app().add_option("FILE", input_, text(kInputHelp, ", or a .vdb file"));
+        app().add_flag("--gl", gl_, "what OpenGL there is to splat with");
         app()
             .add_option("--at", points_, "print the value of a .vdb file's grid there (repeatable)")
             ->type_name("X,Y,Z")
@@ -51,7 +54,10 @@ public:
     }
 
     int run(Report& report) override {
-        if (std::filesystem::path(input_).extension() == ".vdb") {
+        if (gl_) describe_gl(report);
+        if (input_.empty()) {
+            if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
+        } else if (std::filesystem::path(input_).extension() == ".vdb") {
             describe_grids(report);
         } else {
             describe_mesh(report);
@@ -60,6 +66,11 @@ public:
     }
 
 private:
+    static void describe_gl(Report& report) {
+        const auto device = find_gl_device();
+        report["gl"] = device ? Json{{"renderer", device->renderer}, {"hardware", device->hardware}} : Json(nullptr);
+    }
+
     void describe_mesh(Report& report) {
         if (!points_.empty()) throw Error(ErrorCode::InvalidInput, "reads values from .vdb files only", "--at");
         const ReadResult read = read_input(input_, report);
@@ -108,6 +119,7 @@ private:
     }
 
     std::string input_;
+    bool gl_ = false;
     std::vector<std::string> points_;
 };
 

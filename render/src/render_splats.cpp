@@ -25,12 +25,11 @@ Choice choose(Backend wanted) {
         return Choice{false, std::to_string(threads) + " CPU threads"};
     };
     if (wanted == Backend::Cpu) return cpu();
-    try {
-        const auto info = detail::find_gl();
-        // Software GL is slower than the CPU backend and draws the same: only when asked for.
-        if (wanted == Backend::Gl || info.hardware) return {true, info.renderer};
-    } catch (const Error&) {
-        if (wanted == Backend::Gl) throw;
+    const auto device = find_gl_device();
+    // Software GL is slower than the CPU backend and draws the same: only when asked for.
+    if (device && (wanted == Backend::Gl || device->hardware)) return {true, device->renderer};
+    if (wanted == Backend::Gl) {
+        throw Error(ErrorCode::MissingCapability, "no OpenGL 4.3 was found through EGL", {}, "use the CPU backend");
     }
     return cpu();
 }

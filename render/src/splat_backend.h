@@ -21,15 +21,7 @@ inline constexpr float kOpaque = 1e-4f;
 [[nodiscard]] Image draw_splats_cpu(const SplatFrame& frame, const View& view, const PreintegratedTable& table,
                                     Progress* progress);
 
-struct GlInfo {
-    std::string renderer;
-    bool hardware = false;
-};
-
-/// What OpenGL there is without a display, hardware first; throws Error(MissingCapability) if there is none with compute
-/// shaders.
-[[nodiscard]] GlInfo find_gl();
-
+/// throws: Error(MissingCapability) if there is no OpenGL, or not enough of it
 [[nodiscard]] Image draw_splats_gl(const SplatFrame& frame, const View& view, const PreintegratedTable& table);
 
 }  // namespace subvol::detail

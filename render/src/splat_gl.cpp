@@ -37,11 +37,6 @@ void set_uniforms(const GlProgram& program, const SplatFrame& frame, const View&
 
 }  // namespace
 
-GlInfo find_gl() {
-    const GlContext context;
-    return {context.renderer(), context.hardware()};
-}
-
 Image draw_splats_gl(const SplatFrame& frame, const View& view, const PreintegratedTable& table) {
     const GlContext context;
     const GlProgram program("splat.comp", kShader_splat_comp, defines());
@@ -69,3 +64,16 @@ Image draw_splats_gl(const SplatFrame& frame, const View& view, const Preintegra
 }
 
 }  // namespace subvol::detail
+
+namespace subvol {
+
+std::optional<GlDevice> find_gl_device() {
+    try {
+        const detail::GlContext context;
+        return GlDevice{context.renderer(), context.hardware()};
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace subvol

@@ -29,6 +29,12 @@ class Results(InFolder):
         for field in info["fields"]:
             self.assertLess(field["min"], field["max"])
 
+    def test_info_says_what_opengl_there_is(self):
+        gl = self.run_ok("info", "--gl", "--json").json()["gl"]
+        if gl is not None:
+            self.assertIsInstance(gl["renderer"], str)
+            self.assertIsInstance(gl["hardware"], bool)
+
     def test_model_and_subdivide_write_meshes_that_are_read_again(self):
         model = self.run_ok("model", "ball", "-o", "ball.mesh", "--resolution", 2, "--json").json()
         refined = self.run_ok("subdivide", "ball.mesh", "-o", "fine.mesh", "--levels", 2, "--json").json()

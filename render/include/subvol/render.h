@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -14,6 +15,15 @@
 namespace subvol {
 
 enum class Backend { Auto, Gl, Cpu };
+
+/// The OpenGL that Backend::Gl would draw with.
+struct GlDevice {
+    std::string renderer;
+    bool hardware = false;  // false: software, which `Auto` passes over
+};
+
+/// Looks for OpenGL 4.3 without a display, hardware first; nothing if there is none.
+[[nodiscard]] std::optional<GlDevice> find_gl_device();
 
 /// sheets:  planes of constant eye depth over the volume's depth range, 2..65536
 /// channel: which channel of the volume is shown
