@@ -118,7 +118,8 @@ void write_image(const fs::path& path, const Image& image, const Vec3& backgroun
     check_image(image);
     const std::string extension = extension_of(path);
     if (extension == ".exr") {
-        const OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT);
+        OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT);
+        spec.attribute("DateTime", "");  // else the time of writing: the same picture shall be the same file
         write_pixels(path, spec, image.rgba.data());
     } else if (extension == ".png") {
         OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);

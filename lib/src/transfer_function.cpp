@@ -5,8 +5,8 @@
 #include <cmath>
 #include <span>
 
-#include "subvol/srgb.h"
 #include "subvol/error.h"
+#include "subvol/srgb.h"
 
 namespace subvol {
 namespace {

@@ -1,8 +1,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "subvol/srgb.h"
 #include "subvol/error.h"
+#include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {

@@ -45,13 +45,14 @@ SplatResult render_splats(const RbfVolume& volume, const View& view, const Optic
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
-    const auto frame = detail::prepare_splats(volume, view, options, choice.gl ? kTileGl_px : kTileCpu_px);
-    const auto table = make_preintegrated_table(optics);
+    const auto values = make_preintegrated_table(optics);
+    const auto frame = detail::prepare_splats(volume, view, values, options, choice.gl ? kTileGl_px : kTileCpu_px);
+    const auto table = detail::over_unit_range(values);
     report.seconds_prepare = seconds_since(start);
 
     const auto drawing = std::chrono::steady_clock::now();
-    result.image =
-        choice.gl ? detail::draw_splats_gl(frame, view, table) : detail::draw_splats_cpu(frame, view, table, options.progress);
+    result.image = choice.gl ? detail::draw_splats_gl(frame, view, table, options.progress)
+                             : detail::draw_splats_cpu(frame, view, table, options.progress);
     report.seconds_draw = seconds_since(drawing);
     report.backend = choice.gl ? "gl" : "cpu";
     report.device = choice.device;

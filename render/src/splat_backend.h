@@ -22,6 +22,7 @@ inline constexpr float kOpaque = 1e-4f;
                                     Progress* progress);
 
 /// throws: Error(MissingCapability) if there is no OpenGL, or not enough of it
-[[nodiscard]] Image draw_splats_gl(const SplatFrame& frame, const View& view, const PreintegratedTable& table);
+[[nodiscard]] Image draw_splats_gl(const SplatFrame& frame, const View& view, const PreintegratedTable& table,
+                                   Progress* progress);
 
 }  // namespace subvol::detail

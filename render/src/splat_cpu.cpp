@@ -182,7 +182,7 @@ public:
         sums_.start_tile(view_, x0_, y0_);
         if (!start_pixels()) return;
         for (int batch = 0; batch < frame_.batches && !done(); ++batch) {
-            sum_batch(static_cast<std::size_t>(tile * frame_.batches + batch), batch);
+            sum_batch(frame_.bin(tile, batch), batch);
             classify_batch(batch);
         }
         for (std::size_t y = 0; y < height_; ++y) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
+#include <string_view>
 
 #include "subvol/error.h"
 
@@ -13,7 +15,51 @@ namespace {
 
 constexpr std::size_t kChunks = 64;
 
-EyeSplat to_eye(const RbfVolume& volume, const RbfChannel& channel, std::size_t i, const View& view) {
+// Squares of lengths, and their inverses, have to be normal floats.
+constexpr double kLeastSize_world = 1e-12, kMostSize_world = 1e18;
+constexpr double kLeastRange = 1e-30, kMostRange = 1e37;
+constexpr double kRounding = 0x1p-24;  // of a 32-bit float, relative
+
+double range_of(const PreintegratedTable& table) {
+    return table.max > table.min ? table.max - table.min : 1;
+}
+
+bool finite(const PreintegratedTable& table) {
+    const auto all = [](const auto& rows) {
+        return std::all_of(rows.begin(), rows.end(), [](const auto& row) {
+            return std::all_of(row.begin(), row.end(), [](float v) { return std::isfinite(v); });
+        });
+    };
+    return all(table.prefixes) && all(table.points);
+}
+
+[[noreturn]] void refuse(std::string_view what, double amount, const char* allowed) {
+    std::ostringstream message;
+    message << what << amount << ", beyond what kernels hold in 32-bit floats";
+    throw Error(ErrorCode::InvalidInput, message.str(), {}, allowed);
+}
+
+void check_floats(const RbfVolume& volume, const RbfChannel& channel, const PreintegratedTable& table) {
+    const double size = volume.bounds.diagonal(), range = range_of(table);
+    if (!(size >= kLeastSize_world && size <= kMostSize_world)) refuse("the volume's diagonal is ", size, "1e-12 to 1e18");
+    if (!(range >= kLeastRange && range <= kMostRange)) refuse("the transfer function's range is ", range, "1e-30 to 1e37");
+    for (const float v : channel.values) {
+        const double value = static_cast<double>(v);
+        if (!std::isfinite(value)) refuse("a value is ", value, "up to 3e38");
+        const double rounding = std::abs(value) * kRounding;
+        // Rounded to a tenth of the range and more, a field is noise.
+        if (rounding > 0.1 * range && value + rounding >= table.min && value - rounding <= table.max) {
+            refuse("beside a value of " + std::to_string(value) + " the transfer function's range is ", range,
+                   "a wider range, or the field less its mean");
+        }
+    }
+    if (!finite(table)) {
+        throw Error(ErrorCode::InvalidInput, "the extinction is beyond 32-bit floats", {}, "a larger opacity unit");
+    }
+}
+
+EyeSplat to_eye(const RbfVolume& volume, const RbfChannel& channel, std::size_t i, const View& view,
+                const PreintegratedTable& table) {
     const auto& axes = view.axes();
     const Mat3 to_world(axes[0], axes[1], axes[2]);  // columns: the eye's axes in the world
     const auto& f = volume.frames[i];
@@ -21,7 +67,8 @@ EyeSplat to_eye(const RbfVolume& volume, const RbfChannel& channel, std::size_t 
     const Mat3 s = glm::transpose(to_world) * world * to_world;
     const Vec3 center = view.to_eye(volume.centers[i]);
     const auto& gw = channel.gradients[i];
-    const Vec3 g = glm::transpose(to_world) * Vec3(gw[0], gw[1], gw[2]);
+    const double scale = 1 / range_of(table);
+    const Vec3 g = scale * (glm::transpose(to_world) * Vec3(gw[0], gw[1], gw[2]));
 
     const double szz = s[2][2], shear_x = s[2][0] / szz, shear_y = s[2][1] / szz;
     const double cxx = s[0][0] - s[2][0] * shear_x, cxy = s[0][1] - s[2][0] * shear_y, cyy = s[1][1] - s[2][1] * shear_y;
@@ -36,11 +83,11 @@ EyeSplat to_eye(const RbfVolume& volume, const RbfChannel& channel, std::size_t 
     splat.conic_xx = static_cast<float>(cyy / det);
     splat.conic_xy = static_cast<float>(-cxy / det);
     splat.conic_yy = static_cast<float>(cxx / det);
-    splat.value = channel.values[i];
+    splat.value = static_cast<float>((static_cast<double>(channel.values[i]) - table.min) * scale);
     splat.gradient_x = static_cast<float>(g.x);
     splat.gradient_y = static_cast<float>(g.y);
     splat.value_slope = static_cast<float>(g.x * shear_x + g.y * shear_y + g.z);
-    splat.moment = channel.moments[i];
+    splat.moment = static_cast<float>(static_cast<double>(channel.moments[i]) * scale);
     splat.extent_x = static_cast<float>(std::sqrt(std::max(cxx, 0.0)));
     splat.extent_y = static_cast<float>(std::sqrt(std::max(cyy, 0.0)));
     return splat;
@@ -78,7 +125,7 @@ void for_each_bin(const SplatFrame& frame, const View& view, const EyeSplat& s, 
         const int ty0 = std::max(0, tile(top, frame.tiles_y)), ty1 = std::min(frame.tiles_y - 1, tile(bottom, frame.tiles_y));
         for (int ty = ty0; ty <= ty1; ++ty) {
             for (int tx = tx0; tx <= tx1; ++tx) {
-                visit(static_cast<std::size_t>((ty * frame.tiles_x + tx) * frame.batches + batch));
+                visit(frame.bin(ty * frame.tiles_x + tx, batch));
             }
         }
     }
@@ -120,7 +167,8 @@ void fill_bins(SplatFrame& frame, const View& view) {
 
 }  // namespace
 
-SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const SplatOptions& options, int tile_px) {
+SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const PreintegratedTable& table,
+                          const SplatOptions& options, int tile_px) {
     if (options.sheets < 2 || options.sheets > 65536) {
         throw Error(ErrorCode::InvalidInput, "the number of sheets is " + std::to_string(options.sheets), {}, "2 to 65536");
     }
@@ -131,6 +179,8 @@ SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const Splat
     if (volume.boundary.triangles.empty()) {
         throw Error(ErrorCode::InvalidInput, "the points have no boundary surface to be clipped against");
     }
+    const auto& channel = volume.channels[options.channel];
+    check_floats(volume, channel, table);
     report_progress(options.progress, "prepare splats", 0);
     SplatFrame frame;
     frame.tile_px = tile_px;
@@ -154,13 +204,22 @@ SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const Splat
     frame.intervals = boundary_intervals(volume.boundary, view, near);
     report_progress(options.progress, "prepare splats", 0.4);
     frame.splats.resize(volume.size());
-    const auto& channel = volume.channels[options.channel];
     tbb::parallel_for(std::size_t{0}, volume.size(),
-                      [&](std::size_t i) { frame.splats[i] = to_eye(volume, channel, i, view); });
+                      [&](std::size_t i) { frame.splats[i] = to_eye(volume, channel, i, view, table); });
     report_progress(options.progress, "prepare splats", 0.6);
     fill_bins(frame, view);
     report_progress(options.progress, "prepare splats", 1);
     return frame;
+}
+
+PreintegratedTable over_unit_range(PreintegratedTable table) {
+    const double scale = 1 / range_of(table);
+    for (auto& row : table.prefixes) {
+        for (float& v : row) v = static_cast<float>(static_cast<double>(v) * scale);
+    }
+    table.min = 0;
+    table.max = 1;
+    return table;
 }
 
 }  // namespace subvol::detail

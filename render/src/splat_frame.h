@@ -6,6 +6,7 @@
 
 #include "boundary_intervals.h"
 #include "subvol/camera.h"
+#include "subvol/optics.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/render.h"
 
@@ -35,11 +36,22 @@ struct SplatFrame {
     std::vector<std::uint32_t> bin_splats;
     PixelIntervals intervals;
 
+    [[nodiscard]] std::size_t bin(int tile, int batch) const {
+        return static_cast<std::size_t>(tile) * static_cast<std::size_t>(batches) + static_cast<std::size_t>(batch);
+    }
     [[nodiscard]] float depth(int sheet) const { return first_depth + static_cast<float>(sheet) * sheet_distance; }
 };
 
-/// throws: Error(InvalidInput) if the volume has no boundary or no such channel
-[[nodiscard]] SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const SplatOptions& options, int tile_px);
+/// Values become fractions of the table's range: 0 at its minimum, 1 at its maximum.
+///
+/// throws: Error(InvalidInput) if the volume has no boundary or no such channel, or its size, its values or the table are
+/// beyond
+///         what 32-bit floats hold
+[[nodiscard]] SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const PreintegratedTable& table,
+                                        const SplatOptions& options, int tile_px);
+
+/// The table over [0,1], for the values of a frame: beside a large value a small range would drown in the rounding of floats.
+[[nodiscard]] PreintegratedTable over_unit_range(PreintegratedTable table);
 
 /// The section of a kernel by a sheet, in slopes; empty (half < 0) where the sheet misses it.
 struct Section {

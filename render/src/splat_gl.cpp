@@ -9,7 +9,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostGroups = 65535;  // work groups in a dispatch that every device takes
+constexpr int kMostGroups = 4096;  // work groups in a dispatch: they fill a device, and between dispatches one can stop
 
 std::string defines() {
     return "#define SPLAT_BATCH " + std::to_string(SplatFrame::kBatch) + "\n#define SPLAT_LEAST_WEIGHT " +
@@ -37,7 +37,7 @@ void set_uniforms(const GlProgram& program, const SplatFrame& frame, const View&
 
 }  // namespace
 
-Image draw_splats_gl(const SplatFrame& frame, const View& view, const PreintegratedTable& table) {
+Image draw_splats_gl(const SplatFrame& frame, const View& view, const PreintegratedTable& table, Progress* progress) {
     const GlContext context;
     const GlProgram program("splat.comp", kShader_splat_comp, defines());
     Image image(view.width(), view.height());
@@ -53,11 +53,14 @@ Image draw_splats_gl(const SplatFrame& frame, const View& view, const Preintegra
     set_uniforms(program, frame, view, table);
     const int tiles = frame.tiles_x * frame.tiles_y;
     for (int first = 0; first < tiles; first += kMostGroups) {
+        if (first > 0) glFinish();
+        report_progress(progress, "splat", static_cast<double>(first) / tiles);
         glUniform1i(program.uniform("first_tile"), first);
         glDispatchCompute(static_cast<GLuint>(std::min(kMostGroups, tiles - first)), 1, 1);
     }
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     picture.read(bytes(image.rgba), image.rgba.data());
+    report_progress(progress, "splat", 1);
     if (glGetError() != GL_NO_ERROR)
         throw Error(ErrorCode::MissingCapability, "the GL device failed while drawing", context.renderer());
     return image;

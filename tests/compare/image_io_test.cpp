@@ -76,6 +76,17 @@ double srgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
+TEST_F(ImageIo, TheTimeOfWritingIsNotInTheFile) {
+    const Image image = random_image(5, 3);
+    for (const char* ending : {".exr", ".png"}) {
+        const fs::path path = folder_ / ("a" + std::string(ending));
+        write_image(path, image);
+        const auto input = OIIO::ImageInput::open(path.string());
+        ASSERT_TRUE(input);
+        EXPECT_EQ(input->spec().get_string_attribute("DateTime"), "") << ending;
+    }
+}
+
 TEST_F(ImageIo, ExrKeepsEveryBit) {
     Image image = random_image(37, 21);
     image.rgba[0] = -3.5f;

@@ -16,7 +16,7 @@ namespace {
 TEST(Sample, CountsEveryEntityOnce) {
     HexMesh mesh = test::make_nested_cubes(2);
     const auto m = inspect(mesh);
-    for (const std::size_t n : {1, 2, 3, 5}) {
+    for (const std::size_t n : {1U, 2U, 3U, 5U}) {
         const auto result = sample_rbf_points(mesh, {.per_edge = static_cast<int>(n)});
         EXPECT_EQ(result.report.points,
                   m.points + m.edges * (n - 1) + m.faces * (n - 1) * (n - 1) + m.cells * (n - 1) * (n - 1) * (n - 1));

@@ -179,6 +179,55 @@ TEST(RenderSplats, ValuesBeyondTheKnotsKeepTheEndsOpacity) {
     }
 }
 
+TEST(RenderSplats, ASmallRangeBesideALargeValueIsDrawn) {
+    // The same field, once from 0 to 1 and once from 4096 to 4097: sums over kernels may not lose what the values still have.
+    HexMesh box = test::make_box(3, 3, 3);
+    const View view(orthographic(4), 24, 24);
+    for (const Backend backend : backends()) {
+        const auto draw = [&](double offset) {
+            box.attributes.clear();
+            test::add_field(box, "f", [&](const Vec3& p) { return offset + (p.x + p.y) / 6; });
+            const Optics optics(
+                {.color = {{offset, {0, 0, 1}}, {offset + 1, {1, 0, 0}}}, .opacity = {{offset, 0}, {offset + 1, .5}}}, 1);
+            return render_splats(sample(box), view, optics, {.backend = backend}).image;
+        };
+        // Floats near 4096 are 1/2048 apart: values are rounded to 2.4e-4 of the range, in which opacity and colour have slopes
+        // of at most 2 over the depth of the box.
+        EXPECT_LT(largest_difference(draw(0), draw(4096)), 5e-4);
+    }
+}
+
+TEST(RenderSplats, TheUnitOfLengthDoesNotMatterWithinFloats) {
+    const auto draw = [](double unit) {
+        HexMesh box = test::make_box(3, 3, 3);
+        test::add_field(box, "f", [](const Vec3& p) { return p.x / 3; });
+        for (auto& p : box.points) p *= unit;
+        Camera camera = orthographic(4 * unit);
+        camera.eye *= unit;
+        camera.target *= unit;
+        return render_splats(sample(box), View(camera, 16, 16), constant_optics(.5, unit), {.backend = Backend::Cpu}).image;
+    };
+    const Image one = draw(1);
+    for (const double unit : {1e-9, 1e9, 1e15}) EXPECT_LT(largest_difference(one, draw(unit)), 1e-4) << unit;  // float depths
+    for (const double unit : {1e-20, 1e20}) EXPECT_THROW((void)draw(unit), Error) << unit;
+}
+
+TEST(RenderSplats, RefusesNumbersBeyondFloats) {
+    HexMesh box = test::make_box(2, 2, 2);
+    const View view(orthographic(4), 8, 8);
+    const auto draw = [&](double low, double high, double unit) {
+        box.attributes.clear();
+        test::add_field(box, "f", [&](const Vec3& p) { return low + (high - low) * p.x / 2; });
+        const Optics optics({.color = {{low, {1, 1, 1}}, {high, {1, 1, 1}}}, .opacity = {{low, 0}, {high, .5}}}, unit);
+        return render_splats(sample(box), view, optics, {.backend = Backend::Cpu}).image;
+    };
+    EXPECT_GT(draw(0, 1e30, 1).pixel(2, 5)[3], .1);
+    EXPECT_THROW((void)draw(0, 1e39, 1), Error);
+    EXPECT_THROW((void)draw(0, 1e-39, 1), Error);
+    EXPECT_THROW((void)draw(0, 1, 1e-300), Error);
+    EXPECT_THROW((void)draw(2e11, 2e11 + 1, 1), Error);  // floats there are 16384 apart
+}
+
 TEST(RenderSplats, RefusesWhatItCannotDraw) {
     HexMesh box = test::make_box(2, 2, 2);
     test::add_field(box, "f", [](const Vec3&) { return 1.0; });

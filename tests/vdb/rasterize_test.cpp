@@ -224,6 +224,8 @@ TEST(Rasterize, RefusesWhatCannotBe) {
     invalid(f, {.voxel_size_world = 1e-10}, "32 bits");
     mesh.attributes[0].values[3] = 1e5;
     invalid(f, {.resolution = 4, .half = true}, "16-bit");
+    for (auto& p : mesh.points) p *= 1e-6;
+    invalid(f, {.resolution = 4}, "at least 1.45e-5");  // OpenVDB itself would throw what nobody catches
 }
 
 class Impatient : public Progress {

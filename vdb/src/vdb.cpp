@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "leaf_voxels.h"
 #include "subvol/error.h"
@@ -19,6 +20,14 @@ namespace {
 using Leaf = openvdb::FloatTree::LeafNodeType;
 constexpr std::size_t kBatch = 4096;  // leaves between two reports of progress; 8 MB a field
 constexpr double kMaxHalf = 65504;
+constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB takes a transform for singular whose determinant is below 3e-15
+
+void check_representable(double voxel_size) {
+    if (voxel_size >= kLeastVoxel_world) return;
+    std::ostringstream message;
+    message << "voxel size " << voxel_size << ": OpenVDB takes a grid of such small voxels for flat";
+    throw Error(ErrorCode::InvalidInput, message.str(), {}, "at least 1.45e-5; a mesh in smaller units has larger voxels");
+}
 
 double voxel_size_of(const Box& box, const RasterizeOptions& options) {
     if (!(options.voxel_size_world >= 0) || !std::isfinite(options.voxel_size_world)) {
@@ -142,6 +151,7 @@ std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string>
     std::vector<const Attribute*> attributes;
     for (const auto& name : fields) attributes.push_back(&field_of(mesh, name, options.half));
     const LeafBins bins = bin_cells(mesh, voxel_size_of(bounds(mesh), options), options.progress);
+    check_representable(bins.voxel_size);
 
     openvdb::initialize();
     std::vector<openvdb::FloatGrid::Ptr> grids;

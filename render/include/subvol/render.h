@@ -52,7 +52,8 @@ struct SplatResult {
 /// transfer function applied after reconstruction, intervals pre-integrated, composited front to back.
 ///
 /// Bitwise the same for any number of threads. `Auto` takes a hardware GPU if there is one, else the CPU.
-/// throws: Error(InvalidInput) for options out of range; Error(MissingCapability) if Backend::Gl finds no OpenGL 4.3
+/// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
+///         Error(MissingCapability) if Backend::Gl finds no OpenGL 4.3
 /// source: SCIENCE §3, §3.1
 [[nodiscard]] SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics,
                                         const SplatOptions& options = {});

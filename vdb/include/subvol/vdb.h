@@ -59,7 +59,8 @@ private:
 /// exactly, and boxes that touch share none. Where cells overlap, the cell with the smallest id counts; leaf-parallel, the same
 /// for any number of threads.
 /// throws: Error(InvalidInput) if the mesh is not valid, a field is missing, has several channels or does not fit its float, or
-///         the voxel size is not positive, makes more than 2·10⁹ voxels or voxel numbers beyond 2³⁰; Error(Cancelled)
+///         the voxel size is not positive or below OpenVDB's least of 1.45e-5, makes more than 2·10⁹ voxels or voxel numbers
+///         beyond 2³⁰; Error(Cancelled)
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
