@@ -29,7 +29,7 @@ PointKind classify(const Topology& topology, Index point) {
     for (const Index e : topology.point_edges[point]) {
         if (!topology.edge_on_boundary[e]) continue;
         creases += topology.edge_is_crease[e];
-        manifold &= topology.edge_faces[e].size() - topology.edge_cells[e].size() == 1;
+        manifold &= topology.boundary_faces_at(e) == 2;
         if (start == kNone) start = e;
     }
     if (!manifold || (creases != 0 && creases != 2)) return PointKind::Corner;
@@ -42,8 +42,13 @@ PointKind classify(const Topology& topology, Index point) {
 }  // namespace
 
 std::pair<Index, Index> boundary_faces_of(const Topology& topology, Index edge) {
-    const auto faces = topology.edge_faces[edge];
-    return {faces.front(), faces.back()};
+    Index first = kNone, last = kNone;
+    for (const Index f : topology.edge_faces[edge]) {
+        if (!topology.face_on_boundary(f)) continue;
+        if (first == kNone) first = f;
+        last = f;
+    }
+    return {first, last};
 }
 
 Index other_boundary_face(const Topology& topology, Index edge, Index face) {
@@ -68,6 +73,17 @@ std::vector<PointKind> classify_points(const Topology& topology) {
     std::vector<PointKind> kinds(topology.point_count);
     parallel_each(kinds.size(), [&](std::size_t p) { kinds[p] = classify(topology, static_cast<Index>(p)); });
     return kinds;
+}
+
+std::vector<std::uint8_t> regular_points(const Topology& topology) {
+    std::vector<std::uint8_t> regular(topology.point_count);
+    parallel_each(regular.size(), [&](std::size_t p) {
+        const auto edges = topology.point_edges[p];
+        regular[p] = edges.size() == 6 && std::all_of(edges.begin(), edges.end(), [&](Index e) {
+                         return topology.edge_has_ring[e] && topology.edge_cells[e].size() == 4;
+                     });
+    });
+    return regular;
 }
 
 }  // namespace subvol::detail

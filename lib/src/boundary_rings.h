@@ -14,6 +14,9 @@ enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
 /// several fans of boundary faces touch is a corner.
 std::vector<PointKind> classify_points(const Topology& topology);
 
+/// A flag a point: inside, with six edges of four cells each.
+std::vector<std::uint8_t> regular_points(const Topology& topology);
+
 /// The boundary face on the other side of a boundary edge that is no crease.
 Index other_boundary_face(const Topology& topology, Index edge, Index face);
 
@@ -23,10 +26,16 @@ std::pair<Index, Index> boundary_faces_of(const Topology& topology, Index edge);
 /// The boundary edges about a smooth boundary point in cyclic order, starting at `start`, written to `ring`.
 void ring_of_spokes(const Topology& topology, Index point, Index start, std::vector<Index>& ring);
 
-/// Position of an element in a small array.
-template <class Range>
-std::size_t slot_of(const Range& range, Index element) {
+/// Position of an element that a small array holds once.
+inline std::size_t slot_of(std::span<const Index> range, Index element) {
     return static_cast<std::size_t>(std::find(range.begin(), range.end(), element) - range.begin());
+}
+
+template <std::size_t N>
+std::size_t slot_of(const std::array<Index, N>& range, Index element) {
+    std::uint32_t slot = 0;  // without branches: which slot it is cannot be foretold
+    for (std::uint32_t k = 1; k < N; ++k) slot |= range[k] == element ? k : 0;
+    return slot;
 }
 
 inline Index other_end(const Topology& topology, Index edge, Index point) {

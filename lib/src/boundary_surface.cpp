@@ -34,7 +34,7 @@ Surface boundary_surface(const HexMesh& mesh) {
         return renumbered[p];
     };
     for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_boundary(static_cast<Index>(f))) continue;
+        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
         const auto quad = outward_quad(topology, topology.face_cells[f][0], static_cast<Index>(f));
         const std::array<Index, 4> q{point(quad[0]), point(quad[1]), point(quad[2]), point(quad[3])};
         surface.triangles.push_back({q[0], q[1], q[2]});

@@ -13,7 +13,7 @@ class RingWalk {
 public:
     RingWalk(const Topology& topology, std::span<const Index> faces) : topology_(topology), left_(faces.begin(), faces.end()) {}
 
-    /// Fans from boundary face to boundary face, then closed rings; appends to `faces` and `cells`. Returns the closed rings.
+    /// Fans from hull face to hull face, then closed rings; appends to `faces` and `cells`. Returns the closed rings.
     int run(std::vector<Index>& faces, std::vector<Index>& cells) {
         while (const auto start = next_start(true)) walk(*start, topology_.face_cells[*start][0], faces, cells);
         int rings = 0;
@@ -25,9 +25,9 @@ public:
     }
 
 private:
-    [[nodiscard]] std::optional<Index> next_start(bool on_boundary) const {
+    [[nodiscard]] std::optional<Index> next_start(bool on_hull) const {
         for (const Index f : left_) {
-            if (f != kNone && topology_.face_on_boundary(f) == on_boundary) return f;
+            if (f != kNone && topology_.face_on_hull(f) == on_hull) return f;
         }
         return std::nullopt;
     }
@@ -70,13 +70,20 @@ private:
 
 }  // namespace
 
+int walk_edge_ring(const Topology& topology, std::span<const Index> edge_faces, std::vector<Index>& ring_faces,
+                   std::vector<Index>& ring_cells) {
+    ring_faces.clear();
+    ring_cells.clear();
+    return RingWalk(topology, edge_faces).run(ring_faces, ring_cells);
+}
+
 void order_edge_rings(Topology& topology) {
     const std::size_t count = topology.edges.size();
     auto& cells = topology.edge_cells;
     cells.offsets.assign(count + 1, 0);
     parallel_each(count, [&](std::size_t e) {
         std::size_t sides = 0;  // each cell about the edge has two of its faces
-        for (const Index f : topology.edge_faces[e]) sides += topology.face_on_boundary(f) ? 1 : 2;
+        for (const Index f : topology.edge_faces[e]) sides += topology.face_on_hull(f) ? 1 : 2;
         cells.offsets[e + 1] = sides / 2;
     });
     for (std::size_t e = 0; e < count; ++e) cells.offsets[e + 1] += cells.offsets[e];
@@ -85,9 +92,7 @@ void order_edge_rings(Topology& topology) {
 
     parallel_each(count, [&](std::size_t e) {
         thread_local std::vector<Index> ring_faces, ring_cells;
-        ring_faces.clear();
-        ring_cells.clear();
-        const int rings = RingWalk(topology, topology.edge_faces[e]).run(ring_faces, ring_cells);
+        const int rings = walk_edge_ring(topology, topology.edge_faces[e], ring_faces, ring_cells);
         topology.edge_has_ring[e] = !topology.edge_on_boundary[e] && rings == 1 && ring_cells.size() >= 3;
         const auto face_offset = static_cast<std::ptrdiff_t>(topology.edge_faces.offsets[e]);
         std::copy(ring_faces.begin(), ring_faces.end(), topology.edge_faces.values.begin() + face_offset);

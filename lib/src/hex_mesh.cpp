@@ -46,6 +46,19 @@ void validate_cells(const HexMesh& mesh) {
     }
 }
 
+void validate_tags(const HexMesh& mesh) {
+    const auto check = [&](const auto& points, const std::string& where) {
+        for (const Index p : points) {
+            if (p < mesh.points.size()) continue;
+            throw Error(ErrorCode::InvalidInput,
+                        "point " + std::to_string(p) + " does not exist; the mesh has " + std::to_string(mesh.points.size()),
+                        where);
+        }
+    };
+    for (std::size_t i = 0; i < mesh.creases.size(); ++i) check(mesh.creases[i], "crease " + std::to_string(i));
+    for (std::size_t i = 0; i < mesh.sharp_faces.size(); ++i) check(mesh.sharp_faces[i], "sharp face " + std::to_string(i));
+}
+
 }  // namespace
 
 const Attribute* HexMesh::find_attribute(std::string_view name) const {
@@ -56,6 +69,7 @@ const Attribute* HexMesh::find_attribute(std::string_view name) const {
 void validate(const HexMesh& mesh) {
     if (mesh.cells.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra");
     validate_cells(mesh);
+    validate_tags(mesh);
     const auto used = used_points(mesh);
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         const Vec3& x = mesh.points[p];
@@ -107,6 +121,10 @@ HexMesh without_unused_points(const HexMesh& mesh) {
     }
     for (const auto& [a, b] : mesh.creases) {
         if (used[a] && used[b]) result.creases.push_back({renumbered[a], renumbered[b]});
+    }
+    for (auto face : mesh.sharp_faces) {
+        for (auto& p : face) p = renumbered[p];
+        result.sharp_faces.push_back(face);
     }
     return result;
 }

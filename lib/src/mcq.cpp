@@ -15,10 +15,13 @@ using Pair = std::array<Index, 2>;
 class McqRules final : public SchemeRules {
 public:
     McqRules(const Topology& topology, double tension)
-        : topology_(topology), omega_(tension), kinds_(classify_points(topology)) {}
+        : topology_(topology), omega_(tension), kinds_(classify_points(topology)), regular_(regular_points(topology)) {}
 
     void edge_point(Index edge, StencilBuilder& row) const override {
-        if (!topology_.edge_on_boundary[edge]) {
+        const auto [a, b] = topology_.edges[edge];
+        if (regular_[a] && regular_[b]) {
+            regular_edge(edge, row);
+        } else if (!topology_.edge_on_boundary[edge]) {
             interior_edge(edge, row);
         } else if (topology_.edge_is_crease[edge]) {
             crease_edge(edge, row);
@@ -28,16 +31,109 @@ public:
     }
 
     void face_point(Index face, StencilBuilder& row) const override {
-        if (topology_.face_on_boundary(face)) {
+        const auto& [a, b, c, d] = topology_.faces[face];
+        if (regular_[a] && regular_[b] && regular_[c] && regular_[d]) {
+            regular_face(face, row);
+        } else if (topology_.face_on_boundary(face)) {
             surface_face(face, row);
         } else {
             interior_face(face, row);
         }
     }
 
-    void cell_point(Index cell, StencilBuilder& row) const override { interior_cell(cell, row); }
+    void cell_point(Index cell, StencilBuilder& row) const override {
+        const auto& sides = topology_.cell_faces[cell];
+        if (std::none_of(sides.begin(), sides.end(), [&](Index f) { return topology_.face_on_boundary(f); })) {
+            regular_cell(cell, row);
+        } else {
+            interior_cell(cell, row);
+        }
+    }
 
 private:
+    // --- the regular masks, as runs
+    // --------------------------------------------------------------------------------------------------------
+
+    void regular_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        std::array<Index, 8> q, r;
+        std::size_t k = 0;
+        for (const Index face : topology_.edge_faces[edge]) {
+            q[k++] = across(face, a);
+            q[k++] = across(face, b);
+        }
+        k = 0;
+        for (const Index end : {a, b}) {  // beyond an end, the faces about the edge that goes on there
+            for (const Index face : topology_.edge_faces[continuation(edge, end)]) r[k++] = across(face, end);
+        }
+        row.add_run(topology_.edges[edge], 0.5);
+        row.add_run(q, omega_ / 4);
+        row.add_run(r, -omega_ / 4);
+    }
+
+    void regular_face(Index face, StencilBuilder& row) const {
+        std::array<Index, 8> q, r;
+        std::array<Index, 16> s;
+        std::size_t k = 0;
+        const auto& corners = topology_.faces[face];
+        for (const Index cell : topology_.face_cells[face]) {
+            for (const Index p : corners) q[k++] = antipode(cell, p);
+        }
+        std::size_t in_r = 0, in_s = 0;
+        for (std::size_t side = 0; side < 4; ++side) {
+            const Index g = topology_.face_edges[face][side];
+            const auto ring = topology_.edge_faces[g];
+            const auto cells = topology_.edge_cells[g];
+            const std::size_t start = slot_of(ring, face);
+            for (const Index p : {corners[side], corners[(side + 1) % 4]}) {
+                r[in_r++] = across(ring[(start + 2) % 4], p);
+                s[in_s++] = antipode(cells[(start + 1) % 4], p);
+                s[in_s++] = antipode(cells[(start + 2) % 4], p);
+            }
+        }
+        row.add_run(topology_.faces[face], (1 + 2 * omega_) / 4);
+        row.add_run(q, omega_ / 4);
+        row.add_run(r, -omega_ / 4);
+        row.add_run(s, -omega_ / 8);
+    }
+
+    void regular_cell(Index cell, StencilBuilder& row) const {
+        std::array<Index, 24> q;
+        std::size_t k = 0;
+        for (std::size_t side = 0; side < 6; ++side) {
+            const auto [c0, c1] = topology_.face_cells[topology_.cell_faces[cell][side]];
+            for (const Index p : side_points(cell, side)) q[k++] = antipode(c0 == cell ? c1 : c0, p);
+        }
+        row.add_run(topology_.cells[cell], (1 + 6 * omega_) / 8);
+        row.add_run(q, -omega_ / 4);
+    }
+
+    /// The point of a face diagonally across from one of its points.
+    Index across(Index face, Index point) const {
+        const auto& quad = topology_.faces[face];
+        return quad[(slot_of(quad, point) + 2) % 4];
+    }
+
+    /// The point of a cell across its centre from one of its points. Those of a side are the points of the opposite side, those
+    /// of an edge the points of the edge diagonally opposite.
+    Index antipode(Index cell, Index point) const {
+        static constexpr std::array<std::size_t, 8> kAntipode{6, 7, 4, 5, 2, 3, 0, 1};
+        return topology_.cells[cell][kAntipode[slot_of(topology_.cells[cell], point)]];
+    }
+
+    /// The edge that goes on beyond a regular end of an edge: the one of the six that shares no face with it.
+    Index continuation(Index edge, Index end) const {
+        Index left = edge;
+        for (const Index e : topology_.point_edges[end]) left ^= e;
+        for (const Index face : topology_.edge_faces[edge]) {
+            const auto& quad = topology_.faces[face];
+            const std::size_t k = slot_of(quad, end);
+            const Index before = topology_.face_edges[face][(k + 3) % 4], after = topology_.face_edges[face][k];
+            left ^= before == edge ? after : before;
+        }
+        return left;
+    }
+
     // The terms of the rules are functions: they add themselves with a weight, or add nothing and return false where the mesh
     // ends.
 
@@ -296,6 +392,7 @@ private:
     const Topology& topology_;
     double omega_;
     std::vector<PointKind> kinds_;
+    std::vector<std::uint8_t> regular_;
     AntipodalWeights antipodal_;
 };
 

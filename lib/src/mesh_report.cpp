@@ -78,7 +78,7 @@ MeshReport inspect(const HexMesh& mesh) {
     report.faces = topology.faces.size();
     for (std::size_t p = 0; p < mesh.points.size(); ++p) report.points_used += !topology.point_edges[p].empty();
     for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        report.boundary_faces += topology.face_on_boundary(static_cast<Index>(f));
+        report.boundary_faces += topology.face_on_hull(static_cast<Index>(f));
     }
     report.nonmanifold_edges = topology.nonmanifold_edges;
     report.bounds = bounds(mesh);

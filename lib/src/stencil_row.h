@@ -1,35 +1,75 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "subvol/hex_mesh.h"
+#include "sort_network.h"
+#include "subvol/stencil_table.h"
 
 namespace subvol::detail {
 
-/// Collects the terms of one stencil. Terms at the same point are added up in an order that does not depend on the order in
-/// which they came, so that a row does not depend on how its neighbourhood was walked.
+/// A finished stencil: runs of points of one weight, ascending within a run.
+struct StencilRuns {
+    std::span<const Index> points;
+    std::span<const StencilTable::Run> runs;
+};
+
+/// Collects the terms of one stencil, in any order: the finished row does not depend on how its neighbourhood was walked.
+///
+/// A row is given either term by term, or whole as runs (by a rule that knows it is regular).
 class StencilBuilder {
 public:
-    void clear() { terms_.clear(); }
+    void clear() {
+        terms_.clear();
+        points_.clear();
+        runs_.clear();
+    }
+
     void add(Index point, double weight) { terms_.emplace_back(point, weight); }
 
-    /// The terms by ascending point, one a point, zeros left out.
-    const std::vector<std::pair<Index, double>>& finish() {
+    /// Points that all have this weight. Rows of one kind must give their runs in the same order.
+    template <std::size_t N>
+    void add_run(std::array<Index, N> points, double weight) {
+        if (weight == 0) return;
+        sort_network(points);
+        points_.insert(points_.end(), points.begin(), points.end());
+        runs_.push_back({weight, static_cast<std::uint32_t>(N)});
+    }
+
+    /// Valid until the next call of `clear`.
+    StencilRuns finish() {
+        if (!terms_.empty()) make_runs();
+        return {points_, runs_};
+    }
+
+private:
+    using Term = std::pair<Index, double>;
+
+    /// Equal points are added up by ascending weight, then the terms are sorted by weight.
+    void make_runs() {
         std::sort(terms_.begin(), terms_.end());
         std::size_t count = 0;
         for (std::size_t i = 0; i < terms_.size();) {
-            auto sum = terms_[i];
+            Term sum = terms_[i];
             while (++i < terms_.size() && terms_[i].first == sum.first) sum.second += terms_[i].second;
             if (sum.second != 0) terms_[count++] = sum;
         }
         terms_.resize(count);
-        return terms_;
+        std::sort(terms_.begin(), terms_.end(),
+                  [](const Term& a, const Term& b) { return std::pair(a.second, a.first) < std::pair(b.second, b.first); });
+        for (const auto& [point, weight] : terms_) {
+            if (runs_.empty() || runs_.back().weight != weight) runs_.push_back({weight, 0});
+            ++runs_.back().count;
+            points_.push_back(point);
+        }
     }
 
-private:
-    std::vector<std::pair<Index, double>> terms_;
+    std::vector<Term> terms_;
+    std::vector<Index> points_;
+    std::vector<StencilTable::Run> runs_;
 };
 
 }  // namespace subvol::detail

@@ -94,17 +94,43 @@ void mark_boundary(Topology& topology) {
     }
 }
 
-/// The default rule, and the mesh's own tags. A boundary edge with several fans of cells is non-manifold.
-void mark_creases(Topology& topology, std::span<const std::array<Index, 2>> tagged) {
+/// Tagged faces that lie on the hull are sharp as they are.
+void mark_sharp_faces(Topology& topology, std::span<const std::array<Index, 4>> tagged) {
+    if (tagged.empty()) return;
+    topology.face_is_sharp.assign(topology.faces.size(), 0);
+    for (const auto& points : tagged) {
+        const auto f = topology.find_face(points);
+        if (!f) {
+            std::string text;
+            for (const Index p : points) text += (text.empty() ? "" : " ") + std::to_string(p);
+            throw Error(ErrorCode::InvalidInput, "points " + text + " are no face", "sharp face",
+                        "four points of a face of a cell, in cyclic order");
+        }
+        topology.face_is_sharp[*f] = 1;
+    }
+}
+
+/// Whether one cell alone lies between two boundary faces about the edge. About an edge inside, the faces are a ring.
+bool has_single_cell(const Topology& topology, Index edge) {
+    const auto faces = topology.edge_faces[edge];
+    const bool ring = faces.size() == topology.edge_cells[edge].size();
+    for (std::size_t i = 0; i + (ring ? 0 : 1) < faces.size(); ++i) {
+        if (topology.face_on_boundary(faces[i]) && topology.face_on_boundary(faces[(i + 1) % faces.size()])) return true;
+    }
+    return false;
+}
+
+/// The default rule, and the mesh's own tags.
+void mark_creases(Topology& topology) {
     topology.edge_is_crease.assign(topology.edges.size(), 0);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
         if (!topology.edge_on_boundary[e]) continue;
-        const auto cells = topology.edge_cells[e].size();
-        const auto fans = topology.edge_faces[e].size() - cells;
-        topology.nonmanifold_edges += fans > 1;
-        topology.edge_is_crease[e] = cells == 1 || fans > 1;
+        const auto edge = static_cast<Index>(e);
+        const bool manifold = topology.boundary_faces_at(edge) == 2;
+        topology.nonmanifold_edges += !manifold;
+        topology.edge_is_crease[e] = !manifold || has_single_cell(topology, edge);
     }
-    for (const auto& [a, b] : tagged) {
+    for (const auto& [a, b] : topology.creases) {
         const auto e = topology.find_edge(a, b);
         if (!e || !topology.edge_on_boundary[*e]) {
             throw Error(ErrorCode::InvalidInput,
@@ -137,6 +163,20 @@ void rank_cells(Topology& topology) {
 
 }  // namespace
 
+std::size_t Topology::boundary_faces_at(Index edge) const {
+    const auto ring = edge_faces[edge];
+    return static_cast<std::size_t>(std::count_if(ring.begin(), ring.end(), [&](Index f) { return face_on_boundary(f); }));
+}
+
+std::optional<Index> Topology::find_face(const std::array<Index, 4>& points) const {
+    const auto e = find_edge(points[0], points[1]);
+    if (!e) return std::nullopt;
+    for (const Index f : edge_faces[*e]) {
+        if (std::is_permutation(points.begin(), points.end(), faces[f].begin())) return f;
+    }
+    return std::nullopt;
+}
+
 std::optional<Index> Topology::find_edge(Index a, Index b) const {
     const std::array<Index, 2> key{std::min(a, b), std::max(a, b)};
     if (key[1] >= point_count) return std::nullopt;
@@ -156,9 +196,11 @@ Topology build_topology(const HexMesh& mesh) {
     build_edge_offsets(topology);
     build_cell_edges(topology);
     build_point_edges(topology);
+    mark_sharp_faces(topology, mesh.sharp_faces);
     mark_boundary(topology);
     detail::order_edge_rings(topology);
-    mark_creases(topology, mesh.creases);
+    topology.creases = mesh.creases;
+    mark_creases(topology);
     return topology;
 }
 

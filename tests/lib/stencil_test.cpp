@@ -47,8 +47,9 @@ Rows our_rows(const HexMesh& mesh) {
     const auto put = [&](char kind, std::vector<Index> points, std::size_t i) {
         for (const auto& [p, w] : stencil_rows[i]) rows[{kind, points}][p] = w;
     };
-    const std::size_t faces = topology.edges.size(), cells = faces + topology.faces.size();
-    for (std::size_t e = 0; e < faces; ++e) put('e', sorted(topology.edges[e]), e);
+    const std::size_t edges = topology.point_count, faces = edges + topology.edges.size(),
+                      cells = faces + topology.faces.size();
+    for (std::size_t e = 0; e < topology.edges.size(); ++e) put('e', sorted(topology.edges[e]), edges + e);
     for (std::size_t f = 0; f < topology.faces.size(); ++f) put('f', sorted(topology.faces[f]), faces + f);
     for (std::size_t c = 0; c < topology.cells.size(); ++c) put('c', sorted(topology.cells[c]), cells + topology.cell_rank[c]);
     return rows;

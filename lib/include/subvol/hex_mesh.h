@@ -28,11 +28,13 @@ struct Attribute {
 /// cells:   8 point ids in VTK corner order: 0-3 the bottom counter-clockwise, 4-7 above them; parameters u along 0→1,
 ///          v along 0→3, w along 0→4
 /// creases: point-id pairs (smaller first) of boundary edges to be kept sharp besides those that the default rule finds
+/// sharp_faces: four point ids in cyclic order of interior faces that schemes treat as a boundary from both sides
 struct HexMesh {
     std::vector<Vec3> points;
     std::vector<std::array<Index, 8>> cells;
     std::vector<Attribute> attributes;
     std::vector<std::array<Index, 2>> creases;
+    std::vector<std::array<Index, 4>> sharp_faces;
 
     [[nodiscard]] const Attribute* find_attribute(std::string_view name) const;
 };

@@ -37,9 +37,12 @@ inline constexpr std::array<std::array<int, 4>, 6> kCellFaces{
 /// face_edges: edge k of a face joins its points k and k+1
 /// face_cells: one or two cells (smaller first); the second is kNone on the boundary
 /// edge_faces: the ring about an edge. About an interior edge cyclic, starting at the smallest face and going on to the
-///             smaller of its two neighbours; about a boundary edge fan by fan, each from boundary face to boundary face
+///             smaller of its two neighbours; about a boundary edge fan by fan, each from hull face to hull face
 /// edge_cells: cell j of an interior ring lies between faces j and j+1; on a boundary edge the cells of the fans in order
-/// boundary:   the faces with one cell, their edges, their points
+/// hull:       the faces with one cell
+/// boundary:   the hull and the faces tagged as sharp, their edges, their points: what a scheme's surface rules see
+/// creases:    the mesh's tags, besides those that the default rule finds
+/// face_is_sharp: a flag a face, empty if none is tagged
 struct Topology {
     std::size_t point_count = 0;
     std::vector<std::array<Index, 8>> cells;
@@ -58,15 +61,23 @@ struct Topology {
     std::vector<std::uint8_t> edge_has_ring;   // interior edges whose cells form one ring of at least three
     std::vector<std::uint8_t> edge_is_crease;  // boundary edges kept sharp: one cell, non-manifold, or tagged
     std::vector<Index> cell_rank;              // a number for each cell that does not depend on the order of the cells
-    std::size_t nonmanifold_edges = 0;         // boundary edges with more than two boundary faces
+    std::vector<std::uint8_t> face_is_sharp;
+    std::vector<std::array<Index, 2>> creases;
+    std::size_t nonmanifold_edges = 0;  // boundary edges with other than two boundary faces
 
-    [[nodiscard]] bool face_on_boundary(Index face) const { return face_cells[face][1] == kNone; }
+    [[nodiscard]] bool face_on_hull(Index face) const { return face_cells[face][1] == kNone; }
+    [[nodiscard]] bool face_on_boundary(Index face) const {
+        return face_on_hull(face) || (!face_is_sharp.empty() && face_is_sharp[face] != 0);
+    }
+    [[nodiscard]] std::size_t boundary_faces_at(Index edge) const;
     [[nodiscard]] std::optional<Index> find_edge(Index a, Index b) const;
+    [[nodiscard]] std::optional<Index> find_face(const std::array<Index, 4>& points) const;
 };
 
 /// Builds the topology of a mesh, in parallel; the result does not depend on the number of threads.
 ///
-/// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners; names them
+/// throws: Error(InvalidInput) if more than two cells share a face, two cells have the same corners, a crease is no boundary
+///         edge or a sharp face no face; names them
 /// cost:   O(n log n) time, about 500 bytes a cell
 [[nodiscard]] Topology build_topology(const HexMesh& mesh);
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "subvol/refine.h"
+
+namespace subvol {
+
+/// The grid that one control cell becomes: side³ vertices of the refined mesh, side = 2^levels + 1, u fastest, then v, then w.
+///
+/// values: an attribute: side³ × channels numbers, vertex-major
+struct DenseCell {
+    Index cell = 0;  // of the control mesh
+    std::size_t side = 0;
+    std::span<const Vec3> points;
+    std::vector<std::span<const double>> values;
+};
+
+/// Refines a mesh cell by cell: calls visit for every control cell with its grid, and keeps no more than a batch of cells in
+/// memory. Neighbouring grids agree bitwise in what they share, and with `refine`.
+///
+/// visit:  is called from several threads at once and in no order; the spans are gone after the call
+/// throws: Error(InvalidInput) as `refine`
+/// cost:   parallel; memory: the mesh, and some 50 MB a thread
+void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const std::function<void(const DenseCell&)>& visit);
+
+}  // namespace subvol

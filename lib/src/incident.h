@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "boundary_rings.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// Calls visit(face, k) once for every face at a point, which is the face's point k.
+template <class Visit>
+void each_face_at(const Topology& topology, Index point, const Visit& visit) {
+    for (const Index edge : topology.point_edges[point]) {
+        for (const Index face : topology.edge_faces[edge]) {
+            // Two edges of the face meet at the point: the smaller one reports it.
+            const std::size_t k = slot_of(topology.faces[face], point);
+            const auto& edges = topology.face_edges[face];
+            if (edge == std::min(edges[k], edges[(k + 3) % 4])) visit(face, k);
+        }
+    }
+}
+
+/// Calls visit(cell, k) once for every cell at a point, which is the cell's corner k.
+template <class Visit>
+void each_cell_at(const Topology& topology, Index point, const Visit& visit) {
+    for (const Index edge : topology.point_edges[point]) {
+        for (const Index cell : topology.edge_cells[edge]) {
+            // Three edges of the cell meet at the point: the smallest one reports it.
+            Index smallest = kNone;
+            for (const Index e : topology.cell_edges[cell]) {
+                const auto [a, b] = topology.edges[e];
+                if (a == point || b == point) smallest = std::min(smallest, e);
+            }
+            if (edge == smallest) visit(cell, slot_of(topology.cells[cell], point));
+        }
+    }
+}
+
+/// The far ends of the two crease edges at a crease point.
+inline std::pair<Index, Index> crease_neighbours(const Topology& topology, Index point) {
+    std::pair<Index, Index> ends{kNone, kNone};
+    for (const Index e : topology.point_edges[point]) {
+        if (!topology.edge_is_crease[e]) continue;
+        (ends.first == kNone ? ends.first : ends.second) = other_end(topology, e, point);
+    }
+    return ends;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "subvol/refine.h"
+
+namespace subvol::detail {
+
+/// Some cells of a mesh with the layers of cells around them: all that the rules need for the next level of these cells.
+///
+/// Points stand in the order of the whole mesh, so that every rule sums in the same order as there. Cells: first those that are
+/// wanted, then those that share a point with them, then those that share a point with these.
+struct Patch {
+    HexMesh mesh;
+    std::size_t wanted = 0;       // cells [0, wanted)
+    std::size_t first_layer = 0;  // cells [wanted, first_layer)
+};
+
+/// Cuts patches out of a mesh.
+class PatchSource {
+public:
+    /// The mesh must be valid; it is kept by reference.
+    explicit PatchSource(const HexMesh& mesh);
+
+    /// layers: 1 if the patch is refined once, else 2
+    [[nodiscard]] Patch cut(std::span<const Index> cells, int layers) const;
+
+private:
+    const HexMesh& mesh_;
+    std::vector<std::array<Index, 2>> creases_;      // sorted
+    std::vector<std::array<Index, 4>> sharp_faces_;  // their points sorted, sorted
+    std::vector<std::size_t> offsets_;               // cells_[offsets_[p] .. offsets_[p+1]) have point p
+    std::vector<Index> cells_;
+};
+
+/// The next level of a patch: child 8k + j of its wanted cell k. options.levels and crease_angle_deg are not used.
+///
+/// layers: how many the child needs: 0 if it is not refined further, 1 if once, else 2
+[[nodiscard]] Patch refine_patch(const Patch& patch, const RefineOptions& options, int layers);
+
+/// The patch for some of the wanted cells of another, which must have as many layers.
+[[nodiscard]] Patch sub_patch(const Patch& patch, std::span<const Index> wanted, int layers);
+
+}  // namespace subvol::detail
