@@ -3,8 +3,12 @@ find_package(Threads REQUIRED)
 find_package(TBB CONFIG REQUIRED)
 find_package(glm CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
+find_package(pugixml CONFIG REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(LibLZMA REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(muparser REQUIRED IMPORTED_TARGET muparser)
+pkg_check_modules(liblz4 REQUIRED IMPORTED_TARGET liblz4)
 
 # FindOpenVDB sets BUILD_SHARED_LIBS in its caller and its folder shadows FindTBB: a function keeps both in.
 function(subvol_find_openvdb)

@@ -12,6 +12,11 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
         ->group(group)
         ->type_name("EXPR")
         ->excludes(field);
+    app.add_option("--other-cells", options.other_cells,
+                   "what becomes of tetrahedra, prisms and pyramids: split (all cells, into smaller hexahedra), ignore, refuse")
+        ->group(group)
+        ->type_name("WHAT")
+        ->check(CLI::IsMember({"split", "ignore", "refuse"}));
     app.add_option("--threads", options.threads, "number of threads, 0 takes all; results do not depend on it")
         ->group(group)
         ->type_name("N")

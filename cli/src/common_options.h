@@ -11,6 +11,7 @@ namespace subvol::cli {
 struct CommonOptions {
     std::optional<std::string> field;
     std::optional<std::string> density;  // an expression in x, y, z
+    std::string other_cells = "split";   // "ignore", "refuse"
     int threads = 0;                     // 0: all
     bool json = false;
     bool quiet = false;

@@ -13,6 +13,10 @@ namespace {
 
 const std::string kModelPrefix = "model:";
 
+OtherCells other_cells(const std::string& name) {
+    return name == "ignore" ? OtherCells::Ignore : name == "refuse" ? OtherCells::Refuse : OtherCells::Split;
+}
+
 void put_density_first(HexMesh& mesh, const std::string& expression) {
     std::erase_if(mesh.attributes, [](const Attribute& a) { return a.name == "density"; });
     mesh.attributes.insert(mesh.attributes.begin(), Attribute{"density", 1, evaluate_expression(expression, mesh.points)});
@@ -40,17 +44,19 @@ ReadResult generate(const std::string& description) {
 
 }  // namespace
 
-ReadResult read_input(const std::string& input, Report& report) {
+ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
     const bool model = input.starts_with(kModelPrefix);
-    ReadResult read =
-        report.timed("read", [&] { return model ? generate(input.substr(kModelPrefix.size())) : read_mesh(input); });
+    ReadResult read = report.timed("read", [&] {
+        return model ? generate(input.substr(kModelPrefix.size()))
+                     : read_mesh(input, {.other_cells = other_cells(options.other_cells)});
+    });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;
 }
 
 HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report) {
-    HexMesh mesh = without_unused_points(read_input(input, report).mesh);
+    HexMesh mesh = without_unused_points(read_input(input, options, report).mesh);
     if (options.density) put_density_first(mesh, *options.density);
     return mesh;
 }

@@ -11,10 +11,10 @@
 
 namespace subvol::cli {
 
-inline constexpr const char* kInputHelp = "a hexahedral mesh (.mesh, .vtk), or model:NAME or model:NAME:RESOLUTION";
+inline constexpr const char* kInputHelp = "a mesh (.mesh, .vtk, .vtu, .msh), or model:NAME or model:NAME:RESOLUTION";
 
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
-[[nodiscard]] ReadResult read_input(const std::string& input, Report& report);
+[[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);
 
 /// `read_input` without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);

@@ -73,7 +73,7 @@ private:
 
     void describe_mesh(Report& report) {
         if (!points_.empty()) throw Error(ErrorCode::InvalidInput, "reads values from .vdb files only", "--at");
-        const ReadResult read = read_input(input_, report);
+        const ReadResult read = read_input(input_, common(), report);
         put_mesh_report(report, report.timed("inspect", [&] { return inspect(read.mesh); }));
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <optional>
+#include <set>
 
 #include "mesh_file.h"
 #include "output_file.h"
@@ -19,7 +19,7 @@ bool is_keyword(std::string_view word) {
            std::all_of(word.begin(), word.end(), [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-// Cells that a hexahedral mesh has no place for: singular and plural.
+// Cells other than hexahedra: singular and plural.
 const std::map<std::string_view, std::array<std::string_view, 2>> kVolumeCells{{"Tetrahedra", {"tetrahedron", "tetrahedra"}},
                                                                                {"Prisms", {"prism", "prisms"}},
                                                                                {"Pentahedra", {"prism", "prisms"}},
@@ -28,7 +28,8 @@ const std::map<std::string_view, std::array<std::string_view, 2>> kVolumeCells{{
 
 class MeditReader {
 public:
-    MeditReader(std::string_view text, std::string_view file) : in_(text, file, TextScanner::Comments::Hash), file_(file) {}
+    MeditReader(std::string_view text, std::string_view file, const ReadOptions& options)
+        : in_(text, file, TextScanner::Comments::Hash), file_(file), options_(options) {}
 
     ReadResult read() {
         read_header();
@@ -39,13 +40,13 @@ public:
             read_section(keyword);
         }
         if (!has_vertices_) in_.fail("there is no Vertices section");
-        // The format lets the hexes come before the vertices; their indices can be checked only now.
-        if (early_hexes_) {
-            in_ = *early_hexes_;
-            read_hexes();
+        // The format lets cells come before the vertices; their indices can be checked only now.
+        for (const auto& [keyword, place] : early_cells_) {
+            in_ = place;
+            read_cells(keyword);
         }
-        report_left_out();
-        return finish(std::move(found_), in_, file_, kWording);
+        list_left_out();
+        return finish(std::move(found_), in_, file_, kWording, options_);
     }
 
 private:
@@ -63,13 +64,12 @@ private:
             read_dimension();
         } else if (keyword == "Vertices") {
             read_vertices();
-        } else if (keyword == "Hexahedra") {
-            if (has_hexes_) in_.fail("there is a second Hexahedra section");
-            has_hexes_ = true;
+        } else if (keyword == "Hexahedra" || (kVolumeCells.contains(keyword) && options_.other_cells != OtherCells::Ignore)) {
+            if (!cell_sections_.insert(keyword).second) in_.fail("there is a second " + std::string(keyword) + " section");
             if (has_vertices_) {
-                read_hexes();
+                read_cells(keyword);
             } else {
-                early_hexes_ = in_;
+                early_cells_.emplace_back(keyword, in_);
                 skip_numbers();
             }
         } else {
@@ -96,19 +96,34 @@ private:
         }
     }
 
-    void read_hexes() {
-        const std::size_t count = in_.count({"Hexahedra"});
-        found_.hexes.reserve(std::min(count, in_.room_for(9)));
-        for (std::size_t h = 0; h < count; ++h) {
-            const auto number = static_cast<std::int64_t>(h + 1);
-            auto& hex = found_.hexes.emplace_back();
+    void read_cells(std::string_view keyword) {
+        if (keyword == "Hexahedra") {
+            read_cells(keyword, kWording, "a hexahedron", found_.hexes.corners);
+        } else if (keyword == "Tetrahedra") {
+            read_cells(keyword, {"vertex", "tetrahedron", 1}, "a tetrahedron", found_.tets.corners);
+        } else if (keyword == "Pyramids") {
+            read_cells(keyword, {"vertex", "pyramid", 1}, "a pyramid", found_.pyramids.corners);
+        } else {
+            read_cells(keyword, {"vertex", "prism", 1}, "a prism", found_.prisms.corners);
+        }
+    }
+
+    template <std::size_t N>
+    void read_cells(std::string_view keyword, const Wording& wording, std::string_view kind,
+                    std::vector<std::array<Index, N>>& cells) {
+        const std::size_t count = in_.count({keyword});
+        const std::string reference = "reference of " + std::string(wording.cell);
+        cells.reserve(cells.size() + std::min(count, in_.room_for(N + 1)));
+        for (std::size_t c = 0; c < count; ++c) {
+            const auto number = static_cast<std::int64_t>(c + 1);
+            auto& cell = cells.emplace_back();
             std::size_t position = 0;
-            for (std::size_t k = 0; k < 8; ++k) {
-                hex[k] = read_vertex_index({"hex", number, count});
+            for (std::size_t k = 0; k < N; ++k) {
+                cell[k] = read_vertex_index({wording.cell, number, count});
                 if (k == 0) position = in_.position();
             }
-            in_.integer({"reference of hex", number, count});
-            check_corners(in_, position, hex, h, kWording);
+            in_.integer({reference, number, count});
+            check_corners(in_, position, cell, c, wording, kind);
         }
     }
 
@@ -116,7 +131,8 @@ private:
         const std::int64_t index = in_.integer(place);
         const std::size_t count = found_.points.size();
         if (index < 1 || index > static_cast<std::int64_t>(count)) {
-            in_.fail("hex " + std::to_string(place.number) + ": there is no vertex with index " + std::to_string(index),
+            in_.fail(std::string(place.what) + " " + std::to_string(place.number) + ": there is no vertex with index " +
+                         std::to_string(index),
                      "indices are 1 to " + std::to_string(count));
         }
         return static_cast<Index>(index - 1);
@@ -136,7 +152,7 @@ private:
     }
 
     // How the cells that are no hexes are called, and the other sections; a section that is empty is not worth a word.
-    void report_left_out() {
+    void list_left_out() {
         std::string cells;
         std::string sections;
         for (const auto& [keyword, count] : left_out_) {
@@ -150,22 +166,19 @@ private:
                 list += counted(count, volume->second[0], volume->second[1]);
             }
         }
-        if (found_.hexes.empty()) {
-            throw Error(ErrorCode::InvalidInput, "no hexahedra" + (cells.empty() ? "" : ", but " + cells + ", not supported"),
-                        std::string(file_));
-        }
-        if (!cells.empty()) found_.warnings.push_back(cells + " ignored");
+        report_left_out(found_, cells, file_);
         if (!sections.empty()) found_.warnings.push_back("sections ignored: " + sections);
     }
 
     TextScanner in_;
     std::string_view file_;
+    ReadOptions options_;
     MeshFile found_;
-    std::optional<TextScanner> early_hexes_;
+    std::vector<std::pair<std::string_view, TextScanner>> early_cells_;
+    std::set<std::string_view> cell_sections_;
     std::map<std::string, std::size_t> left_out_;
     bool has_dimension_ = false;
     bool has_vertices_ = false;
-    bool has_hexes_ = false;
 };
 
 void append_number(std::string& text, double value) {
@@ -177,8 +190,8 @@ void append_number(std::string& text, double value) {
 
 }  // namespace
 
-ReadResult read_medit(std::string_view text, std::string_view file) {
-    return MeditReader(text, file).read();
+ReadResult read_medit(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return MeditReader(text, file, options).read();
 }
 
 std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh) {

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "mixed_cells_shapes.h"
+#include "mixed_cells_split.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol {
 
 namespace {
-
-// The ends of the three edges at each corner, such that a right-handed cell has a positive determinant there.
-constexpr std::array<std::array<int, 3>, 8> kCornerEdges{
-    {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
 
 std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
     std::array<Vec3, 8> corners;
@@ -22,32 +21,40 @@ std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& 
 
 bool is_folded(const std::array<Vec3, 8>& x) {
     for (std::size_t k = 0; k < 8; ++k) {
-        const auto edge = [&](std::size_t e) { return x[static_cast<std::size_t>(kCornerEdges[k][e])] - x[k]; };
+        const auto edge = [&](std::size_t e) { return x[detail::kHexShape.corner_edges[k][e]] - x[k]; };
         if (glm::dot(edge(0), glm::cross(edge(1), edge(2))) < 0) return true;
     }
     return false;
 }
 
-void warn_of_handedness(ReadResult& result) {
-    const std::string of_all = " of " + counted(result.mesh.cells.size(), "hexahedron", "hexahedra");
+void turn_hexes(ReadResult& result) {
+    const std::size_t count = result.mesh.cells.size();
     const std::size_t turned = orient_cells(result.mesh);
-    if (turned > 0) {
-        result.warnings.push_back(std::to_string(turned) + of_all + (turned == 1 ? " was" : " were") +
-                                  " left-handed (negative Jacobian) and turned round");
-    }
-    const auto folded = std::count_if(result.mesh.cells.begin(), result.mesh.cells.end(),
-                                      [&](const auto& cell) { return is_folded(corners_of(result.mesh, cell)); });
-    if (folded > 0) {
-        result.warnings.push_back(std::to_string(folded) + of_all + (folded == 1 ? " has" : " have") +
-                                  " a negative Jacobian at a corner");
-    }
+    if (turned == 0) return;
+    result.warnings.push_back(std::to_string(turned) + " of " + counted(count, "hexahedron", "hexahedra") +
+                              (turned == 1 ? " was" : " were") + " left-handed (negative Jacobian) and turned round");
 }
 
-std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
+void warn_of_folded(ReadResult& result) {
+    const auto& cells = result.mesh.cells;
+    const auto folded =
+        std::count_if(cells.begin(), cells.end(), [&](const auto& cell) { return is_folded(corners_of(result.mesh, cell)); });
+    if (folded == 0) return;
+    result.warnings.push_back(std::to_string(folded) + " of " + counted(cells.size(), "hexahedron", "hexahedra") +
+                              (folded == 1 ? " has" : " have") + " a negative Jacobian at a corner");
+}
+
+std::vector<std::uint8_t> used_points(const HexMesh& mesh, const MixedCells& others) {
     std::vector<std::uint8_t> used(mesh.points.size());
-    for (const auto& cell : mesh.cells) {
-        for (const Index p : cell) used[p] = 1;
-    }
+    const auto mark = [&](const auto& cells) {
+        for (const auto& cell : cells) {
+            for (const Index p : cell) used[p] = 1;
+        }
+    };
+    mark(mesh.cells);
+    mark(others.tets);
+    mark(others.prisms);
+    mark(others.pyramids);
     return used;
 }
 
@@ -95,10 +102,18 @@ std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<doubl
     return sums;
 }
 
+// cell_numbers: of each cell of the mesh the tuple of a cell array, if that is not its own number
+// sources:      how the mesh's points come from the file's, if they are not the same
+struct Origin {
+    std::vector<std::uint8_t> used;
+    std::vector<std::size_t> cell_numbers;
+    std::optional<IndexRows> sources;
+};
+
 class ArrayConversion {
 public:
-    ArrayConversion(ReadResult& result, const MeshFile& found, std::string_view file, const Wording& wording)
-        : result_(result), found_(found), file_(file), wording_(wording), used_(used_points(result.mesh)) {}
+    ArrayConversion(ReadResult& result, const Origin& origin, std::string_view file, const Wording& wording)
+        : result_(result), origin_(origin), file_(file), wording_(wording) {}
 
     void take(FileArray&& array) {
         result_.fields.push_back(describe(array));
@@ -107,7 +122,7 @@ public:
             result_.warnings.push_back("\"" + array.name + "\" has negative values");
         }
         Attribute attribute{unused_name(array.name), array.components, {}};
-        attribute.values = array.at_cells ? to_points(array) : checked_points(std::move(array));
+        attribute.values = array.at_cells ? from_cells(array) : from_points(std::move(array));
         result_.mesh.attributes.push_back(std::move(attribute));
     }
 
@@ -117,17 +132,18 @@ private:
                     std::string(file_) + ", array \"" + array + "\"");
     }
 
-    std::vector<double> checked_points(FileArray&& array) const {
+    std::vector<double> from_points(FileArray&& array) const {
+        const auto components = static_cast<std::size_t>(array.components);
         for (std::size_t i = 0; i < array.values.size(); ++i) {
-            const std::size_t p = i / static_cast<std::size_t>(array.components);
-            if (!std::isfinite(array.values[i]) && used_[p]) refuse(array.name, wording_.name_point(p));
+            const std::size_t p = i / components;
+            if (!std::isfinite(array.values[i]) && origin_.used[p]) refuse(array.name, wording_.name_point(p));
         }
-        return std::move(array.values);
+        return origin_.sources ? means(*origin_.sources, array.values, components) : std::move(array.values);
     }
 
-    std::vector<double> to_points(const FileArray& array) const {
+    std::vector<double> from_cells(const FileArray& array) const {
         const auto components = static_cast<std::size_t>(array.components);
-        const auto& numbers = found_.hex_numbers;
+        const auto& numbers = origin_.cell_numbers;
         std::vector<double> of_hexes;
         of_hexes.reserve(result_.mesh.cells.size() * components);
         for (std::size_t c = 0; c < result_.mesh.cells.size(); ++c) {
@@ -153,52 +169,108 @@ private:
     }
 
     ReadResult& result_;
-    const MeshFile& found_;
+    const Origin& origin_;
     std::string_view file_;
     const Wording& wording_;
-    std::vector<std::uint8_t> used_;
 };
+
+MixedCells take_others(MeshFile& found) {
+    return {std::move(found.tets.corners), std::move(found.prisms.corners), std::move(found.pyramids.corners)};
+}
+
+std::vector<std::size_t> take_numbers(MeshFile& found) {
+    std::vector<std::size_t> numbers = std::move(found.hexes.numbers);
+    for (const auto* more : {&found.tets.numbers, &found.prisms.numbers, &found.pyramids.numbers}) {
+        numbers.insert(numbers.end(), more->begin(), more->end());
+    }
+    return numbers;
+}
+
+std::string list_of(std::size_t hexes, const MixedCells& others) {
+    std::string list;
+    const auto add = [&](std::size_t count, std::string_view one, std::string_view many) {
+        if (count > 0) list += (list.empty() ? "" : ", ") + counted(count, one, many);
+    };
+    add(hexes, "hexahedron", "hexahedra");
+    add(others.tets.size(), "tetrahedron", "tetrahedra");
+    add(others.prisms.size(), "prism", "prisms");
+    add(others.pyramids.size(), "pyramid", "pyramids");
+    const std::size_t last = list.rfind(", ");
+    return last == std::string::npos ? list : list.replace(last, 2, " and ");
+}
+
+void split_all(ReadResult& result, MixedCells&& others, Origin& origin) {
+    HexMesh& mesh = result.mesh;
+    const bool hexes_too = !mesh.cells.empty();
+    std::string warning = list_of(mesh.cells.size(), others);
+    HexSplit split = plan_split(mesh.points, std::move(mesh.cells), std::move(others));
+    mesh.points = means(split.sources, mesh.points);
+    mesh.cells = std::move(split.cells);
+    if (!origin.cell_numbers.empty()) {
+        std::vector<std::size_t> numbers;
+        numbers.reserve(mesh.cells.size());
+        for (const Index parent : split.parents) numbers.push_back(origin.cell_numbers[parent]);
+        origin.cell_numbers = std::move(numbers);
+    }
+    origin.sources = std::move(split.sources);
+    if (split.tets_cut > 0) warning += " cut into " + counted(split.tets_cut, "tetrahedron", "tetrahedra") + " and";
+    warning += " split into " + counted(mesh.cells.size(), "hexahedron", "hexahedra");
+    result.warnings.push_back(warning + (hexes_too ? ", the hexahedra too so that all fit together" : ""));
+}
 
 }  // namespace
 
-void read_point(TextScanner& in, MeshFile& into, const Wording& wording, std::size_t of) {
-    const std::size_t p = into.points.size();
-    const Place place{wording.point, static_cast<std::int64_t>(p + wording.first), of};
-    Vec3& x = into.points.emplace_back();
-    for (int i = 0; i < 3; ++i) {
-        x[i] = in.real(place);
-        if (!std::isfinite(x[i])) into.not_finite.push_back({p, in.position()});
+void add_point(MeshFile& into, const Vec3& point, std::size_t position) {
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) {
+        into.not_finite.push_back({into.points.size(), position});
+    }
+    into.points.push_back(point);
+}
+
+void check_corners(const TextScanner& in, std::size_t position, std::span<const Index> corners, std::size_t cell,
+                   const Wording& wording, std::string_view kind) {
+    for (std::size_t k = 1; k < corners.size(); ++k) {
+        const auto before = corners.first(k);
+        if (std::find(before.begin(), before.end(), corners[k]) == before.end()) continue;
+        in.fail_at(position, wording.name_cell(cell) + " has " + wording.name_point(corners[k]) + " twice",
+                   std::string(kind) + " needs " + std::to_string(corners.size()) + " different corners");
     }
 }
 
-void check_corners(const TextScanner& in, std::size_t position, const std::array<Index, 8>& hex, std::size_t cell,
-                   const Wording& wording) {
-    auto sorted = hex;
-    std::sort(sorted.begin(), sorted.end());
-    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-    if (twice == sorted.end()) return;
-    in.fail_at(position, wording.name_cell(cell) + " has " + wording.name_point(*twice) + " twice",
-               "a hexahedron needs 8 different corners");
+void report_left_out(MeshFile& found, const std::string& list, std::string_view file) {
+    if (found.hexes.corners.empty() && found.tets.corners.empty() && found.prisms.corners.empty() &&
+        found.pyramids.corners.empty()) {
+        throw Error(ErrorCode::InvalidInput, "no hexahedra" + (list.empty() ? "" : ", but " + list + ", which are ignored"),
+                    std::string(file));
+    }
+    if (!list.empty()) found.warnings.push_back(list + " ignored");
 }
 
-ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file, const Wording& wording) {
+ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file, const Wording& wording,
+                  const ReadOptions& options) {
     ReadResult result;
     result.mesh.points = std::move(found.points);
-    result.mesh.cells = std::move(found.hexes);
+    result.mesh.cells = std::move(found.hexes.corners);
     result.warnings = std::move(found.warnings);
-    if (!found.not_finite.empty()) {
-        const auto used = used_points(result.mesh);
-        for (const auto& [point, position] : found.not_finite) {
-            if (used[point]) in.fail_at(position, "non-finite coordinate at " + wording.name_point(point));
-        }
+    MixedCells others = take_others(found);
+    if (!others.empty() && options.other_cells == OtherCells::Refuse) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(result.mesh.cells.size(), others), std::string(file),
+                    "only hexahedra are wanted");
     }
-    warn_of_handedness(result);
-    auto arrays = std::move(found.arrays);
-    ArrayConversion conversion(result, found, file, wording);
-    for (auto& array : arrays) conversion.take(std::move(array));
+    Origin origin{used_points(result.mesh, others), take_numbers(found), {}};
+    for (const auto& [point, position] : found.not_finite) {
+        if (origin.used[point]) in.fail_at(position, "non-finite coordinate at " + wording.name_point(point));
+    }
+    turn_hexes(result);
     try {
+        if (!others.empty()) split_all(result, std::move(others), origin);
+        warn_of_folded(result);
+        ArrayConversion conversion(result, origin, file, wording);
+        for (auto& array : found.arrays) conversion.take(std::move(array));
         validate(result.mesh);
     } catch (const Error& error) {
+        const bool says_file = std::string_view(error.what()).starts_with(file);
+        if (says_file) throw;
         throw Error(error.code(), error.what(), std::string(file));
     }
     return result;

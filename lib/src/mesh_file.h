@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "subvol/mesh_io.h"
+#include "subvol/mixed_cells.h"
 #include "text_scanner.h"
 
 namespace subvol {
@@ -17,48 +20,81 @@ struct FileArray {
     std::vector<double> values;
 };
 
+/// The cells of one kind. numbers: the place of each among all the cells of the file, from 0; empty where no array asks for it
+template <std::size_t N>
+struct FileCells {
+    std::vector<std::array<Index, N>> corners;
+    std::vector<std::size_t> numbers;
+};
+
 /// What a reader found, before it becomes a mesh.
 ///
-/// hex_numbers: the place of each hex among all the cells of the file, from 0; empty if there are only hexes
-/// not_finite:  points with a coordinate that is not finite, and where the text has it: an error if a hex uses the point
+/// prisms:     in either handedness, for formats differ; as MixedCells else
+/// not_finite: points with a coordinate that is not finite, and where the text has it: an error if a cell uses the point
 struct MeshFile {
     struct NotFinite {
         std::size_t point;
         std::size_t position;
     };
     std::vector<Vec3> points;
-    std::vector<std::array<Index, 8>> hexes;
-    std::vector<std::size_t> hex_numbers;
+    FileCells<8> hexes;
+    FileCells<4> tets;
+    FileCells<6> prisms;
+    FileCells<5> pyramids;
     std::vector<FileArray> arrays;
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
 };
 
-/// How a format calls and counts its points and cells.
+/// How a format calls and counts its points and cells. point_numbers: of each point, if they are not counted from `first`
 struct Wording {
     std::string_view point;
     std::string_view cell;
     std::size_t first;
+    std::span<const std::int64_t> point_numbers = {};
 
-    [[nodiscard]] std::string name_point(std::size_t p) const { return std::string(point) + " " + std::to_string(p + first); }
+    [[nodiscard]] std::string name_point(std::size_t p) const {
+        return std::string(point) + " " +
+               (point_numbers.empty() ? std::to_string(p + first) : std::to_string(point_numbers[p]));
+    }
     [[nodiscard]] std::string name_cell(std::size_t c) const { return std::string(cell) + " " + std::to_string(c + first); }
 };
 
 /// Reads MEDIT ASCII.
-[[nodiscard]] ReadResult read_medit(std::string_view text, std::string_view file);
+[[nodiscard]] ReadResult read_medit(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Reads legacy VTK, ASCII, unstructured grid.
-[[nodiscard]] ReadResult read_legacy_vtk(std::string_view text, std::string_view file);
+/// Reads legacy VTK, ASCII or BINARY, unstructured grid.
+[[nodiscard]] ReadResult read_legacy_vtk(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Reads three coordinates of the point that comes next and appends it. of: as in Place
-void read_point(TextScanner& in, MeshFile& into, const Wording& wording, std::size_t of);
+/// Reads VTK XML, UnstructuredGrid.
+[[nodiscard]] ReadResult read_vtu(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Refuses a hex that has a corner twice. position: its place in the text; cell: its place among the cells, from 0
-void check_corners(const TextScanner& in, std::size_t position, const std::array<Index, 8>& hex, std::size_t cell,
-                   const Wording& wording);
+/// Reads Gmsh, version 2, ASCII.
+[[nodiscard]] ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Makes the mesh of what was found: left-handed hexes turned, cell arrays carried over to the points, all checked.
-[[nodiscard]] ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file, const Wording& wording);
+/// Appends a point that stands at a place in the text.
+void add_point(MeshFile& into, const Vec3& point, std::size_t position);
+
+/// Reads three coordinates of the point that comes next and appends it. in: a TextScanner or VtkValues; of: as in Place
+template <class Numbers>
+void read_point(Numbers& in, MeshFile& into, const Wording& wording, std::size_t of) {
+    const Place place{wording.point, static_cast<std::int64_t>(into.points.size() + wording.first), of};
+    Vec3 point;
+    for (int i = 0; i < 3; ++i) point[i] = in.real(place);
+    add_point(into, point, in.position());
+}
+
+/// Refuses a cell that has a corner twice. position: its place in the text; cell: its number, from 0; kind: "a hexahedron"
+void check_corners(const TextScanner& in, std::size_t position, std::span<const Index> corners, std::size_t cell,
+                   const Wording& wording, std::string_view kind);
+
+/// Tells of the cells that are left out, as a list with their counts; refuses a file without any others.
+void report_left_out(MeshFile& found, const std::string& list, std::string_view file);
+
+/// Makes the mesh of what was found: left-handed hexes turned, other cells split, cell arrays carried over to the points, all
+/// checked.
+[[nodiscard]] ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file, const Wording& wording,
+                                const ReadOptions& options);
 
 /// Writes MEDIT ASCII, version 2.
 std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh);

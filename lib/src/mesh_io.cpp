@@ -18,11 +18,13 @@ std::string format_of(const std::filesystem::path& path) {
 
 }  // namespace
 
-ReadResult read_mesh(const std::filesystem::path& path) {
+ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     const std::string format = format_of(path);
-    if (format == ".MESH") return read_medit(read_text(path), path.string());
-    if (format == ".VTK") return read_legacy_vtk(read_text(path), path.string());
-    refuse_format(path, "read", ".mesh: MEDIT ASCII; .vtk: legacy VTK ASCII");
+    if (format == ".MESH") return read_medit(read_text(path), path.string(), options);
+    if (format == ".VTK") return read_legacy_vtk(read_text(path), path.string(), options);
+    if (format == ".VTU") return read_vtu(read_text(path), path.string(), options);
+    if (format == ".MSH") return read_gmsh(read_text(path), path.string(), options);
+    refuse_format(path, "read", ".mesh: MEDIT ASCII; .vtk: legacy VTK; .vtu: VTK XML; .msh: Gmsh 2 ASCII");
 }
 
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh) {

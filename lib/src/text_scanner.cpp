@@ -120,6 +120,13 @@ std::string_view TextScanner::line() {
     return rest;
 }
 
+std::string_view TextScanner::bytes(std::size_t count, const Place& place) {
+    start_ = next_;
+    if (count > bytes_left()) fail_word(place, "", "");
+    next_ += count;
+    return text_.substr(start_, count);
+}
+
 double TextScanner::real(const Place& place) {
     const std::string_view found = word();
     const std::string_view digits = without_plus(found);
@@ -150,7 +157,10 @@ std::int64_t TextScanner::integer(const Place& place) {
 }
 
 std::size_t TextScanner::count(const Place& place) {
-    const std::int64_t value = integer(place);
+    return as_count(integer(place), place);
+}
+
+std::size_t TextScanner::as_count(std::int64_t value, const Place& place) const {
     if (value < 0) fail(describe(place) + ": negative count " + std::to_string(value));
     if (value >= std::int64_t{kNone}) {
         fail(describe(place) + ": count out of range: " + std::to_string(value), "at most " + std::to_string(kNone - 1));
@@ -168,9 +178,12 @@ void TextScanner::fail(const std::string& message, const std::string& allowed) c
 }
 
 void TextScanner::fail_at(std::size_t position, const std::string& message, const std::string& allowed) const {
-    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(position);
-    const auto line = 1 + std::count(text_.begin(), end, '\n');
-    throw Error(ErrorCode::InvalidInput, message, std::string(file_) + ", line " + std::to_string(line), allowed);
+    const auto lines_before = [&] {
+        return std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(position), '\n');
+    };
+    const std::string place =
+        names_bytes_ ? ", byte " + std::to_string(position) : ", line " + std::to_string(1 + lines_before());
+    throw Error(ErrorCode::InvalidInput, message, std::string(file_) + place, allowed);
 }
 
 void TextScanner::fail_word(const Place& place, std::string_view expected, std::string_view found) const {

@@ -21,8 +21,8 @@ struct Place {
 
 /// Takes a text apart into words and numbers separated by white space. The text must outlive the scanner.
 ///
-/// Every failure is an Error(InvalidInput) that names the file and the line; lines are only counted then. The decimal point
-/// is a point in every locale. Copying a scanner remembers a place in the text.
+/// Every failure is an Error(InvalidInput) that names the file and the line (in binary data the byte); lines are only counted
+/// then. The decimal point is a point in every locale. Copying a scanner remembers a place in the text.
 class TextScanner {
 public:
     enum class Comments { None, Hash };  // Hash: from # to the end of the line
@@ -30,19 +30,30 @@ public:
     /// file: its name, for messages. A byte order mark is passed over.
     TextScanner(std::string_view text, std::string_view file, Comments comments);
 
+    /// From now on failures name the byte instead of the line: a line means nothing in binary data.
+    void name_bytes() { names_bytes_ = true; }
+
     [[nodiscard]] bool at_end();
     /// Empty at the end of the text.
     std::string_view word();
     [[nodiscard]] std::string_view peek();
     /// The rest of the line without its end.
     std::string_view line();
+    /// Exactly so many bytes, whatever they are.
+    std::string_view bytes(std::size_t count, const Place& place);
+    /// Goes to an offset into the text.
+    void seek(std::size_t position) { next_ = start_ = position; }
 
     /// A number, perhaps not finite; one that overflows a double is infinite.
     double real(const Place& place);
     std::int64_t integer(const Place& place);
     /// A number of things to come: not negative, at most what an Index can count.
     std::size_t count(const Place& place);
+    /// The last number, checked as `count` does.
+    [[nodiscard]] std::size_t as_count(std::int64_t value, const Place& place) const;
 
+    /// How many bytes are left.
+    [[nodiscard]] std::size_t bytes_left() const { return text_.size() - next_; }
     /// How many things of `words` words each the rest of the text can hold at most: the limit of any allocation.
     [[nodiscard]] std::size_t room_for(std::size_t words) const;
 
@@ -59,6 +70,7 @@ private:
     std::string_view text_;
     std::string_view file_;
     Comments comments_;
+    bool names_bytes_ = false;
     std::size_t next_ = 0;
     std::size_t start_ = 0;
 };

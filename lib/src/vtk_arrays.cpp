@@ -4,7 +4,6 @@
 #include <charconv>
 #include <limits>
 #include <map>
-#include <set>
 
 namespace subvol {
 
@@ -14,25 +13,8 @@ namespace {
 const std::map<std::string_view, std::size_t> kComponents{
     {"VECTORS", 3}, {"NORMALS", 3}, {"TENSORS", 9}, {"TENSORS6", 6}, {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}, {"EDGE_FLAGS", 1}};
 
-const std::set<std::string_view> kTypes{"BIT",
-                                        "CHAR",
-                                        "SIGNED_CHAR",
-                                        "UNSIGNED_CHAR",
-                                        "SHORT",
-                                        "UNSIGNED_SHORT",
-                                        "INT",
-                                        "UNSIGNED_INT",
-                                        "LONG",
-                                        "UNSIGNED_LONG",
-                                        "FLOAT",
-                                        "DOUBLE",
-                                        "VTKIDTYPE",
-                                        "VTKTYPEINT64",
-                                        "VTKTYPEUINT64",
-                                        "VTKTYPEINT32",
-                                        "VTKTYPEUINT32",
-                                        "LONG_LONG",
-                                        "UNSIGNED_LONG_LONG"};
+// Colours are bytes in a BINARY file and numbers from 0 to 1 in an ASCII one.
+constexpr VtkType kByte{NumberType::UInt8};
 
 int hex_digit(char c) {
     int digit = -1;
@@ -88,29 +70,22 @@ bool VtkArrayReader::read_section(const std::string& keyword) {
         read_scalars();
     } else if (keyword == "LOOKUP_TABLE") {
         read_lookup_table();
+    } else if (keyword == "COLOR_SCALARS") {
+        read_colors();
     } else {
-        const std::string name(in_.word());
-        const std::size_t components = checked_components(in_, in_.count({keyword}));
-        if (keyword == "TEXTURE_COORDINATES") read_type(keyword);
-        read_values(name, components);
+        read_texture_coordinates();
     }
     return true;
 }
 
-void VtkArrayReader::read_type(const std::string& what) {
-    const std::string_view type = in_.word();
-    if (!kTypes.contains(upper_case(type))) in_.fail_word({what}, "a data type", type);
-}
-
 void VtkArrayReader::read_attribute(const std::string& keyword, std::size_t components) {
     const std::string name(in_.word());
-    read_type(keyword);
-    read_values(name, components);
+    read_values(name, values_.read_type(keyword), components);
 }
 
 void VtkArrayReader::read_scalars() {
     const std::string name(in_.word());
-    read_type("SCALARS " + in_quotes(name));
+    const VtkType type = values_.read_type("SCALARS " + in_quotes(name));
     // The number of components may be left out: it is there if more stands on the line.
     std::size_t components = 1;
     TextScanner ahead = in_;
@@ -121,13 +96,26 @@ void VtkArrayReader::read_scalars() {
         in_.word();
         in_.word();
     }
-    read_values(name, components);
+    read_values(name, type, components);
+}
+
+void VtkArrayReader::read_colors() {
+    const std::string name(in_.word());
+    read_values(name, kByte, checked_components(in_, in_.count({"COLOR_SCALARS"})));
+    if (!values_.binary()) return;
+    for (double& value : found_.arrays.back().values) value /= 255;
+}
+
+void VtkArrayReader::read_texture_coordinates() {
+    const std::string name(in_.word());
+    const std::size_t components = checked_components(in_, in_.count({"TEXTURE_COORDINATES"}));
+    read_values(name, values_.read_type("TEXTURE_COORDINATES"), components);
 }
 
 void VtkArrayReader::read_lookup_table() {
     const std::string name(in_.word());
     const std::size_t size = in_.count({"LOOKUP_TABLE"});
-    skip_values(name, 4, size);
+    skip_values(name, kByte, 4 * size);
 }
 
 void VtkArrayReader::read_field() {
@@ -138,42 +126,46 @@ void VtkArrayReader::read_field() {
             in_.word();
             skip_metadata(in_);
         }
-        const std::string name(in_.word());
-        const std::string what = "FIELD array " + in_quotes(name);
-        const std::size_t components = in_.count({what});
-        const std::size_t tuples = in_.count({what});
-        if (upper_case(in_.peek()) == "STRING") {
-            in_.word();
-            in_.line();
-            const std::size_t lines = std::min(components * tuples, 2 * in_.room_for(1));
-            for (std::size_t i = 0; i < lines; ++i) in_.line();
-            found_.warnings.push_back("text array \"" + decoded(name) + "\" ignored");
-            continue;
-        }
-        read_type(what);
-        if (!in_data_) {
-            skip_values(name, components, tuples);
-            continue;
-        }
-        if (tuples != tuples_) {
-            in_.fail(what + " has " + std::to_string(tuples) + " tuples", std::to_string(tuples_) + " are needed");
-        }
-        read_values(name, checked_components(in_, components));
+        read_field_array();
     }
 }
 
-void VtkArrayReader::read_values(const std::string& name, std::size_t components) {
+void VtkArrayReader::read_field_array() {
+    const std::string name(in_.word());
+    const std::string what = "FIELD array " + in_quotes(name);
+    const std::size_t components = in_.count({what});
+    const std::size_t tuples = in_.count({what});
+    const std::string type_word = upper_case(in_.peek());
+    if (type_word == "STRING" || type_word == "UTF8_STRING") {
+        in_.word();
+        values_.skip_texts(components * tuples, what);
+        found_.warnings.push_back("text array \"" + decoded(name) + "\" ignored");
+        return;
+    }
+    const VtkType type = values_.read_type(what);
+    if (!in_data_) {
+        skip_values(name, type, components * tuples);
+        return;
+    }
+    if (tuples != tuples_) {
+        in_.fail(what + " has " + std::to_string(tuples) + " tuples", std::to_string(tuples_) + " are needed");
+    }
+    read_values(name, type, checked_components(in_, components));
+}
+
+void VtkArrayReader::read_values(const std::string& name, VtkType type, std::size_t components) {
     FileArray array{decoded(name), static_cast<int>(components), at_cells_, {}};
     const std::string what = "array " + in_quotes(name) + ": value";
     const std::size_t count = tuples_ * components;
-    array.values.reserve(std::min(count, in_.room_for(1)));
-    for (std::size_t i = 0; i < count; ++i) array.values.push_back(in_.real({what, static_cast<std::int64_t>(i)}));
+    values_.begin(type);
+    array.values.reserve(std::min(count, values_.room()));
+    for (std::size_t i = 0; i < count; ++i) array.values.push_back(values_.real({what, static_cast<std::int64_t>(i)}));
     found_.arrays.push_back(std::move(array));
 }
 
-void VtkArrayReader::skip_values(const std::string& name, std::size_t components, std::size_t tuples) {
-    const std::string what = "array " + in_quotes(name) + ": value";
-    for (std::size_t i = 0; i < components * tuples; ++i) in_.real({what, static_cast<std::int64_t>(i)});
+void VtkArrayReader::skip_values(const std::string& name, VtkType type, std::size_t values) {
+    values_.begin(type);
+    values_.skip(values, "array " + in_quotes(name) + ": value");
 }
 
 }  // namespace subvol

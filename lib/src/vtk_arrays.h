@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh_file.h"
+#include "vtk_values.h"
 
 namespace subvol {
 
@@ -14,7 +15,7 @@ void skip_metadata(TextScanner& in);
 /// The arrays of legacy VTK: the sections behind POINT_DATA and CELL_DATA, and FIELD anywhere.
 class VtkArrayReader {
 public:
-    VtkArrayReader(TextScanner& in, MeshFile& found) : in_(in), found_(found) {}
+    VtkArrayReader(TextScanner& in, VtkValues& values, MeshFile& found) : in_(in), values_(values), found_(found) {}
 
     /// Reads the section whose keyword (in capitals) was the last word, if it is one of arrays.
     ///
@@ -24,18 +25,19 @@ public:
     /// The arrays that follow have one tuple a point, or one a cell.
     void start_data(bool at_cells, std::size_t tuples);
 
-    /// Refuses a word that is no VTK data type.
-    void read_type(const std::string& what);
-
 private:
     void read_scalars();
     void read_attribute(const std::string& keyword, std::size_t components);
+    void read_colors();
+    void read_texture_coordinates();
     void read_field();
+    void read_field_array();
     void read_lookup_table();
-    void read_values(const std::string& name, std::size_t components);
-    void skip_values(const std::string& name, std::size_t components, std::size_t tuples);
+    void read_values(const std::string& name, VtkType type, std::size_t components);
+    void skip_values(const std::string& name, VtkType type, std::size_t values);
 
     TextScanner& in_;
+    VtkValues& values_;
     MeshFile& found_;
     bool in_data_ = false;
     bool at_cells_ = false;

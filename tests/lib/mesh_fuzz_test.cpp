@@ -6,6 +6,7 @@
 #include "subvol/mesh_io.h"
 #include "temp_folder.h"
 #include "test_meshes.h"
+#include "vtu_texts.h"
 
 namespace subvol::test {
 
@@ -69,6 +70,57 @@ TEST_F(MeshFuzz, VtkOffsetsAndConnectivity) {
                              cell_lines(mesh, 0) + "0 1 2 3\nCELL_TYPES 3\n12\n12\n10\nCELL_DATA 3\nVECTORS v float\n" +
                              "1 2 3 4 5 6 7 8 9\n";
     expect_sound_or_refused(".vtk", text, 3);
+}
+
+TEST_F(MeshFuzz, VtkBinary) {
+    const std::string eight = bytes_of(std::vector<double>(12, 0.5), std::endian::big);
+    const std::string text = binary_vtk_text(make_box(2, 1, 1)) + "METADATA\nINFORMATION 0\n\nPOINT_DATA 12\nFIELD f 3\n" +
+                             "a 1 12 double\n" + eight + "\nb 1 12 bit\nab\nc 1 2 string\n\xC1x\x80\x02yz\n" +
+                             "COLOR_SCALARS r 1\n0123456789ab\nCELL_DATA 2\nSCALARS s short\nLOOKUP_TABLE default\nabcd\n";
+    expect_sound_or_refused(".vtk", text, 4);
+}
+
+TEST_F(MeshFuzz, VtkBinaryOffsetsAndConnectivity) {
+    const HexMesh mesh = make_box(2, 1, 1);
+    std::vector<std::int64_t> corners = corners_as<std::int64_t>(mesh);
+    corners.insert(corners.end(), {0, 1, 3, 6});
+    const auto big = [](const auto& values) { return bytes_of(values, std::endian::big); };
+    const std::string text = "# vtk DataFile Version 5.1\nt\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n" +
+                             big(coordinates_as<double>(mesh)) + "\nCELLS 4 20\nOFFSETS vtktypeint64\n" +
+                             big(std::vector<std::int64_t>{0, 8, 16, 20}) + "\nCONNECTIVITY vtktypeint64\n" + big(corners) +
+                             "\nCELL_TYPES 3\n" + big(std::vector<std::int32_t>{12, 12, 10}) + "\n";
+    expect_sound_or_refused(".vtk", text, 5);
+}
+
+TEST_F(MeshFuzz, VtuOfEveryEncoding) {
+    unsigned seed = 6;
+    for (const auto& [format, encoding] : std::vector<std::pair<std::string, std::string>>{
+             {"ascii", ""}, {"binary", ""}, {"appended", "raw"}, {"appended", "base64"}}) {
+        for (const std::string compressor : {"", "vtkZLibDataCompressor", "vtkLZMADataCompressor", "vtkLZ4DataCompressor"}) {
+            if (format == "ascii" && !compressor.empty()) continue;
+            VtuText vtu{.format = format, .encoding = encoding, .compressor = compressor};
+            const std::string data = "<PointData>" + vtu.array("Float32", "Name=\"s\"", std::vector<float>(8, 1)) +
+                                     "</PointData><CellData>" + vtu.array("Int16", "Name=\"c\"", std::vector<std::int16_t>{1}) +
+                                     "</CellData>";
+            const std::string piece = vtu.piece(make_box(1, 1, 1), data);
+            expect_sound_or_refused(".vtu", vtu.file(piece + piece), seed++);
+        }
+    }
+}
+
+TEST_F(MeshFuzz, Gmsh) {
+    const std::string text =
+        replaced(gmsh_text(make_box(2, 1, 1), "2 1 3"), "$Elements\n2\n", "$Elements\n4\n1 4 0 1 2 4 7\n2 3 0 1 2 3 4\n") +
+        "$NodeData\n1\n\"s\"\n1\n0\n3\n0\n1\n12\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n9 9\n"
+        "10 1\n11 1\n12 1\n$EndNodeData\n";
+    expect_sound_or_refused(".msh", text, 30);
+}
+
+TEST_F(MeshFuzz, MixedCells) {
+    const std::string cells = "Pyramids 1\n1 2 7 6 4 0\nPrisms 1\n1 2 3 6 7 8 0\nTetrahedra 1\n1 2 3 5 0\nHexahedra 0\n";
+    const std::string vertices = "Vertices 8\n0 0 0 0\n1 0 0 0\n0 1 0 0\n.5 -1 .5 0\n0 0 -1 0\n0 0 1 0\n1 0 1 0\n0 1 1 0\n";
+    expect_sound_or_refused(".mesh", "MeshVersionFormatted 2\nDimension 3\n" + vertices + cells, 31);
+    expect_sound_or_refused(".mesh", "MeshVersionFormatted 2\nDimension 3\n" + cells + vertices, 32);
 }
 
 }  // namespace

@@ -176,7 +176,8 @@ TEST_F(MeshIo, VtkErrorsNameThePlace) {
                              std::string("0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26\n");
     static_cast<void>(read("good.vtk", good));
     const std::vector<std::array<std::string, 3>> cases{
-        {"ASCII", "BINARY", "line 3: BINARY legacy VTK is not supported yet"},
+        {"ASCII", "BINARY", "unexpected end of file"},
+        {"ASCII", "EBCDIC", "line 3: encoding: ASCII or BINARY is expected, not \"EBCDIC\""},
         {"UNSTRUCTURED_GRID", "STRUCTURED_GRID", "line 4: DATASET \"STRUCTURED_GRID\" is not supported yet"},
         {"UNSTRUCTURED_GRID", "POLYDATA", "line 4: POLYDATA is not a volume mesh"},
         {"27 double", "27 dubble", "line 5: POINTS: a data type is expected, not \"dubble\""},
@@ -201,13 +202,65 @@ TEST_F(MeshIo, VtkErrorsNameThePlace) {
     }
 }
 
-TEST_F(MeshIo, OtherCellsAreLeftOutWithTheirValues) {
-    std::string text = replaced(vtk_text(make_box(2, 1, 1)), "CELLS 2 18", "CELLS 3 23");
-    text = replaced(replaced(text, "\nCELL_TYPES 2\n", "\nCELL_TYPES 3\n10\n"), "CELLS 3 23\n", "CELLS 3 23\n4 0 1 2 3\n");
-    const ReadResult result = read("a.vtk", text + "CELL_DATA 3\nSCALARS s float\nLOOKUP_TABLE default\nnan 5 5\n");
+// Two hexes in a row and a prism on top of the second: volumes 1, 1 and 1/2.
+std::string mixed_vtk_text() {
+    HexMesh mesh = make_box(2, 1, 1);
+    mesh.points.emplace_back(1, 0.5, 2);
+    mesh.points.emplace_back(2, 0.5, 2);
+    std::string text = replaced(vtk_text(mesh), "CELLS 2 18\n", "CELLS 3 25\n6 7 10 12 8 11 13\n");
+    return replaced(text, "\nCELL_TYPES 2\n", "\nCELL_TYPES 3\n13\n");
+}
+
+TEST_F(MeshIo, OtherCellsCanBeLeftOutWithTheirValues) {
+    const std::string text = mixed_vtk_text() + "CELL_DATA 3\nSCALARS s float\nLOOKUP_TABLE default\nnan 5 5\n";
+    const ReadResult result = read_mesh(write("a.vtk", text), {.other_cells = OtherCells::Ignore});
     EXPECT_EQ(result.mesh.cells, make_box(2, 1, 1).cells);
-    EXPECT_EQ(result.mesh.find_attribute("s")->values, std::vector<double>(12, 5.0));
-    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("1 tetrahedron (VTK type 10) ignored"), HasSubstr("cell array \"s\"")));
+    std::vector<double> expected(14, 5.0);
+    expected[12] = expected[13] = 0;  // points of the prism alone
+    EXPECT_EQ(result.mesh.find_attribute("s")->values, expected);
+    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("1 wedge (VTK type 13) ignored"), HasSubstr("cell array \"s\"")));
+}
+
+TEST_F(MeshIo, OtherCellsCanBeRefused) {
+    const auto read_it = [&] {
+        static_cast<void>(read_mesh(write("a.vtk", mixed_vtk_text()), {.other_cells = OtherCells::Refuse}));
+    };
+    EXPECT_THAT(error_of(read_it), HasSubstr("a.vtk: the mesh has 2 hexahedra and 1 prism"));
+    static_cast<void>(read_mesh(write("b.vtk", vtk_text(kBox)), {.other_cells = OtherCells::Refuse}));
+}
+
+TEST_F(MeshIo, OtherCellsAreSplitWithTheirValues) {
+    const ReadResult result = read("a.vtk", mixed_vtk_text() +
+                                                "CELL_DATA 3\nSCALARS s float\nLOOKUP_TABLE default\n10 20 30\n"
+                                                "POINT_DATA 14\nSCALARS x float\nLOOKUP_TABLE default\n"
+                                                "0 1 2 0 1 2 0 1 2 0 1 2 1 2\n");
+    EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("2 hexahedra and 1 prism split into 22 hexahedra"), HasSubstr("\"s\"")));
+    const auto& s = result.mesh.find_attribute("s")->values;
+    const auto& x = result.mesh.find_attribute("x")->values;
+    ASSERT_EQ(s.size(), result.mesh.points.size());
+    for (std::size_t p = 0; p < s.size(); ++p) {
+        const Vec3 at = result.mesh.points[p];
+        EXPECT_DOUBLE_EQ(x[p], at.x);  // means keep what is linear
+        // Inside a cell and on the hull its own value; between the hexes, whose children are equal, the mean.
+        if (at.z == 1) continue;
+        EXPECT_DOUBLE_EQ(s[p], at.z > 1 ? 10 : at.x < 1 ? 20 : at.x > 1 ? 30 : 25);
+    }
+}
+
+TEST_F(MeshIo, MeditReadsEveryKindOfCell) {
+    const std::string cells = "Tetrahedra 1\n1 2 3 5 0\nPrisms 1\n1 2 3 6 7 8 0\nPyramids 1\n1 2 7 6 4 0\n";
+    const std::string vertices = "Vertices 8\n0 0 0 0\n1 0 0 0\n0 1 0 0\n.5 -1 .5 0\n0 0 -1 0\n0 0 1 0\n1 0 1 0\n0 1 1 0\n";
+    for (const std::string& body : {vertices + cells, cells + vertices}) {
+        const ReadResult result = read("a.mesh", "MeshVersionFormatted 2\nDimension 3\n" + body + "End\n");
+        EXPECT_THAT(result.warnings,
+                    ElementsAre("1 tetrahedron, 1 prism and 1 pyramid cut into 6 tetrahedra and split into 24 hexahedra"));
+    }
+    const auto error = [&](const std::string& from, const std::string& to) {
+        return read_error("a.mesh", "MeshVersionFormatted 2\nDimension 3\n" + vertices + replaced(cells, from, to) + "End\n");
+    };
+    EXPECT_THAT(error("1 2 3 5 0", "1 2 3 9 0"), HasSubstr("tetrahedron 1: there is no vertex with index 9"));
+    EXPECT_THAT(error("7 6 4 0", "7 2 4 0"), HasSubstr("pyramid 1 has vertex 2 twice (a pyramid needs 5 different corners)"));
+    EXPECT_THAT(error("Pyramids", "Prisms"), HasSubstr("there is a second Prisms section"));
 }
 
 TEST_F(MeshIo, CellArraysBecomeVolumeWeightedMeans) {

@@ -47,6 +47,17 @@ inline std::string vtk_text(const HexMesh& mesh, const std::string& type = "12")
     return text;
 }
 
+/// Gmsh 2 without arrays. tags: their number and they themselves
+inline std::string gmsh_text(const HexMesh& mesh, const std::string& tags) {
+    std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.points.size()) + "\n";
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const Vec3& x = mesh.points[p];
+        text += std::to_string(p + 1) + " " + number(x.x) + " " + number(x.y) + " " + number(x.z) + "\n";
+    }
+    return text + "$EndNodes\n$Elements\n" + std::to_string(mesh.cells.size()) + "\n" +
+           cell_lines(mesh, 1, "1 5 " + tags + " ") + "$EndElements\n";
+}
+
 /// `text` with the first `from` turned into `to`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);

@@ -17,17 +17,30 @@ struct FieldInfo {
     double max = 0;
 };
 
+/// What becomes of tetrahedra, prisms and pyramids.
+///
+/// Split:  all cells, hexahedra too, are split by `split_into_hexes`, and a warning says so
+/// Ignore: they are left out, and a warning says so
+/// Refuse: they are an error
+enum class OtherCells { Split, Ignore, Refuse };
+
+struct ReadOptions {
+    OtherCells other_cells = OtherCells::Split;
+};
+
 struct ReadResult {
     HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
     std::vector<FieldInfo> fields;
     std::vector<std::string> warnings;  // what was left out, turned round or converted, one sentence each
 };
 
-/// Reads a hexahedral mesh; the format follows from the file name: MEDIT `.mesh` (ASCII), legacy VTK `.vtk` (ASCII).
+/// Reads a mesh; the format follows from the file name: MEDIT `.mesh` (ASCII), legacy VTK `.vtk` (ASCII and BINARY,
+/// unstructured grid), VTK XML `.vtu` (all encodings and compressors), Gmsh `.msh` (version 2, ASCII).
 ///
+/// Cells of lower dimension and of higher order are left out with a warning.
 /// throws: Error(Io) if the file cannot be opened; Error(InvalidInput) if it is malformed, naming the line, and the cell or
 ///         point as the file counts them; never allocates by a number from the file that the file's size does not bear out
-[[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path);
+[[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (appended raw, with all attributes). Written beside and
 /// renamed, so that there is never half a file.
