@@ -152,7 +152,7 @@ std::int64_t TextScanner::integer(const Place& place) {
 std::size_t TextScanner::count(const Place& place) {
     const std::int64_t value = integer(place);
     if (value < 0) fail(describe(place) + ": negative count " + std::to_string(value));
-    if (value >= std::int64_t{kNone}) {
+    if (static_cast<std::uint64_t>(value) >= kNone) {
         fail(describe(place) + ": count out of range: " + std::to_string(value), "at most " + std::to_string(kNone - 1));
     }
     return static_cast<std::size_t>(value);

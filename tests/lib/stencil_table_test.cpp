@@ -119,7 +119,8 @@ TEST(StencilTable, SharesPatternsBetweenRegularRows) {
     const RefinementTables tables = refinement_tables(build_topology(test::make_box(20, 20, 20)), {.levels = 1});
     const StencilTable& level = tables.levels[0];
     EXPECT_EQ(level.kept(), 21u * 21u * 21u);
-    EXPECT_LT(static_cast<double>(level.bytes()) / static_cast<double>(level.rows()), 130) << "point ids and hardly more";
+    EXPECT_LT(static_cast<double>(level.bytes()) / static_cast<double>(level.rows()), 32.5 * sizeof(Index))
+        << "25 to 36 point ids and hardly more";
     std::size_t patterns = 0;
     for (const auto& block : level.blocks()) patterns = std::max(patterns, block.pattern_offsets.size() - 1);
     EXPECT_LT(patterns, 64u);
