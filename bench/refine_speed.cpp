@@ -1,50 +1,68 @@
-// Refinement of a twisted block: tables and their application, stored tables again and again, the trilinear split beside MCQ,
-// and what part of the machine's memory bandwidth that is. All ratios from one run. Arguments: cells per side, levels, repeats.
-#include <sys/resource.h>
+// Refinement of a twisted block: tables and their application, stored tables again and again, the trilinear split beside MCQ, one
+// thread beside all, and what part of the machine's memory bandwidth that is. All ratios from one run.
+// Arguments: cells per side, levels, repeats.
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <string>
 #include <vector>
 
+#include "measure.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"
 
 namespace {
 
 using namespace subvol;
+using bench::peak_bytes;
+using bench::seconds_of;
 
-double seconds_of(const auto& work, int repeats) {
-    double best = 1e30;
-    for (int i = 0; i < repeats; ++i) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    }
-    return best;
-}
-
-double peak_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
+constexpr std::size_t kChannels = 4;  // position and density
 
 /// Bytes a second that all cores together copy (read and write counted).
 double copy_bandwidth() {
-    const std::size_t count = std::size_t{1} << 26;
-    std::vector<double> from(count, 1.0), to(count);
+    constexpr std::size_t kCount = std::size_t{1} << 26, kPart = 65536;
+    const std::vector<double> from(kCount, 1.0);
+    std::vector<double> to(kCount);
     const double seconds = seconds_of(
         [&] {
-            tbb::parallel_for(std::size_t{0}, count / 65536,
-                              [&](std::size_t i) { std::copy_n(from.data() + i * 65536, 65536, to.data() + i * 65536); });
+            tbb::parallel_for(std::size_t{0}, kCount / kPart,
+                              [&](std::size_t i) { std::copy_n(from.data() + i * kPart, kPart, to.data() + i * kPart); });
         },
         5);
-    return 2.0 * 8.0 * static_cast<double>(count) / seconds;
+    return 2.0 * sizeof(double) * static_cast<double>(kCount) / seconds;
+}
+
+std::vector<double> channels_of(const HexMesh& mesh) {
+    std::vector<double> data;
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const Vec3& x = mesh.points[p];
+        data.insert(data.end(), {x.x, x.y, x.z, mesh.attributes[0].values[p]});
+    }
+    return data;
+}
+
+/// What is timed: everything from the control mesh on, and the application alone.
+struct Timing {
+    double tables = 0, streamed = 0, apply = 0, apply_float = 0;
+};
+
+Timing measure(const HexMesh& mesh, const std::vector<double>& data, const RefineOptions& options, int repeats) {
+    Timing timing;
+    timing.tables = seconds_of(
+        [&] {
+            const RefinementTables tables = refinement_tables(build_topology(mesh), options);
+            (void)tables.apply(std::span<const double>(data), kChannels);
+        },
+        repeats);
+    timing.streamed = seconds_of([&] { (void)refine(mesh, options); }, repeats);
+    const RefinementTables tables = refinement_tables(build_topology(mesh), options);
+    const std::vector<float> single(data.begin(), data.end());
+    timing.apply = seconds_of([&] { (void)tables.apply(std::span<const double>(data), kChannels); }, repeats);
+    timing.apply_float = seconds_of([&] { (void)tables.apply(std::span<const float>(single), kChannels); }, repeats);
+    return timing;
 }
 
 }  // namespace
@@ -52,53 +70,41 @@ double copy_bandwidth() {
 int main(int argc, char** argv) {
     const int side = argc > 1 ? std::atoi(argv[1]) : 64, levels = argc > 2 ? std::atoi(argv[2]) : 2;
     const int repeats = argc > 3 ? std::atoi(argv[3]) : 3;
-    const std::size_t threads = argc > 4 ? std::strtoul(argv[4], nullptr, 10) : 0;
-    const tbb::global_control limit(
-        tbb::global_control::max_allowed_parallelism,
-        threads ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
     const HexMesh mesh = make_model("twist", side);
-    std::vector<double> data;
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-        for (int a = 0; a < 3; ++a) data.push_back(mesh.points[p][a]);
-        data.push_back(mesh.attributes[0].values[p]);
-    }
+    const auto data = channels_of(mesh);
+    const RefineOptions mcq_options{.levels = levels}, linear_options{.scheme = Scheme::Linear, .levels = levels};
+
     const double before = peak_bytes();
-
-    std::size_t bytes = 0, terms = 0;
-    double points = 0, touched = 0;
-    const auto tables_and_application = [&](Scheme scheme) {
-        return seconds_of(
-            [&] {
-                const RefinementTables tables = refinement_tables(build_topology(mesh), {.scheme = scheme, .levels = levels});
-                const auto fine = tables.apply(std::span<const double>(data), 4);
-                points = static_cast<double>(fine.size()) / 4;
-            },
-            repeats);
-    };
-    const double mcq = tables_and_application(Scheme::Mcq);
+    const Timing mcq = measure(mesh, data, mcq_options, repeats);
     const double peak = peak_bytes() - before;
-    const double linear = tables_and_application(Scheme::Linear);
-    const double streamed = seconds_of([&] { (void)refine(mesh, {.levels = levels}); }, repeats);
-
-    const RefinementTables tables = refinement_tables(build_topology(mesh), {.levels = levels});
-    for (const auto& level : tables.levels) {
-        bytes += level.bytes();
-        terms += level.terms();
-        touched += static_cast<double>(level.bytes()) + 32.0 * static_cast<double>(level.rows() + level.columns());
+    const Timing linear = measure(mesh, data, linear_options, repeats);
+    Timing one;
+    {
+        const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+        one = measure(mesh, data, mcq_options, repeats);
     }
-    const double apply = seconds_of([&] { (void)tables.apply(std::span<const double>(data), 4); }, repeats);
-    const std::vector<float> single(data.begin(), data.end());
-    const double apply_float = seconds_of([&] { (void)tables.apply(std::span<const float>(single), 4); }, repeats);
-    const double bandwidth = copy_bandwidth();
 
-    std::printf("%.1f M output points, %d levels of a %d^3 block\n", points / 1e6, levels, side);
-    std::printf("tables and application   %.2f s   %.2f M points/s   peak %.0f bytes a point\n", mcq, points / mcq / 1e6,
-                peak / points);
-    std::printf("  of the trilinear split %.2f s   MCQ takes %.2f times as long\n", linear, mcq / linear);
-    std::printf("refine, nothing stored   %.2f s   %.2f M points/s\n", streamed, points / streamed / 1e6);
-    std::printf("stored tables            %.1f bytes and %.1f terms a point\n", static_cast<double>(bytes) / points,
-                static_cast<double>(terms) / points);
-    std::printf("application, double      %.2f s   %.1f M point-channels/s   %.0f %% of the copy bandwidth of %.1f GB/s\n",
-                apply, 4 * points / apply / 1e6, 100 * touched / apply / bandwidth, bandwidth / 1e9);
-    std::printf("application, float       %.2f s   %.1f M point-channels/s\n", apply_float, 4 * points / apply_float / 1e6);
+    double bytes = 0, terms = 0, touched = 0, points = 0;
+    for (const RefinementTables tables = refinement_tables(build_topology(mesh), mcq_options); const auto& level : tables.levels) {
+        bytes += static_cast<double>(level.bytes());
+        terms += static_cast<double>(level.terms());
+        points = static_cast<double>(level.rows());
+        touched += static_cast<double>(level.bytes() + sizeof(double) * kChannels * (level.rows() + level.columns()));
+    }
+    const double bandwidth = copy_bandwidth();
+    const double million_points = points / 1e6, million_values = kChannels * million_points;
+
+    std::printf("%.1f M output points: %d levels of a %d^3 block; %d threads\n", million_points, levels, side,
+                tbb::info::default_concurrency());
+    std::printf("tables and application  %6.2f s  %6.2f M points/s   peak %.0f bytes a point\n", mcq.tables,
+                million_points / mcq.tables, peak / points);
+    std::printf("  of the trilinear split%6.2f s  MCQ takes %.2f times as long\n", linear.tables, mcq.tables / linear.tables);
+    std::printf("refine, nothing stored  %6.2f s  %6.2f M points/s   %.2f times the trilinear split\n", mcq.streamed,
+                million_points / mcq.streamed, mcq.streamed / linear.streamed);
+    std::printf("stored tables           %.1f bytes and %.1f terms a point\n", bytes / points, terms / points);
+    std::printf("application, double     %6.2f s  %6.1f M point-channels/s   %.0f %% of the copy bandwidth, %.1f GB/s\n", mcq.apply,
+                million_values / mcq.apply, 100 * touched / mcq.apply / bandwidth, bandwidth / 1e9);
+    std::printf("application, float      %6.2f s  %6.1f M point-channels/s\n", mcq.apply_float, million_values / mcq.apply_float);
+    std::printf("speed-up over 1 thread  tables and application %.2f, nothing stored %.2f, application %.2f\n",
+                one.tables / mcq.tables, one.streamed / mcq.streamed, one.apply / mcq.apply);
 }

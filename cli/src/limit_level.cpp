@@ -7,6 +7,8 @@
 #include <cmath>
 #include <functional>
 
+#include "subvol/limit.h"
+
 namespace subvol::cli {
 namespace {
 
@@ -92,6 +94,7 @@ LimitMesh refine_to_limit(HexMesh mesh, RefineOptions options, double voxel_size
         result.mesh = std::move(next);
         ++result.level;
     }
+    result.mesh = on_limit(std::move(result.mesh), options.scheme);
     return result;
 }
 

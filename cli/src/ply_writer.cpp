@@ -79,7 +79,7 @@ void write_boundary(NumberWriter& out, const Surface& boundary) {
     }
     for (const auto& triangle : boundary.triangles) {
         out.put(std::uint8_t{3});
-        for (Index p : triangle) out.put(p);
+        for (Index p : triangle) out.put(static_cast<std::uint32_t>(p));
         out.end_row();
     }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "subvol/error.h"
+#include "subvol/limit.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -25,10 +26,24 @@ void check_memory(std::size_t cells, int levels) {
                 "--levels");
 }
 
+Scheme scheme_named(const std::string& name) {
+    check_choice("--scheme", name, {"mcq", "cc", "bsxw", "linear"});
+    if (name == "cc") return Scheme::CatmullClark;
+    if (name == "bsxw") return Scheme::Bsxw;
+    return name == "linear" ? Scheme::Linear : Scheme::Mcq;
+}
+
 }  // namespace
 
 void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
-    app.add_option("--scheme", scheme, "mcq (smooth, through the control points; the default) or linear")->type_name("NAME");
+    app.add_option(
+           "--scheme", scheme,
+           "mcq (smooth, through the control points; the default), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), "
+           "linear")
+        ->type_name("NAME");
+    app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
+        ->type_name("W")
+        ->check(CLI::Range(0.0, 0.125));
     app.add_option("--levels", levels, levels_help)->type_name("L")->check(CLI::Range(0, 10));
     app.add_option("--crease-angle", crease_angle_deg, "keep boundary edges sharp that bend by more than this, in degrees")
         ->type_name("DEG")
@@ -36,16 +51,19 @@ void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
 }
 
 RefineOptions RefineArguments::options(int default_levels, Report& report) const {
-    check_choice("--scheme", scheme, {"mcq", "linear"}, {"cc", "bsxw"});
-    return {.scheme = scheme == "linear" ? Scheme::Linear : Scheme::Mcq,
+    return {.scheme = scheme_named(scheme),
             .levels = levels.value_or(default_levels),
+            .tension = tension,
             .crease_angle_deg = crease_angle_deg,
             .progress = report.progress()};
 }
 
-HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Report& report) {
+HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices, Report& report) {
     check_memory(mesh.cells.size(), options.levels);
-    HexMesh fine = report.timed("refine", [&] { return refine(mesh, options); });
+    HexMesh fine = report.timed("refine", [&] {
+        HexMesh refined = refine(mesh, options);
+        return vertices == Vertices::OnTheLimit ? on_limit(std::move(refined), options.scheme) : refined;
+    });
     report["levels"] = options.levels;
     report["cells"] = fine.cells.size();
     return fine;

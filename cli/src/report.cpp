@@ -16,13 +16,6 @@ bool progress_visible(const CommonOptions& options) {
     return options.progress == "on" || isatty(STDERR_FILENO) != 0;
 }
 
-/// In bytes; Linux counts it in KiB.
-std::int64_t peak_memory() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::int64_t{usage.ru_maxrss} * 1024;
-}
-
 /// A value for people: text without quotes, real numbers with six digits, an object as "key value, key value".
 std::string for_people(const Json& value) {
     if (value.is_string()) return value.get<std::string>();
@@ -45,6 +38,12 @@ void print_table(const Json& json) {
 }
 
 }  // namespace
+
+std::int64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::int64_t{usage.ru_maxrss} * 1024;  // Linux counts it in KiB
+}
 
 Report::Stopwatch::~Stopwatch() {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
@@ -76,7 +75,7 @@ void Report::say(const std::string& line) {
 
 void Report::finish() {
     progress_.clear();
-    if (json_.contains("seconds")) json_["peak_bytes"] = peak_memory();
+    if (json_.contains("seconds")) json_["peak_bytes"] = peak_memory_bytes();
     if (print_json_) {
         if (!json_.contains("warnings")) json_["warnings"] = Json::array();
         std::cout << json_.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;

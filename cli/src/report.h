@@ -12,6 +12,9 @@ namespace subvol::cli {
 
 using Json = nlohmann::ordered_json;
 
+/// The most memory that this process has held so far.
+[[nodiscard]] std::int64_t peak_memory_bytes();
+
 /// What a verb tells: collected as one JSON object; at the end printed as such, or as a table for people.
 class Report {
 public:

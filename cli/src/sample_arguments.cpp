@@ -34,6 +34,7 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
     const Vec3 size = box.size();
     const double voxel = std::max({size.x, size.y, size.z}) / kPaperBox;
     return {.scheme = refinement.scheme,
+            .tension = refinement.tension,
             .per_edge = per_edge,
             .spacing_world = spacing_voxels > 0 ? spacing_voxels * voxel : spacing_world,
             .correction = correction_named(correction),
@@ -47,7 +48,7 @@ RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
     SampleOptions options = arguments.options(bounds(mesh), refine_options);
     HexMesh level;
     if (refinement.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
-        level = refine_reported(mesh, refine_options, report);
+        level = refine_reported(mesh, refine_options, Vertices::OnTheLimit, report);
         options.scheme = Scheme::Linear;
         options.boundary_levels = 0;
     }

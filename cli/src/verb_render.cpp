@@ -81,7 +81,7 @@ private:
     }
 
     [[nodiscard]] Image tets(const HexMesh& mesh, const View& view, const Optics& optics, Report& report) const {
-        const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), report);
+        const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
         TetsResult drawn = render_tets(fine, fine.attributes.front().values, view, optics,
                                        {.samples = samples_, .progress = report.progress()});
         report.add_seconds("prepare", drawn.report.seconds_build);

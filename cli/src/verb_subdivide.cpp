@@ -18,23 +18,26 @@ public:
             ->type_name("FILE")
             ->required();
         refine_.add_to(app(), "how many times (default 1)");
+        app().add_flag("--on-limit", on_limit_, "move the refined points on to the limit (cc and bsxw; the others lie on it)");
     }
 
     int run(Report& report) override {
         const RefineOptions options = refine_.options(1, report);
         check_output(output_, {".vtu", ".mesh"});
         const HexMesh mesh = load_mesh(input_, common(), report);
-        const HexMesh fine = refine_reported(mesh, options, report);
+        const HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
         for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine); }))
             report.warn(warning);
         report["output"] = output_;
         report["points"] = fine.points.size();
+        report["peak_bytes_per_point"] = static_cast<double>(peak_memory_bytes()) / static_cast<double>(fine.points.size());
         return 0;
     }
 
 private:
     std::string input_;
     std::string output_;
+    bool on_limit_ = false;
     RefineArguments refine_;
 };
 

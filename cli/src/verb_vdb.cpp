@@ -37,8 +37,8 @@ public:
         check_output(output_, {".vdb"});
         HexMesh mesh = with_written_fields(load_mesh(input_, common(), report), report);
         const double voxel_size = voxel_size_world(bounds(mesh));
-        mesh =
-            refine_.levels ? refine_reported(mesh, refinement, report) : limit(std::move(mesh), refinement, voxel_size, report);
+        mesh = refine_.levels ? refine_reported(mesh, refinement, Vertices::OnTheLimit, report)
+                              : limit(std::move(mesh), refinement, voxel_size, report);
 
         std::vector<std::string> names;
         for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);

@@ -61,7 +61,7 @@ private:
 /// Layers of points from the core's surface (already in the mesh, with parameters in `cube`) to the sphere.
 void add_shell_points(HexMesh& mesh, const std::vector<Vec3>& cube, const Shell& shell, Index layers) {
     for (Index layer = 1; layer <= layers; ++layer) {
-        const double t = static_cast<double>(layer) / layers;
+        const double t = static_cast<double>(layer) / static_cast<double>(layers);
         for (const Index id : shell.lattice_ids()) {
             const Vec3 outer = glm::normalize(ball_from_cube(cube[id]));
             mesh.points.push_back(layer == layers ? outer : glm::mix(core_position(cube[id]), outer, t));

@@ -32,7 +32,7 @@ bool in_block(const Vec3& p) {
 
 HexMesh parameter_block(const std::array<Index, 3>& cells) {
     const auto [nx, ny, nz] = cells;
-    const auto coordinate = [](Index i, Index n) { return -1 + 2.0 * i / n; };
+    const auto coordinate = [](Index i, Index n) { return -1 + 2.0 * static_cast<double>(i) / static_cast<double>(n); };
     HexMesh mesh;
     mesh.points.reserve(std::size_t{nx + 1} * (ny + 1) * (nz + 1));
     for (Index k = 0; k <= nz; ++k) {

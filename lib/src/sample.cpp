@@ -12,6 +12,7 @@
 #include "corner_parameters.h"
 #include "sample_counts.h"
 #include "subvol/error.h"
+#include "subvol/limit.h"
 
 namespace subvol {
 
@@ -288,17 +289,22 @@ private:
 
 SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options) {
     check(options);
-    RefineOptions refine_options{.scheme = options.scheme, .levels = 0, .crease_angle_deg = {}, .progress = options.progress};
+    RefineOptions refine_options{.scheme = options.scheme,
+                                 .levels = 0,
+                                 .tension = options.tension,
+                                 .crease_angle_deg = {},
+                                 .progress = options.progress};
     const HexMesh control = refine(mesh, refine_options);
     refine_options.levels = 1;
     refine_options.crease_angle_deg = options.crease_angle_deg;
     const HexMesh once = refine(control, refine_options);
     refine_options.crease_angle_deg.reset();  // the first level has tagged what is sharp
-    const HexMesh twice = refine(once, refine_options);
+    const HexMesh twice = on_limit(refine(once, refine_options), options.scheme);
 
     SampleResult result = Sampler(control, twice, options).run(control);
     const std::array<const HexMesh*, 3> levels{&control, &once, &twice};
-    result.volume.boundary = boundary_surface(*levels[static_cast<std::size_t>(options.boundary_levels)]);
+    const HexMesh& shown = *levels[static_cast<std::size_t>(options.boundary_levels)];
+    result.volume.boundary = boundary_surface(options.boundary_levels < 2 ? on_limit(shown, options.scheme) : shown);
     result.volume.bounds = bounds(twice);
     return result;
 }

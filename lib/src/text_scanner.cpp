@@ -162,7 +162,7 @@ std::size_t TextScanner::count(const Place& place) {
 
 std::size_t TextScanner::as_count(std::int64_t value, const Place& place) const {
     if (value < 0) fail(describe(place) + ": negative count " + std::to_string(value));
-    if (value >= std::int64_t{kNone}) {
+    if (static_cast<std::uint64_t>(value) >= kNone) {
         fail(describe(place) + ": count out of range: " + std::to_string(value), "at most " + std::to_string(kNone - 1));
     }
     return static_cast<std::size_t>(value);

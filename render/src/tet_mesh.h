@@ -9,7 +9,7 @@
 namespace subvol {
 
 /// A face of a tetrahedron: 4 · tetrahedron + the corner opposite to it.
-using TetFace = std::uint32_t;
+using TetFace = Index;
 
 /// A mesh of tetrahedra that knows its neighbours. A tetrahedron is half a cache line, for a walk needs all of it at once.
 ///

@@ -64,7 +64,7 @@ class Mistakes(InFolder):
         self.assert_refused("info", naming="FILE")
         self.assert_refused("info", "a.mesh", "--frobnicate", naming="--frobnicate")
         self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--levels", "-1", naming="--levels")
-        self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--scheme", "cc", naming="not supported yet")
+        self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--scheme", "loop", naming="mcq, cc, bsxw, linear")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--size", "12y12", naming="--size")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--method", "dense", naming="splat, tets")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--view", "up", naming="up")

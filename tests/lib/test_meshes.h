@@ -45,7 +45,7 @@ inline HexMesh make_nested_cubes(Index n) {
     };
     const auto block = [&](const std::array<Vec3, 8>& c) {
         const auto at = [&](Index i, Index j, Index k) {
-            const double u = double(i) / n, v = double(j) / n, w = double(k) / n;
+            const double u = double(i) / double(n), v = double(j) / double(n), w = double(k) / double(n);
             const auto mix = [](const Vec3& a, const Vec3& b, double t) { return (1 - t) * a + t * b; };
             return point(
                 mix(mix(mix(c[0], c[1], u), mix(c[3], c[2], u), v), mix(mix(c[4], c[5], u), mix(c[7], c[6], u), v), w));

@@ -16,7 +16,7 @@ inline HexMesh lattice(
     HexMesh mesh;
     for (Index k = 0; k <= n[2]; ++k) {
         for (Index j = 0; j <= n[1]; ++j) {
-            for (Index i = 0; i <= n[0]; ++i) mesh.points.push_back({double(i) / n[0], double(j) / n[1], double(k) / n[2]});
+            for (Index i = 0; i <= n[0]; ++i) mesh.points.push_back(Vec3(i, j, k) / Vec3(n[0], n[1], n[2]));
         }
     }
     const auto id = [&](Index i, Index j, Index k) { return i + (n[0] + 1) * (j + (n[1] + 1) * k); };
@@ -40,7 +40,7 @@ inline HexMesh box(Index n) {
 inline HexMesh jittered_box(Index n, double amount, unsigned seed) {
     HexMesh mesh = box(n);
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> move(-amount / n, amount / n);
+    std::uniform_real_distribution<double> move(-amount / double(n), amount / double(n));
     for (Vec3& p : mesh.points) {
         const bool inside = p.x > 0 && p.x < 1 && p.y > 0 && p.y < 1 && p.z > 0 && p.z < 1;
         if (inside) p += Vec3(move(random), move(random), move(random));

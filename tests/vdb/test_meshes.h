@@ -20,7 +20,7 @@ inline HexMesh box_mesh(Index n, const Vec3& lower = Vec3(0.0), const Vec3& uppe
     const auto id = [n](Index i, Index j, Index k) { return (k * (n + 1) + j) * (n + 1) + i; };
     for (Index k = 0; k <= n; ++k) {
         for (Index j = 0; j <= n; ++j) {
-            for (Index i = 0; i <= n; ++i) mesh.points.push_back(lower + (upper - lower) * (Vec3(i, j, k) / Vec3(n)));
+            for (Index i = 0; i <= n; ++i) mesh.points.push_back(lower + (upper - lower) * (Vec3(i, j, k) / Vec3(double(n))));
         }
     }
     for (Index k = 0; k < n; ++k) {
@@ -38,7 +38,7 @@ inline HexMesh box_mesh(Index n, const Vec3& lower = Vec3(0.0), const Vec3& uppe
 inline HexMesh jittered_box_mesh(Index n, unsigned seed = 1) {
     HexMesh mesh = box_mesh(n);
     std::mt19937 random(seed);
-    const auto step = [&] { return 0.6 * (static_cast<double>(random()) / 4294967295.0 - 0.5) / n; };
+    const auto step = [&] { return 0.6 * (static_cast<double>(random()) / 4294967295.0 - 0.5) / double(n); };
     for (Vec3& p : mesh.points) {
         const Vec3 moved = p + Vec3(step(), step(), step());
         const bool inner = glm::all(glm::greaterThan(p, Vec3(1e-9))) && glm::all(glm::lessThan(p, Vec3(1.0 - 1e-9)));

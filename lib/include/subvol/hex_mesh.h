@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,8 +12,13 @@
 
 namespace subvol {
 
+/// A number of a point, cell, edge or face. 32 bits reach to 4 billion of each; the build option SUBVOL_INDEX64 makes them 64.
+#ifdef SUBVOL_INDEX64
+using Index = std::uint64_t;
+#else
 using Index = std::uint32_t;
-inline constexpr Index kNone = 0xffffffffu;
+#endif
+inline constexpr Index kNone = std::numeric_limits<Index>::max();
 
 /// A named array at the points of a mesh.
 ///

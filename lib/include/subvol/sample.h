@@ -16,6 +16,7 @@ enum class Correction { None, Gradient, Second };
 /// boundary_levels: refinements of the boundary surface
 struct SampleOptions {
     Scheme scheme = Scheme::Mcq;
+    double tension = 1.0 / 16.0;
     int per_edge = 1;
     double spacing_world = 0;
     Correction correction = Correction::Second;
@@ -40,10 +41,9 @@ struct SampleResult {
 /// N = V + Σ(nₑ−1) + Σ(n_u−1)(n_v−1) + Σ(n_u−1)(n_v−1)(n_w−1).
 ///
 /// A face takes, along each direction, the larger count of its two opposite edges, a cell the largest of its four. Geometry and
-/// values come from the scheme itself: exact where the sample is a vertex of the second refinement, else interpolated in-cell
-/// by quartics through those vertices.
-/// throws: Error(InvalidInput) for options out of range, and as `refine`
-/// source: SCIENCE §3.1, §6
+/// values come from the scheme itself: exact where the sample is a vertex of the second refinement (moved to the limit), else
+/// interpolated in-cell by quartics through those vertices. throws: Error(InvalidInput) for options out of range, and as
+/// `refine` source: SCIENCE §3.1, §6
 [[nodiscard]] SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options = {});
 
 }  // namespace subvol

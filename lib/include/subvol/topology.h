@@ -11,15 +11,18 @@
 namespace subvol {
 
 /// Rows of varying length in one flat array: row i is values[offsets[i] .. offsets[i+1]).
-struct IndexRows {
+template <class T>
+struct Rows {
     std::vector<std::size_t> offsets{0};
-    std::vector<Index> values;
+    std::vector<T> values;
 
     [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
-    [[nodiscard]] std::span<const Index> operator[](std::size_t row) const {
+    [[nodiscard]] std::span<const T> operator[](std::size_t row) const {
         return std::span(values).subspan(offsets[row], offsets[row + 1] - offsets[row]);
     }
 };
+
+using IndexRows = Rows<Index>;
 
 /// Corner numbers of a cell's 12 edges: 4 along u, 4 along v, 4 along w; each from its lower to its upper parameter.
 inline constexpr std::array<std::array<int, 2>, 12> kCellEdges{

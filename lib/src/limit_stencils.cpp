@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <cmath>
+
+#include "regular_grid.h"
+#include "scheme_rows.h"
+#include "subvol/limit.h"
+
+namespace subvol {
+
+namespace {
+
+using detail::SchemeRows;
+using detail::StencilBuilder;
+
+/// A vertex with the points of the cells about it, and what one refinement makes of them: its edge neighbours become its edge
+/// points, and so on, so that the same few points are transformed into themselves.
+class LocalMatrix {
+public:
+    LocalMatrix(const Topology& topology, const SchemeRows& rows) : topology_(topology), rows_(rows), first_(topology) {}
+
+    /// The left eigenvector of eigenvalue 1 as a stencil over the mesh's points.
+    void limit_of(Index vertex, StencilBuilder& row) {
+        collect(vertex);
+        const auto weights = dominant_left_eigenvector();
+        for (std::size_t i = 0; i < points_.size(); ++i) row.add(points_[i], weights[i]);
+    }
+
+private:
+    struct Entry {
+        std::uint32_t row, column;
+        double weight;
+    };
+
+    /// points_[i] of the parent becomes child_points_[i].
+    void collect(Index vertex) {
+        points_.assign(1, vertex);
+        child_points_.assign(1, vertex);
+        const auto add = [&](Index point, std::size_t child) {
+            points_.push_back(point);
+            child_points_.push_back(child);
+        };
+        std::vector<Index> faces, cells;
+        for (const Index e : topology_.point_edges[vertex]) {
+            const auto [a, b] = topology_.edges[e];
+            add(a == vertex ? b : a, first_.edges + e);
+            const auto ring = topology_.edge_faces[e];
+            const auto around = topology_.edge_cells[e];
+            faces.insert(faces.end(), ring.begin(), ring.end());
+            cells.insert(cells.end(), around.begin(), around.end());
+        }
+        const auto unique = [](std::vector<Index>& list) {
+            std::sort(list.begin(), list.end());
+            list.erase(std::unique(list.begin(), list.end()), list.end());
+        };
+        unique(faces);
+        unique(cells);
+        for (const Index f : faces) {
+            const auto& quad = topology_.faces[f];
+            const auto k = static_cast<std::size_t>(std::find(quad.begin(), quad.end(), vertex) - quad.begin());
+            add(quad[(k + 2) % 4], first_.faces + f);
+        }
+        for (const Index c : cells) {
+            constexpr std::array<std::size_t, 8> kAntipode{6, 7, 4, 5, 2, 3, 0, 1};
+            const auto& cell = topology_.cells[c];
+            const auto k = static_cast<std::size_t>(std::find(cell.begin(), cell.end(), vertex) - cell.begin());
+            add(cell[kAntipode[k]], first_.cells + topology_.cell_rank[c]);
+        }
+        fill_matrix();
+    }
+
+    void fill_matrix() {
+        order_.resize(points_.size());
+        for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
+        std::sort(order_.begin(), order_.end(), [&](auto a, auto b) { return points_[a] < points_[b]; });
+        matrix_.clear();
+        for (std::uint32_t i = 0; i < points_.size(); ++i) {
+            row_.clear();
+            rows_.write_row(child_points_[i], row_);
+            const auto [terms, runs] = row_.finish();
+            std::size_t next = 0;
+            for (const auto& run : runs) {
+                for (std::uint32_t k = 0; k < run.count; ++k) matrix_.push_back({i, column_of(terms[next++]), run.weight});
+            }
+        }
+    }
+
+    /// The rules of these schemes reach no further than the cells about the vertex.
+    [[nodiscard]] std::uint32_t column_of(Index point) const {
+        return *std::lower_bound(order_.begin(), order_.end(), point, [&](auto i, Index p) { return points_[i] < p; });
+    }
+
+    /// By repeated multiplication: the next eigenvalue is at most about .7, so 1e-17 takes a hundred steps.
+    [[nodiscard]] std::vector<double> dominant_left_eigenvector() const {
+        std::vector<double> weights(points_.size(), 0.0), next;
+        weights[0] = 1;
+        for (int step = 0; step < 400; ++step) {
+            next.assign(weights.size(), 0.0);
+            for (const auto& [row, column, weight] : matrix_) next[column] += weights[row] * weight;
+            double change = 0;
+            for (std::size_t i = 0; i < weights.size(); ++i) change = std::max(change, std::abs(next[i] - weights[i]));
+            weights.swap(next);
+            if (change < 1e-17) break;
+        }
+        return weights;
+    }
+
+    const Topology& topology_;
+    const SchemeRows& rows_;
+    detail::ChildNumbering first_;
+    StencilBuilder row_;
+    std::vector<Index> points_;
+    std::vector<std::size_t> child_points_;
+    std::vector<std::uint32_t> order_;  // of points_, by id
+    std::vector<Entry> matrix_;
+};
+
+}  // namespace
+
+StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
+    if (interpolates(scheme)) return {topology.point_count, topology.point_count, {}};
+    const SchemeRows rows(topology, {.scheme = scheme});
+    std::vector<StencilTable::Block> blocks((topology.point_count + detail::kBlockRows - 1) / detail::kBlockRows);
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+        LocalMatrix local(topology, rows);
+        StencilBuilder row;
+        detail::StencilBlockWriter block;
+        const std::size_t begin = b * detail::kBlockRows, end = std::min(topology.point_count, begin + detail::kBlockRows);
+        block.start(begin);
+        for (std::size_t p = begin; p < end; ++p) {
+            row.clear();
+            local.limit_of(static_cast<Index>(p), row);
+            block.push(row.finish());
+        }
+        blocks[b] = block.block();
+    });
+    return {topology.point_count, 0, std::move(blocks)};
+}
+
+HexMesh on_limit(HexMesh mesh, Scheme scheme) {
+    if (interpolates(scheme)) return mesh;
+    const StencilTable table = limit_stencils(build_topology(mesh), scheme);
+    std::vector<Vec3> points(mesh.points.size());
+    table.apply(std::span<const double>(&mesh.points[0].x, 3 * points.size()), 3,
+                std::span<double>(&points[0].x, 3 * points.size()));
+    mesh.points = std::move(points);
+    for (auto& attribute : mesh.attributes) {
+        std::vector<double> values(attribute.values.size());
+        table.apply(std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels),
+                    std::span<double>(values));
+        attribute.values = std::move(values);
+    }
+    return mesh;
+}
+
+}  // namespace subvol
