@@ -45,14 +45,16 @@ std::vector<std::array<Index, N>> sorted_tags(std::vector<std::array<Index, N>> 
     return tags;
 }
 
-/// A mesh of some points of another, which keep their order.
+/// Some points of a mesh, which keep their order.
 class PointSelection {
 public:
-    explicit PointSelection(std::span<const std::array<Index, 8>> cells) {
-        points_.reserve(2 * cells.size());
-        for (const auto& cell : cells) points_.insert(points_.end(), cell.begin(), cell.end());
-        std::sort(points_.begin(), points_.end());
-        points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+    /// The points of some cells of a mesh of `point_count` points.
+    PointSelection(std::span<const std::array<Index, 8>> cells, std::size_t point_count) {
+        if (point_count > 64 * cells.size()) {
+            sort_points(cells);
+        } else {
+            mark_points(cells, point_count);
+        }
     }
 
     [[nodiscard]] std::span<const Index> points() const { return points_; }
@@ -60,9 +62,7 @@ public:
     template <std::size_t N>
     void renumber(std::vector<std::array<Index, N>>& lists) const {
         for (auto& list : lists) {
-            for (Index& p : list) {
-                p = static_cast<Index>(std::lower_bound(points_.begin(), points_.end(), p) - points_.begin());
-            }
+            for (Index& p : list) p = number_of(p);
         }
     }
 
@@ -82,7 +82,34 @@ public:
     }
 
 private:
+    /// For a few cells of a large mesh.
+    void sort_points(std::span<const std::array<Index, 8>> cells) {
+        points_.reserve(8 * cells.size());
+        for (const auto& cell : cells) points_.insert(points_.end(), cell.begin(), cell.end());
+        std::sort(points_.begin(), points_.end());
+        points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+    }
+
+    /// For most of the mesh.
+    void mark_points(std::span<const std::array<Index, 8>> cells, std::size_t point_count) {
+        numbers_.assign(point_count, 0);
+        for (const auto& cell : cells) {
+            for (const Index p : cell) numbers_[p] = 1;
+        }
+        for (std::size_t p = 0; p < point_count; ++p) {
+            if (numbers_[p] == 0) continue;
+            numbers_[p] = static_cast<Index>(points_.size());
+            points_.push_back(static_cast<Index>(p));
+        }
+    }
+
+    [[nodiscard]] Index number_of(Index point) const {
+        if (!numbers_.empty()) return numbers_[point];
+        return static_cast<Index>(std::lower_bound(points_.begin(), points_.end(), point) - points_.begin());
+    }
+
     std::vector<Index> points_;
+    std::vector<Index> numbers_;  // in `points_`; empty if they are looked up
 };
 
 /// Orders cells by layers about the first `wanted` of them; those further away than `layers` are dropped.
@@ -180,7 +207,7 @@ Patch PatchSource::cut(std::span<const Index> cells, int layers) const {
     for (const Index c : chosen) patch.mesh.cells.push_back(mesh_.cells[c]);
     patch.mesh.creases = tags_of(creases_, patch.mesh.cells, kCellEdges);
     patch.mesh.sharp_faces = tags_of(sharp_faces_, patch.mesh.cells, kCellFaces);
-    const PointSelection selection(patch.mesh.cells);
+    const PointSelection selection(patch.mesh.cells, mesh_.points.size());
     selection.copy_data(mesh_, patch.mesh);
     selection.renumber(patch.mesh.cells);
     selection.renumber(patch.mesh.creases);
@@ -201,7 +228,7 @@ Patch refine_patch(const Patch& patch, const RefineOptions& options, int layers)
     Patch child = arrange(std::move(cells), rows.rows(), 8 * patch.wanted, layers);
     child.mesh.creases = tags_of(sorted_tags(child_creases(topology)), child.mesh.cells, kCellEdges);
     child.mesh.sharp_faces = tags_of(sorted_tags(child_sharp_faces(topology)), child.mesh.cells, kCellFaces);
-    const PointSelection selection(child.mesh.cells);
+    const PointSelection selection(child.mesh.cells, rows.rows());
     refine_data(patch.mesh, rows, selection.points(), child.mesh);
     selection.renumber(child.mesh.cells);
     selection.renumber(child.mesh.creases);
@@ -222,7 +249,7 @@ Patch sub_patch(const Patch& patch, std::span<const Index> wanted, int layers) {
     Patch part = arrange(std::move(cells), patch.mesh.points.size(), wanted.size(), layers);
     part.mesh.creases = tags_of(sorted_tags(patch.mesh.creases), part.mesh.cells, kCellEdges);
     part.mesh.sharp_faces = tags_of(sorted_tags(patch.mesh.sharp_faces), part.mesh.cells, kCellFaces);
-    const PointSelection selection(part.mesh.cells);
+    const PointSelection selection(part.mesh.cells, patch.mesh.points.size());
     selection.copy_data(patch.mesh, part.mesh);
     selection.renumber(part.mesh.cells);
     selection.renumber(part.mesh.creases);
