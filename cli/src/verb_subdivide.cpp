@@ -1,6 +1,8 @@
 #include "input.h"
 #include "refine_arguments.h"
 #include "subvol/mesh_io.h"
+#include "subvol/mesh_report.h"
+#include "text.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -28,6 +30,7 @@ public:
         const HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
         for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine); }))
             report.warn(warning);
+        put_shape(mesh, fine, report);
         report["output"] = output_;
         report["points"] = fine.points.size();
         report["peak_bytes_per_point"] = static_cast<double>(peak_memory_bytes()) / static_cast<double>(fine.points.size());
@@ -35,6 +38,17 @@ public:
     }
 
 private:
+    /// A scheme that goes through its control points can fold cells that were badly shaped.
+    static void put_shape(const HexMesh& control, const HexMesh& fine, Report& report) {
+        const ShapeReport before = measure_cells(control), after = measure_cells(fine);
+        report["inverted_cells"] = after.inverted_cells;
+        report["min_scaled_jacobian"] = after.min_scaled_jacobian;
+        if (after.inverted_cells == 0) return;
+        report.warn(text(after.inverted_cells, " of ", fine.cells.size(), " refined cells are inverted (worst scaled Jacobian ",
+                         after.min_scaled_jacobian, "); of the control cells ", before.inverted_cells, " (",
+                         before.min_scaled_jacobian, "); a lower --tension or --scheme cc is gentler"));
+    }
+
     std::string input_;
     std::string output_;
     bool on_limit_ = false;

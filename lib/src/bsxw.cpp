@@ -5,6 +5,7 @@
 #include "corner_parameters.h"
 #include "incident.h"
 #include "schemes.h"
+#include "spline_rows.h"
 
 namespace subvol::detail {
 
@@ -12,11 +13,12 @@ namespace {
 
 class BsxwRules final : public SchemeRules {
 public:
-    explicit BsxwRules(const Topology& topology) : topology_(topology), kinds_(classify_points(topology)) {}
+    explicit BsxwRules(const Topology& topology) : topology_(topology), spline_(topology), kinds_(classify_points(topology)) {}
 
     [[nodiscard]] bool interpolates() const override { return false; }
 
     void vertex_point(Index point, StencilBuilder& row) const override {
+        if (spline_.vertex(point, row)) return;
         switch (kinds_[point]) {
             case PointKind::Interior:
                 return interior_vertex(point, row);
@@ -30,6 +32,7 @@ public:
     }
 
     void edge_point(Index edge, StencilBuilder& row) const override {
+        if (spline_.edge(edge, row)) return;
         const auto& ends = topology_.edges[edge];
         if (topology_.edge_is_crease[edge]) {
             for (const Index p : ends) row.add(p, 0.5);
@@ -43,8 +46,8 @@ public:
     }
 
     void face_point(Index face, StencilBuilder& row) const override {
-        if (topology_.face_on_boundary(face)) return add_face(row, face, topology_.faces[face], 1);
-        for (const Index c : topology_.face_cells[face]) add_cell(row, c, topology_.faces[face], 0.5);
+        if (spline_.face(face, row)) return;
+        add_face(row, face, topology_.faces[face], 1);
     }
 
     void cell_point(Index cell, StencilBuilder& row) const override {
@@ -102,6 +105,7 @@ private:
     }
 
     const Topology& topology_;
+    SplineRows spline_;
     std::vector<PointKind> kinds_;
 };
 

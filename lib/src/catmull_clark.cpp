@@ -3,6 +3,7 @@
 #include "boundary_rings.h"
 #include "incident.h"
 #include "schemes.h"
+#include "spline_rows.h"
 
 namespace subvol::detail {
 
@@ -10,11 +11,13 @@ namespace {
 
 class CatmullClarkRules final : public SchemeRules {
 public:
-    explicit CatmullClarkRules(const Topology& topology) : topology_(topology), kinds_(classify_points(topology)) {}
+    explicit CatmullClarkRules(const Topology& topology)
+        : topology_(topology), spline_(topology), kinds_(classify_points(topology)) {}
 
     [[nodiscard]] bool interpolates() const override { return false; }
 
     void vertex_point(Index point, StencilBuilder& row) const override {
+        if (spline_.vertex(point, row)) return;
         switch (kinds_[point]) {
             case PointKind::Interior:
                 return interior_vertex(point, row);
@@ -28,6 +31,7 @@ public:
     }
 
     void edge_point(Index edge, StencilBuilder& row) const override {
+        if (spline_.edge(edge, row)) return;
         if (!topology_.edge_on_boundary[edge]) {
             interior_edge(edge, row);
         } else if (topology_.edge_is_crease[edge]) {
@@ -37,12 +41,10 @@ public:
         }
     }
 
-    /// (C₀ + 2A + C₁)/4
+    /// Inside (C₀ + 2A + C₁)/4, always as in a grid.
     void face_point(Index face, StencilBuilder& row) const override {
-        const bool inside = !topology_.face_on_boundary(face);
-        add_mean(row, topology_.faces[face], inside ? 0.5 : 1.0);
-        if (!inside) return;
-        for (const Index cell : topology_.face_cells[face]) add_mean(row, topology_.cells[cell], 0.25);
+        if (spline_.face(face, row)) return;
+        add_mean(row, topology_.faces[face], 1);
     }
 
     void cell_point(Index cell, StencilBuilder& row) const override { add_mean(row, topology_.cells[cell], 1); }
@@ -105,6 +107,7 @@ private:
     }
 
     const Topology& topology_;
+    SplineRows spline_;
     std::vector<PointKind> kinds_;
 };
 

@@ -8,6 +8,15 @@
 
 namespace subvol::detail {
 
+/// The edges of a cell at each of its corners, along u, v, w.
+inline constexpr std::array<std::array<std::size_t, 3>, 8> kCornerEdges = [] {
+    std::array<std::array<std::size_t, 3>, 8> edges{};
+    for (std::size_t k = 0; k < 12; ++k) {
+        for (const int corner : kCellEdges[k]) edges[static_cast<std::size_t>(corner)][k / 4] = k;
+    }
+    return edges;
+}();
+
 /// Calls visit(face, k) once for every face at a point, which is the face's point k.
 template <class Visit>
 void each_face_at(const Topology& topology, Index point, const Visit& visit) {
@@ -27,12 +36,10 @@ void each_cell_at(const Topology& topology, Index point, const Visit& visit) {
     for (const Index edge : topology.point_edges[point]) {
         for (const Index cell : topology.edge_cells[edge]) {
             // Three edges of the cell meet at the point: the smallest one reports it.
-            Index smallest = kNone;
-            for (const Index e : topology.cell_edges[cell]) {
-                const auto [a, b] = topology.edges[e];
-                if (a == point || b == point) smallest = std::min(smallest, e);
-            }
-            if (edge == smallest) visit(cell, slot_of(topology.cells[cell], point));
+            const std::size_t corner = slot_of(topology.cells[cell], point);
+            const auto& edges = topology.cell_edges[cell];
+            const auto& [u, v, w] = kCornerEdges[corner];
+            if (edge == std::min({edges[u], edges[v], edges[w]})) visit(cell, corner);
         }
     }
 }

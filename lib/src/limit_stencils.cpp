@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "incident.h"
+#include "opposite.h"
 #include "regular_grid.h"
 #include "scheme_rows.h"
 #include "subvol/limit.h"
@@ -20,12 +22,36 @@ public:
 
     /// The left eigenvector of eigenvalue 1 as a stencil over the mesh's points.
     void limit_of(Index vertex, StencilBuilder& row) {
+        if (detail::is_grid_point(topology_, vertex)) return spline_limit(vertex, row);
         collect(vertex);
         const auto weights = dominant_left_eigenvector();
         for (std::size_t i = 0; i < points_.size(); ++i) row.add(points_[i], weights[i]);
     }
 
 private:
+    /// (1,4,1)/6 along each of the three axes; on the side of a box along two, on its edge along one.
+    void spline_limit(Index vertex, StencilBuilder& row) const {
+        const bool inside = !topology_.point_on_boundary[vertex];
+        const auto edges = topology_.point_edges[vertex];
+        const auto creases = std::count_if(edges.begin(), edges.end(), [&](Index e) { return topology_.edge_is_crease[e]; });
+        if (creases > 2) return row.add(vertex, 1);
+        const double unit = inside ? 1. / 216 : creases == 2 ? 1. / 6 : 1. / 36;
+        row.add(vertex, unit * (inside ? 64 : creases == 2 ? 4 : 16));
+        for (const Index e : edges) {
+            if (inside || (creases == 2 ? topology_.edge_is_crease[e] : topology_.edge_on_boundary[e])) {
+                row.add(detail::other_end(topology_, e, vertex), unit * (inside ? 16 : creases == 2 ? 1 : 4));
+            }
+        }
+        if (creases == 2) return;
+        detail::each_face_at(topology_, vertex, [&](Index face, std::size_t k) {
+            if (inside || topology_.face_on_boundary(face))
+                row.add(topology_.faces[face][(k + 2) % 4], unit * (inside ? 4 : 1));
+        });
+        if (!inside) return;
+        detail::each_cell_at(topology_, vertex,
+                             [&](Index cell, std::size_t) { row.add(detail::across_cell(topology_, cell, vertex), unit); });
+    }
+
     struct Entry {
         std::uint32_t row, column;
         double weight;
@@ -39,32 +65,12 @@ private:
             points_.push_back(point);
             child_points_.push_back(child);
         };
-        std::vector<Index> faces, cells;
-        for (const Index e : topology_.point_edges[vertex]) {
-            const auto [a, b] = topology_.edges[e];
-            add(a == vertex ? b : a, first_.edges + e);
-            const auto ring = topology_.edge_faces[e];
-            const auto around = topology_.edge_cells[e];
-            faces.insert(faces.end(), ring.begin(), ring.end());
-            cells.insert(cells.end(), around.begin(), around.end());
-        }
-        const auto unique = [](std::vector<Index>& list) {
-            std::sort(list.begin(), list.end());
-            list.erase(std::unique(list.begin(), list.end()), list.end());
-        };
-        unique(faces);
-        unique(cells);
-        for (const Index f : faces) {
-            const auto& quad = topology_.faces[f];
-            const auto k = static_cast<std::size_t>(std::find(quad.begin(), quad.end(), vertex) - quad.begin());
-            add(quad[(k + 2) % 4], first_.faces + f);
-        }
-        for (const Index c : cells) {
-            constexpr std::array<std::size_t, 8> kAntipode{6, 7, 4, 5, 2, 3, 0, 1};
-            const auto& cell = topology_.cells[c];
-            const auto k = static_cast<std::size_t>(std::find(cell.begin(), cell.end(), vertex) - cell.begin());
-            add(cell[kAntipode[k]], first_.cells + topology_.cell_rank[c]);
-        }
+        for (const Index e : topology_.point_edges[vertex]) add(detail::other_end(topology_, e, vertex), first_.edges + e);
+        detail::each_face_at(topology_, vertex,
+                             [&](Index face, std::size_t k) { add(topology_.faces[face][(k + 2) % 4], first_.faces + face); });
+        detail::each_cell_at(topology_, vertex, [&](Index cell, std::size_t) {
+            add(detail::across_cell(topology_, cell, vertex), first_.cells + topology_.cell_rank[cell]);
+        });
         fill_matrix();
     }
 

@@ -4,6 +4,7 @@
 
 #include "antipode.h"
 #include "boundary_rings.h"
+#include "opposite.h"
 #include "schemes.h"
 
 namespace subvol::detail {
@@ -59,12 +60,12 @@ private:
         std::array<Index, 8> q, r;
         std::size_t k = 0;
         for (const Index face : topology_.edge_faces[edge]) {
-            q[k++] = across(face, a);
-            q[k++] = across(face, b);
+            q[k++] = across_face(topology_, face, a);
+            q[k++] = across_face(topology_, face, b);
         }
         k = 0;
         for (const Index end : {a, b}) {  // beyond an end, the faces about the edge that goes on there
-            for (const Index face : topology_.edge_faces[continuation(edge, end)]) r[k++] = across(face, end);
+            for (const Index face : topology_.edge_faces[continuation(edge, end)]) r[k++] = across_face(topology_, face, end);
         }
         row.add_run(topology_.edges[edge], 0.5);
         row.add_run(q, omega_ / 4);
@@ -77,7 +78,7 @@ private:
         std::size_t k = 0;
         const auto& corners = topology_.faces[face];
         for (const Index cell : topology_.face_cells[face]) {
-            for (const Index p : corners) q[k++] = antipode(cell, p);
+            for (const Index p : corners) q[k++] = across_cell(topology_, cell, p);
         }
         std::size_t in_r = 0, in_s = 0;
         for (std::size_t side = 0; side < 4; ++side) {
@@ -86,9 +87,9 @@ private:
             const auto cells = topology_.edge_cells[g];
             const std::size_t start = slot_of(ring, face);
             for (const Index p : {corners[side], corners[(side + 1) % 4]}) {
-                r[in_r++] = across(ring[(start + 2) % 4], p);
-                s[in_s++] = antipode(cells[(start + 1) % 4], p);
-                s[in_s++] = antipode(cells[(start + 2) % 4], p);
+                r[in_r++] = across_face(topology_, ring[(start + 2) % 4], p);
+                s[in_s++] = across_cell(topology_, cells[(start + 1) % 4], p);
+                s[in_s++] = across_cell(topology_, cells[(start + 2) % 4], p);
             }
         }
         row.add_run(topology_.faces[face], (1 + 2 * omega_) / 4);
@@ -102,23 +103,10 @@ private:
         std::size_t k = 0;
         for (std::size_t side = 0; side < 6; ++side) {
             const auto [c0, c1] = topology_.face_cells[topology_.cell_faces[cell][side]];
-            for (const Index p : side_points(cell, side)) q[k++] = antipode(c0 == cell ? c1 : c0, p);
+            for (const Index p : side_points(cell, side)) q[k++] = across_cell(topology_, c0 == cell ? c1 : c0, p);
         }
         row.add_run(topology_.cells[cell], (1 + 6 * omega_) / 8);
         row.add_run(q, -omega_ / 4);
-    }
-
-    /// The point of a face diagonally across from one of its points.
-    Index across(Index face, Index point) const {
-        const auto& quad = topology_.faces[face];
-        return quad[(slot_of(quad, point) + 2) % 4];
-    }
-
-    /// The point of a cell across its centre from one of its points. Those of a side are the points of the opposite side, those
-    /// of an edge the points of the edge diagonally opposite.
-    Index antipode(Index cell, Index point) const {
-        static constexpr std::array<std::size_t, 8> kAntipode{6, 7, 4, 5, 2, 3, 0, 1};
-        return topology_.cells[cell][kAntipode[slot_of(topology_.cells[cell], point)]];
     }
 
     /// The edge that goes on beyond a regular end of an edge: the one of the six that shares no face with it.

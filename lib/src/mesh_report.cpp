@@ -1,5 +1,7 @@
 #include "subvol/mesh_report.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +38,13 @@ CellQuality measure(const std::array<Vec3, 8>& corners) {
     return quality;
 }
 
+void add(ShapeReport& report, const CellQuality& cell) {
+    report.volume += cell.volume;
+    report.inverted_cells += cell.inverted;
+    report.degenerate_cells += cell.degenerate;
+    report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, cell.min_scaled_jacobian);
+}
+
 void count_edges(const Topology& topology, MeshReport& report) {
     std::vector<std::uint32_t> irregular(topology.point_count);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
@@ -68,6 +77,26 @@ double cell_volume(const std::array<Vec3, 8>& c) {
     return volume;
 }
 
+ShapeReport measure_cells(const HexMesh& mesh) {
+    constexpr std::size_t kPart = 4096;  // summed part by part, so that rounding does not depend on the threads
+    std::vector<ShapeReport> parts((mesh.cells.size() + kPart - 1) / kPart);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
+        for (std::size_t c = i * kPart; c < std::min(mesh.cells.size(), (i + 1) * kPart); ++c) {
+            std::array<Vec3, 8> corners;
+            for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[mesh.cells[c][k]];
+            add(parts[i], measure(corners));
+        }
+    });
+    ShapeReport report;
+    for (const ShapeReport& part : parts) {
+        report.volume += part.volume;
+        report.inverted_cells += part.inverted_cells;
+        report.degenerate_cells += part.degenerate_cells;
+        report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, part.min_scaled_jacobian);
+    }
+    return report;
+}
+
 MeshReport inspect(const HexMesh& mesh) {
     validate(mesh);
     const Topology topology = build_topology(mesh);
@@ -84,16 +113,11 @@ MeshReport inspect(const HexMesh& mesh) {
     report.bounds = bounds(mesh);
     count_edges(topology, report);
 
-    report.min_scaled_jacobian = 1;
-    for (const auto& cell : mesh.cells) {
-        std::array<Vec3, 8> corners;
-        for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[cell[k]];
-        const CellQuality quality = measure(corners);
-        report.volume += quality.volume;
-        report.inverted_cells += quality.inverted;
-        report.degenerate_cells += quality.degenerate;
-        report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, quality.min_scaled_jacobian);
-    }
+    const ShapeReport shape = measure_cells(mesh);
+    report.inverted_cells = shape.inverted_cells;
+    report.degenerate_cells = shape.degenerate_cells;
+    report.min_scaled_jacobian = shape.min_scaled_jacobian;
+    report.volume = shape.volume;
     return report;
 }
 

@@ -41,7 +41,7 @@ template <class T, std::size_t N>
 inline void sort_network(std::array<T, N>& values) {
     static constexpr auto kComparators = make_comparators<N>();
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-        const auto exchange = [&](std::size_t a, std::size_t b) {
+        [[maybe_unused]] const auto exchange = [&](std::size_t a, std::size_t b) {
             const T low = std::min(values[a], values[b]), high = std::max(values[a], values[b]);
             values[a] = low;
             values[b] = high;

@@ -33,6 +33,17 @@ struct MeshReport {
 /// throws: Error(InvalidInput) as `validate` and `build_topology`
 [[nodiscard]] MeshReport inspect(const HexMesh& mesh);
 
+/// The shapes of the cells of a mesh: the figures of the same names in MeshReport.
+struct ShapeReport {
+    std::size_t inverted_cells = 0;
+    std::size_t degenerate_cells = 0;
+    double min_scaled_jacobian = 1;
+    double volume = 0;
+};
+
+/// cost: parallel; the same for any number of threads
+[[nodiscard]] ShapeReport measure_cells(const HexMesh& mesh);
+
 /// The signed volume of a trilinear cell, exact (2³ Gauss points). corners: 8 points in VTK order
 [[nodiscard]] double cell_volume(const std::array<Vec3, 8>& corners);
 
