@@ -157,7 +157,12 @@ std::int64_t TextScanner::integer(const Place& place) {
 }
 
 std::size_t TextScanner::count(const Place& place) {
-    return as_count(integer(place), place);
+    const std::size_t value = as_count(integer(place), place);
+    if (value > text_.size()) {  // whatever is counted takes a character
+        fail(describe(place) + ": count out of range: " + std::to_string(value),
+             "the file has " + std::to_string(text_.size()) + " bytes");
+    }
+    return value;
 }
 
 std::size_t TextScanner::as_count(std::int64_t value, const Place& place) const {

@@ -34,7 +34,7 @@ struct RefineOptions {
 /// returns: the level-`levels` mesh; level 0 is the mesh without its unused points
 /// throws:  Error(InvalidInput) as `validate` and `build_topology`, or if the result needs more points than Index can number
 /// cost:    parallel; bitwise the same for any number of threads; independent of the order of the cells
-/// source:  [mnmq2007] with the masks of docs/conventions.md; irregular edges, boundaries and creases are ours (MCQ-G)
+/// source:  [mnmq2007] with the masks of docs/schemes.md; irregular edges, boundaries and creases of MCQ are ours (MCQ-G)
 [[nodiscard]] HexMesh refine(const HexMesh& mesh, const RefineOptions& options = {});
 
 /// A refinement computed once for any number of applications: a control mesh that moves, or many fields.
