@@ -25,14 +25,17 @@ PointKind classify(const Topology& topology, Index point) {
     if (!topology.point_on_boundary[point]) return PointKind::Interior;
     int creases = 0;
     Index start = kNone;
-    bool manifold = true;
+    bool manifold = true, rim = false;
     for (const Index e : topology.point_edges[point]) {
         if (!topology.edge_on_boundary[e]) continue;
         creases += topology.edge_is_crease[e];
-        manifold &= topology.boundary_faces_at(e) == 2;
+        const auto faces = topology.edge_faces[e];
+        manifold &= std::count_if(faces.begin(), faces.end(), [&](Index f) { return topology.face_on_hull(f); }) <= 2;
+        rim |= topology.boundary_faces_at(e) != 2;
         if (start == kNone) start = e;
     }
     if (!manifold || (creases != 0 && creases != 2)) return PointKind::Corner;
+    if (rim) return creases == 2 ? PointKind::Crease : PointKind::Corner;  // where sharp faces end or meet the hull
     thread_local std::vector<Index> ring;
     ring_of_spokes(topology, point, start, ring);
     if (ring.size() != boundary_edges_at(topology, point)) return PointKind::Corner;  // several fans of faces

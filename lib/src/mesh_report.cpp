@@ -99,7 +99,10 @@ ShapeReport measure_cells(const HexMesh& mesh) {
 
 MeshReport inspect(const HexMesh& mesh) {
     validate(mesh);
-    const Topology topology = build_topology(mesh);
+    HexMesh untagged;  // tags are the schemes' business
+    untagged.points = mesh.points;
+    untagged.cells = mesh.cells;
+    const Topology topology = build_topology(untagged);
     MeshReport report;
     report.points = mesh.points.size();
     report.cells = mesh.cells.size();
