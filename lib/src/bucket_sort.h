@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "subvol/flat_array.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::detail {
@@ -23,8 +24,8 @@ void parallel_each(std::size_t count, const Body& body) {
 /// Records sorted by a key whose leading part is a small integer: bucket b is records[offsets[b] .. offsets[b+1]).
 template <class Record>
 struct Buckets {
-    std::vector<std::size_t> offsets;
-    std::vector<Record> records;
+    FlatArray<std::size_t> offsets;
+    FlatArray<Record> records;
 };
 
 /// Sorts what `emit(i, sink)` gives for i in [0, count): into buckets by `bucket(record)`, each bucket by operator<.
@@ -59,8 +60,8 @@ Buckets<Record> bucket_sort(std::size_t count, std::size_t bucket_count, const E
 
 /// Starts of the groups of equal keys in sorted records, plus the end.
 template <class Record, class Same>
-std::vector<std::size_t> group_starts(const std::vector<Record>& records, const Same& same) {
-    std::vector<std::size_t> starts;
+FlatArray<std::size_t> group_starts(const FlatArray<Record>& records, const Same& same) {
+    FlatArray<std::size_t> starts;
     for (std::size_t i = 0; i < records.size(); ++i) {
         if (i == 0 || !same(records[i - 1], records[i])) starts.push_back(i);
     }

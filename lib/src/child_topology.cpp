@@ -468,15 +468,15 @@ private:
     const Topology& p_;
     Topology t_;
     ChildNumbering first_;
-    std::size_t edge_b_, edge_c_, face_e_;   // where child edges from edge points, from face points, faces in cells start
-    std::vector<Index> sorted_faces_;        // edge_faces, ascending
-    std::vector<Index> face_cell_offsets_;   // how many cells the faces before this one have
-    std::vector<Index> corner_offsets_;      // how many faces the points before this one have
-    std::vector<std::array<Index, 2>> a_;    // child edges at the ends of an edge
-    std::vector<std::array<Index, 4>> b_;    // child edges from the edges of a face to its point
-    std::vector<std::array<Index, 6>> c_;    // child edges from the sides of a cell to its point
-    std::vector<std::array<Index, 4>> fv_;   // child faces at the corners of a face
-    std::vector<std::array<Index, 12>> fe_;  // child faces at the edges of a cell
+    std::size_t edge_b_, edge_c_, face_e_;  // where child edges from edge points, from face points, faces in cells start
+    FlatArray<Index> sorted_faces_;         // edge_faces, ascending
+    std::vector<Index> face_cell_offsets_;  // how many cells the faces before this one have
+    std::vector<Index> corner_offsets_;     // how many faces the points before this one have
+    FlatArray<std::array<Index, 2>> a_;     // child edges at the ends of an edge
+    FlatArray<std::array<Index, 4>> b_;     // child edges from the edges of a face to its point
+    FlatArray<std::array<Index, 6>> c_;     // child edges from the sides of a cell to its point
+    FlatArray<std::array<Index, 4>> fv_;    // child faces at the corners of a face
+    FlatArray<std::array<Index, 12>> fe_;   // child faces at the edges of a cell
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ private:
     const HexMesh& mesh_;
     std::vector<std::array<Index, 2>> creases_;      // sorted
     std::vector<std::array<Index, 4>> sharp_faces_;  // their points sorted, sorted
-    std::vector<std::size_t> offsets_;               // cells_[offsets_[p] .. offsets_[p+1]) have point p
+    FlatArray<std::size_t> offsets_;                 // cells_[offsets_[p] .. offsets_[p+1]) have point p
     std::vector<Index> cells_;
 };
 

@@ -52,14 +52,24 @@ StencilTable make_table(const SchemeRows& rows, Progress* progress, int level) {
 }
 
 template <class T>
-std::vector<T> apply_levels(const RefinementTables& tables, std::span<const T> control, std::size_t channels) {
-    std::vector<T> values(control.begin(), control.end());
-    for (const StencilTable& level : tables.levels) {
-        std::vector<T> finer(level.rows() * channels);
-        level.apply(std::span<const T>(values), channels, std::span<T>(finer));
+void apply_levels(const RefinementTables& tables, std::span<const T> control, std::size_t channels, std::span<T> fine) {
+    const StencilTable none(tables.control_points, tables.control_points, {});
+    FlatArray<T> values;  // of the level before
+    std::span<const T> coarse = control;
+    for (std::size_t l = 0; l + 1 < tables.levels.size(); ++l) {
+        FlatArray<T> finer(tables.levels[l].rows() * channels);
+        tables.levels[l].apply(coarse, channels, std::span<T>(finer));
         values = std::move(finer);
+        coarse = values;
     }
-    return values;
+    (tables.levels.empty() ? none : tables.levels.back()).apply(coarse, channels, fine);
+}
+
+template <class T>
+std::vector<T> apply_levels(const RefinementTables& tables, std::span<const T> control, std::size_t channels) {
+    std::vector<T> fine(tables.points() * channels);
+    apply_levels(tables, control, channels, std::span<T>(fine));
+    return fine;
 }
 
 }  // namespace
@@ -106,6 +116,14 @@ RefinementTables refinement_tables(const Topology& control, const RefineOptions&
         }
     }
     return tables;
+}
+
+void RefinementTables::apply(std::span<const double> control, std::size_t channels, std::span<double> fine) const {
+    apply_levels(*this, control, channels, fine);
+}
+
+void RefinementTables::apply(std::span<const float> control, std::size_t channels, std::span<float> fine) const {
+    apply_levels(*this, control, channels, fine);
 }
 
 std::vector<double> RefinementTables::apply(std::span<const double> control, std::size_t channels) const {

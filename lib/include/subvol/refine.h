@@ -48,7 +48,13 @@ struct RefinementTables {
     std::vector<std::array<Index, 2>> creases;
     std::vector<std::array<Index, 4>> sharp_faces;
 
-    /// Data of the control points (point-major) taken to the finest level.
+    [[nodiscard]] std::size_t points() const { return levels.empty() ? control_points : levels.back().rows(); }
+
+    /// Data of the control points (point-major) taken to the finest level: points() × channels values, all written.
+    ///
+    /// throws: Error(InvalidInput) if a size is wrong
+    void apply(std::span<const double> control, std::size_t channels, std::span<double> fine) const;
+    void apply(std::span<const float> control, std::size_t channels, std::span<float> fine) const;
     [[nodiscard]] std::vector<double> apply(std::span<const double> control, std::size_t channels) const;
     [[nodiscard]] std::vector<float> apply(std::span<const float> control, std::size_t channels) const;
 

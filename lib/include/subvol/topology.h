@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/flat_array.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol {
@@ -13,8 +14,8 @@ namespace subvol {
 /// Rows of varying length in one flat array: row i is values[offsets[i] .. offsets[i+1]).
 template <class T>
 struct Rows {
-    std::vector<std::size_t> offsets{0};
-    std::vector<T> values;
+    FlatArray<std::size_t> offsets{0};
+    FlatArray<T> values;
 
     [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
     [[nodiscard]] std::span<const T> operator[](std::size_t row) const {
@@ -49,13 +50,13 @@ inline constexpr std::array<std::array<int, 4>, 6> kCellFaces{
 struct Topology {
     std::size_t point_count = 0;
     std::vector<std::array<Index, 8>> cells;
-    std::vector<std::array<Index, 2>> edges;
-    std::vector<Index> edge_offsets;
-    std::vector<std::array<Index, 4>> faces;
-    std::vector<std::array<Index, 12>> cell_edges;
-    std::vector<std::array<Index, 6>> cell_faces;
-    std::vector<std::array<Index, 4>> face_edges;
-    std::vector<std::array<Index, 2>> face_cells;
+    FlatArray<std::array<Index, 2>> edges;
+    FlatArray<Index> edge_offsets;
+    FlatArray<std::array<Index, 4>> faces;
+    FlatArray<std::array<Index, 12>> cell_edges;
+    FlatArray<std::array<Index, 6>> cell_faces;
+    FlatArray<std::array<Index, 4>> face_edges;
+    FlatArray<std::array<Index, 2>> face_cells;
     IndexRows edge_faces;
     IndexRows edge_cells;
     IndexRows point_edges;
@@ -63,7 +64,7 @@ struct Topology {
     std::vector<std::uint8_t> point_on_boundary;
     std::vector<std::uint8_t> edge_has_ring;   // interior edges whose cells form one ring of at least three
     std::vector<std::uint8_t> edge_is_crease;  // boundary edges kept sharp: one cell, non-manifold, or tagged
-    std::vector<Index> cell_rank;              // a number for each cell that does not depend on the order of the cells
+    FlatArray<Index> cell_rank;                // a number for each cell that does not depend on the order of the cells
     std::vector<std::uint8_t> face_is_sharp;
     std::vector<std::array<Index, 2>> creases;
     std::size_t nonmanifold_edges = 0;  // boundary edges with other than two boundary faces
