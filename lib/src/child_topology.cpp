@@ -9,6 +9,7 @@
 #include "bucket_sort.h"
 #include "child_cells.h"
 #include "edge_rings.h"
+#include "subvol/error.h"
 
 namespace subvol::detail {
 
@@ -482,6 +483,11 @@ private:
 }  // namespace
 
 Topology child_topology(const Topology& parent) {
+    const std::size_t faces = 4 * parent.faces.size() + 12 * parent.cells.size();  // the most numerous of the child's parts
+    if (faces >= kNone) {
+        throw Error(ErrorCode::InvalidInput, "the refined mesh needs " + std::to_string(faces) + " faces", {},
+                    "at most " + std::to_string(kNone - 1) + ": use fewer levels, or a build with SUBVOL_INDEX64");
+    }
     return ChildBuilder(parent).build();
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 /// So many cells at once that their descendants are some hundred thousand: fewer pay for their surroundings, more for memory.
 std::size_t batch_size(int levels) {
-    return std::max<std::size_t>(8, std::size_t{1} << std::max(0, 18 - 3 * levels));
+    return std::size_t{1} << std::max(0, 18 - 3 * levels);
 }
 
 /// Gathers the grid of one control cell from a refined patch.

@@ -46,13 +46,16 @@ void validate_cells(const HexMesh& mesh) {
     }
 }
 
-void validate_tags(const HexMesh& mesh) {
+void validate_tags(const HexMesh& mesh, const std::vector<std::uint8_t>& used) {
     const auto check = [&](const auto& points, const std::string& where) {
         for (const Index p : points) {
-            if (p < mesh.points.size()) continue;
-            throw Error(ErrorCode::InvalidInput,
-                        "point " + std::to_string(p) + " does not exist; the mesh has " + std::to_string(mesh.points.size()),
-                        where);
+            if (p >= mesh.points.size()) {
+                throw Error(
+                    ErrorCode::InvalidInput,
+                    "point " + std::to_string(p) + " does not exist; the mesh has " + std::to_string(mesh.points.size()),
+                    where);
+            }
+            if (!used[p]) throw Error(ErrorCode::InvalidInput, "point " + std::to_string(p) + " belongs to no cell", where);
         }
     };
     for (std::size_t i = 0; i < mesh.creases.size(); ++i) check(mesh.creases[i], "crease " + std::to_string(i));
@@ -69,8 +72,8 @@ const Attribute* HexMesh::find_attribute(std::string_view name) const {
 void validate(const HexMesh& mesh) {
     if (mesh.cells.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra");
     validate_cells(mesh);
-    validate_tags(mesh);
     const auto used = used_points(mesh);
+    validate_tags(mesh, used);
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         const Vec3& x = mesh.points[p];
         if (used[p] && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {

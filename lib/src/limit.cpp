@@ -11,6 +11,7 @@
 #include "patch.h"
 #include "regular_grid.h"
 #include "subvol/error.h"
+#include "topology_tags.h"
 
 namespace subvol {
 
@@ -128,6 +129,7 @@ struct Descent {
     Index cell;
     Vec3 uvw;
     Jet last;
+    int agreed = 0;  // levels in a row that said the same
 };
 
 /// Evaluates the queries of a few control cells.
@@ -142,7 +144,7 @@ public:
     LimitReport run(Patch patch, std::vector<Descent> open) {
         for (int level = 0;; ++level) {
             report_.deepest_level = level;
-            const Topology topology = build_topology(patch.mesh);
+            const Topology topology = detail::build_topology(patch.mesh, detail::Tags::OfAPart);
             evaluate_level(patch, topology, level, open);
             if (open.empty()) return report_;
             patch = detail::refine_patch(keep_open(patch, open), refine_, 2);
@@ -171,7 +173,9 @@ private:
                 evaluate_linear(patch.mesh, scales_.size(), at.cell, at.uvw, scale, jet);
             }
             const bool exact = options_.scheme == Scheme::Linear || (regular && !interpolates(options_.scheme));
-            const bool settled = level >= 2 && is_close(jet, at.last);
+            at.agreed = level >= 1 && is_close(jet, at.last, level) ? at.agreed + 1 : 0;
+            // The trilinear guess stands still for a level at the centres of cells, whose points are means of the corners.
+            const bool settled = level >= 2 && at.agreed >= (regular ? 1 : 2);
             const bool last = level >= options_.max_levels;
             at.last = jet;
             if (!exact && !settled && !last) return false;
@@ -182,9 +186,16 @@ private:
         });
     }
 
-    [[nodiscard]] bool is_close(const Jet& a, const Jet& b) const {
+    /// Derivatives are of half the order. About extraordinary edges and vertices they need not converge, so that after some
+    /// levels the values alone decide.
+    [[nodiscard]] bool is_close(const Jet& a, const Jet& b, int level) const {
+        constexpr int kSlopeLevels = 7;
+        const double slope_tolerance = level < kSlopeLevels ? std::sqrt(options_.tolerance) : HUGE_VAL;
         for (std::size_t c = 0; c < scales_.size(); ++c) {
             if (!(std::abs(a[4 * c] - b[4 * c]) <= options_.tolerance * scales_[c])) return false;
+            for (std::size_t d = 1; d < 4; ++d) {
+                if (std::abs(a[4 * c + d] - b[4 * c + d]) > slope_tolerance * scales_[c]) return false;
+            }
         }
         return true;
     }
@@ -253,7 +264,8 @@ void check(const HexMesh& mesh, std::span<const LimitQuery> queries, const Limit
 
 /// What tolerances are relative to, a channel. A constant field still differs by rounding.
 std::vector<double> channel_scales(const HexMesh& mesh) {
-    std::vector<double> scales(3, bounds(mesh).diagonal());
+    const Box box = bounds(mesh);
+    std::vector<double> scales(3, std::max(box.diagonal(), 1e-6 * glm::length(box.center())));
     for (const auto& attribute : mesh.attributes) {
         const auto [low, high] = std::minmax_element(attribute.values.begin(), attribute.values.end());
         const double scale = std::max(*high - *low, 1e-6 * std::max(std::abs(*low), std::abs(*high)));
@@ -307,6 +319,7 @@ LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> que
         tbb::parallel_for(turn, std::min(batches, turn + kTurn),
                           [&](std::size_t b) { tbb::this_task_arena::isolate([&] { evaluate_batch(b); }); });
     }
+    report_progress(options.progress, "limit", 1);
     for (const LimitReport& report : reports) {
         samples.report.exact += report.exact;
         samples.report.refined += report.refined;

@@ -1,6 +1,11 @@
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
+#include "child_topology.h"
 #include "incident.h"
 #include "opposite.h"
 #include "regular_grid.h"
@@ -21,11 +26,15 @@ public:
     LocalMatrix(const Topology& topology, const SchemeRows& rows) : topology_(topology), rows_(rows), first_(topology) {}
 
     /// The left eigenvector of eigenvalue 1 as a stencil over the mesh's points.
-    void limit_of(Index vertex, StencilBuilder& row) {
-        if (detail::is_grid_point(topology_, vertex)) return spline_limit(vertex, row);
-        collect(vertex);
+    ///
+    /// returns: false, and nothing written, if a point stands in several places about the vertex
+    bool limit_of(Index vertex, StencilBuilder& row) {
+        if (detail::is_grid_point(topology_, vertex)) return spline_limit(vertex, row), true;
+        if (!collect(vertex)) return false;
+        fill_matrix();
         const auto weights = dominant_left_eigenvector();
         for (std::size_t i = 0; i < points_.size(); ++i) row.add(points_[i], weights[i]);
+        return true;
     }
 
 private:
@@ -57,8 +66,8 @@ private:
         double weight;
     };
 
-    /// points_[i] of the parent becomes child_points_[i].
-    void collect(Index vertex) {
+    /// points_[i] of the parent becomes child_points_[i]. False if points repeat: two cells that share two faces, say.
+    bool collect(Index vertex) {
         points_.assign(1, vertex);
         child_points_.assign(1, vertex);
         const auto add = [&](Index point, std::size_t child) {
@@ -71,13 +80,14 @@ private:
         detail::each_cell_at(topology_, vertex, [&](Index cell, std::size_t) {
             add(detail::across_cell(topology_, cell, vertex), first_.cells + topology_.cell_rank[cell]);
         });
-        fill_matrix();
-    }
-
-    void fill_matrix() {
         order_.resize(points_.size());
         for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
         std::sort(order_.begin(), order_.end(), [&](auto a, auto b) { return points_[a] < points_[b]; });
+        return std::adjacent_find(order_.begin(), order_.end(), [&](auto a, auto b) { return points_[a] == points_[b]; }) ==
+               order_.end();
+    }
+
+    void fill_matrix() {
         matrix_.clear();
         for (std::uint32_t i = 0; i < points_.size(); ++i) {
             row_.clear();
@@ -120,11 +130,50 @@ private:
     std::vector<Entry> matrix_;
 };
 
+/// The limits of vertices about which points repeat, by way of the next level, where they no longer do.
+class RefinedLimits {
+public:
+    RefinedLimits(const Topology& topology, Scheme scheme) : topology_(topology), scheme_(scheme) {}
+
+    void limit_of(Index vertex, const SchemeRows& rows, StencilBuilder& row) const {
+        // What this runs in parallel must not take up another block, which could come here again.
+        std::call_once(built_, [&] {
+            tbb::this_task_arena::isolate([&] {
+                child_ = detail::child_topology(topology_);
+                child_rows_ = std::make_unique<SchemeRows>(child_, RefineOptions{.scheme = scheme_});
+            });
+        });
+        StencilBuilder over_child, step;
+        LocalMatrix(child_, *child_rows_).limit_of(vertex, over_child);
+        for_each_term(over_child.finish(), [&](Index middle, double weight) {
+            step.clear();
+            rows.write_row(middle, step);
+            for_each_term(step.finish(), [&](Index point, double w) { row.add(point, weight * w); });
+        });
+    }
+
+private:
+    template <class Visit>
+    static void for_each_term(const detail::StencilRuns& row, const Visit& visit) {
+        std::size_t next = 0;
+        for (const auto& run : row.runs) {
+            for (std::uint32_t k = 0; k < run.count; ++k) visit(row.points[next++], run.weight);
+        }
+    }
+
+    const Topology& topology_;
+    Scheme scheme_;
+    mutable std::once_flag built_;
+    mutable Topology child_;
+    mutable std::unique_ptr<SchemeRows> child_rows_;
+};
+
 }  // namespace
 
 StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
     if (interpolates(scheme)) return {topology.point_count, topology.point_count, {}};
     const SchemeRows rows(topology, {.scheme = scheme});
+    const RefinedLimits refined(topology, scheme);
     std::vector<StencilTable::Block> blocks((topology.point_count + detail::kBlockRows - 1) / detail::kBlockRows);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
         LocalMatrix local(topology, rows);
@@ -134,7 +183,12 @@ StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
         block.start(begin);
         for (std::size_t p = begin; p < end; ++p) {
             row.clear();
-            local.limit_of(static_cast<Index>(p), row);
+            const auto vertex = static_cast<Index>(p);
+            if (topology.point_edges[p].empty()) {
+                row.add(vertex, 1);
+            } else if (!local.limit_of(vertex, row)) {
+                refined.limit_of(vertex, rows, row);
+            }
             block.push(row.finish());
         }
         blocks[b] = block.block();
@@ -143,6 +197,7 @@ StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
 }
 
 HexMesh on_limit(HexMesh mesh, Scheme scheme) {
+    validate(mesh);
     if (interpolates(scheme)) return mesh;
     const StencilTable table = limit_stencils(build_topology(mesh), scheme);
     std::vector<Vec3> points(mesh.points.size());

@@ -5,6 +5,8 @@
 #include "bucket_sort.h"
 #include "child_cells.h"
 #include "scheme_rows.h"
+#include "topology_faces.h"
+#include "topology_tags.h"
 
 namespace subvol::detail {
 
@@ -166,6 +168,10 @@ void refine_data(const HexMesh& parent, const SchemeRows& rows, std::span<const 
 
 PatchSource::PatchSource(const HexMesh& mesh)
     : mesh_(mesh), creases_(sorted_tags(mesh.creases)), sharp_faces_(sorted_tags(mesh.sharp_faces)) {
+    Topology faces;  // refuses what is no mesh, in the numbers of the whole
+    faces.point_count = mesh.points.size();
+    faces.cells = mesh.cells;
+    build_faces(faces);
     struct Corner {
         Index point, cell;
         auto operator<=>(const Corner&) const = default;
@@ -216,7 +222,7 @@ Patch PatchSource::cut(std::span<const Index> cells, int layers) const {
 }
 
 Patch refine_patch(const Patch& patch, const RefineOptions& options, int layers) {
-    const Topology topology = build_topology(patch.mesh);
+    const Topology topology = build_topology(patch.mesh, Tags::OfAPart);
     const SchemeRows rows(topology, options);
     const std::size_t parents = layers == 0 ? patch.wanted : patch.first_layer;
     std::vector<std::array<Index, 8>> cells;

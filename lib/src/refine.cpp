@@ -102,6 +102,9 @@ RefinementTables refinement_tables(const Topology& control, const RefineOptions&
     tables.control_points = control.point_count;
     tables.cells = control.cells;
     tables.creases = control.creases;
+    for (std::size_t f = 0; f < control.face_is_sharp.size(); ++f) {
+        if (control.face_is_sharp[f]) tables.sharp_faces.push_back(control.faces[f]);
+    }
     const Topology* parent = &control;
     Topology current;
     for (int level = 1; level <= options.levels; ++level) {

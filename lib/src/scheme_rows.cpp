@@ -1,5 +1,7 @@
 #include "scheme_rows.h"
 
+#include <cmath>
+
 #include "bucket_sort.h"
 #include "subvol/error.h"
 
@@ -16,6 +18,7 @@ std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const RefineOp
         case Scheme::Linear:
             return make_linear_rules(topology);
         case Scheme::Mcq:
+            if (!std::isfinite(options.tension)) throw Error(ErrorCode::InvalidInput, "the tension is not a finite number");
             return make_mcq_rules(topology, options.tension);
         case Scheme::CatmullClark:
             return make_catmull_clark_rules(topology);

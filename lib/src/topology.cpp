@@ -8,6 +8,7 @@
 #include "edge_rings.h"
 #include "subvol/error.h"
 #include "topology_faces.h"
+#include "topology_tags.h"
 
 namespace subvol {
 
@@ -121,7 +122,7 @@ bool has_single_cell(const Topology& topology, Index edge) {
 }
 
 /// The default rule, and the mesh's own tags.
-void mark_creases(Topology& topology) {
+void mark_creases(Topology& topology, detail::Tags tags) {
     topology.edge_is_crease.assign(topology.edges.size(), 0);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
         if (!topology.edge_on_boundary[e]) continue;
@@ -133,6 +134,7 @@ void mark_creases(Topology& topology) {
     for (const auto& [a, b] : topology.creases) {
         const auto e = topology.find_edge(a, b);
         if (!e || !topology.edge_on_boundary[*e]) {
+            if (tags == detail::Tags::OfAPart) continue;
             throw Error(ErrorCode::InvalidInput,
                         "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge", "crease",
                         "creases are edges of the boundary");
@@ -186,7 +188,7 @@ std::optional<Index> Topology::find_edge(Index a, Index b) const {
     return static_cast<Index>(found - edges.begin());
 }
 
-Topology build_topology(const HexMesh& mesh) {
+Topology detail::build_topology(const HexMesh& mesh, Tags tags) {
     Topology topology;
     topology.point_count = mesh.points.size();
     topology.cells = mesh.cells;
@@ -200,8 +202,12 @@ Topology build_topology(const HexMesh& mesh) {
     mark_boundary(topology);
     detail::order_edge_rings(topology);
     topology.creases = mesh.creases;
-    mark_creases(topology);
+    mark_creases(topology, tags);
     return topology;
+}
+
+Topology build_topology(const HexMesh& mesh) {
+    return detail::build_topology(mesh, detail::Tags::OfAWhole);
 }
 
 }  // namespace subvol

@@ -189,6 +189,61 @@ TEST_P(MovingSchemes, LimitPointsStayWhereTheyAreUnderRefinement) {
     }
 }
 
+TEST_P(MovingSchemes, ConvergeWhereTheFirstGuessesAgree) {
+    // In an L of cells the trilinear guess at odd quarters is the same on the first levels: a cell point is the mean of
+    // corners.
+    HexMesh mesh = test::make_box(2, 2, 1);
+    mesh.cells.pop_back();
+    test::jitter(mesh, .05, 1);
+    const std::vector<LimitQuery> queries{{0, {.75, .75, .75}}, {1, {.25, .75, .25}}, {2, {.75, .25, .5}}};
+    const LimitSamples samples = evaluate_limit(mesh, queries, {.scheme = GetParam()});
+    const HexMesh fine = on_limit(refine(mesh, {.scheme = GetParam(), .levels = 5}), GetParam());
+    const auto at = [&](std::size_t query) {  // the vertex of the fifth level at the same parameters
+        std::size_t cell = queries[query].cell;
+        Vec3 uvw = queries[query].uvw;
+        constexpr std::array<std::size_t, 8> kChild{0, 1, 3, 2, 4, 5, 7, 6};
+        for (int level = 0; level < 5; ++level) {
+            std::size_t octant = 0;
+            for (int a = 0; a < 3; ++a) {
+                const bool upper = uvw[a] >= .5;
+                octant |= std::size_t{upper} << a;
+                uvw[a] = 2 * uvw[a] - (upper ? 1 : 0);
+            }
+            cell = 8 * cell + kChild[octant];
+        }
+        return fine.points[fine.cells[cell][0]];
+    };
+    for (std::size_t q = 0; q < queries.size(); ++q) EXPECT_NEAR(glm::distance(samples.positions[q], at(q)), 0, 2e-5) << q;
+}
+
+TEST(LimitMcq, JacobiansConvergeWhereValuesAreExactAtOnce) {
+    const HexMesh mesh = irregular();
+    std::vector<LimitQuery> dyadic, beside;
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        dyadic.push_back({c, {.5, .25, .5}});
+        beside.push_back({c, {.5 + 1e-7, .25 + 1e-7, .5 + 1e-7}});
+    }
+    const LimitSamples a = evaluate_limit(mesh, dyadic),
+                       b = evaluate_limit(mesh, beside, {.tolerance = 1e-10, .max_levels = 12});
+    for (std::size_t i = 0; i < dyadic.size(); ++i) {
+        for (int d = 0; d < 3; ++d) {  // the square root of the tolerance, of the diagonal 3.5, some times over
+            EXPECT_NEAR(glm::distance(a.jacobians[i][d], b.jacobians[i][d]), 0, .015);
+        }
+    }
+}
+
+TEST_P(MovingSchemes, LimitStencilsHoldWherePointsRepeatAboutAVertex) {
+    HexMesh mesh;  // two cells that share two faces, about an edge with no more cells
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},   {0, 0, 1},
+                   {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {-1, -1, 0}, {-1, -1, 1}};
+    mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 3, 8, 1, 4, 7, 9, 5}};
+    const HexMesh coarse = on_limit(mesh, GetParam());
+    const HexMesh fine = on_limit(refine(mesh, {.scheme = GetParam(), .levels = 2}), GetParam());
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        EXPECT_NEAR(glm::distance(coarse.points[p], fine.points[p]), 0, 1e-12) << p;
+    }
+}
+
 TEST(LimitStencils, AreOneFourOneInsideAndSumToOne) {
     const Topology topology = build_topology(test::make_box(4, 4, 4));
     const CsrMatrix rows = limit_stencils(topology, Scheme::CatmullClark).csr();

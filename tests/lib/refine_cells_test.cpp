@@ -80,6 +80,28 @@ TEST(RefineCells, KeepsTheTagsOfThePart) {
     EXPECT_EQ(part.creases.size(), 2u) << "both halves of the one crease at the cell";
 }
 
+TEST(RefineCells, LeavesTagsAloneThatThePartCannotJudge) {
+    // The crease is one of the boundary only for a fin of one cell that is far from some of the cells asked for.
+    HexMesh mesh = with_field(test::make_box(4, 4, 1));
+    const auto id = [](Index i, Index j, Index k) { return i + 5 * (j + 5 * k); };
+    const Index a = id(2, 2, 0), b = id(2, 2, 1), n = static_cast<Index>(mesh.points.size());
+    for (int k = 0; k < 6; ++k) mesh.points.emplace_back(2 + k % 3, 2 + k / 3, 5);
+    mesh.attributes[0].values.resize(mesh.points.size(), 1.0);
+    mesh.cells.push_back({a, n, n + 1, n + 2, b, n + 3, n + 4, n + 5});
+    mesh.creases = {{a, b}};
+    const std::vector<Index> corners{0, 3, 12, 15};
+    const HexMesh local = refine_cells(mesh, corners, {.levels = 2}), global = refine(mesh, {.levels = 2});
+    for (std::size_t i = 0; i < local.cells.size(); ++i) {
+        EXPECT_EQ(local.points[local.cells[i][7]], global.points[global.cells[64 * corners[i / 64] + i % 64][7]]);
+    }
+}
+
+TEST(RefineCells, RefusesWhatIsNoMeshAnywhere) {
+    HexMesh mesh = test::make_box(9, 1, 1);
+    mesh.cells.push_back(mesh.cells[7]);
+    test::expect_error(ErrorCode::InvalidInput, "cells 7 and 9", [&] { (void)refine_cells(mesh, std::vector<Index>{0}); });
+}
+
 TEST(RefineCells, RefusesCellsThatAreNotThere) {
     const HexMesh mesh = test::make_box(2, 1, 1);
     test::expect_error(ErrorCode::InvalidInput, "there is no cell 2", [&] { (void)refine_cells(mesh, std::vector<Index>{2}); });

@@ -94,10 +94,14 @@ TEST(SharpFacesAndReports, LeaveTheHullAlone) {
     HexMesh cube = test::make_box(2, 2, 2);
     cube.sharp_faces = {{1, 4, 13, 10}};
     EXPECT_EQ(inspect(cube).interior_edges, 6u);
+    EXPECT_EQ(refinement_tables(build_topology(mesh), {.levels = 0}).sharp_faces.size(), 1u);
     mesh.sharp_faces = {{1, 4, 10, 8}};
     test::expect_error(ErrorCode::InvalidInput, "points 1 4 10 8 are no face", [&] { (void)refine(mesh); });
     mesh.sharp_faces = {{1, 4, 10, 99}};
     test::expect_error(ErrorCode::InvalidInput, "point 99 does not exist", [&] { (void)refine(mesh); });
+    mesh.points.push_back({9, 9, 9});
+    mesh.sharp_faces = {{1, 4, 10, 12}};
+    test::expect_error(ErrorCode::InvalidInput, "point 12 belongs to no cell", [&] { (void)refine(mesh); });
 }
 
 }  // namespace

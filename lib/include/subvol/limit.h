@@ -15,7 +15,7 @@ struct LimitQuery {
 };
 
 /// tolerance:  relative to the diagonal of the mesh's box and to each attribute's range; what is not exact is refined until two
-///             levels differ by less
+///             levels differ by less; derivatives by less than its square root, of the same scale a cell
 /// max_levels: ≥ 2, where refinement ends at the latest
 struct LimitOptions {
     Scheme scheme = Scheme::Mcq;
