@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "cubic_basis.h"
+#include "mcq_grid.h"
 #include "patch.h"
 #include "regular_grid.h"
 #include "subvol/error.h"
@@ -43,6 +44,28 @@ private:
 /// Value and derivatives of all channels at one place: entry 4c is channel c, behind it its derivatives by u, v, w.
 using Jet = std::vector<double>;
 
+using Basis = std::array<CubicBasis, 3>;
+
+/// Sums over 4×4×4 points, the first at `data`; points along an axis are `side` to its power apart.
+/// scale: by how much derivatives grow, 2^level
+void sum_grid(const double* data, std::size_t side, std::size_t channels, const Basis& basis, double scale, Jet& jet) {
+    jet.assign(4 * channels, 0.0);
+    for (std::size_t k = 0; k < 4; ++k) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            for (std::size_t i = 0; i < 4; ++i) {
+                const std::array<double, 4> weight{basis[0].value[i] * basis[1].value[j] * basis[2].value[k],
+                                                   scale * basis[0].first[i] * basis[1].value[j] * basis[2].value[k],
+                                                   scale * basis[0].value[i] * basis[1].first[j] * basis[2].value[k],
+                                                   scale * basis[0].value[i] * basis[1].value[j] * basis[2].first[k]};
+                const double* point = data + (i + side * (j + side * k)) * channels;
+                for (std::size_t c = 0; c < channels; ++c) {
+                    for (std::size_t d = 0; d < 4; ++d) jet[4 * c + d] += weight[d] * point[c];
+                }
+            }
+        }
+    }
+}
+
 /// What the grid of 4×4×4 points about a cell says at a place in the cell.
 class GridEvaluator {
 public:
@@ -56,23 +79,12 @@ public:
         for (std::size_t axis = 0, stride = 1; axis < 3; ++axis, stride *= 4) fill_missing(grid, stride);
     }
 
-    /// scale: by how much the derivatives grow, 2^level
     void evaluate(const Vec3& uvw, double scale, Jet& jet) const {
-        std::array<CubicBasis, 3> basis;
+        Basis basis;
         for (int a = 0; a < 3; ++a) {
             basis[static_cast<std::size_t>(a)] = spline_ ? CubicBasis::spline(uvw[a]) : CubicBasis::lagrange(uvw[a]);
         }
-        jet.assign(4 * channels_, 0.0);
-        for (std::size_t n = 0; n < 64; ++n) {
-            const std::size_t i = n % 4, j = n / 4 % 4, k = n / 16;
-            const std::array<double, 4> weight{basis[0].value[i] * basis[1].value[j] * basis[2].value[k],
-                                               scale * basis[0].first[i] * basis[1].value[j] * basis[2].value[k],
-                                               scale * basis[0].value[i] * basis[1].first[j] * basis[2].value[k],
-                                               scale * basis[0].value[i] * basis[1].value[j] * basis[2].first[k]};
-            for (std::size_t c = 0; c < channels_; ++c) {
-                for (std::size_t d = 0; d < 4; ++d) jet[4 * c + d] += weight[d] * data_[n * channels_ + c];
-            }
-        }
+        sum_grid(data_.data(), 4, channels_, basis, scale, jet);
     }
 
 private:
@@ -101,6 +113,17 @@ private:
     bool spline_;
     std::vector<double> data_;
 };
+
+/// Which of the eight children a place is in, u + 2v + 4w; the place becomes one in the child.
+std::size_t step_into_octant(Vec3& uvw) {
+    std::size_t octant = 0;
+    for (int a = 0; a < 3; ++a) {
+        const bool upper = uvw[a] >= 0.5;
+        octant |= std::size_t{upper} << a;
+        uvw[a] = 2 * uvw[a] - (upper ? 1 : 0);
+    }
+    return octant;
+}
 
 void evaluate_linear(const HexMesh& mesh, std::size_t channels, Index cell, const Vec3& uvw, double scale, Jet& jet) {
     constexpr std::array<std::array<int, 3>, 8> kCorner{
@@ -139,11 +162,12 @@ public:
         : options_(options),
           refine_{.scheme = options.scheme, .tension = options.tension, .crease_angle_deg = {}},
           scales_(scales),
-          samples_(samples) {}
+          samples_(samples),
+          grid_rule_(options.tension) {}
 
     LimitReport run(Patch patch, std::vector<Descent> open) {
         for (int level = 0;; ++level) {
-            report_.deepest_level = level;
+            report_.deepest_level = std::max(report_.deepest_level, level);
             const Topology topology = detail::build_topology(patch.mesh, detail::Tags::OfAPart);
             evaluate_level(patch, topology, level, open);
             if (open.empty()) return report_;
@@ -158,14 +182,21 @@ private:
         const double scale = std::ldexp(1.0, level);
         GridEvaluator grid(patch.mesh, scales_.size(), options_.scheme);
         Index loaded = kNone;
-        bool regular = false;
+        bool regular = false, wide = false;
         detail::GridPoints points;
+        detail::WideGridPoints wide_points;
         Jet jet;
         std::erase_if(open, [&](Descent& at) {
             if (at.cell != loaded) {
                 loaded = at.cell;
                 regular = options_.scheme != Scheme::Linear && detail::regular_grid(topology, at.cell, points);
                 if (regular) grid.load(points);
+                wide = regular && options_.scheme == Scheme::Mcq && detail::wide_grid(topology, at.cell, wide_points);
+                if (wide) load(patch.mesh, wide_points);
+            }
+            if (wide) {
+                descend_in_grid(at, level);
+                return true;
             }
             if (regular) {
                 grid.evaluate(at.uvw, scale, jet);
@@ -173,17 +204,42 @@ private:
                 evaluate_linear(patch.mesh, scales_.size(), at.cell, at.uvw, scale, jet);
             }
             const bool exact = options_.scheme == Scheme::Linear || (regular && !interpolates(options_.scheme));
-            at.agreed = level >= 1 && is_close(jet, at.last, level) ? at.agreed + 1 : 0;
-            // The trilinear guess stands still for a level at the centres of cells, whose points are means of the corners.
-            const bool settled = level >= 2 && at.agreed >= (regular ? 1 : 2);
-            const bool last = level >= options_.max_levels;
-            at.last = jet;
-            if (!exact && !settled && !last) return false;
-            ++(exact ? report_.exact : report_.refined);
-            report_.unconverged += !exact && !settled;
-            write(at.query, jet);
-            return true;
+            return settle(at, jet, level, regular, exact);
         });
+    }
+
+    /// Whether the query is done with what a level says of it; if so, it is written.
+    bool settle(Descent& at, const Jet& jet, int level, bool regular, bool exact) {
+        at.agreed = level >= 1 && is_close(jet, at.last, level) ? at.agreed + 1 : 0;
+        // The trilinear guess stands still for a level at the centres of cells, whose points are means of the corners.
+        const bool settled = level >= 2 && at.agreed >= (regular ? 1 : 2);
+        at.last = jet;
+        if (!exact && !settled && level < options_.max_levels) return false;
+        ++(exact ? report_.exact : report_.refined);
+        report_.unconverged += !exact && !settled;
+        write(at.query, jet);
+        return true;
+    }
+
+    void load(const HexMesh& mesh, const detail::WideGridPoints& points) {
+        wide_data_.resize(points.size() * scales_.size());
+        for (std::size_t n = 0; n < points.size(); ++n) Channels::read(mesh, points[n], &wide_data_[n * scales_.size()]);
+    }
+
+    /// Goes on where all about is a grid, so that children need no topology.
+    void descend_in_grid(Descent& at, int level) {
+        constexpr std::size_t kSide = detail::McqGrid::kSide;
+        std::vector<double> data = wide_data_, child(data.size());
+        for (Jet jet;; ++level) {
+            const Basis basis{CubicBasis::lagrange(at.uvw[0]), CubicBasis::lagrange(at.uvw[1]),
+                              CubicBasis::lagrange(at.uvw[2])};
+            sum_grid(&data[(1 + kSide + kSide * kSide) * scales_.size()], kSide, scales_.size(), basis, std::ldexp(1.0, level),
+                     jet);
+            report_.deepest_level = std::max(report_.deepest_level, level);
+            if (settle(at, jet, level, true, false)) return;
+            grid_rule_.refine(step_into_octant(at.uvw), scales_.size(), data, child);
+            data.swap(child);
+        }
     }
 
     /// Derivatives are of half the order. About extraordinary edges and vertices they need not converge, so that after some
@@ -216,13 +272,7 @@ private:
 
     void descend(Descent& at) const {
         constexpr std::array<Index, 8> kChild{0, 1, 3, 2, 4, 5, 7, 6};  // by u + 2v + 4w
-        std::size_t octant = 0;
-        for (int a = 0; a < 3; ++a) {
-            const bool upper = at.uvw[a] >= 0.5;
-            octant |= std::size_t{upper} << a;
-            at.uvw[a] = 2 * at.uvw[a] - (upper ? 1 : 0);
-        }
-        at.cell = 8 * at.cell + kChild[octant];
+        at.cell = 8 * at.cell + kChild[step_into_octant(at.uvw)];
     }
 
     void write(std::size_t query, const Jet& jet) {
@@ -245,6 +295,8 @@ private:
     const std::vector<double>& scales_;
     LimitSamples& samples_;
     LimitReport report_;
+    detail::McqGrid grid_rule_;
+    std::vector<double> wide_data_;
 };
 
 void check(const HexMesh& mesh, std::span<const LimitQuery> queries, const LimitOptions& options) {

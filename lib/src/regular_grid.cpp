@@ -1,6 +1,7 @@
 #include "regular_grid.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 
 #include "corner_parameters.h"
@@ -57,15 +58,34 @@ std::optional<TurnedCell> step(const Topology& topology, const TurnedCell& from,
     return std::nullopt;
 }
 
-/// Puts a cell's corners into the grid; false if another point is there already.
-bool put(const TurnedCell& cell, const std::array<int, 3>& offset, GridPoints& grid) {
+/// Puts a cell's corners into a grid of `layers` cells about the center; false if another point is there already.
+bool put(const TurnedCell& cell, const std::array<int, 3>& offset, int layers, std::span<Index> grid) {
     for (std::size_t k = 0; k < 8; ++k) {
         std::size_t node = 0, stride = 1;
-        for (std::size_t a = 0; a < 3; ++a, stride *= 4) {
-            node += stride * static_cast<std::size_t>(1 + offset[a] + static_cast<int>(k >> a & 1));
+        for (std::size_t a = 0; a < 3; ++a, stride *= static_cast<std::size_t>(2 + 2 * layers)) {
+            node += stride * static_cast<std::size_t>(layers + offset[a] + static_cast<int>(k >> a & 1));
         }
         if (grid[node] != kNone && grid[node] != cell.corners[k]) return false;
         grid[node] = cell.corners[k];
+    }
+    return true;
+}
+
+/// Fills a grid with the cells that can be stepped to; false if they do not fit together.
+bool fill(const Topology& topology, Index cell, int layers, std::span<Index> grid) {
+    std::fill(grid.begin(), grid.end(), kNone);
+    const TurnedCell center = as_it_is(topology, cell);
+    for (int w = -layers; w <= layers; ++w) {
+        for (int v = -layers; v <= layers; ++v) {
+            for (int u = -layers; u <= layers; ++u) {
+                std::optional<TurnedCell> at = center;
+                const std::array<int, 3> offset{u, v, w};
+                for (std::size_t a = 0; a < 3; ++a) {
+                    for (int n = std::abs(offset[a]); n > 0 && at; --n) at = step(topology, *at, a, offset[a] > 0 ? 1 : 0);
+                }
+                if (at && !put(*at, offset, layers, grid)) return false;
+            }
+        }
     }
     return true;
 }
@@ -116,21 +136,14 @@ bool regular_grid(const Topology& topology, Index cell, GridPoints& grid) {
     for (const Index p : topology.cells[cell]) {
         if (!is_grid_point(topology, p)) return false;
     }
-    grid.fill(kNone);
-    const TurnedCell center = as_it_is(topology, cell);
-    for (int w = -1; w <= 1; ++w) {
-        for (int v = -1; v <= 1; ++v) {
-            for (int u = -1; u <= 1; ++u) {
-                std::optional<TurnedCell> at = center;
-                const std::array<int, 3> offset{u, v, w};
-                for (std::size_t a = 0; a < 3 && at; ++a) {
-                    if (offset[a] != 0) at = step(topology, *at, a, offset[a] > 0 ? 1 : 0);
-                }
-                if (at && !put(*at, offset, grid)) return false;
-            }
-        }
-    }
-    return has_whole_layers(grid);
+    return fill(topology, cell, 1, grid) && has_whole_layers(grid);
+}
+
+bool wide_grid(const Topology& topology, Index cell, WideGridPoints& grid) {
+    GridPoints inner;
+    if (!regular_grid(topology, cell, inner)) return false;
+    const auto is_inside = [&](Index p) { return p != kNone && !topology.point_on_boundary[p] && is_grid_point(topology, p); };
+    return std::all_of(inner.begin(), inner.end(), is_inside) && fill(topology, cell, 2, grid);
 }
 
 }  // namespace subvol::detail

@@ -123,6 +123,25 @@ TEST(LimitMcq, ConvergesWithTheSecondOrder) {
     EXPECT_GT(order, 1.8) << "the limit is C1, its second derivatives diverge logarithmically";
 }
 
+TEST(LimitMcq, AgreesWithTheVerticesOfFineLevels) {
+    // In a grid the evaluation goes down without topology: against refinement of the whole, in a bent box with another tension.
+    HexMesh mesh = test::make_box(6, 6, 6);
+    test::jitter(mesh, .2, 6);
+    test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(p.x * p.y) + p.z; });
+    for (const double tension : {1. / 16, 1. / 25}) {
+        const HexMesh fine = refine(mesh, {.levels = 3, .tension = tension});
+        std::vector<LimitQuery> queries;
+        for (Index c = 0; c < mesh.cells.size(); ++c) queries.push_back({c, {1. / 8, 5. / 8, 3. / 8}});
+        const LimitSamples samples = evaluate_limit(mesh, queries, {.tension = tension, .tolerance = 1e-9});
+        for (Index c = 0; c < mesh.cells.size(); ++c) {
+            // u 001, v 101, w 011 in binary: children by level 3 (v), 4 (w), 6 (u, v, w).
+            const Index vertex = fine.cells[512 * c + 0346][0];
+            EXPECT_NEAR(glm::distance(samples.positions[c], fine.points[vertex]), 0, 1e-14);
+            EXPECT_NEAR(samples.attributes[0].values[c], fine.attributes[0].values[vertex], 1e-14);
+        }
+    }
+}
+
 TEST(LimitMcq, GoesThroughTheControlPoints) {
     const HexMesh mesh = irregular();
     std::vector<LimitQuery> queries;

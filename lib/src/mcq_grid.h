@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace subvol::detail {
+
+/// MCQ in a grid, without topology: from the 6×6×6 points about a cell, two beyond it on every side, to those about one of its
+/// eight children. Entry i + 6j + 36k stands at (i−2, j−2, k−2) in the cell's parameters.
+class McqGrid {
+public:
+    static constexpr std::size_t kSide = 6, kPoints = kSide * kSide * kSide;
+
+    explicit McqGrid(double tension);
+
+    /// octant: u + 2v + 4w of the child
+    /// from, to: kPoints × channels values, point-major
+    void refine(std::size_t octant, std::size_t channels, std::span<const double> from, std::span<double> to) const;
+
+private:
+    struct Run {
+        double weight;
+        std::vector<std::int16_t> offsets;  // in points
+    };
+    std::array<std::vector<Run>, 8> masks_;  // by which axes are half way: u + 2v + 4w
+};
+
+}  // namespace subvol::detail
