@@ -76,8 +76,8 @@ BoundaryScene::BoundaryScene(const TetMesh& mesh, const Box& box)
     const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.points.size()));
-    auto* triangles = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.boundary.size()));
+    auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                          3 * sizeof(std::uint32_t), mesh.boundary.size()));
     if (vertices && triangles) {
         for (const auto& point : mesh.points) {
             const Vec3 p = scale_ * (point.position - center_);

@@ -1,5 +1,5 @@
-// Several levels at once derive each level's topology from its parent; level by level it is built anew by sorting. Both must give
-// the same mesh, to the last bit and number.
+// Several levels at once derive each level's topology from its parent; level by level it is built anew by sorting. Both must
+// give the same mesh, to the last bit and number.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,8 @@ TEST_P(RefinedInLevels, CreasesAndSharpFaces) {
     test::jitter(mesh, .1, 2);
     const auto id = [](Index i, Index j, Index k) { return i + 4 * (j + 4 * k); };
     mesh.creases = {{id(1, 0, 3), id(1, 1, 3)}, {id(1, 1, 3), id(1, 2, 3)}};
-    mesh.sharp_faces = {{id(1, 1, 1), id(1, 2, 1), id(1, 2, 2), id(1, 1, 2)}, {id(1, 0, 1), id(1, 1, 1), id(1, 1, 2), id(1, 0, 2)}};
+    mesh.sharp_faces = {{id(1, 1, 1), id(1, 2, 1), id(1, 2, 2), id(1, 1, 2)},
+                        {id(1, 0, 1), id(1, 1, 1), id(1, 1, 2), id(1, 0, 2)}};
     expect_same_as_stepwise(mesh, {.scheme = GetParam(), .levels = 3});
 }
 

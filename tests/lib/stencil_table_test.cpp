@@ -26,8 +26,7 @@ std::vector<double> coordinates(const HexMesh& mesh) {
 }
 
 class EveryTable : public testing::TestWithParam<Scheme> {};
-INSTANTIATE_TEST_SUITE_P(Schemes, EveryTable,
-                         testing::Values(Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear));
+INSTANTIATE_TEST_SUITE_P(Schemes, EveryTable, testing::Values(Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear));
 
 TEST_P(EveryTable, GivesBitwiseWhatRefineGives) {
     const HexMesh mesh = irregular();

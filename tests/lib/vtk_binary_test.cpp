@@ -144,7 +144,8 @@ TEST_F(VtkBinary, ErrorsNameTheByte) {
     static_cast<void>(read(good));
     EXPECT_THAT(read_error(good.substr(0, good.size() - 9)), HasSubstr("array \"s\": value 26: unexpected end of file"));
     EXPECT_THAT(read_error(good.substr(0, 100)), HasSubstr("a.vtk, byte"));
-    EXPECT_THAT(read_error(replaced(good, "POINTS 27", "POINTS 4000000000")), HasSubstr("POINTS: count out of range: 4000000000"));
+    EXPECT_THAT(read_error(replaced(good, "POINTS 27", "POINTS 4000000000")),
+                HasSubstr("POINTS: count out of range: 4000000000"));
     EXPECT_THAT(read_error(replaced(good, "CELLS 8 72", "CELLS 8 71")), HasSubstr("cell 7 does not fit into the 71 numbers"));
     const std::size_t cells = good.find("CELLS 8 72\n") + 11;
     EXPECT_THAT(read_error(std::string(good).replace(cells + 8, 4, big(std::vector<std::int32_t>{27}))),
