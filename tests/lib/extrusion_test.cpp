@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "lib/test_meshes.h"
 #include "subvol/refine.h"
 
 namespace subvol {
@@ -15,16 +16,8 @@ namespace {
 
 constexpr double kRounding = 1e-13;  // a few hundred double operations on coordinates of size one
 
-Vec3 mean(const std::vector<Vec3>& points) {
-    return std::accumulate(points.begin(), points.end(), Vec3(0)) / static_cast<double>(points.size());
-}
-
-template <class Ids>
-Vec3 mean_at(const std::vector<Vec3>& points, const Ids& ids) {
-    Vec3 sum(0);
-    for (const auto p : ids) sum += points[p];
-    return sum / static_cast<double>(std::size(ids));
-}
+using test::mean;
+using test::mean_at;
 
 /// `valence` sectors of 2×2 quads about point 0, all points in z = 0.
 struct Section {

@@ -16,12 +16,7 @@ namespace {
 
 constexpr double kRounding = 1e-13;  // a few hundred double operations on coordinates of size one
 
-/// Irregular edges and points inside, no two coordinates alike.
-HexMesh irregular() {
-    HexMesh mesh = test::make_nested_cubes(2);
-    test::jitter(mesh, .03, 7);
-    return mesh;
-}
+using test::irregular;
 
 TEST(Refine, WeightsSumToOneOnAnyMesh) {
     for (const auto& row : stencils(build_topology(irregular()))) {

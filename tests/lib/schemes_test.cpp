@@ -15,12 +15,7 @@ namespace {
 
 constexpr double kRounding = 1e-13;  // a few hundred double operations on coordinates of size one
 
-/// Irregular edges and points inside, no two coordinates alike.
-HexMesh irregular() {
-    HexMesh mesh = test::make_nested_cubes(2);
-    test::jitter(mesh, .03, 7);
-    return mesh;
-}
+using test::irregular;
 
 /// Two hexes that share two faces: the edge between those lies inside but has no ring.
 HexMesh two_about_an_edge() {
@@ -41,16 +36,8 @@ HexMesh edge_contact() {
     return without_unused_points(mesh);
 }
 
-Vec3 mean(const std::vector<Vec3>& points) {
-    return std::accumulate(points.begin(), points.end(), Vec3(0)) / static_cast<double>(points.size());
-}
-
-template <class Ids>
-Vec3 mean_at(const std::vector<Vec3>& points, const Ids& ids) {
-    Vec3 sum(0);
-    for (const auto p : ids) sum += points[p];
-    return sum / static_cast<double>(std::size(ids));
-}
+using test::mean;
+using test::mean_at;
 
 class Approximating : public testing::TestWithParam<Scheme> {};
 

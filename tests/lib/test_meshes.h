@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 #include <random>
 
@@ -81,6 +82,24 @@ inline void jitter(HexMesh& mesh, double amount, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> shift(-amount, amount);
     for (auto& p : mesh.points) p += Vec3(shift(random), shift(random), shift(random));
+}
+
+/// Irregular edges and points inside, no two coordinates alike.
+inline HexMesh irregular() {
+    HexMesh mesh = make_nested_cubes(2);
+    jitter(mesh, .03, 7);
+    return mesh;
+}
+
+inline Vec3 mean(const std::vector<Vec3>& points) {
+    return std::accumulate(points.begin(), points.end(), Vec3(0)) / static_cast<double>(points.size());
+}
+
+template <class Ids>
+Vec3 mean_at(const std::vector<Vec3>& points, const Ids& ids) {
+    Vec3 sum(0);
+    for (const auto p : ids) sum += points[p];
+    return sum / static_cast<double>(std::size(ids));
 }
 
 template <class Function>
