@@ -48,7 +48,7 @@ void write_header(std::ostream& out, const RbfVolume& volume, PlyEncoding encodi
         << "comment OpenSubVol radial basis functions: w = (1-e)^3, e = d.inverse(S).d < 1, d = x - centre\n"
         << "comment a kernel stands for value + gradient.d + moment*e; the field is their w-weighted mean inside the boundary\n"
         << "comment field " << volume.channels.front().name << '\n'
-        << "comment kernel_radius " << volume.kernel.radius << '\n'
+        << "comment kernel_radius " << support_radius(volume.kernel) << '\n'
         << "element vertex " << volume.size() << '\n';
     for (const char* name : {"x", "y", "z"}) out << "property double " << name << '\n';
     for (const char* name : {"value", "gx", "gy", "gz", "moment", "sxx", "sxy", "sxz", "syy", "syz", "szz"}) {

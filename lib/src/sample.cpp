@@ -30,8 +30,9 @@ void check(const SampleOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the spacing is " + std::to_string(options.spacing_world), {},
                     "a positive length");
     }
-    if (!(options.kernel.radius >= 1.2 && options.kernel.radius <= 4)) {
-        throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(options.kernel.radius), {},
+    const double radius = support_radius(options.kernel);
+    if (!(radius >= 1.2 && radius <= 4)) {
+        throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(radius), {},
                     "1.2 to 4 sample intervals: smaller kernels leave holes");
     }
     if (options.boundary_levels < 0 || options.boundary_levels > CellBlocks::kLevels) {
@@ -108,7 +109,7 @@ public:
         const bool flat = !(glm::determinant(metric_) > kFlat * scale * scale * scale);
         if (flat) metric_ += Mat3(kThickness * (scale > 0 ? scale : 1));
         const Mat3 inverse = glm::inverse(metric_);
-        const double r2 = options_.kernel.radius * options_.kernel.radius, cells = cells_;
+        const double radius = support_radius(options_.kernel), r2 = radius * radius, cells = cells_;
         const Mat3 s = metric_ * (r2 / cells);
         volume_.frames[point_] = {static_cast<float>(s[0][0]), static_cast<float>(s[1][0]), static_cast<float>(s[2][0]),
                                   static_cast<float>(s[1][1]), static_cast<float>(s[2][1]), static_cast<float>(s[2][2])};

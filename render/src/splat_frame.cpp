@@ -179,6 +179,9 @@ SplatFrame prepare_splats(const RbfVolume& volume, const View& view, const Prein
     if (volume.boundary.triangles.empty()) {
         throw Error(ErrorCode::InvalidInput, "the points have no boundary surface to be clipped against");
     }
+    if (!std::holds_alternative<CompactKernel>(volume.kernel)) {
+        throw Error(ErrorCode::InvalidInput, "the splatter draws compact kernels only, these points have others");
+    }
     const auto& channel = volume.channels[options.channel];
     check_floats(volume, channel, table);
     report_progress(options.progress, "prepare splats", 0);

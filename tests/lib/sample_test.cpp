@@ -45,7 +45,7 @@ TEST(Sample, QuadraticFieldsHaveExactDerivativesOnACurvedMesh) {
     for (auto& p : mesh.points) p = Vec3(p.x + .05 * p.y * p.y, p.y - .04 * p.x * p.z, p.z + .03 * p.x * p.x);
     const auto volume = sample_rbf_points(mesh, {.per_edge = 2}).volume;
     const HexMesh fine = refine(mesh, {.levels = 1});
-    const double r2 = volume.kernel.radius * volume.kernel.radius;
+    const double r2 = support_radius(volume.kernel) * support_radius(volume.kernel);
     for (std::size_t i = 0; i < volume.size(); ++i) {
         // Find the parameters by Newton's method on the known map.
         Vec3 u = volume.centers[i];
@@ -113,7 +113,7 @@ TEST(Sample, RefusesOptionsOutOfRange) {
     EXPECT_THROW((void)sample_rbf_points(mesh, {.per_edge = 0}), Error);
     EXPECT_THROW((void)sample_rbf_points(mesh, {.spacing_world = -1}), Error);
     EXPECT_THROW((void)sample_rbf_points(mesh, {.spacing_world = 1e-9}), Error);
-    EXPECT_THROW((void)sample_rbf_points(mesh, {.kernel = {.radius = 1}}), Error);
+    EXPECT_THROW((void)sample_rbf_points(mesh, {.kernel = CompactKernel{.radius = 1}}), Error);
 }
 
 }  // namespace

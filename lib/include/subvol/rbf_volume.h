@@ -4,19 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "subvol/kernel.h"
 #include "subvol/surface.h"
 #include "subvol/vec.h"
 
 namespace subvol {
 
-/// The kernel of all points of a volume: w(e) = (1 − e)³ for e < 1, else 0, with e = (x−μ)ᵀ S⁻¹ (x−μ).
-///
-/// radius: R in sample intervals, already within the frames S = R² J Jᵀ; below 1.2 the kernels leave holes
-struct Kernel {
-    double radius = 1.43;
-};
-
-/// One scalar channel. A kernel's value at x is values + gradients·(x−μ) + moments·e.
+/// One scalar channel. What a kernel stands for at x is values + gradients·(x−μ) + moments·e, with e = (x−μ)ᵀ S⁻¹ (x−μ).
 ///
 /// gradients: world⁻¹; moments: R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
 struct RbfChannel {
@@ -30,6 +24,7 @@ struct RbfChannel {
 ///
 /// centers:  world
 /// frames:   xx xy xz yy yz zz of S = R² J Jᵀ (world²), J's columns the world displacement per sample interval
+/// kernel:   of all points: its value at ρ = R√e is their weight, its support radius is the frames' R
 /// boundary: the solid's surface, outward; outside it there is nothing. Empty: the points have no known boundary
 struct RbfVolume {
     std::vector<Vec3> centers;

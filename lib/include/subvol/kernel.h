@@ -1,0 +1,99 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "subvol/vec.h"
+
+namespace subvol {
+
+// Kernels are small values. Lengths are in sample intervals (the scheme's lattice units), ρ = |x|; beyond its radius a kernel
+// is 0.
+
+/// (1 − ρ²/R²)³: what the splatter sums. Below R = 1.2 it leaves holes.
+struct CompactKernel {
+    double radius = 1.43;
+};
+
+/// amplitude · exp(−ρ²/2σ²), cut off at `radius`.
+struct GaussianKernel {
+    double sigma = 0.43;
+    double amplitude = 1;
+    double radius = 3;
+};
+
+/// Σ amplitudeᵢ · exp(−ρ²/2σᵢ²), cut off at `radius`.
+struct GaussianSumKernel {
+    std::vector<double> amplitudes;
+    std::vector<double> sigmas;
+    double radius = 3;
+};
+
+/// The cubic of Mitchell and Netravali in ρ: its inner piece up to extent/2, its outer one up to `extent`, not rescaled: only
+/// an extent of 2 makes a continuous spline (the others are how [mnmq2007] reads its radius).
+struct BcSplineKernel {
+    double b = 0.418792;
+    double c = 0.146011;
+    double extent = 2;
+};
+
+/// The cardinal cubic in ρ, its pieces as those of BcSplineKernel.
+struct CardinalSplineKernel {
+    double a = -0.098647;
+    double extent = 2;
+};
+
+/// amplitude · (1−s)⁴(4s+1), s = ρ/R.
+struct WendlandC2Kernel {
+    double radius = 1.64572;
+    double amplitude = 0.92666;
+};
+
+/// amplitude · (1−s)⁶(35s²+18s+3)/3, s = ρ/R.
+struct WendlandC4Kernel {
+    double radius = 2;
+    double amplitude = 1;
+};
+
+/// Π (a + b x²) exp(−x²/2σ²) over the axes, cut off at |x| = `radius` on each.
+struct SeparableGaussianKernel {
+    double a = 0.94755;
+    double b = -0.74100;
+    double sigma = 0.60388;
+    double radius = 3;
+};
+
+/// Π of Keys' cubic convolution over the axes, support 2; a = −1/2 is Catmull-Rom.
+struct CubicConvolutionKernel {
+    double a = -0.5;
+};
+
+/// Π of one table over the axes: values at 0, h, 2h, … radius, linear between.
+struct SeparableTableKernel {
+    double radius = 3;
+    std::vector<double> values;
+};
+
+/// A table on the octant [0,radius]³, count³ values with x fastest, trilinear between.
+struct TableKernel {
+    double radius = 3;
+    std::size_t count = 0;
+    std::vector<double> values;
+};
+
+using Kernel =
+    std::variant<CompactKernel, GaussianKernel, GaussianSumKernel, BcSplineKernel, CardinalSplineKernel, WendlandC2Kernel,
+                 WendlandC4Kernel, SeparableGaussianKernel, CubicConvolutionKernel, SeparableTableKernel, TableKernel>;
+
+/// Whether the kernel is a function of ρ alone.
+[[nodiscard]] bool is_radial(const Kernel& kernel);
+
+/// Where the kernel ends: a distance if it is radial, else along each axis.
+[[nodiscard]] double support_radius(const Kernel& kernel);
+
+/// The kernel at an offset; where it is radial, at a distance. `radial_value` of one that is not: that along an axis.
+[[nodiscard]] double kernel_value(const Kernel& kernel, const Vec3& x);
+[[nodiscard]] double radial_value(const Kernel& kernel, double rho);
+
+}  // namespace subvol
