@@ -1,6 +1,12 @@
+#include "boundary_surface.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 
-#include "subvol/surface.h"
+#include "boundary_rings.h"
+#include "bucket_sort.h"
+#include "scheme_rows.h"
 #include "topology_faces.h"
 
 namespace subvol {
@@ -17,6 +23,39 @@ std::array<Index, 4> outward_quad(const Topology& topology, Index cell, Index fa
     return quad;
 }
 
+/// A surface's triangles and, in the order of their first use, the points of the mesh that they need.
+class SurfaceBuilder {
+public:
+    explicit SurfaceBuilder(std::size_t mesh_points) : renumbered_(mesh_points, kNone) {}
+
+    /// The quad's smallest id comes first.
+    void add(const std::array<Index, 4>& quad) {
+        const std::array<Index, 4> q{number(quad[0]), number(quad[1]), number(quad[2]), number(quad[3])};
+        triangles_.push_back({q[0], q[1], q[2]});
+        triangles_.push_back({q[0], q[2], q[3]});
+    }
+
+    /// position(point of the mesh) is called in parallel.
+    template <class Position>
+    Surface finish(const Position& position) {
+        Surface surface{std::vector<Vec3>(used_.size()), std::move(triangles_)};
+        detail::parallel_each(used_.size(), [&](std::size_t i) { surface.points[i] = position(used_[i]); });
+        return surface;
+    }
+
+private:
+    Index number(Index p) {
+        if (renumbered_[p] == kNone) {
+            renumbered_[p] = static_cast<Index>(used_.size());
+            used_.push_back(p);
+        }
+        return renumbered_[p];
+    }
+
+    std::vector<Index> renumbered_, used_;
+    std::vector<std::array<Index, 3>> triangles_;
+};
+
 }  // namespace
 
 Surface boundary_surface(const HexMesh& mesh) {
@@ -24,23 +63,45 @@ Surface boundary_surface(const HexMesh& mesh) {
     topology.point_count = mesh.points.size();
     topology.cells = mesh.cells;
     detail::build_faces(topology);
-    Surface surface;
-    std::vector<Index> renumbered(mesh.points.size(), kNone);
-    const auto point = [&](Index p) {
-        if (renumbered[p] == kNone) {
-            renumbered[p] = static_cast<Index>(surface.points.size());
-            surface.points.push_back(mesh.points[p]);
-        }
-        return renumbered[p];
-    };
+    SurfaceBuilder builder(mesh.points.size());
     for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
-        const auto quad = outward_quad(topology, topology.face_cells[f][0], static_cast<Index>(f));
-        const std::array<Index, 4> q{point(quad[0]), point(quad[1]), point(quad[2]), point(quad[3])};
-        surface.triangles.push_back({q[0], q[1], q[2]});
-        surface.triangles.push_back({q[0], q[2], q[3]});
+        const auto face = static_cast<Index>(f);
+        if (topology.face_on_hull(face)) builder.add(outward_quad(topology, topology.face_cells[f][0], face));
     }
-    return surface;
+    return builder.finish([&](Index p) { return mesh.points[p]; });
+}
+
+Surface detail::boundary_of_child(const HexMesh& mesh, const Topology& topology, const RefineOptions& options) {
+    const SchemeRows rows(topology, options);
+    const ChildNumbering first(topology);
+    SurfaceBuilder builder(first.cells);  // no cell point is on the boundary
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        const auto face = static_cast<Index>(f);
+        if (!topology.face_on_hull(face)) continue;
+        const auto quad = outward_quad(topology, topology.face_cells[f][0], face);
+        const auto center = static_cast<Index>(first.faces + f);
+        const auto edge_point = [&](std::size_t k) {  // between corners k and k + 1
+            const std::size_t a = slot_of(topology.faces[f], quad[k]), b = slot_of(topology.faces[f], quad[(k + 1) % 4]);
+            return static_cast<Index>(first.edges + topology.face_edges[f][(a + 1) % 4 == b ? a : b]);
+        };
+        for (std::size_t k = 0; k < 4; ++k) builder.add({quad[k], edge_point(k), center, edge_point((k + 3) % 4)});
+    }
+    tbb::enumerable_thread_specific<StencilBuilder> scratch;
+    return builder.finish([&](Index p) {
+        if (p < rows.kept()) return mesh.points[p];
+        StencilBuilder& row = scratch.local();
+        row.clear();
+        rows.write_row(p, row);
+        const StencilRuns stencil = row.finish();
+        Vec3 position(0.0);
+        std::size_t next = 0;
+        for (const auto& [weight, count] : stencil.runs) {
+            Vec3 sum(0.0);
+            for (std::uint32_t i = 0; i < count; ++i) sum += mesh.points[stencil.points[next++]];
+            position += weight * sum;
+        }
+        return position;
+    });
 }
 
 }  // namespace subvol

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "child_topology.h"
+#include "last_level.h"
 #include "scheme_rows.h"
 #include "subvol/error.h"
 
@@ -74,26 +75,29 @@ std::vector<T> apply_levels(const RefinementTables& tables, std::span<const T> c
 
 }  // namespace
 
+detail::LastLevel detail::refine_without_cells(HexMesh control, Topology topology, const RefineOptions& options) {
+    LastLevel last{std::move(control), std::move(topology)};
+    for (int level = 1; level <= options.levels; ++level) {
+        if (level > 1) last.parent = child_topology(last.parent);
+        HexMesh child = child_data(last.mesh, SchemeRows(last.parent, options), options.progress, level);
+        child.creases = child_creases(last.parent);
+        child.sharp_faces = child_sharp_faces(last.parent);
+        last.mesh = std::move(child);
+    }
+    return last;
+}
+
 HexMesh refine(const HexMesh& mesh, const RefineOptions& options) {
     check_levels(options.levels);
     validate(mesh);
-    HexMesh current = without_unused_points(mesh);
-    if (options.levels == 0) return current;
-    if (options.crease_angle_deg) tag_creases(current, *options.crease_angle_deg);
+    HexMesh control = without_unused_points(mesh);
+    if (options.levels == 0) return control;
+    if (options.crease_angle_deg) tag_creases(control, *options.crease_angle_deg);
     report_progress(options.progress, "topology", 0);
-    Topology topology = build_topology(current);
-    for (int level = 1; level <= options.levels; ++level) {
-        HexMesh child = child_data(current, SchemeRows(topology, options), options.progress, level);
-        child.creases = detail::child_creases(topology);
-        child.sharp_faces = detail::child_sharp_faces(topology);
-        if (level == options.levels) {
-            child.cells = detail::child_cells(topology);
-        } else {
-            topology = detail::child_topology(topology);
-        }
-        current = std::move(child);
-    }
-    return current;
+    Topology topology = build_topology(control);
+    detail::LastLevel last = detail::refine_without_cells(std::move(control), std::move(topology), options);
+    last.mesh.cells = detail::child_cells(last.parent);
+    return std::move(last.mesh);
 }
 
 RefinementTables refinement_tables(const Topology& control, const RefineOptions& options) {

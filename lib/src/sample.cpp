@@ -1,26 +1,21 @@
 #include "subvol/sample.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
+#include <bit>
 #include <cmath>
 
-#include "boundary_rings.h"
-#include "bucket_sort.h"
-#include "cell_block.h"
-#include "corner_parameters.h"
-#include "sample_counts.h"
+#include "boundary_surface.h"
+#include "child_cells.h"
+#include "last_level.h"
+#include "sample_cells.h"
+#include "sample_points.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 
 namespace subvol {
 
-using detail::CellBlocks;
-using detail::kCornerParameters;
-using detail::SampleCounts;
-
 namespace {
+
+constexpr int kMostBoundaryLevels = 2;
 
 void check(const SampleOptions& options) {
     if (options.per_edge < 1 || options.per_edge > 64) {
@@ -35,278 +30,92 @@ void check(const SampleOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(radius), {},
                     "1.2 to 4 sample intervals: smaller kernels leave holes");
     }
-    if (options.boundary_levels < 0 || options.boundary_levels > CellBlocks::kLevels) {
+    if (options.boundary_levels < 0 || options.boundary_levels > kMostBoundaryLevels) {
         throw Error(ErrorCode::InvalidInput, "boundary levels: " + std::to_string(options.boundary_levels), {}, "0 to 2");
     }
 }
 
-detail::Buckets<std::pair<Index, Index>> cells_of_points(const Topology& topology) {
-    return detail::bucket_sort<std::pair<Index, Index>>(
-        topology.cells.size(), topology.point_count,
-        [&](std::size_t c, const auto& sink) {
-            for (const Index p : topology.cells[c]) sink({p, static_cast<Index>(c)});
-        },
-        [](const auto& record) { return record.first; });
+RefineOptions refinement(const SampleOptions& options, int levels) {
+    return {.scheme = options.scheme,
+            .levels = levels,
+            .tension = options.tension,
+            .crease_angle_deg = {},
+            .progress = options.progress};
 }
 
-/// Where a point of an edge or face (one or two parameters from its first corner) lies in one of the cells about it.
-template <std::size_t N>
-std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, const std::array<Index, N>& ends,
-                              const std::array<double, N>& parameters) {
-    const auto& o = kCornerParameters[detail::slot_of(cell, origin)];
-    std::array<double, 3> uvw{double(o[0]), double(o[1]), double(o[2])};
-    for (std::size_t n = 0; n < N; ++n) {
-        const auto& e = kCornerParameters[detail::slot_of(cell, ends[n])];
-        for (std::size_t a = 0; a < 3; ++a) uvw[a] += parameters[n] * (e[a] - o[a]);
-    }
-    return uvw;
+/// The level whose points are just the samples, if there is one.
+std::optional<int> level_of_samples(const SampleOptions& options) {
+    const auto intervals = static_cast<unsigned>(options.per_edge);
+    if (options.spacing_world > 0 || !std::has_single_bit(intervals)) return std::nullopt;
+    return std::countr_zero(intervals);
 }
 
-Mat3 outer(const Vec3& v) {
-    return glm::outerProduct(v, v);
+Surface boundary_of_level(const HexMesh& control, const Topology& topology, const SampleOptions& options) {
+    const RefineOptions refine_options = refinement(options, options.boundary_levels);
+    if (options.boundary_levels == 1 && interpolates(options.scheme)) {
+        return detail::boundary_of_child(control, topology, refine_options);
+    }
+    return boundary_surface(on_limit(refine(control, refine_options), options.scheme));
 }
 
-/// Writes one kernel from the jets of the cells about its point.
-class KernelWriter {
-public:
-    KernelWriter(const SampleCounts& counts, const CellBlocks& blocks, const SampleOptions& options, RbfVolume& volume)
-        : counts_(counts), blocks_(blocks), options_(options), volume_(volume) {
-        metric_gradient_.resize(blocks.channels());
-        laplacian_.resize(blocks.channels());
+void count_entities(SampleReport& report, const Topology& topology, std::size_t n) {
+    report.at_vertices = topology.point_count;
+    report.on_edges = topology.edges.size() * (n - 1);
+    report.on_faces = topology.faces.size() * (n - 1) * (n - 1);
+    report.in_cells = topology.cells.size() * (n - 1) * (n - 1) * (n - 1);
+}
+
+SampleResult sample_level(HexMesh control, int level, const SampleOptions& options) {
+    report_progress(options.progress, "topology", 0);
+    Topology topology = build_topology(control);
+    Surface boundary = boundary_of_level(control, topology, options);
+    SampleReport counts;
+    count_entities(counts, topology, static_cast<std::size_t>(options.per_edge));
+    detail::PointLines lines;
+    if (level == 0) {
+        lines = detail::lines_of_mesh(topology);
+    } else {
+        detail::LastLevel last =
+            detail::refine_without_cells(std::move(control), std::move(topology), refinement(options, level));
+        lines = detail::lines_of_child(last.parent);
+        control = std::move(last.mesh);
+        if (!interpolates(options.scheme)) control.cells = detail::child_cells(last.parent);
     }
+    if (!interpolates(options.scheme)) control = on_limit(std::move(control), options.scheme);
+    SampleResult result = detail::sample_at_points(control, lines, options.scheme != Scheme::Linear, options);
+    result.volume.boundary = std::move(boundary);
+    counts.points = result.report.points;
+    counts.flat_frames = result.report.flat_frames;
+    result.report = counts;
+    return result;
+}
 
-    void begin(std::size_t point) {
-        point_ = point;
-        cells_ = 0;
-        metric_ = Mat3(0.0);
-        bend_ = Vec3(0.0);
-        std::fill(metric_gradient_.begin(), metric_gradient_.end(), Vec3(0.0));
-        std::fill(laplacian_.begin(), laplacian_.end(), 0.0);
-    }
+SampleResult sample_cells(const HexMesh& control, const SampleOptions& options) {
+    const HexMesh once = refine(control, refinement(options, 1));
+    const HexMesh twice = on_limit(refine(once, refinement(options, 1)), options.scheme);
+    SampleResult result = detail::sample_in_cells(control, twice, options);
+    const std::array<const HexMesh*, 3> levels{&control, &once, &twice};
+    const HexMesh& shown = *levels[static_cast<std::size_t>(options.boundary_levels)];
+    result.volume.boundary = boundary_surface(options.boundary_levels < 2 ? on_limit(shown, options.scheme) : shown);
+    return result;
+}
 
-    void add_cell(std::size_t cell, const std::array<double, 3>& uvw) {
-        const std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
-                                         1.0 / counts_.near(cell, 2, uvw)};
-        blocks_.evaluate(cell, uvw, step, jet_);
-        if (cells_++ == 0) {
-            volume_.centers[point_] = jet_.position;
-            for (std::size_t c = 0; c < jet_.value.size(); ++c)
-                volume_.channels[c].values[point_] = static_cast<float>(jet_.value[c]);
-        }
-        for (std::size_t a = 0; a < 3; ++a) {
-            metric_ += outer(jet_.d_position[a]);
-            bend_ += jet_.dd_position[a];
-            for (std::size_t c = 0; c < jet_.value.size(); ++c) {
-                metric_gradient_[c] += jet_.d_position[a] * jet_.d_value[c][a];
-                laplacian_[c] += jet_.dd_value[c][a];
-            }
-        }
-    }
-
-    /// Returns whether the frame was flat and had to be thickened.
-    bool finish() {
-        const double scale = (metric_[0][0] + metric_[1][1] + metric_[2][2]) / 3;
-        const bool flat = !(glm::determinant(metric_) > kFlat * scale * scale * scale);
-        if (flat) metric_ += Mat3(kThickness * (scale > 0 ? scale : 1));
-        const Mat3 inverse = glm::inverse(metric_);
-        const double radius = support_radius(options_.kernel), r2 = radius * radius, cells = cells_;
-        const Mat3 s = metric_ * (r2 / cells);
-        volume_.frames[point_] = {static_cast<float>(s[0][0]), static_cast<float>(s[1][0]), static_cast<float>(s[2][0]),
-                                  static_cast<float>(s[1][1]), static_cast<float>(s[2][1]), static_cast<float>(s[2][2])};
-        for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
-            if (options_.correction == Correction::None || flat) continue;
-            const Vec3 g = inverse * metric_gradient_[c];
-            volume_.channels[c].gradients[point_] = {static_cast<float>(g.x), static_cast<float>(g.y), static_cast<float>(g.z)};
-            if (options_.correction != Correction::Second) continue;
-            // The mean over the cells of Σ ∂²f − g·Σ ∂²x is H : J Jᵀ on any neighbourhood: no axes need to be paired.
-            volume_.channels[c].moments[point_] = static_cast<float>(r2 / 6 * (laplacian_[c] - glm::dot(g, bend_)) / cells);
-        }
-        return flat;
-    }
-
-private:
-    static constexpr double kFlat = 1e-9;       // of a cube's determinant: a thousandth of its thickness
-    static constexpr double kThickness = 1e-3;  // of the mean square extent
-
-    const SampleCounts& counts_;
-    const CellBlocks& blocks_;
-    const SampleOptions& options_;
-    RbfVolume& volume_;
-    CellBlocks::Jet jet_;
-    std::size_t point_ = 0;
-    int cells_ = 0;
-    Mat3 metric_{0.0};
-    Vec3 bend_{0.0};
-    std::vector<Vec3> metric_gradient_;
-    std::vector<double> laplacian_;
-};
-
-/// Samples all entities of a mesh.
-class Sampler {
-public:
-    Sampler(const HexMesh& mesh, const HexMesh& twice_refined, const SampleOptions& options)
-        : options_(options),
-          topology_(build_topology(mesh)),
-          counts_(mesh, topology_, options),
-          blocks_(twice_refined),
-          point_cells_(cells_of_points(topology_)) {}
-
-    SampleResult run(const HexMesh& mesh) {
-        const auto first_edge = prefix(topology_.point_count, topology_.edges.size(),
-                                       [&](std::size_t e) { return std::size_t(counts_.edge(e)) - 1; });
-        const auto first_face = prefix(first_edge.back(), topology_.faces.size(), [&](std::size_t f) {
-            const auto n = counts_.face(f);
-            return std::size_t(n[0] - 1) * std::size_t(n[1] - 1);
-        });
-        const auto first_cell = prefix(first_face.back(), topology_.cells.size(), [&](std::size_t c) {
-            const auto n = counts_.cell(c);
-            return std::size_t(n[0] - 1) * std::size_t(n[1] - 1) * std::size_t(n[2] - 1);
-        });
-        auto& report = result_.report;
-        report.at_vertices = topology_.point_count;
-        report.on_edges = first_edge.back() - topology_.point_count;
-        report.on_faces = first_face.back() - first_edge.back();
-        report.in_cells = first_cell.back() - first_face.back();
-        report.points = first_cell.back();
-        allocate(mesh, report.points);
-
-        each(topology_.point_count, "sample vertices", [&](std::size_t p, auto& writer) { return sample_vertex(p, writer); });
-        each(topology_.edges.size(), "sample edges",
-             [&](std::size_t e, auto& writer) { return sample_edge(e, first_edge[e], writer); });
-        each(topology_.faces.size(), "sample faces",
-             [&](std::size_t f, auto& writer) { return sample_face(f, first_face[f], writer); });
-        each(topology_.cells.size(), "sample cells",
-             [&](std::size_t c, auto& writer) { return sample_cell(c, first_cell[c], writer); });
-        return std::move(result_);
-    }
-
-private:
-    template <class Count>
-    static std::vector<std::size_t> prefix(std::size_t start, std::size_t count, const Count& entries) {
-        std::vector<std::size_t> first(count + 1, start);
-        for (std::size_t i = 0; i < count; ++i) first[i + 1] = first[i] + entries(i);
-        return first;
-    }
-
-    void allocate(const HexMesh& mesh, std::size_t count) {
-        if (count >= kNone)
-            throw Error(ErrorCode::InvalidInput, std::to_string(count) + " samples are too many", {}, "fewer than 2³²");
-        auto& volume = result_.volume;
-        volume.kernel = options_.kernel;
-        volume.centers.resize(count);
-        volume.frames.resize(count);
-        for (const auto& attribute : mesh.attributes) {
-            for (int c = 0; c < attribute.channels; ++c) {
-                RbfChannel channel;
-                channel.name = attribute.channels == 1 ? attribute.name : attribute.name + "." + std::to_string(c);
-                channel.values.resize(count);
-                channel.gradients.resize(count);
-                channel.moments.resize(count);
-                volume.channels.push_back(std::move(channel));
-            }
-        }
-    }
-
-    template <class Sample>
-    void each(std::size_t count, const char* stage, const Sample& sample) {
-        report_progress(options_.progress, stage, 0);
-        std::atomic<std::size_t> flat{0};
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
-            KernelWriter writer(counts_, blocks_, options_, result_.volume);
-            std::size_t flat_here = 0;
-            for (std::size_t i = range.begin(); i != range.end(); ++i) flat_here += sample(i, writer);
-            flat += flat_here;
-        });
-        result_.report.flat_frames += flat;
-        report_progress(options_.progress, stage, 1);
-    }
-
-    std::size_t sample_vertex(std::size_t p, KernelWriter& writer) const {
-        writer.begin(p);
-        for (std::size_t i = point_cells_.offsets[p]; i < point_cells_.offsets[p + 1]; ++i) {
-            const Index cell = point_cells_.records[i].second;
-            writer.add_cell(cell, in_cell<0>(topology_.cells[cell], static_cast<Index>(p), {}, {}));
-        }
-        return writer.finish();
-    }
-
-    std::size_t sample_edge(std::size_t e, std::size_t first, KernelWriter& writer) const {
-        const int n = counts_.edge(e);
-        const auto [a, b] = topology_.edges[e];
-        std::size_t flat = 0;
-        for (int i = 1; i < n; ++i) {
-            writer.begin(first++);
-            for (const Index cell : topology_.edge_cells[e]) {
-                writer.add_cell(cell, in_cell<1>(topology_.cells[cell], a, {b}, {double(i) / n}));
-            }
-            flat += writer.finish();
-        }
-        return flat;
-    }
-
-    std::size_t sample_face(std::size_t f, std::size_t first, KernelWriter& writer) const {
-        const auto n = counts_.face(f);
-        const auto& quad = topology_.faces[f];
-        std::size_t flat = 0;
-        for (int j = 1; j < n[1]; ++j) {
-            for (int i = 1; i < n[0]; ++i) {
-                writer.begin(first++);
-                for (const Index cell : topology_.face_cells[f]) {
-                    if (cell == kNone) continue;
-                    writer.add_cell(cell, in_cell<2>(topology_.cells[cell], quad[0], {quad[1], quad[3]},
-                                                     {double(i) / n[0], double(j) / n[1]}));
-                }
-                flat += writer.finish();
-            }
-        }
-        return flat;
-    }
-
-    std::size_t sample_cell(std::size_t c, std::size_t first, KernelWriter& writer) const {
-        const auto n = counts_.cell(c);
-        std::size_t flat = 0;
-        if (n[0] == 1 || n[1] == 1 || n[2] == 1) return flat;
-        for (int k = 1; k < n[2]; ++k) {
-            for (int j = 1; j < n[1]; ++j) {
-                for (int i = 1; i < n[0]; ++i) {
-                    writer.begin(first++);
-                    writer.add_cell(c, {double(i) / n[0], double(j) / n[1], double(k) / n[2]});
-                    flat += writer.finish();
-                }
-            }
-        }
-        return flat;
-    }
-
-    const SampleOptions& options_;
-    Topology topology_;
-    SampleCounts counts_;
-    CellBlocks blocks_;
-    detail::Buckets<std::pair<Index, Index>> point_cells_;
-    SampleResult result_;
-};
+Box bounds_of(const RbfVolume& volume) {
+    Box box;
+    for (const Vec3& p : volume.centers) box.add(p);
+    for (const Vec3& p : volume.boundary.points) box.add(p);
+    return box;
+}
 
 }  // namespace
 
 SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options) {
     check(options);
-    RefineOptions refine_options{.scheme = options.scheme,
-                                 .levels = 0,
-                                 .tension = options.tension,
-                                 .crease_angle_deg = {},
-                                 .progress = options.progress};
-    const HexMesh control = refine(mesh, refine_options);
-    refine_options.levels = 1;
-    refine_options.crease_angle_deg = options.crease_angle_deg;
-    const HexMesh once = refine(control, refine_options);
-    refine_options.crease_angle_deg.reset();  // the first level has tagged what is sharp
-    const HexMesh twice = on_limit(refine(once, refine_options), options.scheme);
-
-    SampleResult result = Sampler(control, twice, options).run(control);
-    const std::array<const HexMesh*, 3> levels{&control, &once, &twice};
-    const HexMesh& shown = *levels[static_cast<std::size_t>(options.boundary_levels)];
-    result.volume.boundary = boundary_surface(options.boundary_levels < 2 ? on_limit(shown, options.scheme) : shown);
-    result.volume.bounds = bounds(twice);
+    HexMesh control = refine(mesh, refinement(options, 0));
+    if (options.crease_angle_deg) tag_creases(control, *options.crease_angle_deg);
+    const auto level = level_of_samples(options);
+    SampleResult result = level ? sample_level(std::move(control), *level, options) : sample_cells(control, options);
+    result.volume.bounds = bounds_of(result.volume);
     return result;
 }
 

@@ -1,0 +1,85 @@
+#include "kernel_sums.h"
+
+#include <algorithm>
+
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kFlat = 1e-9;       // of a cube's determinant: a thousandth of its thickness
+constexpr double kThickness = 1e-3;  // of the mean square extent
+
+std::array<float, 6> six_floats(const Mat3& s) {
+    return {static_cast<float>(s[0][0]), static_cast<float>(s[1][0]), static_cast<float>(s[2][0]),
+            static_cast<float>(s[1][1]), static_cast<float>(s[2][1]), static_cast<float>(s[2][2])};
+}
+
+}  // namespace
+
+KernelSums::KernelSums(const SampleOptions& options, RbfVolume& volume)
+    : options_(options),
+      volume_(volume),
+      radius2_(support_radius(options.kernel) * support_radius(options.kernel)),
+      metric_gradient_(volume.channels.size()),
+      laplacian_(volume.channels.size()) {
+}
+
+void KernelSums::begin(std::size_t point) {
+    point_ = point;
+    metric_ = Mat3(0.0);
+    bend_ = Vec3(0.0);
+    std::fill(metric_gradient_.begin(), metric_gradient_.end(), Vec3(0.0));
+    std::fill(laplacian_.begin(), laplacian_.end(), 0.0);
+}
+
+void KernelSums::add(double weight, const Vec3& step, const Vec3& bend, const double* d_f, const double* dd_f) {
+    const Vec3 weighted = weight * step;
+    metric_ += glm::outerProduct(weighted, step);
+    bend_ += weight * bend;
+    for (std::size_t c = 0; c < laplacian_.size(); ++c) {
+        metric_gradient_[c] += weighted * d_f[c];
+        laplacian_[c] += weight * dd_f[c];
+    }
+}
+
+bool KernelSums::finish(double cells) {
+    const double scale = (metric_[0][0] + metric_[1][1] + metric_[2][2]) / 3;
+    const bool flat = !(glm::determinant(metric_) > kFlat * scale * scale * scale);
+    if (flat) metric_ += Mat3(kThickness * (scale > 0 ? scale : 1));
+    volume_.frames[point_] = six_floats(metric_ * (radius2_ / cells));
+    const Mat3 inverse = glm::inverse(metric_);
+    for (std::size_t c = 0; c < laplacian_.size(); ++c) {
+        const bool corrected = options_.correction != Correction::None && !flat;
+        const Vec3 g = corrected ? inverse * metric_gradient_[c] : Vec3(0.0);
+        volume_.channels[c].gradients[point_] = {static_cast<float>(g.x), static_cast<float>(g.y), static_cast<float>(g.z)};
+        // The mean over the cells of Σ ∂²f − g·Σ ∂²x is H : J Jᵀ on any neighbourhood: no axes need to be paired.
+        const bool second = corrected && options_.correction == Correction::Second;
+        const double moment = second ? radius2_ / 6 * (laplacian_[c] - glm::dot(g, bend_)) / cells : 0.0;
+        volume_.channels[c].moments[point_] = static_cast<float>(moment);
+    }
+    return flat;
+}
+
+RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const Kernel& kernel) {
+    if (count >= kNone)
+        throw Error(ErrorCode::InvalidInput, std::to_string(count) + " samples are too many", {}, "fewer than 2³²");
+    RbfVolume volume;
+    volume.kernel = kernel;
+    volume.centers.resize(count);
+    volume.frames.resize(count);
+    for (const auto& attribute : mesh.attributes) {
+        for (int c = 0; c < attribute.channels; ++c) {
+            RbfChannel channel;
+            channel.name = attribute.channels == 1 ? attribute.name : attribute.name + "." + std::to_string(c);
+            channel.values.resize(count);
+            channel.gradients.resize(count);
+            channel.moments.resize(count);
+            volume.channels.push_back(std::move(channel));
+        }
+    }
+    return volume;
+}
+
+}  // namespace subvol::detail

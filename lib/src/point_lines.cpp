@@ -1,0 +1,179 @@
+#include "point_lines.h"
+
+#include <bit>
+
+#include "boundary_rings.h"
+#include "bucket_sort.h"
+#include "child_cells.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// The lines through one kind of point after the other; calls emit(a, b, cells about a's edge, cells about b's edge).
+class Stars {
+public:
+    Stars(const Topology& topology, bool child)
+        : t_(topology), first_(topology), child_(child), kinds_(classify_points(topology)), regular_(regular_points(topology)) {
+        cell_of_rank_.resize(child ? topology.cells.size() : 0);
+        parallel_each(cell_of_rank_.size(), [&](std::size_t c) { cell_of_rank_[t_.cell_rank[c]] = static_cast<Index>(c); });
+    }
+
+    [[nodiscard]] std::size_t size() const { return child_ ? first_.end : t_.point_count; }
+
+    template <class Emit>
+    void at(std::size_t point, const Emit& emit) const {
+        if (point < first_.edges) {
+            at_vertex(static_cast<Index>(point), emit);
+        } else if (point < first_.faces) {
+            at_edge(static_cast<Index>(point - first_.edges), emit);
+        } else if (point < first_.cells) {
+            at_face(static_cast<Index>(point - first_.faces), emit);
+        } else {
+            at_cell(cell_of_rank_[point - first_.cells], emit);
+        }
+    }
+
+private:
+    [[nodiscard]] Index edge_point(Index e) const { return static_cast<Index>(first_.edges + e); }
+    [[nodiscard]] Index face_point(Index f) const { return static_cast<Index>(first_.faces + f); }
+    [[nodiscard]] Index cell_point(Index c) const {
+        return c == kNone ? kNone : static_cast<Index>(first_.cells + t_.cell_rank[c]);
+    }
+    [[nodiscard]] unsigned cells_at_edge(Index e) const { return static_cast<unsigned>(t_.edge_cells[e].size()); }
+    [[nodiscard]] unsigned cells_at_face(Index f) const { return t_.face_on_hull(f) ? 1 : 2; }
+
+    /// The edge at a vertex that goes on from another of its edges: the only one that shares no face with it.
+    [[nodiscard]] std::size_t opposite(Index vertex, std::size_t slot) const {
+        const auto edges = t_.point_edges[vertex];
+        if (edges.size() > 64) return kNoSlot;
+        std::uint64_t apart = edges.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << edges.size()) - 1;
+        apart &= ~(std::uint64_t{1} << slot);
+        for (const Index f : t_.edge_faces[edges[slot]]) {
+            const std::size_t k = slot_of(t_.faces[f], vertex);
+            const Index before = t_.face_edges[f][(k + 3) % 4], after = t_.face_edges[f][k];
+            const std::size_t other = slot_of(edges, before == edges[slot] ? after : before);
+            apart &= ~(std::uint64_t{1} << other);
+        }
+        return std::has_single_bit(apart) ? static_cast<std::size_t>(std::countr_zero(apart)) : kNoSlot;
+    }
+
+    /// Whether a line may pass a vertex from one edge to another: not across the boundary or a crease.
+    [[nodiscard]] bool passes(Index vertex, Index a, Index b) const {
+        switch (kinds_[vertex]) {
+            case PointKind::Interior:
+                return true;
+            case PointKind::Smooth:
+                return t_.edge_on_boundary[a] && t_.edge_on_boundary[b];
+            case PointKind::Crease:
+                return t_.edge_is_crease[a] && t_.edge_is_crease[b];
+            case PointKind::Corner:
+                return false;
+        }
+        return false;
+    }
+
+    template <class Emit>
+    void at_vertex(Index v, const Emit& emit) const {
+        const auto edges = t_.point_edges[v];
+        const auto neighbour = [&](std::size_t i) { return child_ ? edge_point(edges[i]) : other_end(t_, edges[i], v); };
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            const std::size_t j = opposite(v, i);
+            const bool pair = j != kNoSlot && passes(v, edges[i], edges[j]) && (regular_[v] || opposite(v, j) == i);
+            if (pair && j < i) continue;  // the other edge has told of it
+            if (pair) {
+                emit(neighbour(i), neighbour(j), cells_at_edge(edges[i]), cells_at_edge(edges[j]));
+            } else {
+                emit(neighbour(i), kNone, cells_at_edge(edges[i]), 0u);
+            }
+        }
+    }
+
+    template <class Emit>
+    void at_edge(Index e, const Emit& emit) const {
+        emit(t_.edges[e][0], t_.edges[e][1], cells_at_edge(e), cells_at_edge(e));
+        const auto faces = t_.edge_faces[e];
+        const auto pair = [&](Index f, Index g) {
+            emit(face_point(f), face_point(g), 2 * cells_at_face(f), 2 * cells_at_face(g));
+        };
+        if (!t_.edge_on_boundary[e] && t_.edge_has_ring[e] && faces.size() == 4) {
+            pair(faces[0], faces[2]);
+            pair(faces[1], faces[3]);
+            return;
+        }
+        const bool smooth = t_.edge_on_boundary[e] && !t_.edge_is_crease[e] && t_.boundary_faces_at(e) == 2;
+        const auto [b0, b1] = smooth ? boundary_faces_of(t_, e) : std::pair<Index, Index>{kNone, kNone};
+        if (smooth) pair(b0, b1);
+        for (const Index f : faces) {
+            if (f != b0 && f != b1) emit(face_point(f), kNone, 2 * cells_at_face(f), 0u);
+        }
+    }
+
+    template <class Emit>
+    void at_face(Index f, const Emit& emit) const {
+        const auto& e = t_.face_edges[f];
+        const unsigned n = 2 * cells_at_face(f);
+        emit(edge_point(e[0]), edge_point(e[2]), n, n);
+        emit(edge_point(e[1]), edge_point(e[3]), n, n);
+        const auto& [c0, c1] = t_.face_cells[f];
+        if (c1 != kNone && t_.face_on_boundary(f)) {  // a sharp face: both sides end at it
+            emit(cell_point(c0), kNone, 4u, 0u);
+            emit(cell_point(c1), kNone, 4u, 0u);
+        } else {
+            emit(cell_point(c0), cell_point(c1), 4u, c1 == kNone ? 0u : 4u);
+        }
+    }
+
+    template <class Emit>
+    void at_cell(Index c, const Emit& emit) const {
+        const auto& f = t_.cell_faces[c];
+        for (std::size_t a = 0; a < 3; ++a) emit(face_point(f[2 * a]), face_point(f[2 * a + 1]), 4u, 4u);
+    }
+
+    static constexpr std::size_t kNoSlot = ~std::size_t{0};
+
+    const Topology& t_;
+    ChildNumbering first_;
+    bool child_;
+    std::vector<PointKind> kinds_;
+    std::vector<std::uint8_t> regular_;
+    std::vector<Index> cell_of_rank_;
+};
+
+PointLines collect(const Topology& topology, bool child) {
+    const Stars stars(topology, child);
+    PointLines lines;
+    lines.offsets.resize(stars.size() + 1);
+    lines.offsets[0] = 0;
+    parallel_each(stars.size(), [&](std::size_t p) {
+        std::size_t count = 0;
+        stars.at(p, [&](Index, Index, unsigned, unsigned) { count += 2; });
+        lines.offsets[p + 1] = count;
+    });
+    for (std::size_t p = 0; p < stars.size(); ++p) lines.offsets[p + 1] += lines.offsets[p];
+    lines.neighbours.resize(lines.offsets.back());
+    lines.cells.resize(lines.offsets.back());
+    parallel_each(stars.size(), [&](std::size_t p) {
+        std::size_t at = lines.offsets[p];
+        stars.at(p, [&](Index a, Index b, unsigned cells_a, unsigned cells_b) {
+            lines.neighbours[at] = a;
+            lines.neighbours[at + 1] = b;
+            lines.cells[at] = static_cast<std::uint8_t>(cells_a);
+            lines.cells[at + 1] = static_cast<std::uint8_t>(cells_b);
+            at += 2;
+        });
+    });
+    return lines;
+}
+
+}  // namespace
+
+PointLines lines_of_mesh(const Topology& topology) {
+    return collect(topology, false);
+}
+
+PointLines lines_of_child(const Topology& parent) {
+    return collect(parent, true);
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// The grid lines through every point of a mesh. Entries 2i and 2i+1 of a point are the neighbours on both sides along one
+/// line, or a neighbour and kNone where the line ends: at the boundary, at creases, about irregular edges.
+///
+/// offsets: a point's entries, always even
+/// cells:   how many cells have the edge from the point to the neighbour
+struct PointLines {
+    FlatArray<std::size_t> offsets;
+    FlatArray<Index> neighbours;
+    FlatArray<std::uint8_t> cells;
+
+    [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+
+    /// The point after `at` on the line that comes from its neighbour `from`.
+    [[nodiscard]] Index after(Index at, Index from) const {
+        for (std::size_t i = offsets[at]; i < offsets[at + 1]; ++i) {
+            if (neighbours[i] == from) return neighbours[i ^ 1];
+        }
+        return kNone;
+    }
+};
+
+/// Of a mesh, or of its child in the numbering of `refine`: the child's own topology is not needed.
+[[nodiscard]] PointLines lines_of_mesh(const Topology& topology);
+[[nodiscard]] PointLines lines_of_child(const Topology& parent);
+
+}  // namespace subvol::detail
