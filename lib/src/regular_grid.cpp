@@ -139,6 +139,19 @@ bool regular_grid(const Topology& topology, Index cell, GridPoints& grid) {
     return fill(topology, cell, 1, grid) && has_whole_layers(grid);
 }
 
+void cross_grid(const Topology& topology, Index cell, GridPoints& grid) {
+    grid.fill(kNone);
+    const TurnedCell center = as_it_is(topology, cell);
+    put(center, {0, 0, 0}, 1, grid);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t side = 0; side < 2; ++side) {
+            std::array<int, 3> offset{};
+            offset[axis] = side == 0 ? -1 : 1;
+            if (const auto beyond = step(topology, center, axis, side)) put(*beyond, offset, 1, grid);
+        }
+    }
+}
+
 bool wide_grid(const Topology& topology, Index cell, WideGridPoints& grid) {
     GridPoints inner;
     if (!regular_grid(topology, cell, inner)) return false;

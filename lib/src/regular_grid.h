@@ -11,6 +11,9 @@ using GridPoints = std::array<Index, 64>;
 /// The grid about a cell if its surroundings are regular: inside, or at the sides, edges and corners of a box.
 [[nodiscard]] bool regular_grid(const Topology& topology, Index cell, GridPoints& grid);
 
+/// The part of that grid that any cell has: its own corners and the points across its six sides, the others kNone.
+void cross_grid(const Topology& topology, Index cell, GridPoints& grid);
+
 /// Two cells further on every side, entry i + 6j + 36k at (i−2, j−2, k−2): false unless the cell and all its neighbours are
 /// inside and regular.
 using WideGridPoints = std::array<Index, 216>;

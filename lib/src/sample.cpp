@@ -7,6 +7,7 @@
 #include "child_cells.h"
 #include "last_level.h"
 #include "sample_cells.h"
+#include "sample_counts.h"
 #include "sample_points.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
@@ -46,7 +47,8 @@ RefineOptions refinement(const SampleOptions& options, int levels) {
 /// The level whose points are just the samples, if there is one.
 std::optional<int> level_of_samples(const SampleOptions& options) {
     const auto intervals = static_cast<unsigned>(options.per_edge);
-    if (options.spacing_world > 0 || !std::has_single_bit(intervals)) return std::nullopt;
+    const bool graded = options.spacing_world > 0 || options.footprint || options.tolerance > 0;
+    if (graded || options.values != ValueRule::Scheme || !std::has_single_bit(intervals)) return std::nullopt;
     return std::countr_zero(intervals);
 }
 
@@ -93,10 +95,10 @@ SampleResult sample_level(HexMesh control, int level, const SampleOptions& optio
 SampleResult sample_cells(const HexMesh& control, const SampleOptions& options) {
     const HexMesh once = refine(control, refinement(options, 1));
     const HexMesh twice = on_limit(refine(once, refinement(options, 1)), options.scheme);
-    SampleResult result = detail::sample_in_cells(control, twice, options);
-    const std::array<const HexMesh*, 3> levels{&control, &once, &twice};
-    const HexMesh& shown = *levels[static_cast<std::size_t>(options.boundary_levels)];
-    result.volume.boundary = boundary_surface(options.boundary_levels < 2 ? on_limit(shown, options.scheme) : shown);
+    const Topology topology = build_topology(control);
+    SampleResult result =
+        detail::sample_in_cells(control, twice, topology, detail::edge_intervals(control, topology, options), options);
+    result.volume.boundary = boundary_of_level(control, topology, options);
     return result;
 }
 

@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <atomic>
 
 #include "boundary_rings.h"
@@ -11,6 +12,7 @@
 #include "corner_parameters.h"
 #include "kernel_sums.h"
 #include "sample_counts.h"
+#include "value_rules.h"
 
 namespace subvol::detail {
 
@@ -41,11 +43,14 @@ std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, co
 /// Writes one kernel from the jets of the cells about its point.
 class KernelWriter {
 public:
-    KernelWriter(const SampleCounts& counts, const CellBlocks& blocks, const SampleOptions& options, RbfVolume& volume)
+    KernelWriter(const Topology& topology, const SampleCounts& counts, const CellBlocks& blocks,
+                 std::span<const ChannelView> control, const SampleOptions& options, RbfVolume& volume)
         : counts_(counts),
           blocks_(blocks),
+          options_(options),
           volume_(volume),
           sums_(options, volume),
+          rule_(topology, control, options.values, options.value_kernel),
           d_(blocks.channels()),
           dd_(blocks.channels()) {}
 
@@ -61,8 +66,7 @@ public:
         blocks_.evaluate(cell, uvw, step, jet_);
         if (cells_++ == 0) {
             volume_.centers[point_] = jet_.position;
-            for (std::size_t c = 0; c < jet_.value.size(); ++c)
-                volume_.channels[c].values[point_] = static_cast<float>(jet_.value[c]);
+            write_values(static_cast<Index>(cell), uvw);
         }
         for (std::size_t a = 0; a < 3; ++a) {
             for (std::size_t c = 0; c < jet_.value.size(); ++c) {
@@ -77,10 +81,23 @@ public:
     bool finish() { return sums_.finish(cells_); }
 
 private:
+    /// Control points keep their values whatever the rule.
+    void write_values(Index cell, const std::array<double, 3>& uvw) {
+        const auto at_end = [](double t) { return t == 0 || t == 1; };
+        const bool by_rule = options_.values != ValueRule::Scheme && !std::all_of(uvw.begin(), uvw.end(), at_end);
+        if (by_rule) rule_.enter(cell);
+        for (std::size_t c = 0; c < jet_.value.size(); ++c) {
+            const double value = by_rule ? rule_.value(c, {uvw[0], uvw[1], uvw[2]}) : jet_.value[c];
+            volume_.channels[c].values[point_] = static_cast<float>(value);
+        }
+    }
+
     const SampleCounts& counts_;
     const CellBlocks& blocks_;
+    const SampleOptions& options_;
     RbfVolume& volume_;
     KernelSums sums_;
+    RuleInCell rule_;
     CellBlocks::Jet jet_;
     std::size_t point_ = 0;
     int cells_ = 0;
@@ -90,11 +107,13 @@ private:
 /// Samples all entities of a mesh.
 class Sampler {
 public:
-    Sampler(const HexMesh& mesh, const HexMesh& twice_refined, const SampleOptions& options)
+    Sampler(const HexMesh& mesh, const HexMesh& twice_refined, const Topology& topology, std::vector<int> intervals,
+            const SampleOptions& options)
         : options_(options),
-          topology_(build_topology(mesh)),
-          counts_(mesh, topology_, options),
+          topology_(topology),
+          counts_(topology, std::move(intervals)),
           blocks_(twice_refined),
+          control_(channels_of(mesh)),
           point_cells_(cells_of_points(topology_)) {}
 
     SampleResult run(const HexMesh& mesh) {
@@ -139,7 +158,7 @@ private:
         report_progress(options_.progress, stage, 0);
         std::atomic<std::size_t> flat{0};
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
-            KernelWriter writer(counts_, blocks_, options_, result_.volume);
+            KernelWriter writer(topology_, counts_, blocks_, control_, options_, result_.volume);
             std::size_t flat_here = 0;
             for (std::size_t i = range.begin(); i != range.end(); ++i) flat_here += sample(i, writer);
             flat += flat_here;
@@ -206,17 +225,19 @@ private:
     }
 
     const SampleOptions& options_;
-    Topology topology_;
+    const Topology& topology_;
     SampleCounts counts_;
     CellBlocks blocks_;
+    std::vector<ChannelView> control_;
     Buckets<std::pair<Index, Index>> point_cells_;
     SampleResult result_;
 };
 
 }  // namespace
 
-SampleResult sample_in_cells(const HexMesh& control, const HexMesh& twice_refined, const SampleOptions& options) {
-    return Sampler(control, twice_refined, options).run(control);
+SampleResult sample_in_cells(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
+                             std::vector<int> intervals, const SampleOptions& options) {
+    return Sampler(control, twice_refined, topology, std::move(intervals), options).run(control);
 }
 
 }  // namespace subvol::detail

@@ -8,10 +8,15 @@
 
 namespace subvol::detail {
 
-/// How many sample intervals each edge has, and what follows for faces and cells.
+/// How many sample intervals each edge gets by per_edge, spacing or footprint.
+///
+/// throws: Error(InvalidInput) if an edge would get more than 1024
+[[nodiscard]] std::vector<int> edge_intervals(const HexMesh& mesh, const Topology& topology, const SampleOptions& options);
+
+/// The intervals of edges and what follows for faces and cells.
 class SampleCounts {
 public:
-    SampleCounts(const HexMesh& mesh, const Topology& topology, const SampleOptions& options);
+    SampleCounts(const Topology& topology, std::vector<int> edges) : topology_(topology), edges_(std::move(edges)) {}
 
     [[nodiscard]] int edge(std::size_t e) const { return edges_[e]; }
     /// Along the face's edges 0 and 2, and 1 and 3.

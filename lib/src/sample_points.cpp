@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "kernel_sums.h"
+#include "value_rules.h"
 
 namespace subvol::detail {
 
@@ -47,11 +48,12 @@ class PointSampler {
 public:
     PointSampler(const HexMesh& mesh, const PointLines& lines, bool across_points, const SampleOptions& options,
                  RbfVolume& volume)
-        : mesh_(mesh), lines_(lines), across_(across_points), sums_(options, volume), volume_(volume) {
-        for (const auto& attribute : mesh.attributes) {
-            for (int c = 0; c < attribute.channels; ++c)
-                sources_.push_back({attribute.values.data() + c, static_cast<std::size_t>(attribute.channels)});
-        }
+        : mesh_(mesh),
+          lines_(lines),
+          across_(across_points),
+          sums_(options, volume),
+          volume_(volume),
+          sources_(channels_of(mesh)) {
         d_.resize(sources_.size());
         dd_.resize(sources_.size());
     }
@@ -77,12 +79,6 @@ public:
     }
 
 private:
-    struct Source {
-        const double* values;
-        std::size_t stride;
-        [[nodiscard]] double at(Index p) const { return values[p * stride]; }
-    };
-
     /// The second difference of the neighbours of p; where there is but one, 2 (f(1) − f(0) − f′(0)) takes its place.
     void add_line(Index p, Index a, Index b, double cells_a, double cells_b) {
         derive(lines_, p, a, b, stencil_);
@@ -93,7 +89,7 @@ private:
         Vec3 bend = share_a * (mesh_.points[a] - x - step);
         if (b != kNone) bend += share_b * (mesh_.points[b] - x + step);
         for (std::size_t c = 0; c < sources_.size(); ++c) {
-            const Source& f = sources_[c];
+            const ChannelView& f = sources_[c];
             double d = 0;
             for (std::size_t k = 0; k < stencil_.count; ++k) d += stencil_.weights[k] * f.at(stencil_.points[k]);
             d_[c] = d;
@@ -116,7 +112,7 @@ private:
     bool across_;
     KernelSums sums_;
     RbfVolume& volume_;
-    std::vector<Source> sources_;
+    std::vector<ChannelView> sources_;
     std::vector<double> d_, dd_;
     LineStencil stencil_;
 };

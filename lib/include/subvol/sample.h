@@ -2,25 +2,46 @@
 
 #include <cstdint>
 
+#include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/refine.h"
+#include "subvol/value_rule.h"
 
 namespace subvol {
 
 enum class Correction { None, Gradient, Second };
 
-/// per_edge:        sample intervals a cell edge, ≥ 1; 1 is one kernel a control vertex
+/// Samples for a picture: a distance of `spacing_px` pixels at most between neighbours, where the camera sees them.
+///
+/// least_cell_px: cells whose projected box is smaller than this both ways keep one interval
+struct Footprint {
+    Camera camera;
+    int width_px = 512;
+    int height_px = 512;
+    double spacing_px = 1.5;
+    double least_cell_px = 1.5;
+};
+
+/// per_edge:        sample intervals a cell edge, 1 to 64; 1 is one kernel a control vertex
 /// spacing_world:   > 0: instead of per_edge, each edge gets ⌈length / spacing⌉ intervals
+/// footprint:       instead of both, each edge gets ⌈length in pixels / spacing⌉ intervals
+/// tolerance:       > 0: instead of these, as many intervals as it takes until the first channel errs by less, in its own unit
+/// values:          where values between control points come from; gradients and moments come from the scheme
+/// value_kernel:    of the rule `Paper`
 /// boundary_levels: refinements of the boundary surface
 struct SampleOptions {
     Scheme scheme = Scheme::Mcq;
     double tension = 1.0 / 16.0;
     int per_edge = 1;
     double spacing_world = 0;
+    std::optional<Footprint> footprint{};
+    double tolerance = 0;
     Correction correction = Correction::Second;
+    ValueRule values = ValueRule::Scheme;
     Kernel kernel{};
+    Kernel value_kernel = BcSplineKernel{.b = 0.039579, .c = 0.028746, .extent = 2};
     int boundary_levels = 1;
     std::optional<double> crease_angle_deg{};
     Progress* progress = nullptr;
@@ -30,6 +51,7 @@ struct SampleReport {
     std::size_t points = 0;
     std::size_t at_vertices = 0, on_edges = 0, on_faces = 0, in_cells = 0;
     std::size_t flat_frames = 0;  // points whose Jacobian was singular and was thickened
+    double largest_error = 0;     // with a tolerance: of the first channel, at the points of the second refinement
 };
 
 struct SampleResult {
@@ -41,9 +63,9 @@ struct SampleResult {
 /// N = V + Σ(nₑ−1) + Σ(n_u−1)(n_v−1) + Σ(n_u−1)(n_v−1)(n_w−1).
 ///
 /// A face takes, along each direction, the larger count of its two opposite edges, a cell the largest of its four. Geometry and
-/// values come from the scheme itself: exact where the sample is a vertex of the second refinement (moved to the limit), else
-/// interpolated in-cell by quartics through those vertices. throws: Error(InvalidInput) for options out of range, and as
-/// `refine` source: SCIENCE §3.1, §6
+/// values come from the scheme itself: exact if all edges have the same power of two of intervals, or where the sample is a
+/// vertex of the second refinement (moved to the limit), else interpolated in-cell by quartics through those vertices. throws:
+/// Error(InvalidInput) for options out of range, and as `refine` source: SCIENCE §3.1, §6
 [[nodiscard]] SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options = {});
 
 }  // namespace subvol
