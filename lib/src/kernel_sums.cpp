@@ -55,7 +55,7 @@ bool KernelSums::finish(double cells) {
         const Vec3 g = corrected ? inverse * metric_gradient_[c] : Vec3(0.0);
         volume_.channels[c].gradients[point_] = {static_cast<float>(g.x), static_cast<float>(g.y), static_cast<float>(g.z)};
         // The mean over the cells of Σ ∂²f − g·Σ ∂²x is H : J Jᵀ on any neighbourhood: no axes need to be paired.
-        const bool second = corrected && options_.correction == Correction::Second;
+        const bool second = corrected && options_.correction != Correction::Gradient;
         const double moment = second ? radius2_ / 6 * (laplacian_[c] - glm::dot(g, bend_)) / cells : 0.0;
         volume_.channels[c].moments[point_] = static_cast<float>(moment);
     }

@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "kernel_sums.h"
+#include "point_hessians.h"
 #include "value_rules.h"
 
 namespace subvol::detail {
@@ -135,6 +136,7 @@ SampleResult sample_at_points(const HexMesh& on_limit, const PointLines& lines, 
             flat += flat_here;
         });
     }
+    if (options.correction == Correction::Full) fit_hessians(lines, result.volume);
     report_progress(options.progress, "sample", 1);
     result.report.points = lines.size();
     result.report.flat_frames = flat;

@@ -10,14 +10,17 @@
 
 namespace subvol {
 
-/// One scalar channel. What a kernel stands for at x is values + gradients·(x−μ) + moments·e, with e = (x−μ)ᵀ S⁻¹ (x−μ).
+/// One scalar channel. What a kernel stands for at x is values + gradients·d + moments·e + ½ dᵀ hessians d, with d = x−μ and
+/// e = dᵀ S⁻¹ d.
 ///
 /// gradients: world⁻¹; moments: R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
+/// hessians:  xx xy xz yy yz zz of what is left of H when the part along S⁻¹ is taken out (world⁻²); none: that part is all
 struct RbfChannel {
     std::string name;
     std::vector<float> values;
     std::vector<std::array<float, 3>> gradients;
     std::vector<float> moments;
+    std::vector<std::array<float, 6>> hessians;
 };
 
 /// A subdivision volume as radial basis functions: what every renderer and exporter takes.

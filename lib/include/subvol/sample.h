@@ -11,7 +11,8 @@
 
 namespace subvol {
 
-enum class Correction { None, Gradient, Second };
+/// How far a kernel follows the field: not at all, linearly, with the mean of its second derivatives, or with all of them.
+enum class Correction { None, Gradient, Second, Full };
 
 /// Samples for a picture: a distance of `spacing_px` pixels at most between neighbours, where the camera sees them.
 ///

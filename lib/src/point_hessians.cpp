@@ -1,0 +1,102 @@
+#include "point_hessians.h"
+
+#include <Eigen/Dense>
+
+#include "bucket_sort.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Six = Eigen::Matrix<double, 6, 1>;  // xx xy xz yy yz zz
+
+Eigen::Vector3d vector(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+Eigen::Vector3d vector(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+
+Eigen::Matrix3d symmetric(const Six& s) {
+    Eigen::Matrix3d m;
+    m << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
+    return m;
+}
+
+/// The rows that turn six numbers into the product of their matrix with a vector.
+Eigen::Matrix<double, 3, 6> product_rows(const Eigen::Vector3d& d) {
+    Eigen::Matrix<double, 3, 6> rows = Eigen::Matrix<double, 3, 6>::Zero();
+    rows.row(0).head<3>() = d;
+    rows.row(1) << 0, d.x(), 0, d.y(), d.z(), 0;
+    rows.row(2) << 0, 0, d.x(), 0, d.y(), d.z();
+    return rows;
+}
+
+/// Fits the Hessian of one point in coordinates in which its frame is a ball of sample intervals.
+class HessianFit {
+public:
+    void begin(const std::array<float, 6>& frame, double radius) {
+        Six s;
+        for (int k = 0; k < 6; ++k) s[k] = frame[static_cast<std::size_t>(k)] / (radius * radius);
+        root_ = symmetric(s).llt().matrixL();
+        normal_.setZero();
+        used_ = 0;
+    }
+
+    /// along: ½ dᵀHd as the values say; gradient: H d as the gradients say
+    void add(const Eigen::Vector3d& offset, double along, const Eigen::Vector3d& gradient) {
+        const Eigen::Vector3d d = root_.triangularView<Eigen::Lower>().solve(offset);
+        const Eigen::Vector3d change = root_.transpose() * gradient;
+        const Eigen::Matrix<double, 3, 6> product = product_rows(d);
+        const Six row = .5 * product.transpose() * d;
+        const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - d * d.transpose() / d.squaredNorm();
+        const Eigen::Matrix<double, 3, 6> rows = across * product;
+        if (used_++ == 0) right_.setZero();
+        normal_ += 4 * row * row.transpose() + rows.transpose() * rows;
+        right_ += 4 * along * row + rows.transpose() * (across * change);
+    }
+
+    /// Without its part along the frame, which is the moment's.
+    [[nodiscard]] std::array<float, 6> finish() const {
+        std::array<float, 6> six{};
+        if (used_ < 3) return six;
+        Eigen::Matrix3d h = symmetric((normal_ + 1e-9 * Eigen::Matrix<double, 6, 6>::Identity()).ldlt().solve(right_));
+        h -= h.trace() / 3 * Eigen::Matrix3d::Identity();
+        const Eigen::Matrix3d inverse = root_.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
+        const Eigen::Matrix3d world = inverse.transpose() * h * inverse;
+        constexpr std::array<std::array<int, 2>, 6> kPlaces{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
+        for (std::size_t k = 0; k < 6; ++k) six[k] = static_cast<float>(world(kPlaces[k][0], kPlaces[k][1]));
+        return six;
+    }
+
+private:
+    Eigen::Matrix3d root_;
+    Eigen::Matrix<double, 6, 6> normal_;
+    Six right_;
+    int used_ = 0;
+};
+
+}  // namespace
+
+void fit_hessians(const PointLines& lines, RbfVolume& volume) {
+    const double radius = support_radius(volume.kernel);
+    for (RbfChannel& channel : volume.channels) channel.hessians.resize(volume.size());
+    parallel_each(volume.size(), [&](std::size_t p) {
+        HessianFit fit;
+        for (RbfChannel& channel : volume.channels) {
+            fit.begin(volume.frames[p], radius);
+            const Eigen::Vector3d g = vector(channel.gradients[p]);
+            for (std::size_t i = lines.offsets[p]; i < lines.offsets[p + 1]; ++i) {
+                const Index q = lines.neighbours[i];
+                if (q == kNone) continue;
+                const Eigen::Vector3d offset = vector(volume.centers[q] - volume.centers[p]);
+                const double rise = double(channel.values[q]) - double(channel.values[p]);
+                fit.add(offset, rise - g.dot(offset), vector(channel.gradients[q]) - g);
+            }
+            channel.hessians[p] = fit.finish();
+        }
+    });
+}
+
+}  // namespace subvol::detail
