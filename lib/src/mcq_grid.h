@@ -20,12 +20,17 @@ public:
     /// from, to: kPoints × channels values, point-major
     void refine(std::size_t octant, std::size_t channels, std::span<const double> from, std::span<double> to) const;
 
-private:
+    /// Terms of one weight; offsets in points, from the lowest of the old points about the new one.
     struct Run {
         double weight;
-        std::vector<std::int16_t> offsets;  // in points
+        std::vector<std::int16_t> offsets;
     };
-    std::array<std::vector<Run>, 8> masks_;  // by which axes are half way: u + 2v + 4w
+
+    /// The masks by which axes are half way: u + 2v + 4w.
+    [[nodiscard]] const std::array<std::vector<Run>, 8>& masks() const { return masks_; }
+
+private:
+    std::array<std::vector<Run>, 8> masks_;
 };
 
 }  // namespace subvol::detail

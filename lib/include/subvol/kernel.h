@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -8,8 +10,8 @@
 
 namespace subvol {
 
-// Kernels are small values. Lengths are in sample intervals (the scheme's lattice units), ρ = |x|; beyond its radius a kernel
-// is 0.
+// Kernels are small values. Lengths are in sample intervals (the scheme's lattice units), ρ = |x|; at its radius and beyond
+// it a kernel is 0.
 
 /// (1 − ρ²/R²)³: what the splatter sums. Below R = 1.2 it leaves holes.
 struct CompactKernel {
@@ -95,5 +97,33 @@ using Kernel =
 /// The kernel at an offset; where it is radial, at a distance. `radial_value` of one that is not: that along an axis.
 [[nodiscard]] double kernel_value(const Kernel& kernel, const Vec3& x);
 [[nodiscard]] double radial_value(const Kernel& kernel, double rho);
+
+/// Where the kernel has a kink: the derivative of the outer piece; across a plane of symmetry 0.
+[[nodiscard]] Vec3 kernel_gradient(const Kernel& kernel, const Vec3& x);
+
+/// ∫ kernel dz from z0 to z1 at the offset (x, y), and over the whole line. Exact but for rounding.
+///
+/// cost: O(1); for tables O(values per axis)
+[[nodiscard]] double slab_integral(const Kernel& kernel, double x, double y, double z0, double z1);
+[[nodiscard]] double line_integral(const Kernel& kernel, double x, double y);
+
+/// throws: Error(InvalidInput) if a number is not finite, a length not positive, or a table not as large as it says; a table
+///         has 2 to 1024 values per axis. The functions above take valid kernels only
+void validate(const Kernel& kernel);
+
+/// A kernel as a JSON object: its "type" and its fields by their names here. Fields left out take their defaults. What is
+/// written reads back bit for bit.
+///
+/// throws: Error(InvalidInput) if the text is no such object or the kernel is not valid
+[[nodiscard]] std::string to_json(const Kernel& kernel);
+[[nodiscard]] Kernel kernel_from_json(std::string_view text);
+
+/// The kernels that have a name, with parameters fitted to the basis function of MCQ: gaussian, compact (what the splatter
+/// sums: not a fit), bc, paper_bc (B and C as [mnmq2007] prints them), cardinal, wendland_c2, wendland_c4, two_gaussians,
+/// separable_gaussian, cubic (Catmull-Rom: not a fit).
+///
+/// throws: Error(InvalidInput) if there is no such name
+[[nodiscard]] Kernel named_kernel(const std::string& name);
+[[nodiscard]] std::vector<std::string> kernel_names();
 
 }  // namespace subvol

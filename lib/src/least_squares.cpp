@@ -1,0 +1,70 @@
+#include "least_squares.h"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/QR>
+
+namespace subvol::detail {
+
+namespace {
+
+struct Evaluate {
+    const Residuals& function;
+    std::size_t parameters, residuals;
+
+    bool operator()(double const* const* blocks, double* to) const {
+        function({blocks[0], parameters}, {to, residuals});
+        return true;
+    }
+};
+
+ceres::Solver::Options options() {
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.max_num_iterations = 200;
+    options.function_tolerance = 1e-14;
+    options.gradient_tolerance = 1e-14;
+    options.parameter_tolerance = 1e-11;
+    options.logging_type = ceres::SILENT;
+    options.minimizer_progress_to_stdout = false;
+    return options;
+}
+
+}  // namespace
+
+Minimum minimize_squares(std::vector<double> start, double lower, double upper, std::size_t residuals,
+                         const Residuals& function) {
+    const int count = static_cast<int>(start.size());
+    auto* cost =
+        new ceres::DynamicNumericDiffCostFunction<Evaluate, ceres::CENTRAL>(new Evaluate{function, start.size(), residuals});
+    cost->AddParameterBlock(count);
+    cost->SetNumResiduals(static_cast<int>(residuals));
+    ceres::Problem problem;
+    problem.AddResidualBlock(cost, nullptr, start.data());  // which takes the cost function over
+    for (int i = 0; i < count; ++i) {
+        problem.SetParameterLowerBound(start.data(), i, lower);
+        problem.SetParameterUpperBound(start.data(), i, upper);
+    }
+    ceres::Solver::Summary summary;
+    ceres::Solve(options(), &problem, &summary);
+    return {start, static_cast<int>(summary.iterations.size()) - 1, summary.termination_type == ceres::CONVERGENCE};
+}
+
+std::vector<double> linear_fit(std::span<const double> weights, std::span<const double> target,
+                               std::span<const std::vector<double>> columns) {
+    const auto rows = static_cast<Eigen::Index>(target.size());
+    const auto count = static_cast<Eigen::Index>(columns.size());
+    Eigen::MatrixXd matrix(rows, count);
+    Eigen::VectorXd right(rows);
+    for (Eigen::Index r = 0; r < rows; ++r) {
+        const auto row = static_cast<std::size_t>(r);
+        const double root = std::sqrt(weights[row]);
+        right[r] = root * target[row];
+        for (Eigen::Index c = 0; c < count; ++c) matrix(r, c) = root * columns[static_cast<std::size_t>(c)][row];
+    }
+    // Not the normal equations: Gaussians of similar widths are nearly dependent.
+    const Eigen::VectorXd factors = matrix.colPivHouseholderQr().solve(right);
+    return {factors.begin(), factors.end()};
+}
+
+}  // namespace subvol::detail
