@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "subvol/rbf_volume.h"
+
+namespace subvol {
+
+/// channel:      which channel of the volume
+/// least_weight: where the sum of the weights is no more than this there is nothing, as in the splatter
+struct RbfFieldOptions {
+    std::size_t channel = 0;
+    double least_weight = 0.02;
+};
+
+/// gradient: world⁻¹
+struct FieldJet {
+    double value = 0;
+    Vec3 gradient{0.0};
+};
+
+/// The field that an RBF volume stands for, at points: Σ wᵢ (vᵢ + gᵢ·(x−μᵢ) + mᵢ eᵢ) / Σ wᵢ, eᵢ = (x−μᵢ)ᵀ Sᵢ⁻¹ (x−μᵢ), wᵢ the
+/// kernel at R√eᵢ inside eᵢ < 1. Satisfies `Field`. The boundary is not tested.
+///
+/// A copy of the kernels in a box tree: it does not refer to the volume. Kernels may differ in size and shape at will.
+/// throws: Error(InvalidInput) if there is no such channel, array lengths differ, a number is not finite, or the kernel is not
+///         radial
+/// cost:   about 100 bytes and 0.3 µs a kernel to build, 1 µs of one core a point where 12 kernels overlap; thread-safe; sums
+/// run
+///         in the order of the tree, hence results are bitwise the same for any number of threads
+/// source: SCIENCE §3.1
+class RbfField {
+public:
+    explicit RbfField(const RbfVolume& volume, const RbfFieldOptions& options = {});
+    ~RbfField();
+    RbfField(RbfField&&) noexcept;
+    RbfField& operator=(RbfField&&) noexcept;
+
+    [[nodiscard]] std::optional<double> value(const Vec3& x) const;
+
+    /// The exact gradient of `value` for the compact kernel; others are differenced.
+    [[nodiscard]] std::optional<FieldJet> value_and_gradient(const Vec3& x) const;
+
+    /// Values at many points, in parallel; NaN where there is nothing.
+    [[nodiscard]] std::vector<double> evaluate(std::span<const Vec3> points) const;
+
+private:
+    struct Kernels;
+    std::unique_ptr<const Kernels> kernels_;
+};
+
+}  // namespace subvol
