@@ -3,28 +3,6 @@
 #include <cmath>
 
 namespace subvol::model {
-namespace {
-
-Vec2 turned(double x, double y, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    return {c * x - s * y, s * x + c * y};
-}
-
-}  // namespace
-
-Vec3 BentBlock::position(const Vec3& p) const {
-    const Vec2 section = half_width * turned(p.x, p.y, twist_rad * (p.z + 1));
-    const double arm = radius + section.x, t = bend_rad * p.z;
-    return {arm * std::cos(t) - radius, section.y, arm * std::sin(t)};
-}
-
-Vec3 BentBlock::parameter(const Vec3& x) const {
-    // atan2 is in (-π,π] and bend < π: beyond the block |z| > 1 follows on both sides of the cut.
-    const double z = std::atan2(x.z, x.x + radius) / bend_rad;
-    const double across = std::hypot(x.x + radius, x.z) - radius;
-    const Vec2 section = turned(across, x.y, -twist_rad * (z + 1)) / half_width;
-    return {section.x, section.y, z};
-}
 
 bool in_block(const Vec3& p) {
     return std::abs(p.x) <= 1 && std::abs(p.y) <= 1 && std::abs(p.z) <= 1;

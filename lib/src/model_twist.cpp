@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
+#include "model_deformation.h"
 #include "model_parts.h"
 #include "subvol/model.h"
 
@@ -9,7 +11,12 @@ namespace subvol {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr model::BentBlock kBlock{.half_width = 0.6, .twist_rad = kPi / 4, .bend_rad = 0.35 * kPi, .radius = 1.6};
+// The arc of radius 1.6 reaches from -63° to 63°; the section turns by 90° on the way.
+constexpr double kRadius = 1.6, kHalfLength = 0.35 * kPi * kRadius;
+constexpr Vec3 kHalf{0.6, 0.6, kHalfLength};
+constexpr std::array<model::Deformation, 2> kDeformation{
+    model::Twist{.axis = 2, .rate = kPi / 4 / kHalfLength, .offset = kPi / 4},
+    model::Bend{.along = 2, .towards = 0, .radius = kRadius}};
 
 double rounded_to_float(double x) {
     // volatile: GCC 12.2 at -O2 drops double → float → double when it vectorizes neighbouring components.
@@ -20,11 +27,11 @@ double rounded_to_float(double x) {
 }  // namespace
 
 Vec3 TwistField::parameter(const Vec3& x) {
-    return kBlock.parameter(x);
+    return model::undo(kDeformation, x) / kHalf;
 }
 
 Vec3 TwistField::position(const Vec3& parameter) {
-    return kBlock.position(parameter);
+    return model::apply(kDeformation, kHalf * parameter);
 }
 
 double TwistField::density(const Vec3& p) {

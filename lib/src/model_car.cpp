@@ -1,0 +1,64 @@
+#include <array>
+#include <cmath>
+
+#include "model_solid.h"
+
+namespace subvol::model {
+namespace {
+
+constexpr Blend kBlend = kCellBlend;
+constexpr Vec3 kWheel{24, 18.5, -10};  // centre of the left front wheel; the others mirror it
+
+double hull(const Vec3& m, double x) {
+    const double tub = box(m - Vec3(0, 0, -5), {38.5, 18, 6.5}, 4);
+    const double bonnet = rod({x, 0.6 * m.y, m.z}, {12, 0, 0}, {32, 0, -3}, 4.5, 3.5);
+    const double boot = rod({x, 0.6 * m.y, m.z}, {-20, 0, 0}, {-34, 0, -2}, 4.5, 3.5);
+    return kBlend.join({tub, bonnet, boot});
+}
+
+/// Narrower towards the roof, on four corner posts and one in the middle of each side.
+double cabin(const Vec3& m, double x) {
+    const Vec3 center(-5, 0, 7);
+    const double shell =
+        kBlend.meet({box(Vec3(x, m.y, m.z) - center, {22, 16, 9.5}, 4), behind(Vec3(x, 0, m.z) - Vec3(17, 0, 2), {2, 0, 1}),
+                     behind(Vec3(x, 0, m.z) - Vec3(-27, 0, 2), {-3, 0, 1}), behind(m - Vec3(0, 16, 2), {0, 4, 1})});
+    const Vec3 q = Vec3(x, m.y, m.z) - Vec3(0, 0, 7.5);
+    const double side_windows =
+        kBlend.join({box(q - Vec3(4, 0, 0), {6, 40, 4.6}, 2), box(q - Vec3(-13.5, 0, 0), {6.5, 40, 4.6}, 2)});
+    const double screens = box(q, {80, 10, 4.6}, 2);
+    return kBlend.cut(kBlend.cut(shell, side_windows), screens);
+}
+
+double wheel(const Vec3& m) {
+    const Vec3 q = m - kWheel;
+    const double tyre = kBlend.cut(cylinder(q, 1, 8, 3.6), ring(q - Vec3(0, 3.8, 0), 1, 4.6, 1.5));
+    const double axle = cylinder(m - Vec3(kWheel.x, 0, kWheel.z), 1, 2.2, kWheel.y);
+    return kBlend.join({tyre, ellipsoid(q - Vec3(0, 3, 0), {2.6, 2, 2.6}), axle});
+}
+
+double lamps(const Vec3& m, double x) {
+    const double front = ball(Vec3(x, m.y, m.z) - Vec3(37, 11, -1.5), 4.2);
+    const double rear = box(Vec3(x, m.y, m.z) - Vec3(-38.5, 13, -3), {1.6, 2.2, 2.6}, 1);
+    const double bumper = rod(m, {39.5, 0, -9}, {39.5, 15, -9}, 2, 2);
+    return kBlend.join({front, rear, bumper});
+}
+
+/// A toy car driving to +x, 83 long; left and right alike.
+double car(const Vec3& q) {
+    const Vec3 m(std::abs(q.x), std::abs(q.y), q.z);
+    const double arches = cylinder(m - kWheel, 1, 10, 6.5);
+    const double grille = box(q - Vec3(40, 0, -3), {2.5, 5, 2}, 1);
+    const double body = kBlend.cut(kBlend.cut(kBlend.join({hull(m, q.x), cabin(m, q.x)}), arches), grille);
+    return kBlend.join({body, wheel(m), lamps(m, q.x)});
+}
+
+constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 0, .amount = 0.15, .rate = 0.036, .phase = 0.3},
+                                                  Twist{.axis = 0, .rate = 0.006},
+                                                  Bend{.along = 0, .towards = 2, .radius = 62}};
+
+}  // namespace
+
+constinit const Solid kCar{
+    .distance = car, .transition = kCellTransition, .half = {44, 25, 19.5}, .main = 0, .deformation = kDeformation};
+
+}  // namespace subvol::model

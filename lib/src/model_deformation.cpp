@@ -1,0 +1,84 @@
+#include "model_deformation.h"
+
+#include <cmath>
+#include <ranges>
+
+namespace subvol::model {
+namespace {
+
+/// p turned about an axis.
+Vec3 turned(Vec3 p, int axis, double angle) {
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+    const double c = std::cos(angle), s = std::sin(angle);
+    const double pa = p[a], pb = p[b];
+    p[a] = c * pa - s * pb;
+    p[b] = s * pa + c * pb;
+    return p;
+}
+
+/// p with its section across an axis scaled.
+Vec3 scaled(Vec3 p, int axis, double factor) {
+    p[(axis + 1) % 3] *= factor;
+    p[(axis + 2) % 3] *= factor;
+    return p;
+}
+
+Vec3 shifted(Vec3 p, int axis, double by) {
+    p[axis] += by;
+    return p;
+}
+
+}  // namespace
+
+Vec3 Twist::apply(const Vec3& p) const {
+    return turned(p, axis, rate * p[axis] + offset);
+}
+
+Vec3 Twist::undo(const Vec3& x) const {
+    return turned(x, axis, -(rate * x[axis] + offset));
+}
+
+Vec3 Bend::apply(const Vec3& p) const {
+    Vec3 x = p;
+    const double arm = radius + p[towards], angle = p[along] / radius;
+    x[towards] = arm * std::cos(angle) - radius;
+    x[along] = arm * std::sin(angle);
+    return x;
+}
+
+Vec3 Bend::undo(const Vec3& x) const {
+    // atan2 is in (-π,π]: beyond the part that is bent, |a| is too large on both sides of the cut.
+    Vec3 p = x;
+    const double side = radius < 0 ? -1 : 1, arm = x[towards] + radius;
+    p[along] = radius * std::atan2(side * x[along], side * arm);
+    p[towards] = side * std::hypot(arm, x[along]) - radius;
+    return p;
+}
+
+Vec3 Swell::apply(const Vec3& p) const {
+    return scaled(p, along, 1 + amount * std::sin(rate * p[along] + phase));
+}
+
+Vec3 Swell::undo(const Vec3& x) const {
+    return scaled(x, along, 1 / (1 + amount * std::sin(rate * x[along] + phase)));
+}
+
+Vec3 Sway::apply(const Vec3& p) const {
+    return shifted(p, towards, amount * std::sin(rate * p[along] + phase));
+}
+
+Vec3 Sway::undo(const Vec3& x) const {
+    return shifted(x, towards, -amount * std::sin(rate * x[along] + phase));
+}
+
+Vec3 apply(std::span<const Deformation> steps, Vec3 p) {
+    for (const Deformation& step : steps) p = std::visit([&](const auto& s) { return s.apply(p); }, step);
+    return p;
+}
+
+Vec3 undo(std::span<const Deformation> steps, Vec3 x) {
+    for (const Deformation& step : std::views::reverse(steps)) x = std::visit([&](const auto& s) { return s.undo(x); }, step);
+    return x;
+}
+
+}  // namespace subvol::model

@@ -1,0 +1,45 @@
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "model_solid.h"
+
+namespace subvol::model {
+namespace {
+
+constexpr Blend kBlend = kCellBlend;
+constexpr int kBlades = 5;
+
+/// A blade along z, from the hub to the ring; pitched more near the hub, as the speed of its rotation asks.
+double blade(const Vec3& q) {
+    const double pitch = 1.05 - 0.016 * q.z;
+    const double c = std::cos(pitch), s = std::sin(pitch);
+    const double half_chord = 4.2 + 0.12 * q.z;
+    return box({c * q.x + s * q.y, c * q.y - s * q.x, q.z - 14}, {half_chord, 1.7, 11}, 1.2);
+}
+
+double blades(const Vec3& q) {
+    std::array<double, kBlades> each;
+    for (int k = 0; k < kBlades; ++k) {
+        const double turn = 2 * std::numbers::pi * k / kBlades, c = std::cos(turn), s = std::sin(turn);
+        each[static_cast<std::size_t>(k)] = blade({c * q.x - s * q.z, q.y, s * q.x + c * q.z});
+    }
+    return kBlend.join({each[0], each[1], each[2], each[3], each[4]});
+}
+
+/// Five blades about a bored hub, in a ring, 53 wide about the y axis.
+double fan(const Vec3& q) {
+    const double ring_wall = kBlend.cut(cylinder(q, 1, 26.4, 6), cylinder(q, 1, 22.8, 20));
+    const double hub = kBlend.join({cylinder(q, 1, 6.5, 6.5), ellipsoid(q - Vec3(0, -5.5, 0), {6, 3.4, 6})});
+    return kBlend.cut(kBlend.join({ring_wall, hub, blades(q)}), cylinder(q, 1, 2.4, 20));
+}
+
+constexpr std::array<Deformation, 2> kDeformation{Twist{.axis = 2, .rate = 0.011},
+                                                  Bend{.along = 2, .towards = 1, .radius = -42}};
+
+}  // namespace
+
+constinit const Solid kFan{
+    .distance = fan, .transition = kCellTransition, .half = {28, 10, 28}, .main = 2, .deformation = kDeformation};
+
+}  // namespace subvol::model
