@@ -6,6 +6,7 @@
 #include <openvdb/openvdb.h>
 
 #include <fstream>
+#include <optional>
 
 #include "subvol/error.h"
 
@@ -30,19 +31,21 @@ auto read_throwing(const std::filesystem::path& path, const Read& read) {
     }
 }
 
-/// Goes from one grid's description to the next.
+/// Goes from one grid's description to the next; nothing for a file that does not say where that is.
 class DescriptionReader : public openvdb::io::Archive {
 public:
-    std::vector<std::string> types(std::istream& file) {
+    std::optional<std::vector<std::string>> types(std::istream& file) {
         openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
         openvdb::io::setStreamMetadataPtr(file, metadata, /*transfer=*/false);
-        readHeader(file);
+        if (!readHeader(file)) return std::nullopt;
+        openvdb::io::setVersion(file, libraryVersion(), fileVersion());
         openvdb::MetaMap().readMeta(file);
         std::vector<std::string> types;
         for (std::int32_t left = readGridCount(file); left > 0; --left) {
             openvdb::io::GridDescriptor description;
             static_cast<void>(description.read(file));
             types.push_back(description.gridType());
+            if (description.getEndPos() <= file.tellg()) OPENVDB_THROW(openvdb::IoError, "a grid ends before it begins");
             description.seekToEnd(file);
         }
         return types;
@@ -69,7 +72,10 @@ openvdb::GridPtrVecPtr read_grids(const std::filesystem::path& path) {
 }
 
 std::vector<std::string> grid_types(const std::filesystem::path& path) {
-    return read_throwing(path, [](std::istream& file) { return DescriptionReader().types(file); });
+    if (auto types = read_throwing(path, [](std::istream& file) { return DescriptionReader().types(file); })) return *types;
+    std::vector<std::string> types;
+    for (const auto& grid : *read_grids(path)) types.push_back(grid->type());
+    return types;
 }
 
 void write_grids(const AtomicFile& file, const std::filesystem::path& path, const openvdb::GridCPtrVec& grids) {
