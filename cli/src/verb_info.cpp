@@ -1,6 +1,10 @@
+#include <algorithm>
+
 #include "input.h"
+#include "points_input.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
+#include "subvol/points_io.h"
 #include "subvol/render.h"
 #include "subvol/vdb.h"
 #include "text.h"
@@ -41,11 +45,11 @@ void put_mesh_report(Report& report, const MeshReport& mesh) {
 class InfoVerb : public Verb {
 public:
     explicit InfoVerb(CLI::App& program)
-        : Verb(program, "info", "What is in a mesh or a .vdb file, and is it sound?",
+        : Verb(program, "info", "What is in a mesh, a .vdb file or a file of points, and is it sound?",
                "  subvol info model:ball\n"
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
                "  subvol info --gl") {
-        app().add_option("FILE", input_, text(kInputHelp, ", or a .vdb file"));
+        app().add_option("FILE", input_, text(kInputHelp, ", or a .vdb file, or points (.ply, .vtp)"));
         app().add_flag("--gl", gl_, "what OpenGL there is to splat with");
         app()
             .add_option("--at", points_, "print the value of a .vdb file's grid there (repeatable)")
@@ -57,6 +61,8 @@ public:
         if (gl_) describe_gl(report);
         if (input_.empty()) {
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
+        } else if (holds_points(input_)) {
+            describe_points(report);
         } else if (std::filesystem::path(input_).extension() == ".vdb") {
             describe_grids(report);
         } else {
@@ -71,8 +77,13 @@ private:
         report["gl"] = device ? Json{{"renderer", device->renderer}, {"hardware", device->hardware}} : Json(nullptr);
     }
 
+    void refuse_at(const std::string& what) const {
+        if (points_.empty()) return;
+        throw Error(ErrorCode::InvalidInput, "reads values from grids in .vdb files only, not from " + what, "--at");
+    }
+
     void describe_mesh(Report& report) {
-        if (!points_.empty()) throw Error(ErrorCode::InvalidInput, "reads values from .vdb files only", "--at");
+        refuse_at("a mesh");
         const ReadResult read = read_input(input_, common(), report);
         put_mesh_report(report, report.timed("inspect", [&] { return inspect(read.mesh); }));
         report["fields"] = Json::array();
@@ -82,6 +93,18 @@ private:
                                         {"components", field.components},
                                         {"min", field.min},
                                         {"max", field.max}});
+        }
+    }
+
+    void describe_points(Report& report) {
+        refuse_at("points");
+        const RbfVolume volume = read_points_input(input_, report);
+        report["kernel"] = kernel_text(volume.kernel);
+        report["bounds"] = to_json(volume.bounds);
+        report["boundary_triangles"] = volume.boundary.triangles.size();
+        for (const RbfChannel& channel : volume.channels) {
+            const auto [min, max] = std::ranges::minmax(channel.values);
+            report["channels"].push_back({{"name", channel.name}, {"min", min}, {"max", max}});
         }
     }
 

@@ -1,6 +1,9 @@
 #include "input.h"
-#include "ply_writer.h"
 #include "sample_arguments.h"
+#include "subvol/error.h"
+#include "subvol/points_io.h"
+#include "subvol/surface_io.h"
+#include "subvol/vdb_points.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -11,20 +14,35 @@ public:
     explicit PointsVerb(CLI::App& program)
         : Verb(program, "points", "Turn a mesh into radial basis functions.",
                "  subvol points model:ball -o ball.ply\n"
-               "  subvol points model:ball -o dense.ply --per-edge 2 --ascii") {
+               "  subvol points model:ball -o ball.vtp                (ParaView; the surface is beside it: ball.boundary.vtp)\n"
+               "  subvol points model:ball -o ball.vdb                (Houdini; as well)\n"
+               "  subvol points model:ball -o dense.ply --per-edge 2 --splats") {
         app().add_option("FILE", input_, kInputHelp)->required();
-        app().add_option("-o,--output", output_, "the points to write (.ply)")->type_name("FILE")->required();
-        app().add_flag("--ascii", ascii_, "write text instead of binary numbers");
+        app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb)")->type_name("FILE")->required();
+        app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
+        app().add_flag("--splats", splats_, ".ply: for viewers of Gaussian splats too; the surface is then beside it");
         sample_.add_to(app());
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
     }
 
     int run(Report& report) override {
-        check_output(output_, {".ply"}, {".vdb", ".vtp"});
+        check_output(output_, {".ply", ".vtp", ".vdb"});
+        const std::string extension = std::filesystem::path(output_).extension().string();
+        if (extension != ".ply" && (ascii_ || splats_)) {
+            throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
+        }
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
         const RbfVolume volume = sample_reported(mesh, sample_, refine_, report);
-        report.timed("write", [&] { write_ply(output_, volume, ascii_ ? PlyEncoding::Ascii : PlyEncoding::Binary); });
+        report.timed("write", [&] {
+            if (extension == ".vdb") {
+                write_vdb_points(output_, volume);
+            } else {
+                write_points(output_, volume, {.ascii = ascii_, .splats = splats_});
+            }
+        });
         report["output"] = output_;
+        const bool inside = extension == ".ply" && !splats_;
+        if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = boundary_path(output_).string();
         return 0;
     }
 
@@ -32,6 +50,7 @@ private:
     std::string input_;
     std::string output_;
     bool ascii_ = false;
+    bool splats_ = false;
     SampleArguments sample_;
     RefineArguments refine_;
 };

@@ -1,5 +1,6 @@
 #include "input.h"
 #include "picture_arguments.h"
+#include "points_input.h"
 #include "sample_arguments.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -24,7 +25,7 @@ public:
                "  subvol render model:ball -o ball.png\n"
                "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2") {
-        app().add_option("FILE", input_, kInputHelp)->required();
+        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
         app()
             .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats)")
             ->type_name("IMAGE")
@@ -54,21 +55,32 @@ public:
         if (method_ == "tets" && backend == Backend::Gl) {
             throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
         }
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
-        const Box box = bounds(mesh);
-        const View view = picture_.make_view(box);
-        const Optics optics = picture_.make_optics(box, first_field_range(mesh));
-
-        const Image image = method_ == "splat" ? splat(mesh, view, optics, backend, report) : tets(mesh, view, optics, report);
+        const Image image = holds_points(input_) ? of_points(backend, report) : of_mesh(backend, report);
         report.timed("write", [&] { write_image(output_, image, background); });
         report["output"] = output_;
         return 0;
     }
 
 private:
-    [[nodiscard]] Image splat(const HexMesh& mesh, const View& view, const Optics& optics, Backend backend,
+    [[nodiscard]] Image of_mesh(Backend backend, Report& report) {
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        const Box box = bounds(mesh);
+        const View view = picture_.make_view(box);
+        const Optics optics = picture_.make_optics(box, first_field_range(mesh));
+        if (method_ == "tets") return tets(mesh, view, optics, report);
+        return splat(sample_reported(mesh, sample_, refine_, report), view, optics, backend, report);
+    }
+
+    [[nodiscard]] Image of_points(Backend backend, Report& report) {
+        if (method_ != "splat") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        const RbfVolume volume = load_points(input_, common(), app(), report);
+        const View view = picture_.make_view(volume.bounds);
+        const Optics optics = picture_.make_optics(volume.bounds, first_channel_range(volume));
+        return splat(volume, view, optics, backend, report);
+    }
+
+    [[nodiscard]] Image splat(const RbfVolume& volume, const View& view, const Optics& optics, Backend backend,
                               Report& report) const {
-        const RbfVolume volume = sample_reported(mesh, sample_, refine_, report);
         SplatResult drawn =
             render_splats(volume, view, optics, {.backend = backend, .sheets = sheets_, .progress = report.progress()});
         report.add_seconds("prepare", drawn.report.seconds_prepare);

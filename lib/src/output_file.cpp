@@ -21,8 +21,12 @@ void OutputFile::write(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) fail(errno);
 }
 
+void OutputFile::close() {
+    if (stream_ && std::fclose(std::exchange(stream_, nullptr)) != 0) fail(errno);
+}
+
 void OutputFile::commit() {
-    if (std::fclose(std::exchange(stream_, nullptr)) != 0) fail(errno);
+    close();
     file_.commit();
 }
 

@@ -22,7 +22,9 @@ public:
     void write_values(std::span<const T> values) {
         write({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     }
-    /// Flushes and gives the file its name; nothing can be written after that.
+    /// Flushes; nothing can be written after that.
+    void close();
+    /// Closes and gives the file its name.
     void commit();
 
 private:

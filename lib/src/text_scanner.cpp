@@ -226,6 +226,14 @@ std::string as_utf8(std::string_view text) {
     return result;
 }
 
+std::string without_controls(std::string_view text) {
+    std::string result(text);
+    for (char& c : result) {
+        if (static_cast<unsigned char>(c) < ' ') c = '_';
+    }
+    return result;
+}
+
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
     return std::to_string(count) + " " + std::string(count == 1 ? one : many);
 }

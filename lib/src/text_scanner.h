@@ -83,6 +83,9 @@ private:
 /// The text itself if it is UTF-8, else taken as Latin-1 and converted.
 [[nodiscard]] std::string as_utf8(std::string_view text);
 
+/// With an underscore for every control character.
+[[nodiscard]] std::string without_controls(std::string_view text);
+
 /// "1 hexahedron", "8 hexahedra"
 [[nodiscard]] std::string counted(std::size_t count, std::string_view one, std::string_view many);
 

@@ -13,7 +13,8 @@ const std::map<std::string_view, NumberType> kTypes{
     {"Int8", NumberType::Int8},       {"UInt8", NumberType::UInt8},   {"Int16", NumberType::Int16},
     {"UInt16", NumberType::UInt16},   {"Int32", NumberType::Int32},   {"UInt32", NumberType::UInt32},
     {"Int64", NumberType::Int64},     {"UInt64", NumberType::UInt64}, {"Float32", NumberType::Float32},
-    {"Float64", NumberType::Float64}, {"Int", NumberType::Int32},     {"Float", NumberType::Float32}};
+    {"Float64", NumberType::Float64}, {"Int", NumberType::Int32},     {"Float", NumberType::Float32},
+    {"String", NumberType::Int8}};
 
 std::string_view format_of(const pugi::xml_node& array) {
     return array.attribute("format").as_string("ascii");

@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <bit>
 
 #include "mesh_file.h"
 #include "output_file.h"
+#include "vtk_xml_writer.h"
 
 namespace subvol {
 
@@ -12,66 +12,27 @@ constexpr std::uint8_t kHexahedron = 12;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
 
-std::string xml_escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += static_cast<unsigned char>(c) < ' ' ? '_' : c;  // XML has no control characters
-        }
-    }
-    return result;
+// A block stands behind its own size.
+std::size_t block_size(std::size_t bytes) {
+    return sizeof(std::uint64_t) + bytes;
 }
-
-// The header: arrays in the order in which their blocks, each behind its size, are appended.
-class Header {
-public:
-    void line(const std::string& text) { text_ += text + "\n"; }
-
-    void array(const std::string& type, std::string_view name, std::size_t components, std::size_t bytes) {
-        text_ += "<DataArray type=\"" + type + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
-                 std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(offset_) + "\"/>\n";
-        offset_ += sizeof(std::uint64_t) + bytes;
-    }
-
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-private:
-    std::string text_;
-    std::size_t offset_ = 0;
-};
 
 std::string header_text(const HexMesh& mesh) {
     const std::size_t points = mesh.points.size();
     const std::size_t cells = mesh.cells.size();
-    const std::string order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-    Header header;
-    header.line("<?xml version=\"1.0\"?>");
-    header.line("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"" + order + "\" header_type=\"UInt64\">");
+    VtkXmlHeader header("UnstructuredGrid");
     header.line("<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(points) + "\" NumberOfCells=\"" +
                 std::to_string(cells) + "\">");
     header.line("<Points>");
-    header.array("Float64", "Points", 3, points * sizeof(Vec3));
+    header.array("Float64", "Points", 3, block_size(points * sizeof(Vec3)));
     header.line("</Points>\n<Cells>");
-    header.array("Int64", "connectivity", 1, cells * 8 * sizeof(std::int64_t));
-    header.array("Int64", "offsets", 1, cells * sizeof(std::int64_t));
-    header.array("UInt8", "types", 1, cells);
+    header.array("Int64", "connectivity", 1, block_size(cells * 8 * sizeof(std::int64_t)));
+    header.array("Int64", "offsets", 1, block_size(cells * sizeof(std::int64_t)));
+    header.array("UInt8", "types", 1, block_size(cells));
     header.line("</Cells>\n<PointData>");
     for (const auto& attribute : mesh.attributes) {
         header.array("Float64", attribute.name, static_cast<std::size_t>(attribute.channels),
-                     attribute.values.size() * sizeof(double));
+                     block_size(attribute.values.size() * sizeof(double)));
     }
     header.line("</PointData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">");
     return header.text() + "_";

@@ -40,4 +40,11 @@ struct RbfVolume {
     [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
 
+/// The box of the boundary; of the centres if there is none.
+[[nodiscard]] Box box_of(const RbfVolume& volume);
+
+/// throws: Error(InvalidInput), naming the point from 0, unless there are as many of everything as points, channels have names
+///         of their own, numbers are finite, the frames' diagonals positive and the triangles' corners there
+void validate(const RbfVolume& volume);
+
 }  // namespace subvol

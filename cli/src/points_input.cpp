@@ -1,0 +1,66 @@
+#include "points_input.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "subvol/error.h"
+#include "subvol/points_io.h"
+#include "subvol/vdb_points.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr std::initializer_list<const char*> kOfMeshes{"--density",        "--other-cells", "--per-edge", "--spacing",
+                                                       "--spacing-voxels", "--correction",  "--scheme",   "--tension",
+                                                       "--levels",         "--crease-angle"};
+
+bool is_vdb(const std::string& input) {
+    return std::filesystem::path(input).extension() == ".vdb";
+}
+
+void check_options(const CLI::App& app) {
+    for (const char* name : kOfMeshes) {
+        const CLI::Option* option = app.get_option_no_throw(name);
+        if (option == nullptr || option->count() == 0) continue;
+        throw Error(ErrorCode::InvalidInput, "needs a mesh; these are points that have been sampled already", name);
+    }
+}
+
+}  // namespace
+
+bool holds_points(const std::string& input) {
+    return is_points_file(input) || (is_vdb(input) && holds_vdb_points(input));
+}
+
+RbfVolume read_points_input(const std::string& input, Report& report) {
+    report["input"] = input;
+    RbfVolume volume = report.timed("read", [&] { return is_vdb(input) ? read_vdb_points(input) : read_points(input); });
+    report["points"] = volume.size();
+    if (volume.size() == 0) throw Error(ErrorCode::InvalidInput, "there are no points in it", input);
+    return volume;
+}
+
+RbfVolume load_points(const std::string& input, const CommonOptions& options, const CLI::App& app, Report& report) {
+    check_options(app);
+    RbfVolume volume = read_points_input(input, report);
+    std::vector<std::string> names;
+    for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
+    const std::string wanted = options.field.value_or(names.front());
+    const auto found = std::ranges::find(names, wanted);
+    if (found == names.end()) {
+        throw Error(ErrorCode::InvalidInput, "there is no field '" + wanted + "'", input, "it has: " + join(names));
+    }
+    RbfChannel channel = std::move(volume.channels[static_cast<std::size_t>(found - names.begin())]);
+    volume.channels.clear();
+    volume.channels.push_back(std::move(channel));
+    report["field"] = wanted;
+    return volume;
+}
+
+Range first_channel_range(const RbfVolume& volume) {
+    const auto [min, max] = std::ranges::minmax(volume.channels.front().values);
+    return {min, max};
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "subvol/rbf_volume.h"
+
+namespace subvol {
+
+/// ascii:  `.ply`: text instead of binary numbers
+/// splats: `.ply`: also what viewers of 3-D Gaussian splats read, see `write_points`
+struct PointsWriteOptions {
+    bool ascii = false;
+    bool splats = false;
+};
+
+/// Writes points as `.ply` or `.vtp`, all channels; the numbers are exact, so that they come back bit for bit.
+///
+/// .ply: element `vertex` with x y z, the frame sxx sxy sxz syy syz szz and, a channel, value, gx gy gz and moment, with _1,
+/// _2…
+///       behind them from the second channel on; then the boundary as `boundary_vertex` and `boundary_triangle`.
+///       Splats: x y z as floats (the exact ones are cx cy cz), and scale_0..2, rot_0..3, opacity and f_dc_0..2 of the first
+///       channel: a Gaussian with the kernel's height and integral, coloured by viridis over the range of the values. Such
+///       viewers take every property for the vertex's: the boundary stands beside, as for .vtp. Some 56 bytes a point more.
+/// .vtp: VTK PolyData for ParaView, a Verts cell a point; arrays NAME, NAME.gradient, NAME.moment, frame (S as VTK orders it:
+///       xx yy zz xy yz xz), ellipsoid (√S, 9 components, for the Tensor Glyph filter) and pscale (mean half-axis of the
+///       support). Beside it the boundary as NAME.boundary.vtp.
+/// Both files of such a pair appear, or none.
+/// throws: Error(InvalidInput) for an unknown extension, and as `validate`; Error(Io)
+void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options = {});
+
+/// Reads what `write_points` writes: `.ply` in any encoding and order of properties, `.vtp` in any encoding and with any
+/// compressor; what is unknown is passed over. The bounds are `box_of`.
+///
+/// throws: Error(Io); Error(InvalidInput) if it is malformed, or not of points with frames; never allocates by a number from
+/// the
+///         file that the file's size does not bear out
+[[nodiscard]] RbfVolume read_points(const std::filesystem::path& path);
+
+/// Whether `read_points` knows files of this name.
+[[nodiscard]] bool is_points_file(const std::filesystem::path& path);
+
+/// The kernel in one line of text, as all files of points carry it.
+///
+/// throws: Error(MissingCapability) for a kernel that cannot be written; Error(InvalidInput) for a text that says none
+[[nodiscard]] std::string kernel_text(const Kernel& kernel);
+[[nodiscard]] Kernel kernel_from_text(const std::string& text);
+
+}  // namespace subvol

@@ -1,0 +1,82 @@
+#include "subvol/rbf_volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "subvol/error.h"
+
+namespace subvol {
+
+namespace {
+
+template <class Numbers>
+bool all_finite(const Numbers& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](float number) { return std::isfinite(number); });
+}
+
+[[noreturn]] void refuse_point(std::size_t point, const std::string& what) {
+    throw Error(ErrorCode::InvalidInput, "point " + std::to_string(point) + ": " + what);
+}
+
+bool is_finite(const Vec3& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+void check_names(const std::vector<RbfChannel>& channels) {
+    if (channels.empty()) throw Error(ErrorCode::InvalidInput, "the points have no channel", {}, "one at least");
+    std::set<std::string> names;
+    for (const auto& channel : channels) {
+        if (!names.insert(channel.name).second) {
+            throw Error(ErrorCode::InvalidInput, "two channels are named \"" + channel.name + "\"");
+        }
+    }
+}
+
+void check_channel(const RbfChannel& channel, std::size_t points) {
+    const std::string name = "channel \"" + channel.name + "\"";
+    if (channel.values.size() != points || channel.gradients.size() != points || channel.moments.size() != points) {
+        throw Error(ErrorCode::InvalidInput, name + " has not one value, gradient and moment a point");
+    }
+    for (std::size_t i = 0; i < points; ++i) {
+        if (!std::isfinite(channel.values[i])) refuse_point(i, "the value of " + name + " is not finite");
+        if (!all_finite(channel.gradients[i])) refuse_point(i, "the gradient of " + name + " is not finite");
+        if (!std::isfinite(channel.moments[i])) refuse_point(i, "the moment of " + name + " is not finite");
+    }
+}
+
+void check_surface(const Surface& surface) {
+    for (const Vec3& p : surface.points) {
+        if (!is_finite(p)) throw Error(ErrorCode::InvalidInput, "a coordinate of the boundary surface is not finite");
+    }
+    for (const auto& triangle : surface.triangles) {
+        for (const Index p : triangle) {
+            if (p < surface.points.size()) continue;
+            throw Error(ErrorCode::InvalidInput, "the boundary surface has no point " + std::to_string(p), {},
+                        "it has " + std::to_string(surface.points.size()) + ", counted from 0");
+        }
+    }
+}
+
+}  // namespace
+
+Box box_of(const RbfVolume& volume) {
+    Box box;
+    for (const Vec3& p : volume.boundary.points.empty() ? volume.centers : volume.boundary.points) box.add(p);
+    return box;
+}
+
+void validate(const RbfVolume& volume) {
+    if (volume.frames.size() != volume.size()) throw Error(ErrorCode::InvalidInput, "there is not one frame a point");
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+        if (!is_finite(volume.centers[i])) refuse_point(i, "a coordinate is not finite");
+        const auto& s = volume.frames[i];
+        if (!all_finite(s)) refuse_point(i, "the frame is not finite");
+        if (!(s[0] > 0 && s[3] > 0 && s[5] > 0)) refuse_point(i, "the frame's diagonal is not positive");
+    }
+    check_names(volume.channels);
+    for (const auto& channel : volume.channels) check_channel(channel, volume.size());
+    check_surface(volume.boundary);
+}
+
+}  // namespace subvol
