@@ -10,7 +10,7 @@ namespace subvol {
 namespace {
 
 constexpr double kThroat = 0.21;      // radius where the gas is as fast as sound
-constexpr double kCore = 0.5;         // half the core's diagonal sides, of the radius
+constexpr double kCore = 0.5;         // half the core square's side, of the radius
 constexpr double kBulge = 0.5;        // of the core's square towards a disk
 constexpr double kBoundaryLayer = 6;  // exponent of the profile across the flow: the layer takes about a tenth of the radius
 

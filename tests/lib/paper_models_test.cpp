@@ -104,7 +104,7 @@ TYPED_TEST(PaperModel, InvertsInClosedForm) {
         ASSERT_TRUE(value);
         // The parameter is off by a few roundings; the densities change by up to 80 per unit.
         ASSERT_NEAR(*value, TypeParam::density(p), 1e-12);
-        // A little beyond the block's end, where only the main axis is left.
+        // Half as far again as the block's side, or the nozzle's end or wall.
         ASSERT_FALSE(TypeParam().value(TypeParam::position(p / std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) * 1.5)));
     }
 }
@@ -138,7 +138,7 @@ using Solids = testing::Types<Pawn, Alien, Train1, Car, Fan, Train2>;
 TYPED_TEST_SUITE(PaperSolid, Solids);
 
 TYPED_TEST(PaperSolid, IsNotCutByItsBlock) {
-    for (Vec3 p : random_parameters<TypeParam>(10'000)) {
+    for (const Vec3& p : random_parameters<TypeParam>(10'000)) {
         for (int axis = 0; axis < 3; ++axis) {
             Vec3 on_side = p;
             on_side[axis] = p[axis] < 0 ? -1 : 1;
