@@ -19,7 +19,7 @@ double head(const Vec3& m) {
     const double skull = ellipsoid(m - Vec3(0, 0.5, 13.5), {12.5, 9.5, 9});
     const double chin = ball(m - Vec3(0, -1.5, 5), 5.2);
     const double cheeks = rod(m, {0, 0, 12}, {0, -1, 6}, 9.4, 5.6);
-    const double mouth = ellipsoid(m - Vec3(0, -7, 3.4), {2.8, 2.4, 1.1});
+    const double mouth = ellipsoid(m - Vec3(0, -7, 3.4), {3, 2.4, 1.5});
     return kBlend.cut(with_eyes(kBlend.join({skull, chin, cheeks}), m), mouth);
 }
 
@@ -34,7 +34,8 @@ double arm(const Vec3& m) {
 }
 
 double leg(const Vec3& m) {
-    return kBlend.join({rod(m, {3.5, 0, -15}, {5.5, 0, -27}, 2.8, 2.1), ellipsoid(m - Vec3(6, -2.2, -28), {3.6, 5.6, 2.6})});
+    return kBlend.join(
+        {rod(m, {3.5, 0, -15}, {5.5, 0, -26.6}, 2.8, 2.1), ellipsoid(m - Vec3(6, -2.2, -27.6), {3.6, 5.6, 2.6})});
 }
 
 /// A visitor who looks to -y, 61 high; left and right alike.

@@ -7,26 +7,26 @@ namespace subvol::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
-constexpr Vec3 kWheel{24, 18.5, -10};  // centre of the left front wheel; the others mirror it
+constexpr Vec3 kWheel{24, 17.5, -10};  // centre of the left front wheel; the others mirror it
 
-double hull(const Vec3& m, double x) {
+double hull(const Vec3& m) {
     const double tub = box(m - Vec3(0, 0, -5), {38.5, 18, 6.5}, 4);
-    const double bonnet = rod({x, 0.6 * m.y, m.z}, {12, 0, 0}, {32, 0, -3}, 4.5, 3.5);
-    const double boot = rod({x, 0.6 * m.y, m.z}, {-20, 0, 0}, {-34, 0, -2}, 4.5, 3.5);
+    const Vec3 narrow(m.x, 0.6 * m.y, m.z);  // what is round in it is wider than high
+    const double bonnet = rod(narrow, {12, 0, 0}, {32, 0, -3}, 4.5, 3.5);
+    const double boot = rod(narrow, {-20, 0, 0}, {-34, 0, -2}, 4.5, 3.5);
     return kBlend.join({tub, bonnet, boot});
 }
 
 /// Narrower towards the roof, on four corner posts and one in the middle of each side.
-double cabin(const Vec3& m, double x) {
-    const Vec3 center(-5, 0, 7);
-    const double shell =
-        kBlend.meet({box(Vec3(x, m.y, m.z) - center, {22, 16, 9.5}, 4), behind(Vec3(x, 0, m.z) - Vec3(17, 0, 2), {2, 0, 1}),
-                     behind(Vec3(x, 0, m.z) - Vec3(-27, 0, 2), {-3, 0, 1}), behind(m - Vec3(0, 16, 2), {0, 4, 1})});
-    const Vec3 q = Vec3(x, m.y, m.z) - Vec3(0, 0, 7.5);
-    const double side_windows =
-        kBlend.join({box(q - Vec3(4, 0, 0), {6, 40, 4.6}, 2), box(q - Vec3(-13.5, 0, 0), {6.5, 40, 4.6}, 2)});
-    const double screens = box(q, {80, 10, 4.6}, 2);
-    return kBlend.cut(kBlend.cut(shell, side_windows), screens);
+double cabin(const Vec3& m) {
+    const Vec3 level(0, 0, 7.5);  // of the windows
+    const double shell = box(m - Vec3(-5, 0, 7), {22, 16, 9.5}, 4);
+    const double front = behind(m - Vec3(17, 0, 2), {2, 0, 1}), rear = behind(m - Vec3(-27, 0, 2), {-3, 0, 1});
+    const double side = behind(m - Vec3(0, 16, 2), {0, 4, 1});
+    const double front_windows = box(m - level - Vec3(4, 0, 0), {6, 40, 4.6}, 2);
+    const double rear_windows = box(m - level - Vec3(-13.5, 0, 0), {6.5, 40, 4.6}, 2);
+    const double screens = box(m - level, {80, 10, 4.6}, 2);
+    return kBlend.meet({shell, front, rear, side, -front_windows, -rear_windows, -screens});
 }
 
 double wheel(const Vec3& m) {
@@ -36,20 +36,19 @@ double wheel(const Vec3& m) {
     return kBlend.join({tyre, ellipsoid(q - Vec3(0, 3, 0), {2.6, 2, 2.6}), axle});
 }
 
-double lamps(const Vec3& m, double x) {
-    const double front = ball(Vec3(x, m.y, m.z) - Vec3(37, 11, -1.5), 4.2);
-    const double rear = box(Vec3(x, m.y, m.z) - Vec3(-38.5, 13, -3), {1.6, 2.2, 2.6}, 1);
-    const double bumper = rod(m, {39.5, 0, -9}, {39.5, 15, -9}, 2, 2);
-    return kBlend.join({front, rear, bumper});
+double lamps(const Vec3& m) {
+    return kBlend.join({ball(m - Vec3(37, 11, -1.5), 4.2), box(m - Vec3(-38.5, 13, -3), {1.6, 2.2, 2.6})});
 }
 
 /// A toy car driving to +x, 83 long; left and right alike.
 double car(const Vec3& q) {
-    const Vec3 m(std::abs(q.x), std::abs(q.y), q.z);
-    const double arches = cylinder(m - kWheel, 1, 10, 6.5);
-    const double grille = box(q - Vec3(40, 0, -3), {2.5, 5, 2}, 1);
-    const double body = kBlend.cut(kBlend.cut(kBlend.join({hull(m, q.x), cabin(m, q.x)}), arches), grille);
-    return kBlend.join({body, wheel(m), lamps(m, q.x)});
+    const Vec3 m(q.x, std::abs(q.y), q.z);
+    const Vec3 quarter(std::abs(m.x), m.y, m.z);  // front and rear have the same wheels and bumpers
+    const double bumper = rod(quarter, {39.5, 0, -9}, {39.5, 15, -9}, 2, 2);
+    const double arch = cylinder(quarter - kWheel, 1, 9.6, 6);
+    const double grille = box(m - Vec3(40, 0, -3), {2.5, 5, 2});
+    const double body = kBlend.meet({kBlend.join({hull(m), cabin(m)}), -arch, -grille});
+    return kBlend.join({body, wheel(quarter), lamps(m), bumper});
 }
 
 constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 0, .amount = 0.15, .rate = 0.036, .phase = 0.3},

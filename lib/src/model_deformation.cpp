@@ -1,7 +1,6 @@
 #include "model_deformation.h"
 
 #include <cmath>
-#include <ranges>
 
 namespace subvol::model {
 namespace {
@@ -77,7 +76,7 @@ Vec3 apply(std::span<const Deformation> steps, Vec3 p) {
 }
 
 Vec3 undo(std::span<const Deformation> steps, Vec3 x) {
-    for (const Deformation& step : std::views::reverse(steps)) x = std::visit([&](const auto& s) { return s.undo(x); }, step);
+    for (std::size_t k = steps.size(); k-- > 0;) x = std::visit([&](const auto& s) { return s.undo(x); }, steps[k]);
     return x;
 }
 

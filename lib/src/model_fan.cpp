@@ -10,12 +10,11 @@ namespace {
 constexpr Blend kBlend = kCellBlend;
 constexpr int kBlades = 5;
 
-/// A blade along z, from the hub to the ring; pitched more near the hub, as the speed of its rotation asks.
+/// A blade along z, from the hub to the ring: wider, flatter and swept forward towards its tip.
 double blade(const Vec3& q) {
-    const double pitch = 1.05 - 0.016 * q.z;
-    const double c = std::cos(pitch), s = std::sin(pitch);
-    const double half_chord = 4.2 + 0.12 * q.z;
-    return box({c * q.x + s * q.y, c * q.y - s * q.x, q.z - 14}, {half_chord, 1.7, 11}, 1.2);
+    const double pitch = 1.15 - 0.03 * q.z, half_chord = 3.4 + 0.2 * q.z, sweep = 0.012 * q.z * q.z;
+    const double c = std::cos(pitch), s = std::sin(pitch), t = q.x - sweep;
+    return box({c * t + s * q.y, c * q.y - s * t, q.z - 14}, {half_chord, 1.7, 11}, 1.2);
 }
 
 double blades(const Vec3& q) {
@@ -31,11 +30,12 @@ double blades(const Vec3& q) {
 double fan(const Vec3& q) {
     const double ring_wall = kBlend.cut(cylinder(q, 1, 26.4, 6), cylinder(q, 1, 22.8, 20));
     const double hub = kBlend.join({cylinder(q, 1, 6.5, 6.5), ellipsoid(q - Vec3(0, -5.5, 0), {6, 3.4, 6})});
-    return kBlend.cut(kBlend.join({ring_wall, hub, blades(q)}), cylinder(q, 1, 2.4, 20));
+    const double inner = kBlend.meet({blades(q), cylinder(q, 1, 24.5, 20)}), bore = cylinder(q, 1, 2.4, 20);
+    return kBlend.cut(kBlend.join({ring_wall, hub, inner}), bore);
 }
 
 constexpr std::array<Deformation, 2> kDeformation{Twist{.axis = 2, .rate = 0.011},
-                                                  Bend{.along = 2, .towards = 1, .radius = -42}};
+                                                  Bend{.along = 2, .towards = 1, .radius = -55}};
 
 }  // namespace
 

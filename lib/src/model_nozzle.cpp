@@ -9,17 +9,17 @@
 namespace subvol {
 namespace {
 
-constexpr double kThroat = 0.27;      // radius where the gas is as fast as sound
-constexpr double kCore = 0.5;         // half the core's diagonal sides, of the radius
+constexpr double kThroat = 0.21;      // radius where the gas is as fast as sound
+constexpr double kCore = 0.5;         // half the core square's side, of the radius
 constexpr double kBulge = 0.5;        // of the core's square towards a disk
 constexpr double kBoundaryLayer = 6;  // exponent of the profile across the flow: the layer takes about a tenth of the radius
 
-constexpr std::array<model::Deformation, 2> kDeformation{model::Sway{.along = 0, .towards = 1, .amount = 0.12, .rate = 2.5},
-                                                         model::Bend{.along = 0, .towards = 2, .radius = 1.1}};
+constexpr std::array<model::Deformation, 2> kDeformation{model::Sway{.along = 0, .towards = 1, .amount = 0.1, .rate = 2.2},
+                                                         model::Bend{.along = 0, .towards = 2, .radius = 2.6}};
 
-/// From .25 at the inlet to 2.4 at the outlet, where the cross-sections are about the same.
+/// From .15 at the inlet to 3 at the outlet, where the cross-sections are about the same.
 double mach(double s) {
-    return std::exp(-0.2555 + 1.1309 * s);
+    return std::exp(-0.3993 + 1.4979 * s);
 }
 
 /// Of the cross-section at s: the isentropic relation of area and Mach number for a heat capacity ratio of 1.4.
@@ -131,7 +131,8 @@ Vec3 NozzleField::position(const Vec3& p) {
 
 double NozzleField::density(const Vec3& p) {
     const double r2 = p.y * p.y + p.z * p.z;
-    return -1 + 2 * core_speed(p.x) / core_speed(1) * (1 - std::pow(r2, kBoundaryLayer / 2));
+    const double profile = std::max(0.0, 1 - std::pow(r2, kBoundaryLayer / 2));  // at the rim r2 may round to more than 1
+    return -1 + 2 * core_speed(p.x) / core_speed(1) * profile;
 }
 
 std::optional<double> NozzleField::value(const Vec3& x) const {

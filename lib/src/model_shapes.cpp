@@ -28,9 +28,9 @@ double box(const Vec3& q, const Vec3& half, double rounding) {
     return rounding - glm::length(glm::max(d, 0.0)) - std::min(std::max({d.x, d.y, d.z}), 0.0);
 }
 
-double cylinder(const Vec3& q, int axis, double radius, double half) {
-    const Vec2 d(glm::length(across(q, axis)) - radius, std::abs(q[axis]) - half);
-    return -glm::length(glm::max(d, 0.0)) - std::min(std::max(d.x, d.y), 0.0);
+double cylinder(const Vec3& q, int axis, double radius, double half, double rounding) {
+    const Vec2 d = Vec2(glm::length(across(q, axis)) - radius, std::abs(q[axis]) - half) + rounding;
+    return rounding - glm::length(glm::max(d, 0.0)) - std::min(std::max(d.x, d.y), 0.0);
 }
 
 double ring(const Vec3& q, int axis, double radius, double tube) {

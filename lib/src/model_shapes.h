@@ -11,9 +11,9 @@ namespace subvol::model {
 
 [[nodiscard]] double ball(const Vec3& q, double radius);
 [[nodiscard]] double ellipsoid(const Vec3& q, const Vec3& radii);
-/// rounding: radius of the edges, within `half`
-[[nodiscard]] double box(const Vec3& q, const Vec3& half, double rounding = 0);
-[[nodiscard]] double cylinder(const Vec3& q, int axis, double radius, double half);
+/// rounding: radius of the edges
+[[nodiscard]] double box(const Vec3& q, const Vec3& half, double rounding = 1);
+[[nodiscard]] double cylinder(const Vec3& q, int axis, double radius, double half, double rounding = 1);
 /// A torus: a tube about the circle in the plane across `axis`.
 [[nodiscard]] double ring(const Vec3& q, int axis, double radius, double tube);
 /// A rod from a to b with round ends, its radius going from one to the other.

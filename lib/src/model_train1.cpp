@@ -49,15 +49,15 @@ double cab(const Vec3& m) {
     const double walls = box(m - Vec3(-33, 0, 5), {15, 15.5, 13});
     const double room = box(m - Vec3(-38, 0, 6), {15, 11.5, 10});
     const double window = box(m - Vec3(-32, 0, 8), {6.5, 40, 5.5}, 1.5);
-    const double roof = kBlend.meet({box(m - Vec3(-34, 0, 18), {19, 18.5, 4}), cylinder(m - Vec3(-34, 0, -16), 0, 37.5, 19)});
-    return kBlend.join(
-        {kBlend.cut(kBlend.cut(walls, room), window), kBlend.cut(roof, box(m - Vec3(-34, 0, 12), {17, 11.5, 5}))});
+    const double vault = cylinder(m - Vec3(-34, 0, -16), 0, 37.5, 19), ceiling = box(m - Vec3(-34, 0, 12), {17, 11.5, 5});
+    const double roof = kBlend.meet({box(m - Vec3(-34, 0, 18), {19, 18.5, 4}), vault, -ceiling});
+    return kBlend.join({kBlend.meet({walls, -room, -window}), roof});
 }
 
 /// A wedge before the front wheels, slatted.
 double cow_catcher(const Vec3& m) {
     const Vec3 q = m - Vec3(44, 0, -21);
-    const double wedge = kBlend.meet({behind(q - Vec3(10, 0, 0), {13, 9, 7}), q.x + 1, q.z, 11 - q.z});
+    const double wedge = kBlend.meet({behind(q - Vec3(10, 0, 0), {13, 9, 7}), 8.5 - q.x, q.x + 1, q.z, 11 - q.z});
     const double beam = box(m - Vec3(44, 0, -8.5), {2.2, 15, 2.6}, 1);
     return kBlend.join({wedge, beam});
 }

@@ -13,7 +13,7 @@ constexpr Blend kBlend = kCellBlend;
 double bogie(const Vec3& m) {
     const Vec3 q(std::abs(m.x), m.y, m.z);
     const double frame = box(q, {10, 9, 2.2}, 1);
-    const double wheel = cylinder(q - Vec3(6.5, 11, -1.5), 1, 4.6, 2.2);
+    const double wheel = cylinder(q - Vec3(6.5, 11, -1.5), 1, 4.4, 2.2);
     return kBlend.join({frame, wheel, cylinder(q - Vec3(6.5, 0, -1.5), 1, 1.7, 11)});
 }
 
@@ -35,8 +35,8 @@ double engine(const Vec3& m) {
     const double door = box(m - Vec3(41, 14, 0.5), {3.2, 2, 6}, 1);
     const double lamp = ball(m - Vec3(66, 8.5, -4.5), 2.6);
     const double roof = box(m - Vec3(22, 0, 12), {10, 7, 2.4}, 1.5);
-    const double cut = kBlend.cut(kBlend.cut(kBlend.cut(body, glass), windows), door);
-    return kBlend.join({cut, lamp, roof, bogie(m - Vec3(20, 0, -9.5)), bogie(m - Vec3(52, 0, -9.5))});
+    const double hull = kBlend.meet({body, -glass, -windows, -door});
+    return kBlend.join({hull, lamp, roof, bogie(m - Vec3(20, 0, -8.8)), bogie(m - Vec3(52, 0, -8.8))});
 }
 
 double wagon(const Vec3& m) {
@@ -44,8 +44,8 @@ double wagon(const Vec3& m) {
     const double windows = kBlend.join({window(m, -62, 4.5), window(m, -49, 4.5), window(m, -36, 4.5), window(m, -23, 4.5)});
     const double door = box(m - Vec3(-12.5, 14, 0.5), {3.2, 2, 6}, 1);
     const double roof = box(m - Vec3(-40, 0, 12), {18, 7, 2.4}, 1.5);
-    const double cut = kBlend.cut(kBlend.cut(body, windows), door);
-    return kBlend.join({cut, roof, bogie(m - Vec3(-58, 0, -9.5)), bogie(m - Vec3(-19, 0, -9.5))});
+    const double hull = kBlend.meet({body, -windows, -door});
+    return kBlend.join({hull, roof, bogie(m - Vec3(-58, 0, -8.8)), bogie(m - Vec3(-19, 0, -8.8))});
 }
 
 /// A streamlined engine driving to +x and its wagon, 144 long; left and right alike.
@@ -58,7 +58,7 @@ double train(const Vec3& q) {
 
 constexpr std::array<Deformation, 3> kDeformation{Sway{.along = 0, .towards = 1, .amount = 16, .rate = 0.0413},
                                                   Twist{.axis = 0, .rate = 0.004},
-                                                  Bend{.along = 0, .towards = 2, .radius = 110}};
+                                                  Bend{.along = 0, .towards = 2, .radius = 170}};
 
 }  // namespace
 
