@@ -40,6 +40,7 @@ private:
 [[nodiscard]] std::unique_ptr<Verb> make_vdb_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_render_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_compare_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_study_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_demo_verb(CLI::App& program);
 
 /// All verbs, in the order of the help.

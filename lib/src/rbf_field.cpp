@@ -17,7 +17,7 @@ namespace subvol {
 using detail::KernelTree;
 
 struct RbfField::Kernels {
-    /// What a kernel stands for: value + gradient·d + moment·e.
+    /// What a kernel stands for: value + gradient·d + moment·e + ½ dᵀHd.
     struct Terms {
         float value;
         std::array<float, 3> gradient;
