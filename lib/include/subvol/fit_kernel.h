@@ -45,7 +45,7 @@ enum class KernelShape {
 /// extent:    of the cubics in (0,3]; their pieces meet at half of it
 /// sign_slip: fit B and C with 2 + 3/2·B − C as the inner cubic coefficient, not 2 − 3/2·B − C: what explains the B and C that
 ///            [mnmq2007] prints. Errors are those of the right kernel
-/// terms:     of a sum of Gaussians, 1 to 6
+/// terms:     of a sum of Gaussians, 1 to 6; each is at least 1.25 times as wide as the one before
 struct FitOptions {
     double extent = 2;
     bool sign_slip = false;
