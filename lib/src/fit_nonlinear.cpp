@@ -1,5 +1,6 @@
 #include "fit_samples.h"
 #include "fit_shapes.h"
+#include "kernel_formulas.h"
 #include "least_squares.h"
 
 namespace subvol::detail {
@@ -126,10 +127,12 @@ KernelFit fit_gaussian_sum(const BasisFunction& basis, int terms) {
 KernelFit fit_separable_gaussian(const BasisFunction& basis) {
     const std::size_t last = fit_last(basis);
     const auto residuals = [&](std::span<const double> p, std::span<double> to) {
+        const Kernel kernel = SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]};
+        auto formulas = formulas_of(kernel);
         std::vector<double> line;
         for (std::size_t i = 0; i <= last; ++i) {
             const double x = fit_step(basis) * static_cast<double>(i);
-            line.push_back(x < kFitReach ? (p[1] + p[2] * x * x) * std::exp(-x * x / (2 * p[0] * p[0])) : 0);
+            line.push_back(formulas.kernel_factor(formulas.kind, formulas.parameters, x));
         }
         std::size_t entry = 0;
         each_in_wedge(last, [&](std::size_t i, std::size_t j, std::size_t k) {

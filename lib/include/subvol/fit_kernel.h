@@ -65,7 +65,8 @@ struct KernelFit {
     FitReport report;
 };
 
-/// The kernel of a shape with the least mean squared error. Kernels that are cut off end at 3.
+/// The kernel of a shape with the least mean squared error. Kernels that are cut off end at 3. Widths and radii are searched
+/// for from one start: a sum of more than two Gaussians may be the best of its neighbourhood only.
 ///
 /// throws: Error(InvalidInput) if an option is out of range, or for a table above level 6
 /// cost:   at level 5 below 1 s each
