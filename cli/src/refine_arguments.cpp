@@ -26,14 +26,14 @@ void check_memory(std::size_t cells, int levels) {
                 "--levels");
 }
 
+}  // namespace
+
 Scheme scheme_named(const std::string& name) {
     check_choice("--scheme", name, {"mcq", "cc", "bsxw", "linear"});
     if (name == "cc") return Scheme::CatmullClark;
     if (name == "bsxw") return Scheme::Bsxw;
     return name == "linear" ? Scheme::Linear : Scheme::Mcq;
 }
-
-}  // namespace
 
 void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     app.add_option(

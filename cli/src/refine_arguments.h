@@ -9,6 +9,9 @@
 
 namespace subvol::cli {
 
+/// throws: Error(InvalidInput) unless it is mcq, cc, bsxw or linear
+[[nodiscard]] Scheme scheme_named(const std::string& name);
+
 /// How a mesh is refined, as every verb that refines asks for it.
 struct RefineArguments {
     std::string scheme = "mcq";

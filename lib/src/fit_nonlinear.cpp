@@ -1,15 +1,14 @@
-#include <algorithm>
-#include <numeric>
-
 #include "fit_samples.h"
 #include "fit_shapes.h"
+#include "kernel_formulas.h"
 #include "least_squares.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr double kLeastLength = 0.05, kMostLength = 6;  // of what is looked for: widths and radii
+constexpr double kLeastLength = 0.05, kMostLength = 6;  // of widths and radii
+constexpr double kLeastRatio = 1.25;  // of the widths of two Gaussians: closer ones only cancel, with amplitudes without bound
 
 /// A kernel of amplitude 1 by its one length.
 using ByLength = Kernel (*)(double);
@@ -50,9 +49,8 @@ FitReport report_of(const Minimum& minimum, int parameters) {
     return {.errors = {}, .parameters = parameters, .iterations = minimum.iterations, .converged = minimum.converged};
 }
 
-Minimum minimize(const ScaledSum& sum, const std::vector<double>& start) {
-    return minimize_squares(start, kLeastLength, kMostLength, sum.samples.size(),
-                            [&](std::span<const double> lengths, std::span<double> to) { sum.residuals(lengths, to); });
+Unknown length_from(double start) {
+    return {start, kLeastLength, kMostLength};
 }
 
 /// Length and amplitude of one term.
@@ -63,8 +61,17 @@ struct OneTerm {
 
 OneTerm fit_one_term(const BasisFunction& basis, ByLength kernel, double start) {
     const ScaledSum sum{radial_samples(basis), kernel};
-    const Minimum minimum = minimize(sum, {start});
+    const Minimum minimum =
+        minimize_squares(std::vector{length_from(start)}, sum.samples.size(),
+                         [&](std::span<const double> length, std::span<double> to) { sum.residuals(length, to); });
     return {minimum.parameters[0], sum.amplitudes(minimum.parameters)[0], report_of(minimum, 2)};
+}
+
+/// A first width and the ratios from each to the next, as widths.
+std::vector<double> widths_of(std::span<const double> ratios) {
+    std::vector<double> widths(ratios.begin(), ratios.end());
+    for (std::size_t i = 1; i < widths.size(); ++i) widths[i] *= widths[i - 1];
+    return widths;
 }
 
 }  // namespace
@@ -77,7 +84,7 @@ KernelFit fit_gaussian(const BasisFunction& basis) {
             to[i] = std::sqrt(samples.count[i]) * (radial_value(kernel, samples.rho[i]) - samples.mean[i]);
         }
     };
-    const Minimum minimum = minimize_squares({0.5}, kLeastLength, kMostLength, samples.size(), residuals);
+    const Minimum minimum = minimize_squares(std::vector{length_from(0.5)}, samples.size(), residuals);
     return {gaussian(minimum.parameters[0]), report_of(minimum, 1)};
 }
 
@@ -108,22 +115,24 @@ KernelFit fit_wendland_c4(const BasisFunction& basis) {
 
 KernelFit fit_gaussian_sum(const BasisFunction& basis, int terms) {
     const ScaledSum sum{radial_samples(basis), gaussian};
-    std::vector<double> start;
-    for (int i = 0; i < terms; ++i) start.push_back(0.45 * std::pow(1.6, i));
-    Minimum minimum = minimize(sum, start);
-    std::sort(minimum.parameters.begin(), minimum.parameters.end());
-    return {GaussianSumKernel{.amplitudes = sum.amplitudes(minimum.parameters), .sigmas = minimum.parameters},
-            report_of(minimum, 2 * terms)};
+    std::vector<Unknown> unknowns{length_from(0.45)};
+    while (unknowns.size() < static_cast<std::size_t>(terms)) unknowns.push_back({1.6, kLeastRatio, 4});
+    const Minimum minimum =
+        minimize_squares(unknowns, sum.samples.size(),
+                         [&](std::span<const double> ratios, std::span<double> to) { sum.residuals(widths_of(ratios), to); });
+    const std::vector<double> widths = widths_of(minimum.parameters);
+    return {GaussianSumKernel{.amplitudes = sum.amplitudes(widths), .sigmas = widths}, report_of(minimum, 2 * terms)};
 }
 
 KernelFit fit_separable_gaussian(const BasisFunction& basis) {
     const std::size_t last = fit_last(basis);
-    const auto kernel = [](std::span<const double> p) { return SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]}; };
     const auto residuals = [&](std::span<const double> p, std::span<double> to) {
+        const Kernel kernel = SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]};
+        auto formulas = formulas_of(kernel);
         std::vector<double> line;
         for (std::size_t i = 0; i <= last; ++i) {
             const double x = fit_step(basis) * static_cast<double>(i);
-            line.push_back(x < kFitReach ? (p[1] + p[2] * x * x) * std::exp(-x * x / (2 * p[0] * p[0])) : 0);
+            line.push_back(formulas.kernel_factor(formulas.kind, formulas.parameters, x));
         }
         std::size_t entry = 0;
         each_in_wedge(last, [&](std::size_t i, std::size_t j, std::size_t k) {
@@ -131,11 +140,10 @@ KernelFit fit_separable_gaussian(const BasisFunction& basis) {
             to[entry++] = std::sqrt(wedge_multiplicity(i, j, k)) * error;
         });
     };
-    // a and b may have any sign: the bounds hold for all three.
-    const Minimum minimum = minimize_squares({0.6, 1, -0.5}, -kMostLength, kMostLength, wedge_size(last), residuals);
-    SeparableGaussianKernel result = kernel(minimum.parameters);
-    result.sigma = std::abs(result.sigma);
-    return {result, report_of(minimum, 3)};
+    const std::vector<Unknown> unknowns{length_from(0.6), {1, -10, 10}, {-0.5, -10, 10}};
+    const Minimum minimum = minimize_squares(unknowns, wedge_size(last), residuals);
+    const auto& p = minimum.parameters;
+    return {SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]}, report_of(minimum, 3)};
 }
 
 }  // namespace subvol::detail

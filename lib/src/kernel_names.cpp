@@ -6,7 +6,7 @@ namespace subvol {
 
 namespace {
 
-// Where a name stands for a type, the type's own defaults are its best fit.
+// Where no parameters are given, the type's own defaults are its best fit.
 const std::vector<std::pair<std::string, Kernel>>& named() {
     static const std::vector<std::pair<std::string, Kernel>> kernels{
         {"gaussian", GaussianKernel{}},
@@ -15,7 +15,7 @@ const std::vector<std::pair<std::string, Kernel>>& named() {
         {"paper_bc", BcSplineKernel{.b = 0.039579, .c = 0.028746, .extent = 2}},
         {"cardinal", CardinalSplineKernel{}},
         {"wendland_c2", WendlandC2Kernel{}},
-        {"wendland_c4", WendlandC4Kernel{}},
+        {"wendland_c4", WendlandC4Kernel{.radius = 1.89735, .amplitude = 0.89744}},
         {"two_gaussians", GaussianSumKernel{.amplitudes = {1.01121, -0.15767}, .sigmas = {0.5015, 0.74912}}},
         {"separable_gaussian", SeparableGaussianKernel{}},
         {"cubic", CubicConvolutionKernel{}},

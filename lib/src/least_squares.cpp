@@ -32,22 +32,22 @@ ceres::Solver::Options options() {
 
 }  // namespace
 
-Minimum minimize_squares(std::vector<double> start, double lower, double upper, std::size_t residuals,
-                         const Residuals& function) {
-    const int count = static_cast<int>(start.size());
+Minimum minimize_squares(std::span<const Unknown> unknowns, std::size_t residuals, const Residuals& function) {
+    std::vector<double> at;
+    for (const Unknown& unknown : unknowns) at.push_back(unknown.start);
     auto* cost =
-        new ceres::DynamicNumericDiffCostFunction<Evaluate, ceres::CENTRAL>(new Evaluate{function, start.size(), residuals});
-    cost->AddParameterBlock(count);
+        new ceres::DynamicNumericDiffCostFunction<Evaluate, ceres::CENTRAL>(new Evaluate{function, at.size(), residuals});
+    cost->AddParameterBlock(static_cast<int>(at.size()));
     cost->SetNumResiduals(static_cast<int>(residuals));
     ceres::Problem problem;
-    problem.AddResidualBlock(cost, nullptr, start.data());  // which takes the cost function over
-    for (int i = 0; i < count; ++i) {
-        problem.SetParameterLowerBound(start.data(), i, lower);
-        problem.SetParameterUpperBound(start.data(), i, upper);
+    problem.AddResidualBlock(cost, nullptr, at.data());  // which takes the cost function over
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        problem.SetParameterLowerBound(at.data(), static_cast<int>(i), unknowns[i].lower);
+        problem.SetParameterUpperBound(at.data(), static_cast<int>(i), unknowns[i].upper);
     }
     ceres::Solver::Summary summary;
     ceres::Solve(options(), &problem, &summary);
-    return {start, static_cast<int>(summary.iterations.size()) - 1, summary.termination_type == ceres::CONVERGENCE};
+    return {at, static_cast<int>(summary.iterations.size()) - 1, summary.termination_type == ceres::CONVERGENCE};
 }
 
 std::vector<double> linear_fit(std::span<const double> weights, std::span<const double> target,

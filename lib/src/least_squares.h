@@ -15,10 +15,13 @@ struct Minimum {
     bool converged = false;
 };
 
-/// The parameters near `start`, all within [lower, upper], with the least sum of squared residuals: Levenberg-Marquardt with
-/// central differences.
-[[nodiscard]] Minimum minimize_squares(std::vector<double> start, double lower, double upper, std::size_t residuals,
-                                       const Residuals& function);
+/// Where the search for one parameter begins, and between what it stays.
+struct Unknown {
+    double start, lower, upper;
+};
+
+/// The parameters with the least sum of squared residuals near the start: Levenberg-Marquardt with central differences.
+[[nodiscard]] Minimum minimize_squares(std::span<const Unknown> unknowns, std::size_t residuals, const Residuals& function);
 
 /// The factors with the least Σ weights·(target − Σ factor·column)².
 [[nodiscard]] std::vector<double> linear_fit(std::span<const double> weights, std::span<const double> target,

@@ -7,7 +7,7 @@ import unittest
 
 from command import COMMAND, SANITIZED, InFolder, Run, subvol
 
-VERBS = ["model", "info", "subdivide", "points", "vdb", "render", "compare", "demo"]
+VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "compare", "demo"]
 
 # One mesh of one cell: MEDIT, counted from 1.
 CUBE = """MeshVersionFormatted 2

@@ -69,8 +69,8 @@ struct BasisFunction {
     }
 };
 
-/// Samples the basis function of a scheme: MCQ by its masks, exactly where ω is a power of 2 (no value needs more than 53
-/// bits); Catmull-Clark and BSXW are the tricubic B-spline, linear the trilinear hat.
+/// Samples the basis function of a scheme: MCQ by its masks, without rounding at ω = 1/16 (no value needs more than 53 bits);
+/// Catmull-Clark and BSXW are the tricubic B-spline, linear the trilinear hat.
 ///
 /// level:   0 to 7
 /// tension: ω of MCQ

@@ -45,7 +45,7 @@ enum class KernelShape {
 /// extent:    of the cubics in (0,3]; their pieces meet at half of it
 /// sign_slip: fit B and C with 2 + 3/2·B − C as the inner cubic coefficient, not 2 − 3/2·B − C: what explains the B and C that
 ///            [mnmq2007] prints. Errors are those of the right kernel
-/// terms:     of a sum of Gaussians, 1 to 6
+/// terms:     of a sum of Gaussians, 1 to 6; each is at least 1.25 times as wide as the one before
 struct FitOptions {
     double extent = 2;
     bool sign_slip = false;
@@ -65,7 +65,8 @@ struct KernelFit {
     FitReport report;
 };
 
-/// The kernel of a shape with the least mean squared error. Kernels that are cut off end at 3.
+/// The kernel of a shape with the least mean squared error. Kernels that are cut off end at 3. Widths and radii are searched
+/// for from one start: a sum of more than two Gaussians may be the best of its neighbourhood only.
 ///
 /// throws: Error(InvalidInput) if an option is out of range, or for a table above level 6
 /// cost:   at level 5 below 1 s each

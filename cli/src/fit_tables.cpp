@@ -1,0 +1,173 @@
+#include "fit_tables.h"
+
+#include <cmath>
+#include <iomanip>
+
+#include "text.h"
+
+namespace subvol::cli {
+
+namespace {
+
+/// A row of Table 1 as it is printed.
+struct PaperRow {
+    const char* name;
+    Kernel kernel;
+    FitErrors errors;
+};
+
+FitErrors printed(double mse, double rmse, double mae) {
+    return {.mse = mse, .rmse = rmse, .mae = mae, .max = 0};
+}
+
+std::vector<PaperRow> paper_rows() {
+    return {{"gaussian", GaussianKernel{.sigma = 0.43}, printed(0.000041, 0.006395, 0.002079)},
+            {"bc", BcSplineKernel{0.382175, 0.253253, 1}, printed(0.000054, 0.007339, 0.002144)},
+            {"bc", BcSplineKernel{0.039579, 0.028746, 2}, printed(0.000139, 0.011808, 0.002892)},
+            {"bc", BcSplineKernel{-0.062800, 0.012591, 3}, printed(0.011781, 0.108542, 0.022184)},
+            {"cardinal", CardinalSplineKernel{-0.507829, 1}, printed(0.000127, 0.011275, 0.002895)},
+            {"cardinal", CardinalSplineKernel{-0.098673, 2}, printed(0.000156, 0.012492, 0.002944)},
+            {"cardinal", CardinalSplineKernel{-0.040698, 3}, printed(0.010297, 0.101472, 0.028730)}};
+}
+
+Json without_max(const FitErrors& errors) {
+    return {{"mse", errors.mse}, {"rmse", errors.rmse}, {"mae", errors.mae}};
+}
+
+Json fitted(const BasisFunction& basis, KernelShape shape, const FitOptions& options) {
+    const KernelFit fit = fit_kernel(basis, shape, options);
+    return {{"parameters", parameters_of(fit.kernel)}, {"double", to_json(fit.report.errors)}};
+}
+
+/// What our own fits of the row's family give.
+void add_fits(const BasisFunction& basis, const PaperRow& row, Json& json) {
+    if (const auto* bc = std::get_if<BcSplineKernel>(&row.kernel)) {
+        json["fitted"] = fitted(basis, KernelShape::BcSpline, {.extent = bc->extent});
+        json["fitted_with_slip"] = fitted(basis, KernelShape::BcSpline, {.extent = bc->extent, .sign_slip = true});
+    } else if (const auto* cardinal = std::get_if<CardinalSplineKernel>(&row.kernel)) {
+        json["fitted"] = fitted(basis, KernelShape::CardinalSpline, {.extent = cardinal->extent});
+    } else {
+        json["fitted"] = fitted(basis, KernelShape::Gaussian, {});
+    }
+}
+
+Json table1_row(const BasisFunction& basis, const PaperRow& row) {
+    const FitErrors single = kernel_errors_float32(basis, row.kernel);
+    Json json{{"kernel", row.name}, {"extent", nullptr}, {"parameters", parameters_of(row.kernel)}};
+    if (json["parameters"].contains("extent")) json["extent"] = json["parameters"]["extent"];
+    json["paper"] = without_max(row.errors);
+    json["float32"] = to_json(single);
+    json["double"] = to_json(kernel_errors(basis, row.kernel));
+    json["difference"] =
+        without_max(printed(single.mse - row.errors.mse, single.rmse - row.errors.rmse, single.mae - row.errors.mae));
+    add_fits(basis, row, json);
+    return json;
+}
+
+std::string for_people(const Json& value) {
+    if (!value.is_array()) return text(std::setprecision(6), value.get<double>());
+    std::vector<std::string> parts;
+    for (const Json& part : value) parts.push_back(for_people(part));
+    return text('(', join(parts), ')');
+}
+
+/// "b .418792, c .146011": what tells kernels of one shape apart.
+std::string short_parameters(const Json& parameters) {
+    std::vector<std::string> parts;
+    for (const auto& [key, value] : parameters.items()) {
+        const bool usual = key == "extent" || (key == "radius" && value == 3.0) || (key == "amplitude" && value == 1.0);
+        if (!usual) parts.push_back(text(key, ' ', for_people(value)));
+    }
+    return join(parts);
+}
+
+std::string error_columns(const Json& errors) {
+    return text(std::fixed, std::setprecision(6), errors["rmse"].get<double>(), ' ', errors["mae"].get<double>(), "  ");
+}
+
+void say_table1_row(const Json& row, Report& report) {
+    const std::string extent = row["extent"].is_null() ? "" : text(row["extent"].get<double>());
+    report.say(text(std::left, std::setw(9), row["kernel"].get<std::string>(), std::setw(3), extent,
+                    error_columns(row["paper"]), error_columns(row["float32"]), error_columns(row["double"]), std::right,
+                    std::scientific, std::setprecision(1), std::setw(8), row["difference"]["rmse"].get<double>(), "  ",
+                    short_parameters(row["parameters"])));
+}
+
+void say_fits(const Json& row, Report& report) {
+    for (const auto& [key, label] : {std::pair{"fitted", "fitted"}, {"fitted_with_slip", "fitted with the sign slip"}}) {
+        if (!row.contains(key)) continue;
+        report.say(text("  ", std::left, std::setw(29), label, std::setw(25), "", error_columns(row[key]["double"]),
+                        std::setw(10), "", short_parameters(row[key]["parameters"])));
+    }
+}
+
+struct NamedShape {
+    const char* name;
+    KernelShape shape;
+    FitOptions options{};
+};
+
+void add_kernel(Report& report, const std::string& name, const Json& parameters, const FitErrors& errors, int numbers) {
+    Json row{{"kernel", name}, {"numbers", numbers}, {"parameters", parameters}, {"double", to_json(errors)}};
+    report.say(text(std::left, std::setw(20), name, std::right, std::setw(4), numbers ? text(numbers) : "", "  ",
+                    error_columns(row["double"]), std::fixed, std::setprecision(4), errors.max, "  ",
+                    short_parameters(parameters)));
+    report["kernels"].push_back(std::move(row));
+}
+
+}  // namespace
+
+Json to_json(const FitErrors& errors) {
+    return {{"mse", errors.mse}, {"rmse", errors.rmse}, {"mae", errors.mae}, {"max", errors.max}};
+}
+
+Json parameters_of(const Kernel& kernel) {
+    constexpr std::size_t kLong = 16;
+    Json fields = Json::object();
+    const Json definition = Json::parse(subvol::to_json(kernel));
+    for (const auto& [key, value] : definition.items()) {
+        if (key != "type" && !(value.is_array() && value.size() > kLong)) fields[key] = value;
+    }
+    return fields;
+}
+
+void report_table1(const BasisFunction& basis, Report& report) {
+    report.say("kernel   r  paper              float32            double             float32");
+    report.say("            RMSE     MAE       RMSE     MAE       RMSE     MAE       - paper   parameters");
+    for (const PaperRow& row : paper_rows()) {
+        report["rows"].push_back(report.timed("fit", [&] { return table1_row(basis, row); }));
+        say_table1_row(report["rows"].back(), report);
+        say_fits(report["rows"].back(), report);
+    }
+    report.all_said();
+}
+
+void report_kernels(const BasisFunction& basis, Report& report) {
+    report.say(text(std::left, std::setw(18), "kernel", "numbers RMSE     MAE       max     parameters"));
+    const Kernel paper = GaussianKernel{.sigma = 0.43};
+    add_kernel(report, "paper_gaussian", parameters_of(paper), kernel_errors(basis, paper), 1);
+    for (const NamedShape& named : {NamedShape{"gaussian", KernelShape::Gaussian},
+                                    {"scaled_gaussian", KernelShape::ScaledGaussian},
+                                    {"bc", KernelShape::BcSpline},
+                                    {"cardinal", KernelShape::CardinalSpline},
+                                    {"wendland_c2", KernelShape::WendlandC2},
+                                    {"wendland_c4", KernelShape::WendlandC4},
+                                    {"two_gaussians", KernelShape::GaussianSum},
+                                    {"three_gaussians", KernelShape::GaussianSum, {.terms = 3}}}) {
+        const KernelFit fit = report.timed("fit", [&] { return fit_kernel(basis, named.shape, named.options); });
+        add_kernel(report, named.name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
+    }
+    add_kernel(report, "radial_bound", Json::object(), radial_bound(basis), 0);
+    for (const NamedShape& named :
+         {NamedShape{"separable_gaussian", KernelShape::SeparableGaussian}, {"separable_table", KernelShape::SeparableTable}}) {
+        const KernelFit fit = report.timed("fit", [&] { return fit_kernel(basis, named.shape, named.options); });
+        add_kernel(report, named.name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
+    }
+    for (const int rank : {2, 3, 4}) {
+        const TuckerFit fit = report.timed("fit", [&] { return fit_tucker(basis, rank); });
+        add_kernel(report, text("tucker_", rank), {{"rank", rank}}, fit.report.errors, fit.report.parameters);
+    }
+    report.all_said();
+}
+
+}  // namespace subvol::cli

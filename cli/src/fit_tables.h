@@ -1,0 +1,21 @@
+#pragma once
+
+#include "report.h"
+#include "subvol/fit_kernel.h"
+
+namespace subvol::cli {
+
+/// mse, rmse, mae, max
+[[nodiscard]] Json to_json(const FitErrors& errors);
+
+/// A kernel's fields, without long tables.
+[[nodiscard]] Json parameters_of(const Kernel& kernel);
+
+/// Table 1 of [mnmq2007] under "rows": the paper's kernels with the errors that it prints, ours summed in float as it did and
+/// in double precision, and ours fitted. basis: of MCQ at level 5
+void report_table1(const BasisFunction& basis, Report& report);
+
+/// Every kind of kernel fitted to the basis function, under "kernels".
+void report_kernels(const BasisFunction& basis, Report& report);
+
+}  // namespace subvol::cli

@@ -1,0 +1,121 @@
+#include <algorithm>
+
+#include "fit_tables.h"
+#include "refine_arguments.h"
+#include "subvol/error.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr int kPaperLevel = 5;
+
+const std::vector<std::pair<std::string, KernelShape>> kShapes{{"gaussian", KernelShape::Gaussian},
+                                                               {"scaled_gaussian", KernelShape::ScaledGaussian},
+                                                               {"bc", KernelShape::BcSpline},
+                                                               {"cardinal", KernelShape::CardinalSpline},
+                                                               {"wendland_c2", KernelShape::WendlandC2},
+                                                               {"wendland_c4", KernelShape::WendlandC4},
+                                                               {"two_gaussians", KernelShape::GaussianSum},
+                                                               {"gaussians", KernelShape::GaussianSum},
+                                                               {"separable_gaussian", KernelShape::SeparableGaussian},
+                                                               {"separable_table", KernelShape::SeparableTable}};
+
+/// Kernels with a name but nothing to fit: their errors are told.
+const std::vector<std::string> kFixed{"compact", "paper_bc", "cubic"};
+
+std::string kernel_choices() {
+    std::vector<std::string> names;
+    for (const auto& [name, shape] : kShapes) names.push_back(name);
+    names.insert(names.end(), kFixed.begin(), kFixed.end());
+    return join(names);
+}
+
+class FitVerb : public Verb {
+public:
+    explicit FitVerb(CLI::App& program)
+        : Verb(program, "fit", "Fit kernels to the basis function of a scheme.",
+               "  subvol fit --table1\n"
+               "  subvol fit --kernels\n"
+               "  subvol fit --kernel bc --scheme cc --json\n"
+               "  subvol fit --kernel '{\"type\": \"gaussian\", \"sigma\": 0.5}'") {
+        app().add_flag("--table1", table1_, "table 1 of the EuroVis 2007 paper: its figures, ours, the difference");
+        app().add_flag("--kernels", kernels_, "fit every kind of kernel: parameters and errors");
+        app()
+            .add_option("--kernel", kernel_,
+                        text("fit this one: ", kernel_choices(),
+                             " (the last three have nothing to fit); or the errors of a "
+                             "kernel given as JSON"))
+            ->type_name("NAME|JSON");
+        app().add_option("--scheme", scheme_, "mcq (the default), cc, bsxw, linear")->type_name("NAME");
+        app()
+            .add_option("--level", level_, "the basis function's samples: 2^L a unit (default 5)")
+            ->type_name("L")
+            ->check(CLI::Range(0, 6));
+        app().add_option("--extent", options_.extent, "where bc and cardinal end (default 2)")->type_name("R");
+        app().add_option("--terms", options_.terms, "of gaussians, 1 to 6 (default 2)")->type_name("N");
+        app().add_flag("--sign-slip", options_.sign_slip,
+                       "fit bc with the inner cubic coefficient's sign as the paper's fits have it");
+    }
+
+    int run(Report& report) override {
+        if (!table1_ && !kernels_ && kernel_.empty()) {
+            throw Error(ErrorCode::InvalidInput, "nothing was chosen", "fit", "--table1, --kernels or --kernel NAME");
+        }
+        if (table1_ && (scheme_ != "mcq" || level_ != kPaperLevel)) {
+            throw Error(ErrorCode::InvalidInput, "the paper's table is of mcq at level 5", "--table1",
+                        "leave out --scheme and --level");
+        }
+        const Scheme scheme = scheme_named(scheme_);
+        const BasisFunction basis = report.timed("sample", [&] { return sample_basis_function(scheme, level_); });
+        report["scheme"] = scheme_;
+        report["level"] = level_;
+        if (table1_) report_table1(basis, report);
+        if (kernels_) report_kernels(basis, report);
+        if (!kernel_.empty()) fit_one(basis, report);
+        return 0;
+    }
+
+private:
+    void fit_one(const BasisFunction& basis, Report& report) {
+        const KernelFit fit = report.timed("fit", [&] { return chosen(basis); });
+        report["kernel"] = kernel_.front() == '{' ? "given" : kernel_;
+        report["parameters"] = parameters_of(fit.kernel);
+        report["double"] = to_json(fit.report.errors);
+        report["definition"] = Json::parse(subvol::to_json(fit.kernel));
+        if (!fit.report.converged) report.warn("the search for the parameters ended before it had converged");
+        const FitErrors& errors = fit.report.errors;
+        report.say(subvol::to_json(fit.kernel));
+        report.say(text("RMSE ", errors.rmse, ", MAE ", errors.mae, ", max ", errors.max));
+        report.all_said();
+    }
+
+    [[nodiscard]] KernelFit chosen(const BasisFunction& basis) const {
+        const auto known = [&](const Kernel& kernel) { return KernelFit{kernel, {.errors = kernel_errors(basis, kernel)}}; };
+        if (kernel_.front() == '{') return known(kernel_from_json(kernel_));
+        if (std::ranges::find(kFixed, kernel_) != kFixed.end()) return known(named_kernel(kernel_));
+        for (const auto& [name, shape] : kShapes) {
+            if (name != kernel_) continue;
+            FitOptions options = options_;
+            if (name == "two_gaussians") options.terms = 2;
+            return fit_kernel(basis, shape, options);
+        }
+        throw Error(ErrorCode::InvalidInput, "'" + kernel_ + "' is unknown", "--kernel", "supported: " + kernel_choices());
+    }
+
+    bool table1_ = false;
+    bool kernels_ = false;
+    std::string kernel_;
+    std::string scheme_ = "mcq";
+    int level_ = kPaperLevel;
+    FitOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_fit_verb(CLI::App& program) {
+    return std::make_unique<FitVerb>(program);
+}
+
+}  // namespace subvol::cli
