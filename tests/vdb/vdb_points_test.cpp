@@ -99,9 +99,9 @@ TEST_F(VdbPoints, AttributesMeanWhatHoudiniTakesThemFor) {
     EXPECT_EQ(openvdb::points::pointCount(grid->tree()), volume.size());
     std::set<std::string> names;
     for (const auto& [name, at] : grid->tree().cbeginLeaf()->attributeSet().descriptor().map()) names.insert(name);
-    EXPECT_EQ(names,
-              (std::set<std::string>{"P", "id", "frame", "orient", "scale", "pscale", "density", "density_gradient",
-                                     "density_moment", "Temp___K______", "Temp___K_______gradient", "Temp___K_______moment"}));
+    EXPECT_EQ(names, (std::set<std::string>{"P", "id", "frame", "orient", "scale", "pscale", "density", "density_gradient",
+                                            "density_moment", "Temp___K________", "Temp___K_________gradient",
+                                            "Temp___K_________moment"}));
     for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
         using namespace openvdb;
         const points::AttributeHandle<Quats> orient(leaf->constAttributeArray("orient"));
@@ -109,11 +109,13 @@ TEST_F(VdbPoints, AttributesMeanWhatHoudiniTakesThemFor) {
         const points::AttributeHandle<float> pscale(leaf->constAttributeArray("pscale"));
         const points::AttributeHandle<Mat3s> frame(leaf->constAttributeArray("frame"));
         for (auto i = leaf->beginIndexOn(); i; ++i) {
+            const Quats turn = orient.get(*i);
+            const Quatd rotation(turn.x(), turn.y(), turn.z(), turn.w());
             std::array<Vec3d, 3> axes;
             for (int k = 0; k < 3; ++k) {
                 Vec3d axis(0.0);
                 axis[k] = static_cast<double>(pscale.get(*i) * scale.get(*i)[k]);
-                axes[static_cast<std::size_t>(k)] = Quatd(orient.get(*i)).rotateVector(axis);
+                axes[static_cast<std::size_t>(k)] = rotation.rotateVector(axis);
             }
             const double largest = static_cast<double>(frame.get(*i).trace());
             for (int r = 0; r < 3; ++r) {
@@ -134,8 +136,7 @@ TEST_F(VdbPoints, DeletedPointsLeaveTheOthersInOrder) {
     const auto grid = open_grid(path("a.vdb"));
     const auto leaf = grid->tree().beginLeaf();
     const auto gone = static_cast<std::size_t>(leaf->pointCount());
-    grid->tree().root().setActiveState(leaf->origin(), false);
-    leaf->clearAttributes();
+    grid->tree().addTile(1, leaf->origin(), 0, /*active=*/false);  // in the place of the leaf
     openvdb::io::File(path("a.vdb").string()).write({grid});
     const RbfVolume read = read_vdb_points(path("a.vdb"));
     ASSERT_EQ(read.size(), volume.size() - gone);
