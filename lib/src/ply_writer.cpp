@@ -75,10 +75,10 @@ public:
             properties("float", kSplatProperties);
             properties("double", Names{"cx", "cy", "cz"});
         }
-        properties("float", Names{"sxx", "sxy", "sxz", "syy", "syz", "szz"});
         for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
             properties("float", Names{"value", "gx", "gy", "gz", "moment"}, c == 0 ? "" : "_" + std::to_string(c));
         }
+        properties("float", Names{"sxx", "sxy", "sxz", "syy", "syz", "szz"});
         return text;
     }
 
@@ -89,12 +89,12 @@ public:
                 out.put_all(splats_[i]);
             }
             out.put_point<double>(volume_.centers[i]);
-            out.put_all(volume_.frames[i]);
             for (const RbfChannel& channel : volume_.channels) {
                 out.put(channel.values[i]);
                 out.put_all(channel.gradients[i]);
                 out.put(channel.moments[i]);
             }
+            out.put_all(volume_.frames[i]);
             out.end_row();
         }
     }

@@ -2,6 +2,7 @@
 
 #include "points_file.h"
 #include "subvol/error.h"
+#include "subvol/surface_io.h"
 #include "text_scanner.h"
 
 namespace subvol {
@@ -33,14 +34,16 @@ void write_points(const std::filesystem::path& path, const RbfVolume& volume, co
 RbfVolume read_points(const std::filesystem::path& path) {
     if (!is_points_file(path)) throw Error(ErrorCode::InvalidInput, "points cannot be read so", path.string(), kFormats);
     const std::string text = read_text(path);
-    RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path) : read_vtp(text, path);
     try {
+        RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path) : read_vtp(text, path);
         validate(volume);
+        volume.bounds = box_of(volume);
+        return volume;
     } catch (const Error& error) {
+        const std::string_view said(error.what());
+        if (said.starts_with(path.string()) || said.starts_with(boundary_path(path).string())) throw;
         throw Error(error.code(), error.what(), path.string());
     }
-    volume.bounds = box_of(volume);
-    return volume;
 }
 
 }  // namespace subvol

@@ -135,6 +135,8 @@ class SameForAnyNumberOfThreads(InFolder):
     def test_meshes_points_and_pictures(self):
         self.assert_same("subdivide", ".vtu")
         self.assert_same("points", ".ply")
+        self.assert_same("points", ".ply", "--splats")
+        self.assert_same("points", ".vtp")
         self.assert_same("render", ".png", "--size", "64", "--backend", "cpu")
         self.assert_same("render", ".png", "--size", "64", "--method", "tets")
 

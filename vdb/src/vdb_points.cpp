@@ -272,8 +272,7 @@ RbfVolume read_vdb_points(const std::filesystem::path& path) {
         volume.bounds = box_of(volume);
         return volume;
     } catch (const Error& error) {
-        const bool says_file = std::string(error.what()).find(path.stem().string()) != std::string::npos;
-        if (says_file) throw;
+        if (std::string_view(error.what()).starts_with(boundary_path(path).string())) throw;
         throw Error(error.code(), error.what(), path.string());
     } catch (const std::exception& error) {
         throw Error(ErrorCode::InvalidInput, std::string("holds no points as they are written here: ") + error.what(),

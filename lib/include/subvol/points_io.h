@@ -16,15 +16,16 @@ struct PointsWriteOptions {
 
 /// Writes points as `.ply` or `.vtp`, all channels; the numbers are exact, so that they come back bit for bit.
 ///
-/// .ply: element `vertex` with x y z, the frame sxx sxy sxz syy syz szz and, a channel, value, gx gy gz and moment, with _1,
-/// _2…
-///       behind them from the second channel on; then the boundary as `boundary_vertex` and `boundary_triangle`.
-///       Splats: x y z as floats (the exact ones are cx cy cz), and scale_0..2, rot_0..3, opacity and f_dc_0..2 of the first
-///       channel: a Gaussian with the kernel's height and integral, coloured by viridis over the range of the values. Such
-///       viewers take every property for the vertex's: the boundary stands beside, as for .vtp. Some 56 bytes a point more.
-/// .vtp: VTK PolyData for ParaView, a Verts cell a point; arrays NAME, NAME.gradient, NAME.moment, frame (S as VTK orders it:
-///       xx yy zz xy yz xz), ellipsoid (√S, 9 components, for the Tensor Glyph filter) and pscale (mean half-axis of the
-///       support). Beside it the boundary as NAME.boundary.vtp.
+/// .ply: element `vertex` with x y z, a channel each value, gx gy gz and moment (value_1 … of the second), and the frame sxx
+/// sxy
+///       sxz syy syz szz; then the boundary as `boundary_vertex` and `boundary_triangle`. Splats: x y z as floats (the exact
+///       ones are cx cy cz), and scale_0..2, rot_0..3, opacity and f_dc_0..2 of the first channel: a Gaussian with the kernel's
+///       height and integral, coloured by viridis over the range of the values. Such viewers take every property for the
+///       vertex's: the boundary stands beside, as for .vtp. 56 bytes a point more.
+/// .vtp: VTK PolyData for ParaView, a Verts cell a point; arrays NAME, NAME.gradient, NAME.moment, frame (S in VTK's order xx
+/// yy
+///       zz xy yz xz), ellipsoid (√S, 9 components, for the Tensor Glyph filter) and pscale (radius of the ball of its volume).
+///       Beside it the boundary as NAME.boundary.vtp.
 /// Both files of such a pair appear, or none.
 /// throws: Error(InvalidInput) for an unknown extension, and as `validate`; Error(Io)
 void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options = {});

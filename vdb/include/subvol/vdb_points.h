@@ -25,6 +25,8 @@ void write_vdb_points(const std::filesystem::path& path, const RbfVolume& volume
 
 /// Reads what `write_vdb_points` writes, in the order of the ids. The bounds are `box_of`.
 ///
+/// Files that end too early are an error; in one whose bytes were changed, OpenVDB's assertions about its compressed pages can
+/// still end the program, if it was built with them.
 /// throws: Error(Io), Error(InvalidInput) if it is no whole OpenVDB file or has no such points
 [[nodiscard]] RbfVolume read_vdb_points(const std::filesystem::path& path);
 
