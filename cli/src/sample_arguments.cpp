@@ -10,8 +10,14 @@ namespace {
 constexpr double kPaperBox = 200;  // --spacing-voxels counts in 1/200 of the longest side
 
 Correction correction_named(const std::string& name) {
-    check_choice("--correction", name, {"none", "gradient", "second"});
+    check_choice("--correction", name, {"none", "gradient", "second", "full"});
+    if (name == "full") return Correction::Full;
     return name == "none" ? Correction::None : name == "gradient" ? Correction::Gradient : Correction::Second;
+}
+
+ValueRule rule_named(const std::string& name) {
+    check_choice("--values", name, {"scheme", "cubic", "paper"});
+    return name == "paper" ? ValueRule::Paper : name == "cubic" ? ValueRule::Cubic : ValueRule::Scheme;
 }
 
 }  // namespace
@@ -26,7 +32,7 @@ void SampleArguments::add_to(CLI::App& app) {
         ->check(CLI::PositiveNumber)
         ->excludes(edges)
         ->excludes(world);
-    app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default)")
+    app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default), full")
         ->type_name("NAME");
 }
 

@@ -6,7 +6,7 @@ namespace subvol::model {
 namespace {
 
 // In world units, in which two cells of the default lattice are .0625 long.
-constexpr double kTransition = 0.03;
+constexpr double kTransition = 0.06;
 constexpr Blend kBlend{.rounding = 0.02};
 
 double slab(double z, double center, double half_height) {

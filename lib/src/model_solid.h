@@ -25,8 +25,8 @@ struct Solid {
 };
 
 // Most solids are drawn in the cells of their default lattice: a length of 1 is a cell. The density goes from -.76 to .76 over
-// two of them, and edges are rounded, so that the lattice resolves a surface; parts are at least three cells thick.
-inline constexpr double kCellTransition = 0.96;
+// four of them, and edges are rounded, so that the lattice resolves a surface; parts are at least three cells thick.
+inline constexpr double kCellTransition = 1.9;
 inline constexpr Blend kCellBlend{.rounding = 0.64};
 
 /// resolution: cells along solid.main; the others in proportion, at least 1

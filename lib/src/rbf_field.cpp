@@ -22,10 +22,16 @@ struct RbfField::Kernels {
         float value;
         std::array<float, 3> gradient;
         float moment;
+        std::array<float, 6> hessian;
 
+        [[nodiscard]] Vec3 bend(const Vec3& d) const {
+            const auto& h = hessian;
+            return {h[0] * d.x + h[1] * d.y + h[2] * d.z, h[1] * d.x + h[3] * d.y + h[4] * d.z,
+                    h[2] * d.x + h[4] * d.y + h[5] * d.z};
+        }
         [[nodiscard]] Vec3 slope() const { return {gradient[0], gradient[1], gradient[2]}; }
         [[nodiscard]] double at(const Vec3& d, double e) const {
-            return double(value) + glm::dot(slope(), d) + double(moment) * e;
+            return double(value) + glm::dot(slope() + .5 * bend(d), d) + double(moment) * e;
         }
     };
 
@@ -39,7 +45,8 @@ struct RbfField::Kernels {
         const RbfChannel& channel = volume.channels[options.channel];
         for (std::size_t slot = 0; slot < terms.size(); ++slot) {
             const std::size_t i = tree.kernel(slot);
-            terms[slot] = {channel.values[i], channel.gradients[i], channel.moments[i]};
+            terms[slot] = {channel.values[i], channel.gradients[i], channel.moments[i],
+                           channel.hessians.empty() ? std::array<float, 6>{} : channel.hessians[i]};
         }
     }
 
@@ -66,7 +73,7 @@ struct RbfField::Kernels {
             sum += w;
             weighted += w * v;
             d_sum += d_w;
-            d_weighted += d_w * v + w * (t.slope() + double(t.moment) * d_e);
+            d_weighted += d_w * v + w * (t.slope() + t.bend(d) + double(t.moment) * d_e);
         });
         if (!(sum > least_weight)) return std::nullopt;
         const double f = weighted / sum;

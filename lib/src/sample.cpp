@@ -9,6 +9,7 @@
 #include "sample_cells.h"
 #include "sample_counts.h"
 #include "sample_points.h"
+#include "sample_tolerance.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 
@@ -25,6 +26,17 @@ void check(const SampleOptions& options) {
     if (!(options.spacing_world >= 0 && std::isfinite(options.spacing_world))) {
         throw Error(ErrorCode::InvalidInput, "the spacing is " + std::to_string(options.spacing_world), {},
                     "a positive length");
+    }
+    if (!(options.tolerance >= 0 && std::isfinite(options.tolerance))) {
+        throw Error(ErrorCode::InvalidInput, "the tolerance is " + std::to_string(options.tolerance), {}, "a positive number");
+    }
+    if (options.footprint && !(options.footprint->spacing_px > 0 && options.footprint->least_cell_px >= 0)) {
+        throw Error(ErrorCode::InvalidInput, "the footprint's spacing is not positive");
+    }
+    validate(options.kernel);
+    validate(options.value_kernel);
+    if (!is_radial(options.kernel)) {
+        throw Error(ErrorCode::InvalidInput, "points need a radial kernel: their frames have no axes");
     }
     const double radius = support_radius(options.kernel);
     if (!(radius >= 1.2 && radius <= 4)) {
@@ -97,7 +109,9 @@ SampleResult sample_cells(const HexMesh& control, const SampleOptions& options) 
     const HexMesh twice = on_limit(refine(once, refinement(options, 1)), options.scheme);
     const Topology topology = build_topology(control);
     SampleResult result =
-        detail::sample_in_cells(control, twice, topology, detail::edge_intervals(control, topology, options), options);
+        options.tolerance > 0
+            ? detail::sample_to_tolerance(control, twice, topology, options)
+            : detail::sample_in_cells(control, twice, topology, detail::edge_intervals(control, topology, options), options);
     result.volume.boundary = boundary_of_level(control, topology, options);
     return result;
 }

@@ -49,7 +49,7 @@ extern const Solid kPawn, kAlien, kTrain1, kCar, kFan, kTrain2;
 }  // namespace model
 
 /// The exact field of a solid model, in the same form: a deformed block. The density is signed, in [-1,1], positive inside the
-/// solid, and saturates within about two cells of the default lattice at its surface.
+/// solid, and saturates within about four cells of the default lattice at its surface.
 template <const model::Solid& kSolid>
 struct SolidField {
     [[nodiscard]] static Vec3 parameter(const Vec3& x) { return model::parameter(kSolid, x); }

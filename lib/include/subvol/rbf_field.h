@@ -22,8 +22,8 @@ struct FieldJet {
     Vec3 gradient{0.0};
 };
 
-/// The field that an RBF volume stands for, at points: Σ wᵢ (vᵢ + gᵢ·(x−μᵢ) + mᵢ eᵢ) / Σ wᵢ, eᵢ = (x−μᵢ)ᵀ Sᵢ⁻¹ (x−μᵢ), wᵢ the
-/// kernel at R√eᵢ inside eᵢ < 1. Satisfies `Field`. The boundary is not tested.
+/// The field that an RBF volume stands for, at points: Σ wᵢ (vᵢ + gᵢ·d + mᵢ eᵢ + ½ dᵀHᵢd) / Σ wᵢ with d = x−μᵢ, eᵢ = dᵀ Sᵢ⁻¹ d,
+/// wᵢ the kernel at R√eᵢ inside eᵢ < 1. Satisfies `Field`. The boundary is not tested.
 ///
 /// A copy of the kernels in a box tree: it does not refer to the volume. Kernels may differ in size and shape at will.
 /// throws: Error(InvalidInput) if there is no such channel, array lengths differ, a number is not finite, or the kernel is not
