@@ -73,7 +73,7 @@ class Mistakes(InFolder):
     def test_files(self):
         self.assert_refused("info", "missing.mesh", naming="missing.mesh")
         self.assert_refused("subdivide", "model:ball:2", "-o", "a.obj", naming=".vtu")
-        self.assert_refused("points", "model:ball:2", "-o", "a.vdb", naming="not supported yet")
+        self.assert_refused("points", "model:ball:2", "-o", "a.obj", naming=".vtp")
         self.assert_refused("vdb", "model:ball:2", "-o", "nowhere/a.vdb", naming="nowhere")
         self.assert_refused("compare", "missing.png", "missing.png", naming="missing.png")
 

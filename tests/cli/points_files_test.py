@@ -3,7 +3,9 @@
 import array
 import base64
 import re
+import shutil
 import struct
+import subprocess
 import unittest
 import xml.etree.ElementTree
 import zlib
@@ -122,6 +124,13 @@ class PointsFiles(InFolder):
         for a, b, c in zip(corners[::3], corners[1::3], corners[2::3]):
             edges |= {(a, b), (b, c), (c, a)}
         self.assertEqual(edges, {(b, a) for a, b in edges}, "closed")
+
+    @unittest.skipUnless(shutil.which("vdb_print"), "OpenVDB's vdb_print (package openvdb-tools) is missing")
+    def test_openvdbs_own_tool_finds_the_points_in_a_vdb(self):
+        self.write("a.vdb")
+        told = subprocess.run(["vdb_print", "-l", self.folder / "a.vdb"], capture_output=True, text=True, check=True).stdout
+        for part in ("Name: points", "ptdataidx32", "channel_0: density", "creator: OpenSubVol", "kernel: "):
+            self.assertIn(part, told)
 
     def test_viewers_of_splats_find_theirs(self):
         """They take every property of the header for the vertex's, and no other element may follow."""
