@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kOpacityUnitsPerDiagonal = 100;
 
+}  // namespace
+
 TransferFunction find_transfer_function(const std::string& name, const Range& range) {
     const std::filesystem::path path(name);
     if (path.has_extension() || path.has_parent_path()) return read_transfer_function(path);
     return transfer_function_preset(name, range.min, range.max);
 }
 
-}  // namespace
-
-PictureSize parse_size(const std::string& text) {
+PictureSize parse_size(const std::string& option, const std::string& text) {
     std::istringstream in(text);
     PictureSize size;
     char cross = 'x';
@@ -26,7 +26,7 @@ PictureSize parse_size(const std::string& text) {
     size.height = size.width;
     if (!in.fail() && !in.eof()) in >> cross >> size.height;
     if (in.fail() || !in.eof() || cross != 'x' || size.width < 1 || size.height < 1) {
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is no picture size", "--size", "write it as 640x480 or 512");
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is no picture size", option, "write it as 640x480 or 512");
     }
     return size;
 }
@@ -53,7 +53,7 @@ void PictureArguments::add_to(CLI::App& app) {
 }
 
 View PictureArguments::make_view(const Box& box) const {
-    const auto [width, height] = parse_size(size);
+    const auto [width, height] = parse_size("--size", size);
     const double aspect = static_cast<double>(width) / height;
     return {parse_camera(camera.value_or(view), box, aspect), width, height};
 }

@@ -18,7 +18,10 @@ struct PictureSize {
 /// "512x384", or "512" for a square.
 ///
 /// throws: Error(InvalidInput)
-[[nodiscard]] PictureSize parse_size(const std::string& text);
+[[nodiscard]] PictureSize parse_size(const std::string& option, const std::string& text);
+
+/// A colour map's file, or a preset over the range.
+[[nodiscard]] TransferFunction find_transfer_function(const std::string& name, const Range& range);
 
 /// What a picture shows and how.
 struct PictureArguments {

@@ -11,9 +11,10 @@
 namespace subvol::cli {
 namespace {
 
-constexpr std::initializer_list<const char*> kOfMeshes{"--density",        "--other-cells", "--per-edge", "--spacing",
-                                                       "--spacing-voxels", "--correction",  "--scheme",   "--tension",
-                                                       "--levels",         "--crease-angle"};
+constexpr std::initializer_list<const char*> kOfMeshes{
+    "--density",        "--other-cells", "--per-edge", "--spacing",      "--spacing-voxels", "--correction",
+    "--scheme",         "--tension",     "--levels",   "--crease-angle", "--tolerance",      "--footprint",
+    "--footprint-size", "--values",      "--kernel",   "--value-kernel", "--threshold"};
 
 bool is_vdb(const std::string& input) {
     return std::filesystem::path(input).extension() == ".vdb";

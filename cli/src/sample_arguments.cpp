@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "picture_arguments.h"
+#include "subvol/empty_space.h"
+#include "subvol/error.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -20,6 +23,11 @@ ValueRule rule_named(const std::string& name) {
     return name == "paper" ? ValueRule::Paper : name == "cubic" ? ValueRule::Cubic : ValueRule::Scheme;
 }
 
+Kernel kernel_from(const std::string& text, const char* fallback) {
+    if (text.empty()) return named_kernel(fallback);
+    return text.front() == '{' ? kernel_from_json(text) : named_kernel(text);
+}
+
 }  // namespace
 
 void SampleArguments::add_to(CLI::App& app) {
@@ -32,6 +40,29 @@ void SampleArguments::add_to(CLI::App& app) {
         ->check(CLI::PositiveNumber)
         ->excludes(edges)
         ->excludes(world);
+    app.add_option("--tolerance", tolerance,
+                   "instead: as many samples as it takes until the field errs by less, in its own unit")
+        ->type_name("E")
+        ->check(CLI::PositiveNumber)
+        ->excludes(edges)
+        ->excludes(world);
+    app.add_option("--footprint", footprint,
+                   "instead: samples at most 1.5 pixels apart as this camera sees them (numbers, a JSON file, or a side)")
+        ->type_name("CAMERA")
+        ->excludes(edges)
+        ->excludes(world);
+    app.add_option("--footprint-size", footprint_size, "the size of that camera's picture (default 512x512)")->type_name("WxH");
+    app.add_option("--values", values,
+                   "values between control points: scheme (exact, default), cubic (Catmull-Rom), paper (weighted mean)")
+        ->type_name("NAME");
+    app.add_option("--kernel", kernel, "the kernel of the points (default compact); see subvol fit --kernels")
+        ->type_name("NAME|JSON");
+    app.add_option("--value-kernel", value_kernel, "the kernel of --values paper (default paper_bc)")->type_name("NAME|JSON");
+    threshold_option = app.add_option("--threshold", threshold,
+                                      "drop points that cannot be seen: where the field is at most V; without V, where the "
+                                      "transfer function is clear")
+                           ->type_name("[V]")
+                           ->expected(0, 1);
     app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default), full")
         ->type_name("NAME");
 }
@@ -43,13 +74,44 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
             .tension = refinement.tension,
             .per_edge = per_edge,
             .spacing_world = spacing_voxels > 0 ? spacing_voxels * voxel : spacing_world,
+            .footprint = footprint.empty() ? std::nullopt : std::optional(footprint_of(box)),
+            .tolerance = tolerance,
             .correction = correction_named(correction),
+            .values = rule_named(values),
+            .kernel = kernel_from(kernel, "compact"),
+            .value_kernel = kernel_from(value_kernel, "paper_bc"),
             .crease_angle_deg = refinement.crease_angle_deg,
             .progress = refinement.progress};
 }
 
+Footprint SampleArguments::footprint_of(const Box& box) const {
+    const PictureSize size = parse_size("--footprint-size", footprint_size);
+    const double aspect = static_cast<double>(size.width) / size.height;
+    return {.camera = parse_camera(footprint, box, aspect), .width_px = size.width, .height_px = size.height};
+}
+
+namespace {
+
+RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
+                            Report& report) {
+    if (arguments.threshold_option->count() == 0) return volume;
+    if (arguments.threshold.empty() && !seen) {
+        throw Error(ErrorCode::InvalidInput, "needs a value, there is no transfer function", "--threshold");
+    }
+    const TransferFunction function =
+        arguments.threshold.empty() ? *seen : above(parse_number("--threshold", arguments.threshold));
+    VisibleVolume visible = report.timed("threshold", [&] { return drop_invisible(volume, 0, function); });
+    report["dropped"] = visible.dropped;
+    if (visible.volume.size() == 0) {
+        throw Error(ErrorCode::InvalidInput, "leaves no point: nothing of the field can be seen", "--threshold");
+    }
+    return std::move(visible.volume);
+}
+
+}  // namespace
+
 RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments, const RefineArguments& refinement,
-                          Report& report) {
+                          const std::optional<TransferFunction>& seen, Report& report) {
     const RefineOptions refine_options = refinement.options(0, report);
     SampleOptions options = arguments.options(bounds(mesh), refine_options);
     HexMesh level;
@@ -59,11 +121,17 @@ RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
         options.boundary_levels = 0;
     }
     SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(refinement.levels ? level : mesh, options); });
-    report["points"] = sampled.volume.size();
+    if (options.tolerance > 0) {
+        report["largest_error"] = sampled.report.largest_error;
+        if (sampled.report.largest_error > options.tolerance)
+            report.warn("the tolerance was not reached with 64 samples a cell edge");
+    }
     if (sampled.report.flat_frames > 0) {
         report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
     }
-    return std::move(sampled.volume);
+    RbfVolume volume = without_invisible(std::move(sampled.volume), arguments, seen, report);
+    report["points"] = volume.size();
+    return volume;
 }
 
 }  // namespace subvol::cli

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "refine_arguments.h"
 #include "subvol/sample.h"
+#include "subvol/transfer_function.h"
 
 namespace subvol::cli {
 
@@ -13,16 +15,31 @@ struct SampleArguments {
     int per_edge = 1;
     double spacing_world = 0;
     double spacing_voxels = 0;
+    double tolerance = 0;
+    std::string footprint;  // a camera
+    std::string footprint_size = "512x512";
     std::string correction = "second";
+    std::string values = "scheme";
+    std::string kernel;                       // a name or JSON; empty: the compact one
+    std::string value_kernel;                 // the same; empty: the paper's BC spline
+    std::string threshold;                    // a number
+    CLI::Option* threshold_option = nullptr;  // given without a value: the transfer function decides
 
     void add_to(CLI::App& app);
 
     /// throws: Error(InvalidInput) if a name is unknown
     [[nodiscard]] SampleOptions options(const Box& box, const RefineOptions& refinement) const;
+
+private:
+    [[nodiscard]] Footprint footprint_of(const Box& box) const;
 };
 
-/// Samples the limit of the mesh, or with --levels the refined mesh as it is; timed and with its points in the report.
+/// Samples the limit of the mesh, or with --levels the refined mesh as it is, and drops what --threshold makes invisible; timed
+/// and with its points in the report.
+///
+/// seen: what is shown of the first field; none: --threshold needs a value
 [[nodiscard]] RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
-                                        const RefineArguments& refinement, Report& report);
+                                        const RefineArguments& refinement, const std::optional<TransferFunction>& seen,
+                                        Report& report);
 
 }  // namespace subvol::cli

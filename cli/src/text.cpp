@@ -25,6 +25,16 @@ Vec3 parse_vector(const std::string& option, const std::string& value) {
     return v;
 }
 
+double parse_number(const std::string& option, const std::string& value) {
+    std::istringstream in(value);
+    double number = 0;
+    in >> number;
+    if (in.fail() || !(in >> std::ws).eof() || !std::isfinite(number)) {
+        throw Error(ErrorCode::InvalidInput, "'" + value + "' is no number", option);
+    }
+    return number;
+}
+
 void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported,
                   const std::vector<std::string>& planned) {
     if (std::ranges::find(supported, value) != supported.end()) return;

@@ -24,6 +24,11 @@ template <class... Part>
 /// throws: Error(InvalidInput) if it is anything else
 [[nodiscard]] Vec3 parse_vector(const std::string& option, const std::string& value);
 
+/// option: named in the error
+///
+/// throws: Error(InvalidInput) if it is no finite number
+[[nodiscard]] double parse_number(const std::string& option, const std::string& value);
+
 /// throws: Error(InvalidInput) unless `value` is one of `supported`; says so for what is only `planned`
 void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported,
                   const std::vector<std::string>& planned = {});

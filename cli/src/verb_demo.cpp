@@ -62,7 +62,7 @@ public:
     }
 
     int run(Report& report) override {
-        const PictureSize size = parse_size(size_);
+        const PictureSize size = parse_size("--size", size_);
         std::filesystem::create_directories(folder_);
         report.say("model     points  equivalent cells    splat s  reference s  PSNR dB");
         report["cases"] = Json::array();

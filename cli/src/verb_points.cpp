@@ -1,4 +1,5 @@
 #include "input.h"
+#include "picture_arguments.h"
 #include "sample_arguments.h"
 #include "subvol/error.h"
 #include "subvol/points_io.h"
@@ -22,6 +23,9 @@ public:
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
         app().add_flag("--splats", splats_, ".ply: for viewers of Gaussian splats too; the surface is then beside it");
         sample_.add_to(app());
+        app()
+            .add_option("--tf", transfer_function_, "what --threshold goes by: a colour map as `render` takes it")
+            ->type_name("FILE|NAME");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
     }
 
@@ -32,7 +36,9 @@ public:
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
-        const RbfVolume volume = sample_reported(mesh, sample_, refine_, report);
+        std::optional<TransferFunction> seen;
+        if (!transfer_function_.empty()) seen = find_transfer_function(transfer_function_, first_field_range(mesh));
+        const RbfVolume volume = sample_reported(mesh, sample_, refine_, seen, report);
         report.timed("write", [&] {
             if (extension == ".vdb") {
                 write_vdb_points(output_, volume);
@@ -51,6 +57,7 @@ private:
     std::string output_;
     bool ascii_ = false;
     bool splats_ = false;
+    std::string transfer_function_;
     SampleArguments sample_;
     RefineArguments refine_;
 };

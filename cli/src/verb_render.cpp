@@ -68,7 +68,7 @@ private:
         const View view = picture_.make_view(box);
         const Optics optics = picture_.make_optics(box, first_field_range(mesh));
         if (method_ == "tets") return tets(mesh, view, optics, report);
-        return splat(sample_reported(mesh, sample_, refine_, report), view, optics, backend, report);
+        return splat(sample_reported(mesh, sample_, refine_, optics.function(), report), view, optics, backend, report);
     }
 
     [[nodiscard]] Image of_points(Backend backend, Report& report) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "bucket_sort.h"
 #include "subvol/error.h"
@@ -24,51 +25,85 @@ struct ValueRange {
     }
 };
 
-/// All that a kernel can stand for within its support, outwards by more than rounding.
-ValueRange corrected_range(const RbfVolume& volume, const RbfChannel& channel, std::size_t i) {
-    const auto& s = volume.frames[i];
-    const auto& g = channel.gradients[i];
-    const double x = g[0], y = g[1], z = g[2];
-    const double reach2 = x * x * s[0] + y * y * s[3] + z * z * s[5] + 2 * (x * y * s[1] + x * z * s[2] + y * z * s[4]);
-    const double reach = std::sqrt(std::max(reach2, 0.0)), moment = channel.moments[i], value = channel.values[i];
-    const double slack = 1e-5 * (std::abs(value) + reach + std::abs(moment));
-    return {static_cast<float>(value - reach + std::min(moment, 0.0) - slack),
-            static_cast<float>(value + reach + std::max(moment, 0.0) + slack)};
-}
-
-/// Boxes over the volume, each with the range of all kernels that reach into it.
-class RangeGrid {
+/// One kernel, and what it can stand for within a box.
+class KernelInBox {
 public:
-    RangeGrid(const RbfVolume& volume, const RbfChannel& channel) : volume_(volume), box_(bounds()) {
-        const Vec3 size = box_.size();
-        const double wanted = std::cbrt(size.x * size.y * size.z / static_cast<double>(volume.size()));
-        const double edge = std::max({wanted, size.x / kMostBoxes, size.y / kMostBoxes, size.z / kMostBoxes});
-        for (int a = 0; a < 3; ++a) {
-            counts_[static_cast<std::size_t>(a)] = std::max(1, static_cast<int>(std::ceil(size[a] / edge)));
-            scale_[a] = size[a] > 0 ? counts_[static_cast<std::size_t>(a)] / size[a] : 0;
-        }
-        ranges_.resize(static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1]) *
-                       static_cast<std::size_t>(counts_[2]));
-        parallel_each(volume.size(), [&](std::size_t i) {
-            const ValueRange range = corrected_range(volume, channel, i);
-            each_box(i, [&](ValueRange& box) { widen(box, range); });
-        });
+    KernelInBox(const RbfVolume& volume, const RbfChannel& channel, std::size_t i)
+        : center_(volume.centers[i]), value_(channel.values[i]), moment_(channel.moments[i]) {
+        const auto& s = volume.frames[i];
+        const auto& g = channel.gradients[i];
+        inverse_ = glm::inverse(Mat3(s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5]));
+        gradient_ = {g[0], g[1], g[2]};
+        if (!channel.hessians.empty()) hessian_ = channel.hessians[i];
     }
 
+    /// center, half: of the box. Nothing if it lies outside the support.
+    [[nodiscard]] std::optional<ValueRange> range(const Vec3& center, const Vec3& half) const {
+        const Vec3 d = center - center_;
+        const double at = std::sqrt(std::max(0.0, glm::dot(d, inverse_ * d))), around = std::sqrt(product(inverse_, half));
+        if (at - around > 1) return std::nullopt;
+        const double nearest = std::max(0.0, at - around), farthest = std::min(1.0, at + around);
+        const Vec3 reach = glm::abs(d) + half;
+        const auto& h = hessian_;
+        const double bent =
+            .5 *
+                (std::abs(h[0]) * reach.x * reach.x + std::abs(h[3]) * reach.y * reach.y + std::abs(h[5]) * reach.z * reach.z) +
+            std::abs(h[1]) * reach.x * reach.y + std::abs(h[2]) * reach.x * reach.z + std::abs(h[4]) * reach.y * reach.z;
+        const double spread = glm::dot(glm::abs(gradient_), half) + bent, middle = value_ + glm::dot(gradient_, d);
+        const double near_moment = moment_ * nearest * nearest, far_moment = moment_ * farthest * farthest;
+        const double slack = 1e-5 * (std::abs(middle) + spread + std::abs(moment_));  // more than rounding
+        return ValueRange{static_cast<float>(middle - spread + std::min(near_moment, far_moment) - slack),
+                          static_cast<float>(middle + spread + std::max(near_moment, far_moment) + slack)};
+    }
+
+private:
+    /// The largest vᵀMv of the vectors within a box about 0.
+    static double product(const Mat3& m, const Vec3& half) {
+        double sum = 0;
+        for (int a = 0; a < 3; ++a) {
+            for (int b = 0; b < 3; ++b) sum += std::abs(m[a][b]) * half[a] * half[b];
+        }
+        return sum;
+    }
+
+    Vec3 center_;
+    double value_, moment_;
+    Mat3 inverse_;
+    Vec3 gradient_;
+    std::array<float, 6> hessian_{};
+};
+
+/// Boxes over the volume, half a kernel's distance wide, each with the range of all that kernels stand for in it.
+class RangeGrid {
+public:
+    RangeGrid(const RbfVolume& volume, const RbfChannel& channel) : volume_(volume), channel_(channel) {
+        Box box;
+        for (const Vec3& x : volume.centers) box.add(x);
+        for (const Vec3& x : volume.boundary.points) box.add(x);
+        const Vec3 size = box.size();
+        const double spacing = std::cbrt(std::max({size.x * size.y * size.z, 1e-300}) / static_cast<double>(volume.size()));
+        const double longest = std::max({size.x, size.y, size.z, 1e-300});
+        const double edge = std::max(.5 * spacing, longest / kMostBoxes);
+        lower_ = box.lower;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const int axis = static_cast<int>(a);
+            counts_[a] = std::max(1, static_cast<int>(std::ceil(size[axis] / edge)));
+        }
+        edge_ = edge;
+        ranges_.resize(static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1]) *
+                       static_cast<std::size_t>(counts_[2]));
+        parallel_each(volume.size(), [&](std::size_t i) { each_box(i, widen); });
+    }
+
+    /// All that the field can be in the support of a kernel.
     [[nodiscard]] ValueRange about(std::size_t i) {
         ValueRange range;
-        each_box(i, [&](const ValueRange& box) { range.add(box); });
+        each_box(i, [&](const ValueRange& box, const ValueRange&) { range.add(box); });
         return range;
     }
 
 private:
-    static constexpr double kMostBoxes = 256;  // along an axis
-
-    [[nodiscard]] Box bounds() const {
-        Box box;
-        for (const Vec3& x : volume_.centers) box.add(x);
-        return box;
-    }
+    static constexpr double kMostBoxes = 512;  // along an axis
 
     /// The least and the largest do not depend on the order in which threads come.
     static void widen(ValueRange& box, const ValueRange& range) {
@@ -79,35 +114,41 @@ private:
         }
     }
 
+    /// Calls visit(box, range of the kernel in it) for the boxes that a kernel meets.
     template <class Visit>
     void each_box(std::size_t i, const Visit& visit) {
         constexpr std::array<std::size_t, 3> kDiagonal{0, 3, 5};
+        const KernelInBox kernel(volume_, channel_, i);
         std::array<std::array<int, 2>, 3> span{};
         for (std::size_t a = 0; a < 3; ++a) {
             const int axis = static_cast<int>(a);
-            const double at = volume_.centers[i][axis] - box_.lower[axis];
-            const double half = std::sqrt(std::max(0.0f, volume_.frames[i][kDiagonal[a]])) * (1 + 1e-6);
+            const double at = volume_.centers[i][axis] - lower_[axis], half = std::sqrt(volume_.frames[i][kDiagonal[a]]);
             const auto box = [&](double x) {
-                return static_cast<int>(std::clamp(std::floor(x * scale_[axis]), 0.0, counts_[a] - 1.0));
+                return static_cast<int>(std::clamp(std::floor(x / edge_), 0.0, counts_[a] - 1.0));
             };
             span[a] = {box(at - half), box(at + half)};
         }
         for (int z = span[2][0]; z <= span[2][1]; ++z) {
             for (int y = span[1][0]; y <= span[1][1]; ++y) {
                 for (int x = span[0][0]; x <= span[0][1]; ++x) {
-                    visit(ranges_[static_cast<std::size_t>(x) +
-                                  static_cast<std::size_t>(counts_[0]) *
-                                      (static_cast<std::size_t>(y) +
-                                       static_cast<std::size_t>(counts_[1]) * static_cast<std::size_t>(z))]);
+                    const Vec3 center = lower_ + edge_ * Vec3(x + .5, y + .5, z + .5);
+                    if (const auto range = kernel.range(center, Vec3(.5 * edge_))) visit(ranges_[place(x, y, z)], *range);
                 }
             }
         }
     }
 
+    [[nodiscard]] std::size_t place(int x, int y, int z) const {
+        return static_cast<std::size_t>(x) +
+               static_cast<std::size_t>(counts_[0]) *
+                   (static_cast<std::size_t>(y) + static_cast<std::size_t>(counts_[1]) * static_cast<std::size_t>(z));
+    }
+
     const RbfVolume& volume_;
-    Box box_;
+    const RbfChannel& channel_;
+    Vec3 lower_{0.0};
+    double edge_ = 0;
     std::array<int, 3> counts_{};
-    Vec3 scale_{0.0};
     std::vector<ValueRange> ranges_;
 };
 
@@ -166,6 +207,7 @@ VisibleVolume drop_invisible(const RbfVolume& volume, std::size_t channel, const
         keep(c.values, kept);
         keep(c.gradients, kept);
         keep(c.moments, kept);
+        if (!c.hessians.empty()) keep(c.hessians, kept);
     }
     return result;
 }

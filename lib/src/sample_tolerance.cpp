@@ -31,7 +31,8 @@ std::vector<double> errors_of_cells(const RbfVolume& volume, const HexMesh& twic
 }
 
 /// More intervals where a cell at the edge errs too much: errors fall with the square of the spacing. Returns whether any.
-bool refine_intervals(const Topology& topology, const std::vector<double>& errors, double tolerance, std::vector<int>& intervals) {
+bool refine_intervals(const Topology& topology, const std::vector<double>& errors, double tolerance,
+                      std::vector<int>& intervals) {
     bool any = false;
     for (std::size_t e = 0; e < intervals.size(); ++e) {
         double error = 0;

@@ -12,13 +12,13 @@ struct VisibleVolume {
 };
 
 /// Drops the points whose whole support is invisible: wherever such a kernel reaches, whatever the field may be there has no
-/// opacity. The field may be anything between the least and the largest corrected value of all kernels that reach into the
-/// same space, so that dropping the point changes nothing that is seen.
+/// opacity. In a small box the field may be anything between the least and the largest corrected value that kernels have there:
+/// it is their mean. So what is dropped changes nothing that is seen.
 ///
 /// function: of the channel's values; only its opacity counts. `above(t)` hides what is at or below t.
 /// throws:   Error(InvalidInput) if there is no such channel, the function is not valid, or the kernel has negative lobes: their
 ///           field is not bounded by the kernels' values
-/// cost:     O(n) in time; memory of a grid with about one box a point
+/// cost:     O(n) in time; memory of a grid with about eight boxes a point
 [[nodiscard]] VisibleVolume drop_invisible(const RbfVolume& volume, std::size_t channel, const TransferFunction& function);
 
 /// A white transfer function that is opaque above a value, and clear at it and below.
