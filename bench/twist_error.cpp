@@ -35,7 +35,10 @@ TransferFunction transfer_function(bool sharp) {
 }
 
 const char* name(Correction c) {
-    return c == Correction::None ? "none" : c == Correction::Gradient ? "gradient" : "second";
+    return c == Correction::None       ? "none"
+           : c == Correction::Gradient ? "gradient"
+           : c == Correction::Second   ? "second"
+                                       : "full";
 }
 
 void print(const char* method, const std::string& detail, bool sharp, const Image& image, const Image& exact, double cpu,
@@ -78,7 +81,7 @@ int main(int argc, char** argv) {
             keep("tets_" + std::to_string(levels), tets.image);
         }
         for (const int per_edge : {1, 2}) {
-            for (const Correction correction : {Correction::None, Correction::Gradient, Correction::Second}) {
+            for (const Correction correction : {Correction::None, Correction::Gradient, Correction::Second, Correction::Full}) {
                 const auto points = sample_rbf_points(mesh, {.per_edge = per_edge, .correction = correction});
                 const double start = cpu_seconds();
                 const auto splat = render_splats(points.volume, view, optics, {.backend = Backend::Cpu, .sheets = sheets});

@@ -7,7 +7,9 @@ struct Splat {
     vec4 place;  // center x, y, depth, 1/S_zz
     vec4 shape;  // shear x, y, conic xx, xy
     vec4 slope;  // conic yy, value, gradient x, y
-    vec4 rest;   // value slope, moment, extent x, y
+    vec4 rest;   // value slope, bend zz, extent x, y
+    vec4 bend;   // bend zx, zy, xx, xy
+    vec4 last;   // bend yy
 };
 layout(std430, binding = 0) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 1) readonly buffer BinOffsets { uint bin_offsets[]; };
@@ -97,7 +99,8 @@ void main() {
                 float e = e0 + s.slope.x * d.y * d.y + d.x * (2.0 * s.shape.w * d.y + s.shape.z * d.x);
                 float left = max(1.0 - e, 0.0), w = left * left * left;
                 weight[k] += w;
-                weighted[k] += w * (s.slope.y + s.rest.x * zs + dot(s.slope.zw, d) + s.rest.y * e);
+                float row = s.slope.y + zs * (s.rest.x + s.rest.y * zs) + d.y * (s.slope.w + s.bend.y * zs + s.last.x * d.y);
+                weighted[k] += w * (row + d.x * (s.slope.z + s.bend.x * zs + 2.0 * s.bend.w * d.y + s.bend.z * d.x));
             }
         }
         for (int k = 0; k < count && next < end && transmittance >= kOpaque; ++k) {

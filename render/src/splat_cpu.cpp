@@ -104,10 +104,12 @@ public:
         const auto [y1, y0] = covered_down(b_, cut.y - cut.half_y, cut.y + cut.half_y);
         const float zs = depth - s.depth, across = perspective ? depth : 1.0f;
         const float center_x = s.center_x + s.shear_x * zs, center_y = s.center_y + s.shear_y * zs;
-        const float e0 = zs * zs * s.inv_szz, v0 = s.value + s.value_slope * zs;
+        const float e0 = zs * zs * s.inv_szz, v0 = s.value + zs * (s.value_slope + s.bend_zz * zs);
+        const float slope_x = s.gradient_x + s.bend_zx * zs, slope_y = s.gradient_y + s.bend_zy * zs;
         for (std::size_t y = y0; y < y1; ++y) {
             const float dy = b_[y] * across - center_y;
-            const float e_row = e0 + s.conic_yy * dy * dy, e_slope = 2 * s.conic_xy * dy, v_row = v0 + s.gradient_y * dy;
+            const float e_row = e0 + s.conic_yy * dy * dy, e_slope = 2 * s.conic_xy * dy;
+            const float v_row = v0 + dy * (slope_y + s.bend_yy * dy), v_slope = slope_x + 2 * s.bend_xy * dy;
             float* weight = &weight_[(static_cast<std::size_t>(sheet_in_batch) * row_ + y) * row_];
             float* weighted = &weighted_[(static_cast<std::size_t>(sheet_in_batch) * row_ + y) * row_];
             for (std::size_t x = x0; x < x1; ++x) {
@@ -115,7 +117,7 @@ public:
                 const float e = e_row + dx * (e_slope + s.conic_xx * dx);
                 const float left = std::max(1.0f - e, 0.0f), w = left * left * left;
                 weight[x] += w;
-                weighted[x] += w * (v_row + s.gradient_x * dx + s.moment * e);
+                weighted[x] += w * (v_row + dx * (v_slope + s.bend_xx * dx));
             }
         }
     }

@@ -58,6 +58,16 @@ void check_floats(const RbfVolume& volume, const RbfChannel& channel, const Prei
     }
 }
 
+/// Half the Hessian of what a kernel stands for, its moment's part included.
+Mat3 half_hessian(const RbfVolume& volume, const RbfChannel& channel, std::size_t i) {
+    const auto& f = volume.frames[i];
+    Mat3 half = static_cast<double>(channel.moments[i]) *
+                glm::inverse(Mat3(Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5])));
+    if (channel.hessians.empty()) return half;
+    const auto& h = channel.hessians[i];
+    return half + 0.5 * Mat3(Vec3(h[0], h[1], h[2]), Vec3(h[1], h[3], h[4]), Vec3(h[2], h[4], h[5]));
+}
+
 EyeSplat to_eye(const RbfVolume& volume, const RbfChannel& channel, std::size_t i, const View& view,
                 const PreintegratedTable& table) {
     const auto& axes = view.axes();
@@ -87,7 +97,14 @@ EyeSplat to_eye(const RbfVolume& volume, const RbfChannel& channel, std::size_t 
     splat.gradient_x = static_cast<float>(g.x);
     splat.gradient_y = static_cast<float>(g.y);
     splat.value_slope = static_cast<float>(g.x * shear_x + g.y * shear_y + g.z);
-    splat.moment = static_cast<float>(static_cast<double>(channel.moments[i]) * scale);
+    const Mat3 bend = scale * (glm::transpose(to_world) * half_hessian(volume, channel, i) * to_world);
+    const Vec3 shear(shear_x, shear_y, 1), sheared = bend * shear;
+    splat.bend_zz = static_cast<float>(glm::dot(shear, sheared));
+    splat.bend_zx = static_cast<float>(2 * sheared.x);
+    splat.bend_zy = static_cast<float>(2 * sheared.y);
+    splat.bend_xx = static_cast<float>(bend[0][0]);
+    splat.bend_xy = static_cast<float>(bend[0][1]);
+    splat.bend_yy = static_cast<float>(bend[1][1]);
     splat.extent_x = static_cast<float>(std::sqrt(std::max(cxx, 0.0)));
     splat.extent_y = static_cast<float>(std::sqrt(std::max(cyy, 0.0)));
     return splat;

@@ -13,14 +13,17 @@
 namespace subvol::detail {
 
 /// A kernel in eye space, ready to be cut by a plane of constant depth z: with z_s = z − depth, its section has the centre
-/// center + shear·z_s, and e = z_s²·inv_szz + Δᵀ·conic·Δ for an offset Δ from that centre. Laid out as the shader has it.
+/// center + shear·z_s, and e = z_s²·inv_szz + Δᵀ·conic·Δ for an offset Δ from that centre; it stands for
+/// value + value_slope·z_s + bend_zz·z_s² + (gradient + z_s·bend_z)·Δ + Δᵀ·bend·Δ. Laid out as the shader has it.
 struct EyeSplat {
     float center_x, center_y, depth, inv_szz;
     float shear_x, shear_y, conic_xx, conic_xy;
     float conic_yy, value, gradient_x, gradient_y;
-    float value_slope, moment, extent_x, extent_y;  // value_slope: change of the section's central value with z_s
+    float value_slope, bend_zz, extent_x, extent_y;
+    float bend_zx, bend_zy, bend_xx, bend_xy;
+    float bend_yy, unused[3];
 };
-static_assert(sizeof(EyeSplat) == 64);
+static_assert(sizeof(EyeSplat) == 96);
 
 /// Everything about a frame that does not depend on who draws it. Kernels are binned by (tile, batch of sheets), by ascending
 /// id: bin = tile · batches + batch.
