@@ -89,4 +89,27 @@ void CellBlocks::evaluate(std::size_t cell, const std::array<double, 3>& uvw, co
     }
 }
 
+void CellBlocks::evaluate_mixed(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+                                Jet& jet) const {
+    const std::array<SampleStencil, 3> basis{SampleStencil(uvw[0], step[0]), SampleStencil(uvw[1], step[1]),
+                                             SampleStencil(uvw[2], step[2])};
+    jet.mixed_position = {Vec3(0.0), Vec3(0.0), Vec3(0.0)};
+    jet.mixed_value.assign(channels_, {0, 0, 0});
+    constexpr std::array<std::size_t, 3> stride{1, 5, 25};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
+        for (std::size_t i = 0; i < 5; ++i) {
+            if (basis[axis].value[i] == 0) continue;
+            for (std::size_t j = 0; j < 5; ++j) {
+                for (std::size_t k = 0; k < 5; ++k) {
+                    const double w = basis[axis].value[i] * basis[b].first[j] * basis[c].first[k];
+                    const Index p = point(cell, i * stride[axis] + j * stride[b] + k * stride[c]);
+                    jet.mixed_position[axis] += w * mesh_.points[p];
+                    for (std::size_t ch = 0; ch < channels_; ++ch) jet.mixed_value[ch][axis] += w * channel_value(p, ch);
+                }
+            }
+        }
+    }
+}
+
 }  // namespace subvol::detail

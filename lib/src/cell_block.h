@@ -24,10 +24,13 @@ public:
         std::array<Vec3, 3> d_position, dd_position;           // by u, v, w
         std::vector<double> value;                             // a channel
         std::vector<std::array<double, 3>> d_value, dd_value;  // a channel, by u, v, w
+        std::array<Vec3, 3> mixed_position;                    // by v and w, w and u, u and v
+        std::vector<std::array<double, 3>> mixed_value;
     };
 
-    /// step: the sample interval along u, v, w
+    /// step: the sample interval along u, v, w. The mixed derivatives are left alone.
     void evaluate(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
+    void evaluate_mixed(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
 
     [[nodiscard]] std::size_t channels() const { return channels_; }
 

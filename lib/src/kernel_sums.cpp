@@ -62,11 +62,18 @@ bool KernelSums::finish(double cells) {
     return flat;
 }
 
-RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const Kernel& kernel) {
+std::array<float, 6> without_moment(const Mat3& hessian, const std::array<float, 6>& frame) {
+    const Mat3 s(frame[0], frame[1], frame[2], frame[1], frame[3], frame[4], frame[2], frame[4], frame[5]);
+    double along = 0;  // H : S
+    for (int a = 0; a < 3; ++a) along += glm::dot(hessian[a], s[a]);
+    return six_floats(hessian - along / 3 * glm::inverse(s));
+}
+
+RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const SampleOptions& options) {
     if (count >= kNone)
         throw Error(ErrorCode::InvalidInput, std::to_string(count) + " samples are too many", {}, "fewer than 2³²");
     RbfVolume volume;
-    volume.kernel = kernel;
+    volume.kernel = options.kernel;
     volume.centers.resize(count);
     volume.frames.resize(count);
     for (const auto& attribute : mesh.attributes) {
@@ -76,6 +83,7 @@ RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const Kernel& ker
             channel.values.resize(count);
             channel.gradients.resize(count);
             channel.moments.resize(count);
+            if (options.correction == Correction::Full) channel.hessians.resize(count);
             volume.channels.push_back(std::move(channel));
         }
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "bucket_sort.h"
+#include "kernel_sums.h"
 
 namespace subvol::detail {
 
@@ -57,17 +58,16 @@ public:
         right_ += 4 * along * row + rows.transpose() * (across * change);
     }
 
-    /// Without its part along the frame, which is the moment's.
-    [[nodiscard]] std::array<float, 6> finish() const {
-        std::array<float, 6> six{};
-        if (used_ < 3) return six;
-        Eigen::Matrix3d h = symmetric((normal_ + 1e-9 * Eigen::Matrix<double, 6, 6>::Identity()).ldlt().solve(right_));
-        h -= h.trace() / 3 * Eigen::Matrix3d::Identity();
+    [[nodiscard]] Mat3 finish() const {
+        if (used_ < 3) return Mat3(0.0);
+        const Eigen::Matrix3d h = symmetric((normal_ + 1e-9 * Eigen::Matrix<double, 6, 6>::Identity()).ldlt().solve(right_));
         const Eigen::Matrix3d inverse = root_.triangularView<Eigen::Lower>().solve(Eigen::Matrix3d::Identity());
         const Eigen::Matrix3d world = inverse.transpose() * h * inverse;
-        constexpr std::array<std::array<int, 2>, 6> kPlaces{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
-        for (std::size_t k = 0; k < 6; ++k) six[k] = static_cast<float>(world(kPlaces[k][0], kPlaces[k][1]));
-        return six;
+        Mat3 hessian;
+        for (int a = 0; a < 3; ++a) {
+            for (int b = 0; b < 3; ++b) hessian[a][b] = world(a, b);
+        }
+        return hessian;
     }
 
 private:
@@ -81,7 +81,6 @@ private:
 
 void fit_hessians(const PointLines& lines, RbfVolume& volume) {
     const double radius = support_radius(volume.kernel);
-    for (RbfChannel& channel : volume.channels) channel.hessians.resize(volume.size());
     parallel_each(volume.size(), [&](std::size_t p) {
         HessianFit fit;
         for (RbfChannel& channel : volume.channels) {
@@ -94,7 +93,7 @@ void fit_hessians(const PointLines& lines, RbfVolume& volume) {
                 const double rise = double(channel.values[q]) - double(channel.values[p]);
                 fit.add(offset, rise - g.dot(offset), vector(channel.gradients[q]) - g);
             }
-            channel.hessians[p] = fit.finish();
+            channel.hessians[p] = without_moment(fit.finish(), volume.frames[p]);
         }
     });
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "boundary_rings.h"
 #include "bucket_sort.h"
@@ -75,12 +76,46 @@ public:
             }
             sums_.add(1, jet_.d_position[a], jet_.dd_position[a], d_.data(), dd_.data());
         }
+        if (options_.correction != Correction::Full) return;
+        blocks_.evaluate_mixed(cell, uvw, step, jet_);
+        jets_.push_back(jet_);
     }
 
     /// Returns whether the frame was flat and had to be thickened.
-    bool finish() { return sums_.finish(cells_); }
+    bool finish() {
+        const bool flat = sums_.finish(cells_);
+        for (std::size_t c = 0; c < volume_.channels.size() && options_.correction == Correction::Full; ++c) {
+            auto& channel = volume_.channels[c];
+            if (flat) {
+                channel.hessians[point_] = {};
+                continue;
+            }
+            const auto& g = channel.gradients[point_];
+            Mat3 mean(0.0);
+            for (const auto& jet : jets_) mean += hessian_in(jet, c, {g[0], g[1], g[2]}) / double(cells_);
+            channel.hessians[point_] = without_moment(mean, volume_.frames[point_]);
+        }
+        jets_.clear();
+        return flat;
+    }
 
 private:
+    /// J⁻ᵀ (∂²f − g·∂²x) J⁻¹, nothing where the cell is flat.
+    [[nodiscard]] static Mat3 hessian_in(const CellBlocks::Jet& jet, std::size_t channel, const Vec3& g) {
+        const Mat3 jacobian(jet.d_position[0], jet.d_position[1], jet.d_position[2]);
+        const double size = glm::length(jacobian[0]) * glm::length(jacobian[1]) * glm::length(jacobian[2]);
+        if (!(std::abs(glm::determinant(jacobian)) > 1e-6 * size)) return Mat3(0.0);
+        Mat3 second;
+        for (int a = 0; a < 3; ++a) {
+            const auto n = static_cast<std::size_t>(a);
+            second[a][a] = jet.dd_value[channel][n] - glm::dot(g, jet.dd_position[n]);
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            second[b][c] = second[c][b] = jet.mixed_value[channel][n] - glm::dot(g, jet.mixed_position[n]);
+        }
+        const Mat3 inverse = glm::inverse(jacobian);
+        return glm::transpose(inverse) * second * inverse;
+    }
+
     /// Control points keep their values whatever the rule.
     void write_values(Index cell, const std::array<double, 3>& uvw) {
         const auto at_end = [](double t) { return t == 0 || t == 1; };
@@ -102,6 +137,7 @@ private:
     std::size_t point_ = 0;
     int cells_ = 0;
     std::vector<double> d_, dd_;
+    std::vector<CellBlocks::Jet> jets_;  // of the point's cells
 };
 
 /// Samples all entities of a mesh.
@@ -133,7 +169,7 @@ public:
         report.on_faces = first_face.back() - first_edge.back();
         report.in_cells = first_cell.back() - first_face.back();
         report.points = first_cell.back();
-        result_.volume = empty_volume(mesh, report.points, options_.kernel);
+        result_.volume = empty_volume(mesh, report.points, options_);
 
         each(topology_.point_count, "sample vertices", [&](std::size_t p, auto& writer) { return sample_vertex(p, writer); });
         each(topology_.edges.size(), "sample edges",

@@ -124,7 +124,7 @@ SampleResult sample_at_points(const HexMesh& on_limit, const PointLines& lines, 
                               const SampleOptions& options) {
     constexpr std::size_t kTurn = std::size_t{1} << 20;  // points between two reports of progress
     SampleResult result;
-    result.volume = empty_volume(on_limit, lines.size(), options.kernel);
+    result.volume = empty_volume(on_limit, lines.size(), options);
     std::atomic<std::size_t> flat{0};
     for (std::size_t turn = 0; turn < lines.size(); turn += kTurn) {
         report_progress(options.progress, "sample", static_cast<double>(turn) / static_cast<double>(lines.size()));
