@@ -99,7 +99,7 @@ private:
     void describe_points(Report& report) {
         refuse_at("points");
         const RbfVolume volume = read_points_input(input_, report);
-        report["kernel"] = kernel_text(volume.kernel);
+        report["kernel"] = Json::parse(subvol::to_json(volume.kernel));
         report["bounds"] = to_json(volume.bounds);
         report["boundary_triangles"] = volume.boundary.triangles.size();
         for (const RbfChannel& channel : volume.channels) {

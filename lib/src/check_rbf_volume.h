@@ -4,7 +4,7 @@
 
 namespace subvol::detail {
 
-/// throws: Error(InvalidInput) if array lengths differ, a number is not finite, or the kernel is not radial
+/// throws: Error(InvalidInput) as `validate`, if the kernel is not radial, or there are 2³² points or more
 void check_rbf_volume(const RbfVolume& volume);
 
 }  // namespace subvol::detail

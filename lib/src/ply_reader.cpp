@@ -13,6 +13,8 @@ namespace {
 using Names = std::set<std::string, std::less<>>;
 constexpr std::array<const char*, 6> kFrame{"sxx", "sxy", "sxz", "syy", "syz", "szz"};
 constexpr std::array<const char*, 3> kGradient{"gx", "gy", "gz"};
+constexpr std::array<const char*, 1> kMoment{"moment"};
+constexpr std::array<const char*, 6> kHessian{"hxx", "hxy", "hxz", "hyy", "hyz", "hzz"};
 
 std::string suffix_of(std::size_t channel) {
     return channel == 0 ? "" : "_" + std::to_string(channel);
@@ -53,23 +55,26 @@ private:
             const std::string_view key = comment.substr(0, space);
             const std::string value(comment.substr(std::min(space + 1, comment.size())));
             if (key == "kernel") {
-                volume_.kernel = kernel_from_text(value);
+                volume_.kernel = kernel_from_json(value);
                 has_kernel = true;
             } else if (key == "channel") {
-                volume_.channels.push_back({value, {}, {}, {}});
+                volume_.channels.push_back({.name = value});
             } else if (key == "boundary_triangles") {
                 std::from_chars(value.data(), value.data() + value.size(), triangles_beside_);
             }
         }
         if (!has_kernel) in_.fail("the header has no comment that says the kernel", "write points with subvol");
-        if (volume_.channels.empty()) volume_.channels.push_back({"value", {}, {}, {}});
+        if (volume_.channels.empty()) volume_.channels.push_back({.name = "value"});
     }
 
     [[nodiscard]] Names wanted() const {
         Names names{"x", "y", "z", "cx", "cy", "cz"};
         names.insert(kFrame.begin(), kFrame.end());
         for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
-            for (const char* name : {"value", "gx", "gy", "gz", "moment"}) names.insert(name + suffix_of(c));
+            names.insert("value" + suffix_of(c));
+            for (const char* name : kGradient) names.insert(name + suffix_of(c));
+            for (const char* name : kMoment) names.insert(name + suffix_of(c));
+            for (const char* name : kHessian) names.insert(name + suffix_of(c));
         }
         return names;
     }
@@ -95,14 +100,26 @@ private:
         return points;
     }
 
+    // One tuple a row; numbers that are not there are 0, and without any there are no tuples.
+    template <std::size_t N>
+    [[nodiscard]] std::vector<std::array<float, N>> tuples(const PlyTable& table, const PlyElement& element,
+                                                           const std::array<const char*, N>& names,
+                                                           const std::string& suffix) const {
+        std::vector<std::array<float, N>> tuples;
+        for (std::size_t k = 0; k < N; ++k) {
+            if (!table.contains(names[k] + suffix)) continue;
+            const auto& values = column(table, element, names[k] + suffix);
+            tuples.resize(values.size());
+            for (std::size_t i = 0; i < values.size(); ++i) tuples[i][k] = static_cast<float>(values[i]);
+        }
+        return tuples;
+    }
+
     void take_vertices(const PlyElement& element) {
         const PlyTable table = read_ply_element(in_, header_, element, wanted());
         volume_.centers = points(table, element, table.contains("cx") ? "c" : "");
-        volume_.frames.resize(element.count);
-        for (std::size_t k = 0; k < kFrame.size(); ++k) {
-            const auto& values = column(table, element, kFrame[k]);
-            for (std::size_t i = 0; i < element.count; ++i) volume_.frames[i][k] = static_cast<float>(values[i]);
-        }
+        for (const char* name : kFrame) static_cast<void>(column(table, element, name));  // all are needed
+        volume_.frames = tuples(table, element, kFrame, "");
         for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
             take_channel(table, element, suffix_of(c), volume_.channels[c]);
         }
@@ -110,19 +127,12 @@ private:
 
     // Gradients and moments that are not there are 0: a kernel then stands for its value alone.
     void take_channel(const PlyTable& table, const PlyElement& element, const std::string& suffix, RbfChannel& channel) const {
-        const auto& values = column(table, element, "value" + suffix);
-        channel.values.assign(element.count, 0);
-        std::transform(values.begin(), values.end(), channel.values.begin(), [](double v) { return static_cast<float>(v); });
-        channel.gradients.assign(element.count, {});
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (!table.contains(kGradient[k] + suffix)) continue;
-            const auto& along = column(table, element, kGradient[k] + suffix);
-            for (std::size_t i = 0; i < element.count; ++i) channel.gradients[i][k] = static_cast<float>(along[i]);
-        }
-        channel.moments.assign(element.count, 0);
-        if (!table.contains("moment" + suffix)) return;
-        const auto& moments = column(table, element, "moment" + suffix);
-        std::transform(moments.begin(), moments.end(), channel.moments.begin(), [](double v) { return static_cast<float>(v); });
+        for (const double value : column(table, element, "value" + suffix)) channel.values.push_back(static_cast<float>(value));
+        channel.gradients = tuples(table, element, kGradient, suffix);
+        channel.gradients.resize(element.count);
+        for (const auto& moment : tuples(table, element, kMoment, suffix)) channel.moments.push_back(moment[0]);
+        channel.moments.resize(element.count);
+        channel.hessians = tuples(table, element, kHessian, suffix);
     }
 
     void take_boundary_points(const PlyTable& table, const PlyElement& element) {

@@ -76,7 +76,10 @@ public:
             properties("double", Names{"cx", "cy", "cz"});
         }
         for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
-            properties("float", Names{"value", "gx", "gy", "gz", "moment"}, c == 0 ? "" : "_" + std::to_string(c));
+            const std::string suffix = c == 0 ? "" : "_" + std::to_string(c);
+            properties("float", Names{"value", "gx", "gy", "gz", "moment"}, suffix);
+            if (volume_.channels[c].hessians.empty()) continue;
+            properties("float", Names{"hxx", "hxy", "hxz", "hyy", "hyz", "hzz"}, suffix);
         }
         properties("float", Names{"sxx", "sxy", "sxz", "syy", "syz", "szz"});
         return text;
@@ -93,6 +96,7 @@ public:
                 out.put(channel.values[i]);
                 out.put_all(channel.gradients[i]);
                 out.put(channel.moments[i]);
+                if (!channel.hessians.empty()) out.put_all(channel.hessians[i]);
             }
             out.put_all(volume_.frames[i]);
             out.end_row();
@@ -107,10 +111,11 @@ private:
 
 std::string comments(const RbfVolume& volume) {
     std::string text =
-        "comment OpenSubVol points: with d = x - centre and e = d.inverse(S).d a point stands for value + g.d + moment*e;\n"
+        "comment OpenSubVol points: with d = x - centre and e = d.inverse(S).d a point stands for value + g.d + moment*e\n"
+        "comment + d.H.d/2, H being 0 where it is left out;\n"
         "comment the field is their mean inside the boundary, weighted by the kernel at (its support radius)*sqrt(e)\n"
         "comment kernel " +
-        kernel_text(volume.kernel) + "\n";
+        to_json(volume.kernel) + "\n";
     for (const RbfChannel& channel : volume.channels) {
         text += "comment channel " + without_controls(channel.name) + "\n";
     }

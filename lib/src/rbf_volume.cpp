@@ -38,10 +38,16 @@ void check_channel(const RbfChannel& channel, std::size_t points) {
     if (channel.values.size() != points || channel.gradients.size() != points || channel.moments.size() != points) {
         throw Error(ErrorCode::InvalidInput, name + " has not one value, gradient and moment a point");
     }
+    if (!channel.hessians.empty() && channel.hessians.size() != points) {
+        throw Error(ErrorCode::InvalidInput, name + " has not one Hessian a point", {}, "none at all are fine too");
+    }
     for (std::size_t i = 0; i < points; ++i) {
         if (!std::isfinite(channel.values[i])) refuse_point(i, "the value of " + name + " is not finite");
         if (!all_finite(channel.gradients[i])) refuse_point(i, "the gradient of " + name + " is not finite");
         if (!std::isfinite(channel.moments[i])) refuse_point(i, "the moment of " + name + " is not finite");
+    }
+    for (std::size_t i = 0; i < channel.hessians.size(); ++i) {
+        if (!all_finite(channel.hessians[i])) refuse_point(i, "the Hessian of " + name + " is not finite");
     }
 }
 
@@ -67,6 +73,7 @@ Box box_of(const RbfVolume& volume) {
 }
 
 void validate(const RbfVolume& volume) {
+    validate(volume.kernel);
     if (volume.frames.size() != volume.size()) throw Error(ErrorCode::InvalidInput, "there is not one frame a point");
     for (std::size_t i = 0; i < volume.size(); ++i) {
         if (!is_finite(volume.centers[i])) refuse_point(i, "a coordinate is not finite");

@@ -16,8 +16,9 @@ inline constexpr const char* kVtpSize = "pscale";
 // Behind the name of a channel.
 inline constexpr const char* kVtpGradient = ".gradient";
 inline constexpr const char* kVtpMoment = ".moment";
+inline constexpr const char* kVtpHessian = ".hessian";
 
 /// VTK's symmetric tensors are xx yy zz xy yz xz: which of ours each of them is.
-inline constexpr std::array<std::size_t, 6> kVtpFrameOrder{0, 3, 5, 1, 4, 2};
+inline constexpr std::array<std::size_t, 6> kVtpTensorOrder{0, 3, 5, 1, 4, 2};
 
 }  // namespace subvol

@@ -31,18 +31,15 @@ public:
 
     [[nodiscard]] RbfVolume volume() const {
         RbfVolume volume;
-        volume.kernel = kernel_from_text(strings(kVtpKernel).at(0));
+        volume.kernel = kernel_from_json(strings(kVtpKernel).at(0));
         volume.centers = points();
         const std::size_t count = volume.size();
-        volume.frames.resize(count);
-        const auto frames = tuples<6>(kVtpFrame, count);
-        for (std::size_t i = 0; i < count; ++i) {
-            for (std::size_t k = 0; k < 6; ++k) volume.frames[i][kVtpFrameOrder[k]] = frames[i][k];
-        }
+        volume.frames = tensors(kVtpFrame, count);
         for (const std::string& name : strings(kVtpChannels)) {
-            RbfChannel channel{name, {}, tuples<3>(name + kVtpGradient, count), {}};
+            RbfChannel channel{.name = name, .gradients = tuples<3>(name + kVtpGradient, count)};
             for (const auto& value : tuples<1>(name, count)) channel.values.push_back(value[0]);
             for (const auto& moment : tuples<1>(name + kVtpMoment, count)) channel.moments.push_back(moment[0]);
+            if (has(name + kVtpHessian)) channel.hessians = tensors(name + kVtpHessian, count);
             volume.channels.push_back(std::move(channel));
         }
         return volume;
@@ -73,6 +70,10 @@ public:
     }
 
 private:
+    [[nodiscard]] bool has(const std::string& name) const {
+        return !piece_.child("PointData").find_child_by_attribute("Name", without_controls(name).c_str()).empty();
+    }
+
     template <std::size_t N>
     [[nodiscard]] std::vector<std::array<float, N>> tuples(const std::string& name, std::size_t count) const {
         if (count == 0) return {};
@@ -82,6 +83,16 @@ private:
         std::vector<std::array<float, N>> tuples(count);
         for (std::size_t i = 0; i < values.size(); ++i) tuples[i / N][i % N] = static_cast<float>(values[i]);
         return tuples;
+    }
+
+    // Symmetric ones, in our order.
+    [[nodiscard]] std::vector<std::array<float, 6>> tensors(const std::string& name, std::size_t count) const {
+        auto tensors = tuples<6>(name, count);
+        for (auto& tensor : tensors) {
+            const auto theirs = tensor;
+            for (std::size_t k = 0; k < 6; ++k) tensor[kVtpTensorOrder[k]] = theirs[k];
+        }
+        return tensors;
     }
 
     // One at least; the characters' numbers, a 0 behind each string.

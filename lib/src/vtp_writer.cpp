@@ -49,34 +49,41 @@ void write_field_data(VtkXmlWriter& out, const RbfVolume& volume) {
     for (const auto& channel : volume.channels) names.push_back(channel.name);
     const auto triangles = static_cast<std::int64_t>(volume.boundary.triangles.size());
     out.line("<FieldData>");
-    out.strings(kVtpKernel, std::array{kernel_text(volume.kernel)});
+    out.strings(kVtpKernel, std::array{to_json(volume.kernel)});
     out.strings(kVtpChannels, names);
     out.line("<DataArray type=\"Int64\" Name=\"" + std::string(kVtpTriangles) + "\" NumberOfTuples=\"1\" format=\"ascii\">" +
              std::to_string(triangles) + "</DataArray>\n</FieldData>");
 }
 
+void write_tensors(VtkXmlWriter& out, const std::string& name, const std::vector<std::array<float, 6>>& tensors) {
+    std::vector<std::array<float, 6>> in_order(tensors.size());
+    for (std::size_t i = 0; i < tensors.size(); ++i) {
+        for (std::size_t k = 0; k < 6; ++k) in_order[i][k] = tensors[i][kVtpTensorOrder[k]];
+    }
+    out.array(name, 6, flat(in_order));
+}
+
 /// The ellipsoids for people to look at: √S as nine components, and the radius of the ball of its volume.
 void write_shapes(VtkXmlWriter& out, const RbfVolume& volume) {
-    std::vector<std::array<float, 6>> frames(volume.size());
     std::vector<std::array<float, 9>> roots(volume.size());
     std::vector<float> sizes(volume.size());
     tbb::parallel_for(std::size_t{0}, volume.size(), [&](std::size_t i) {
-        for (std::size_t k = 0; k < 6; ++k) frames[i][k] = volume.frames[i][kVtpFrameOrder[k]];
         const auto [half_axes, directions] = principal_axes(volume.frames[i]);
         Mat3 root(0.0);
         for (int k = 0; k < 3; ++k) root += half_axes[k] * glm::outerProduct(directions[k], directions[k]);
         for (int k = 0; k < 9; ++k) roots[i][static_cast<std::size_t>(k)] = static_cast<float>(root[k / 3][k % 3]);
         sizes[i] = static_cast<float>(std::cbrt(half_axes.x * half_axes.y * half_axes.z));
     });
-    out.array(kVtpFrame, 6, flat(frames));
+    write_tensors(out, kVtpFrame, volume.frames);
     out.array(kVtpEllipsoid, 9, flat(roots));
     out.array<float>(kVtpSize, 1, sizes);
 }
 
+// A channel without Hessians needs their name too: another array of that name would be read for them.
 void check_names(const RbfVolume& volume) {
     std::set<std::string> names{kVtpFrame, kVtpEllipsoid, kVtpSize};
     for (const auto& channel : volume.channels) {
-        for (const char* suffix : {"", kVtpGradient, kVtpMoment}) {
+        for (const char* suffix : {"", kVtpGradient, kVtpMoment, kVtpHessian}) {
             if (names.insert(without_controls(channel.name + suffix)).second) continue;
             throw Error(ErrorCode::InvalidInput, "two arrays would be named \"" + channel.name + suffix + "\"");
         }
@@ -89,6 +96,7 @@ void write_point_data(VtkXmlWriter& out, const RbfVolume& volume) {
         out.array<float>(channel.name, 1, channel.values);
         out.array(channel.name + kVtpGradient, 3, flat(channel.gradients));
         out.array<float>(channel.name + kVtpMoment, 1, channel.moments);
+        if (!channel.hessians.empty()) write_tensors(out, channel.name + kVtpHessian, channel.hessians);
     }
     write_shapes(out, volume);
     out.line("</PointData>");

@@ -76,6 +76,7 @@ class PointsFiles(InFolder):
             self.assertEqual(info["points"], made["points"])
             self.assertEqual([channel["name"] for channel in info["channels"]], ["density"])
             self.assertLess(info["channels"][0]["min"], info["channels"][0]["max"])
+            self.assertEqual(info["kernel"], {"type": "compact", "radius": 1.43})
             found = [info[key] for key in ("points", "channels", "kernel", "bounds", "boundary_triangles")]
             expected = expected or found
             self.assertEqual(found, expected, name)
@@ -125,6 +126,20 @@ class PointsFiles(InFolder):
             edges |= {(a, b), (b, c), (c, a)}
         self.assertEqual(edges, {(b, a) for a, b in edges}, "closed")
 
+    def test_hessians_are_in_the_files(self):
+        for name in ("a.ply", "b.vtp", "c.vdb"):
+            self.write(name, "--correction", "full", *(["--ascii"] if name == "a.ply" else []))
+            self.run_ok("info", name)
+        header, _, body = (self.folder / "a.ply").read_text().partition("end_header\n")
+        vertex = header.partition("element vertex ")[2].partition("element")[0]
+        names = re.findall(r"^property \w+ (\w+)$", vertex, re.MULTILINE)
+        rows = [dict(zip(names, map(float, line.split()))) for line in body.splitlines()[:int(vertex.split()[0])]]
+        kind, components, data = vtk_arrays(self.folder / "b.vtp")["density.hessian"]
+        self.assertEqual((kind, components), ("Float32", 6))
+        in_order = [row[name] for row in rows for name in ("hxx", "hyy", "hzz", "hxy", "hyz", "hxz")]
+        self.assertEqual(array.array("f", data), array.array("f", in_order))
+        self.assertGreater(max(map(abs, in_order)), 0)
+
     @unittest.skipUnless(shutil.which("vdb_print"), "OpenVDB's vdb_print (package openvdb-tools) is missing")
     def test_openvdbs_own_tool_finds_the_points_in_a_vdb(self):
         self.write("a.vdb")
@@ -160,7 +175,7 @@ class PointsFiles(InFolder):
         self.assertEqual(self.files(), ["a.ply", "tf.json"])
 
     def test_lying_and_cut_off_files_get_one_sentence(self):
-        lie = "ply\nformat binary_little_endian 1.0\ncomment kernel kernel_radius 1.43\nelement vertex 1000000000000\n"
+        lie = "ply\nformat binary_little_endian 1.0\ncomment kernel {\"type\":\"compact\"}\nelement vertex 1000000000000\n"
         (self.folder / "lie.ply").write_text(lie + "property float x\nend_header\n" + "0" * 100)
         (self.folder / "empty.vtp").write_text("")
         for name in ("cut.ply", "cut.vtp", "cut.vdb"):

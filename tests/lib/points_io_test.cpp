@@ -4,12 +4,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <map>
 #include <random>
 #include <sstream>
 
+#include "kernel_samples.h"
 #include "rbf_volumes.h"
 #include "subvol/principal_axes.h"
 #include "subvol/surface_io.h"
@@ -58,7 +60,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST_F(PointsIo, EveryFormGivesBackEveryBit) {
-    for (const std::size_t channels : {1, 3}) {
+    for (const std::size_t channels : {1U, 3U}) {
         const RbfVolume volume = random_points(500, channels);
         for (const Form& form : kForms) {
             SCOPED_TRACE(std::string(form.file) + (form.options.ascii ? " ascii" : "") +
@@ -70,6 +72,45 @@ TEST_F(PointsIo, EveryFormGivesBackEveryBit) {
             EXPECT_EQ(file_count(), form.boundary_beside ? 2u : 1u);
         }
     }
+}
+
+TEST_F(PointsIo, HessiansOfASampledVolumeComeBack) {
+    const RbfVolume volume = ball_with_hessians();
+    for (const Form& form : kForms) {
+        remove_all();
+        const RbfVolume read = written(form, volume);
+        EXPECT_EQ(read.centers, volume.centers);
+        expect_same_but_centers(read, volume);
+    }
+}
+
+TEST_F(PointsIo, EveryKernelComesBack) {
+    RbfVolume volume = random_points(5, 1);
+    const auto expect_kernel = [&](const Kernel& kernel) {
+        volume.kernel = kernel;
+        for (const Form& form : kForms) expect_same_but_centers(written(form, volume), volume);
+    };
+    for (const std::string& name : kernel_names()) expect_kernel(named_kernel(name));
+    for (const auto& [name, kernel] : every_kernel()) expect_kernel(kernel);
+}
+
+// As another reader of VTK finds them: the same tensor in text, put in the array's place, is the same Hessian.
+TEST_F(PointsIo, VtpHessiansAreInTheOrderOfVtk) {
+    RbfVolume volume = random_points(1, 2);
+    volume.channels[1].name = "t";
+    volume.channels[1].hessians = {{1, 2, 3, 4, 5, 6}};  // xx xy xz yy yz zz
+    write_points(path("a.vtp"), volume);
+    const std::string text = read_bytes(path("a.vtp"));
+    EXPECT_THAT(text, testing::Not(HasSubstr("\"density.hessian\"")));
+    const std::string array = "<DataArray type=\"Float32\" Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"appended\"";
+    ASSERT_THAT(text, HasSubstr(array));
+    // xx yy zz xy yz xz
+    const std::size_t at = text.find(array), end = text.find("/>", at);
+    const std::string ascii =
+        "<DataArray type=\"Float32\" Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"ascii\">1 4 6 2 5 3</DataArray>";
+    write("b.vtp", text.substr(0, at) + ascii + text.substr(end + 2));
+    EXPECT_EQ(read_points(path("b.vtp")).channels[1].hessians, volume.channels[1].hessians);
+    EXPECT_EQ(read_points(path("a.vtp")).channels[1].hessians, volume.channels[1].hessians);
 }
 
 TEST_F(PointsIo, WithoutABoundaryThereIsNone) {
@@ -115,7 +156,7 @@ TEST_F(PointsIo, PlyOfOtherMakers) {
         "property short value\nproperty double y\n";
     const auto text = [&](const std::string& format) {
         return "ply\r\nformat " + format +
-               " 1.0\r\ncomment kernel kernel_radius 1.5\ncomment by somebody else\nobj_info none\n" +
+               " 1.0\r\ncomment kernel {\"type\": \"compact\", \"radius\": 1.5}\ncomment by somebody else\nobj_info none\n" +
                "element camera 1\nproperty float view\nelement vertex 2\n" + properties +
                "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
     };
@@ -124,6 +165,7 @@ TEST_F(PointsIo, PlyOfOtherMakers) {
         EXPECT_EQ(read.frames[1], (std::array<float, 6>{4, 1, .5f, 9, .25f, 16}));
         EXPECT_EQ(read.channels[0].values, (std::vector<float>{-7, 8}));
         EXPECT_EQ(read.channels[0].gradients[1], (std::array<float, 3>{}));
+        EXPECT_TRUE(read.channels[0].hessians.empty());
         EXPECT_EQ(support_radius(read.kernel), 1.5);
         EXPECT_TRUE(read.boundary.triangles.empty());
     };
@@ -165,8 +207,10 @@ TEST_F(PointsIo, PlyThatIsWrong) {
     const std::vector<std::array<std::string, 3>> mistakes{
         {"ply\n", "pla\n", "line 1: not a PLY file"},
         {"format ascii", "format ebcdic", "line 2: format \"ebcdic\" is unknown"},
-        {"comment kernel kernel_radius 1.43\n", "", "no comment that says the kernel"},
-        {"kernel_radius 1.43", "kernel_radius -1", "is no kernel"},
+        {"comment kernel ", "comment ", "no comment that says the kernel"},
+        {"1.43", "-1.43", "'radius' is -1.43"},
+        {"\"compact\"", "\"wide\"", "there is no type 'wide'"},
+        {"comment kernel {", "comment kernel ", "no JSON"},
         {"element vertex 3", "element vertex 1000000000000", "there is room for"},
         {"element vertex 3", "element vertex 99999999999999999999999", "is no count"},
         {"element vertex 3", "element vertex -3", "is no count"},
@@ -192,13 +236,15 @@ TEST_F(PointsIo, PlyThatIsWrong) {
     EXPECT_THAT(error_of_text("b.ply", ""), HasSubstr("not a PLY file"));
     // No properties, so that no row takes a byte.
     EXPECT_THAT(error_of_text("b.ply",
-                              "ply\nformat ascii 1.0\ncomment kernel kernel_radius 1\nelement vertex 1000000000000\n"
+                              "ply\nformat ascii 1.0\ncomment kernel {\"type\":\"compact\"}\nelement vertex 1000000000000\n"
                               "end_header\n"),
                 HasSubstr("has no property"));
 }
 
 TEST_F(PointsIo, VtpThatIsWrong) {
-    write_points(path("a.vtp"), random_points(3, 1));
+    RbfVolume volume = random_points(3, 2);
+    volume.channels[1].name = "t";
+    write_points(path("a.vtp"), volume);
     const std::string good = read_bytes(path("a.vtp"));
     const std::vector<std::array<std::string, 3>> mistakes{
         {"type=\"PolyData\"", "type=\"ImageData\"", "\"ImageData\" is not a PolyData"},
@@ -209,7 +255,9 @@ TEST_F(PointsIo, VtpThatIsWrong) {
         {"Name=\"density.moment\"", "Name=\"other\"", "no array \"density.moment\""},
         {"Name=\"kernel\"", "Name=\"other\"", "no array \"kernel\""},
         {"<FieldData>", "<Other>", "not well-formed XML"},
-        {"107 101", "108 101", "is no kernel"},
+        {"123 34", "91 34", "no JSON"},
+        {"Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"appended\"",
+         "Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"ascii\"", "18 are needed: 6 a point"},
         {"offset=\"0\"", "offset=\"999999999\"", "lies behind the appended data"},
         {"\n_AQ", "\n_/w", "compressed blocks go beyond the end of the data"},
     };
@@ -287,11 +335,16 @@ TEST_F(PointsIo, VolumesThatAreNoneAreRefused) {
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].name = "density"; }), HasSubstr("two channels are named"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels.clear(); }), HasSubstr("no channel"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].moments.pop_back(); }), HasSubstr("\"Temp."));
+    EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].hessians.pop_back(); }), HasSubstr("not one Hessian a point"));
+    EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].hessians[2][4] = NAN; }), HasSubstr("point 2: the Hessian of"));
+    EXPECT_THAT(error_with([](RbfVolume& v) { v.kernel = CompactKernel{-1}; }), HasSubstr("'radius' is -1"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.frames[2][3] = 0; }), HasSubstr("point 2"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.boundary.triangles[0][0] = 4; }), HasSubstr("no point 4"));
     RbfVolume clash = good;
     clash.channels[1].name = "frame";
     EXPECT_THAT(error_of([&] { write_points(path("a.vtp"), clash); }), HasSubstr("two arrays would be named \"frame\""));
+    clash.channels[1].name = "density.hessian";  // though "density" has none
+    EXPECT_THAT(error_of([&] { write_points(path("a.vtp"), clash); }), HasSubstr("named \"density.hessian\""));
     EXPECT_EQ(file_count(), 0u);
 }
 

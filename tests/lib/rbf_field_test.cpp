@@ -84,7 +84,9 @@ TEST(RbfField, IsTheSumOverAllKernels) {
             ++inside;
             EXPECT_NEAR(*actual, *expected, 1e-9 * (1 + std::abs(*expected)));  // doubles, frames of condition 1e4
         }
-        if (count >= 64) EXPECT_GT(inside, 100u);
+        if (count >= 64) {
+            EXPECT_GT(inside, 100u);
+        }
     }
 }
 
@@ -191,10 +193,13 @@ TEST(RbfField, RefusesWhatIsNoVolume) {
     refuse("least weight", good, {.least_weight = -1});
     RbfVolume bad = good;
     bad.frames.pop_back();
-    refuse("differ in length", bad);
+    refuse("not one frame a point", bad);
     bad = good;
     bad.channels[0].values[3] = NAN;
-    refuse("kernel 3", bad);
+    refuse("point 3", bad);
+    bad = good;
+    bad.channels[0].hessians.resize(4);
+    refuse("not one Hessian a point", bad);
     bad = good;
     bad.kernel = CubicConvolutionKernel{};
     refuse("not radial", bad);

@@ -11,6 +11,7 @@
 #include <random>
 #include <set>
 
+#include "lib/kernel_samples.h"
 #include "lib/rbf_volumes.h"
 #include "lib/temp_folder.h"
 #include "subvol/points_io.h"
@@ -44,7 +45,7 @@ void expect_round_trip(const RbfVolume& volume, const std::filesystem::path& pat
 }
 
 TEST_F(VdbPoints, ComeBackInTheirOrder) {
-    for (const std::size_t channels : {1, 3}) {
+    for (const std::size_t channels : {1U, 3U}) {
         const RbfVolume volume = random_points(5000, channels);
         write_vdb_points(path("a.vdb"), volume);
         const double voxel = open_grid(path("a.vdb"))->voxelSize().x();
@@ -55,10 +56,36 @@ TEST_F(VdbPoints, ComeBackInTheirOrder) {
     EXPECT_TRUE(holds_vdb_points(path("a.vdb")));
 }
 
+TEST_F(VdbPoints, HessiansOfASampledVolumeComeBack) {
+    const RbfVolume volume = ball_with_hessians();
+    write_vdb_points(path("a.vdb"), volume);
+    expect_same_but_centers(read_vdb_points(path("a.vdb")), volume);
+}
+
+TEST_F(VdbPoints, EveryKernelComesBack) {
+    RbfVolume volume = random_points(5, 1);
+    const auto expect_kernel = [&](const Kernel& kernel) {
+        volume.kernel = kernel;
+        write_vdb_points(path("a.vdb"), volume);
+        expect_same_but_centers(read_vdb_points(path("a.vdb")), volume);
+    };
+    for (const std::string& name : kernel_names()) expect_kernel(named_kernel(name));
+    for (const auto& [name, kernel] : every_kernel()) expect_kernel(kernel);
+}
+
+// Names that would fall together get underscores, and the channels keep their own Hessians, or none.
+TEST_F(VdbPoints, NamesOfHessiansDoNotClash) {
+    RbfVolume volume = random_points(50, 4);
+    volume.channels[1].name = "density.hessian";
+    volume.channels[3].name = "density_hessian";
+    write_vdb_points(path("a.vdb"), volume);
+    expect_same_but_centers(read_vdb_points(path("a.vdb")), volume);
+}
+
 TEST_F(VdbPoints, LieTheSameForAnyNumberOfThreads) {
     const RbfVolume volume = random_points(5000, 1);
     std::vector<std::int32_t> expected;
-    for (const std::size_t threads : {1, 3}) {
+    for (const std::size_t threads : {1U, 3U}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
         write_vdb_points(path("a.vdb"), volume);
         const auto grid = open_grid(path("a.vdb"));
@@ -94,14 +121,14 @@ TEST_F(VdbPoints, AttributesMeanWhatHoudiniTakesThemFor) {
     write_vdb_points(path("a.vdb"), volume, {.points_per_voxel = 4, .creator = "a test"});
     const auto grid = open_grid(path("a.vdb"));
     EXPECT_EQ(grid->getCreator(), "a test");
-    EXPECT_EQ(grid->metaValue<std::string>("kernel"), kernel_text(volume.kernel));
+    EXPECT_EQ(grid->metaValue<std::string>("kernel"), to_json(volume.kernel));
     EXPECT_EQ(grid->metaValue<std::string>("channel_1"), volume.channels[1].name);
     EXPECT_EQ(openvdb::points::pointCount(grid->tree()), volume.size());
     std::set<std::string> names;
     for (const auto& [name, at] : grid->tree().cbeginLeaf()->attributeSet().descriptor().map()) names.insert(name);
     EXPECT_EQ(names, (std::set<std::string>{"P", "id", "frame", "orient", "scale", "pscale", "density", "density_gradient",
                                             "density_moment", "Temp___K________", "Temp___K_________gradient",
-                                            "Temp___K_________moment"}));
+                                            "Temp___K_________moment", "Temp___K_________hessian"}));
     for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
         using namespace openvdb;
         const points::AttributeHandle<Quats> orient(leaf->constAttributeArray("orient"));
@@ -145,6 +172,20 @@ TEST_F(VdbPoints, DeletedPointsLeaveTheOthersInOrder) {
         while (from < volume.size() && volume.frames[from] != read.frames[i]) ++from;
         ASSERT_LT(from, volume.size()) << "in the old order";
     }
+}
+
+TEST_F(VdbPoints, HessiansOfSomePointsOnlyAreRefused) {
+    RbfVolume volume = random_points(5000, 2);
+    write_vdb_points(path("a.vdb"), volume);
+    volume.channels[1].hessians.clear();
+    write_vdb_points(path("b.vdb"), volume);
+    const auto with = open_grid(path("a.vdb")), without = open_grid(path("b.vdb"));
+    ASSERT_GT(with->tree().leafCount(), 1u);
+    using Leaf = openvdb::points::PointDataGrid::TreeType::LeafNodeType;
+    const openvdb::Coord origin = with->tree().cbeginLeaf()->origin();
+    with->tree().addLeaf(without->tree().stealNode<Leaf>(origin, 0, /*active=*/false));
+    openvdb::io::File(path("c.vdb").string()).write({with});
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_vdb_points(path("c.vdb"))); }), HasSubstr("not one Hessian a point"));
 }
 
 TEST_F(VdbPoints, OtherFilesAreRefused) {

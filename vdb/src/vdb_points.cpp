@@ -5,8 +5,10 @@
 #include <openvdb/tools/PointIndexGrid.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "subvol/error.h"
@@ -29,6 +31,7 @@ constexpr const char* kTriangles = "boundary_triangles";
 constexpr const char* kChannel = "channel_";
 constexpr const char* kGradient = "_gradient";
 constexpr const char* kMoment = "_moment";
+constexpr const char* kHessian = "_hessian";
 constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB takes a transform for singular whose determinant is below 3e-15
 constexpr double kMostVoxels = 1 << 30;        // from the origin, along an axis: voxels are numbered with 32 bits
 
@@ -41,8 +44,9 @@ std::vector<std::string> attribute_names(const std::vector<std::string>& channel
             if (!std::isalnum(static_cast<unsigned char>(c)) || static_cast<unsigned char>(c) > 127) c = '_';
         }
         if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front()))) name.insert(0, 1, '_');
-        while (used.contains(name) || used.contains(name + kGradient) || used.contains(name + kMoment)) name += '_';
-        used.insert({name, name + kGradient, name + kMoment});
+        const auto attributes = [&] { return std::array{name, name + kGradient, name + kMoment, name + kHessian}; };
+        while (std::ranges::any_of(attributes(), [&](const std::string& one) { return used.contains(one); })) name += '_';
+        for (const std::string& one : attributes()) used.insert(one);
         names.push_back(name);
     }
     return names;
@@ -65,6 +69,15 @@ double voxel_size(const RbfVolume& volume, double points_per_voxel) {
 
 openvdb::Vec3f to_vdb(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+openvdb::Mat3s to_vdb(const std::array<float, 6>& tensor) {
+    const auto& [xx, xy, xz, yy, yz, zz] = tensor;
+    return {xx, xy, xz, xy, yy, yz, xz, yz, zz};
+}
+
+std::array<float, 6> from_vdb(const openvdb::Mat3s& s) {
+    return {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
 }
 
 /// A point grid to which attributes are added one after the other.
@@ -99,10 +112,7 @@ private:
 };
 
 void add_shapes(PointsWriter& writer, const RbfVolume& volume) {
-    writer.add<openvdb::Mat3s>("frame", [&](std::size_t i) {
-        const auto& [xx, xy, xz, yy, yz, zz] = volume.frames[i];
-        return openvdb::Mat3s(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    });
+    writer.add<openvdb::Mat3s>("frame", [&](std::size_t i) { return to_vdb(volume.frames[i]); });
     std::vector<PrincipalAxes> axes;
     std::vector<double> sizes;
     for (const auto& frame : volume.frames) {
@@ -133,6 +143,8 @@ void add_channels(PointsWriter& writer, const RbfVolume& volume) {
             return openvdb::Vec3f(g[0], g[1], g[2]);
         });
         writer.add<float>(names[c] + kMoment, [&](std::size_t i) { return channel.moments[i]; });
+        if (channel.hessians.empty()) continue;
+        writer.add<openvdb::Mat3s>(names[c] + kHessian, [&](std::size_t i) { return to_vdb(channel.hessians[i]); });
     }
 }
 
@@ -144,7 +156,7 @@ Grid::Ptr make_grid(const RbfVolume& volume, const VdbPointsOptions& options) {
     add_channels(writer, volume);
     const Grid::Ptr grid = writer.grid();
     grid->setCreator(options.creator);
-    grid->insertMeta(kKernel, openvdb::StringMetadata(kernel_text(volume.kernel)));
+    grid->insertMeta(kKernel, openvdb::StringMetadata(to_json(volume.kernel)));
     grid->insertMeta(kTriangles, openvdb::Int64Metadata(static_cast<std::int64_t>(volume.boundary.triangles.size())));
     return grid;
 }
@@ -157,24 +169,36 @@ struct ChannelHandles {
     Handle<float> values;
     Handle<openvdb::Vec3f> gradients;
     Handle<float> moments;
+    std::optional<Handle<openvdb::Mat3s>> hessians;
 
     ChannelHandles(const Leaf& leaf, const std::string& name)
         : values(leaf.constAttributeArray(name)),
           gradients(leaf.constAttributeArray(name + kGradient)),
-          moments(leaf.constAttributeArray(name + kMoment)) {}
+          moments(leaf.constAttributeArray(name + kMoment)) {
+        if (leaf.hasAttribute(name + kHessian)) hessians.emplace(leaf.constAttributeArray(name + kHessian));
+    }
+
+    /// Puts the numbers of a point behind those that the channel has.
+    void append_to(RbfChannel& channel, openvdb::Index point) const {
+        const openvdb::Vec3f g = gradients.get(point);
+        channel.values.push_back(values.get(point));
+        channel.gradients.push_back({g.x(), g.y(), g.z()});
+        channel.moments.push_back(moments.get(point));
+        if (hessians) channel.hessians.push_back(from_vdb(hessians->get(point)));
+    }
 };
 
 /// Takes the points out of a grid, leaf by leaf.
 class PointsReader {
 public:
     explicit PointsReader(const Grid& grid) : grid_(grid) {
-        volume_.kernel = kernel_from_text(grid.metaValue<std::string>(kKernel));
+        volume_.kernel = kernel_from_json(grid.metaValue<std::string>(kKernel));
         std::vector<std::string> names;
         for (;;) {
             const auto name = grid.getMetadata<openvdb::StringMetadata>(kChannel + std::to_string(names.size()));
             if (!name) break;
             names.push_back(name->value());
-            volume_.channels.push_back({name->value(), {}, {}, {}});
+            volume_.channels.push_back({.name = name->value()});
         }
         attributes_ = attribute_names(names);
     }
@@ -198,16 +222,10 @@ private:
         for (const auto& name : attributes_) channels.emplace_back(leaf, name);
         for (auto i = leaf.beginIndexAll(); i; ++i) {
             const openvdb::Vec3d p = grid_.indexToWorld(i.getCoord().asVec3d() + openvdb::Vec3d(position.get(*i)));
-            const openvdb::Mat3s s = frame.get(*i);
             ids_.push_back(id.get(*i));
             volume_.centers.emplace_back(p.x(), p.y(), p.z());
-            volume_.frames.push_back({s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)});
-            for (std::size_t c = 0; c < channels.size(); ++c) {
-                const openvdb::Vec3f g = channels[c].gradients.get(*i);
-                volume_.channels[c].values.push_back(channels[c].values.get(*i));
-                volume_.channels[c].gradients.push_back({g.x(), g.y(), g.z()});
-                volume_.channels[c].moments.push_back(channels[c].moments.get(*i));
-            }
+            volume_.frames.push_back(from_vdb(frame.get(*i)));
+            for (std::size_t c = 0; c < channels.size(); ++c) channels[c].append_to(volume_.channels[c], *i);
         }
     }
 
@@ -227,6 +245,7 @@ private:
             permute(channel.values);
             permute(channel.gradients);
             permute(channel.moments);
+            if (channel.hessians.size() == order.size()) permute(channel.hessians);  // else there are none, or it is refused
         }
         return std::move(volume_);
     }

@@ -14,13 +14,14 @@ namespace subvol {
 /// e = dᵀ S⁻¹ d.
 ///
 /// gradients: world⁻¹; moments: R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
-/// hessians:  xx xy xz yy yz zz of what is left of H when the part along S⁻¹ is taken out (world⁻²); none: that part is all
+/// hessians:  xx xy xz yy yz zz of what is left of H when the part along S⁻¹ is taken out (world⁻²), one a point; none: that
+///            part is all
 struct RbfChannel {
-    std::string name;
-    std::vector<float> values;
-    std::vector<std::array<float, 3>> gradients;
-    std::vector<float> moments;
-    std::vector<std::array<float, 6>> hessians;
+    std::string name{};
+    std::vector<float> values{};
+    std::vector<std::array<float, 3>> gradients{};
+    std::vector<float> moments{};
+    std::vector<std::array<float, 6>> hessians{};
 };
 
 /// A subdivision volume as radial basis functions: what every renderer and exporter takes.
@@ -43,8 +44,9 @@ struct RbfVolume {
 /// The box of the boundary; of the centres if there is none.
 [[nodiscard]] Box box_of(const RbfVolume& volume);
 
-/// throws: Error(InvalidInput), naming the point from 0, unless there are as many of everything as points, channels have names
-///         of their own, numbers are finite, the frames' diagonals positive and the triangles' corners there
+/// throws: Error(InvalidInput), naming the point from 0, unless there are as many of everything as points (Hessians: or none),
+///         there is a channel, channels have names of their own, numbers are finite, the kernel is valid, the frames' diagonals
+///         are positive and the triangles' corners there
 void validate(const RbfVolume& volume);
 
 }  // namespace subvol

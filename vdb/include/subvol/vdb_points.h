@@ -16,11 +16,12 @@ struct VdbPointsOptions {
 /// Writes points as an OpenVDB point grid named "points", which Houdini unpacks into points; beside it the boundary as
 /// NAME.boundary.vtp. Both files appear, or none.
 ///
-/// Attributes: P; a channel NAME, NAME_gradient and NAME_moment; frame (S, a symmetric matrix); for instances of a unit sphere
-/// orient, scale and pscale, which make it the support ellipsoid; id, the order of the points. Characters of a name that
-/// OpenVDB does not take become underscores, the metadata keep it. P is a 32-bit float in its voxel, hence within 1.5·10⁻⁸
-/// voxels along each axis; all others are exact. throws: Error(InvalidInput) as `validate`, or for more than 2³¹ points;
-/// Error(Io)
+/// Attributes: P; of a channel NAME, NAME_gradient, NAME_moment and, where it has Hessians, NAME_hessian (a symmetric matrix);
+/// frame (S, another); for instances of a unit sphere orient, scale and pscale, which make it the support ellipsoid; id, the
+/// order of the points. Characters of a name that OpenVDB does not take become underscores, the metadata keep it, and the
+/// kernel as JSON (`to_json`). P is a 32-bit float in its voxel, hence within 1.5·10⁻⁸ voxels along each axis; all others are
+/// exact.
+/// throws: Error(InvalidInput) as `validate`, or for more than 2³¹ points; Error(Io)
 void write_vdb_points(const std::filesystem::path& path, const RbfVolume& volume, const VdbPointsOptions& options = {});
 
 /// Reads what `write_vdb_points` writes, in the order of the ids. The bounds are `box_of`.
