@@ -30,13 +30,17 @@ std::vector<double> errors_of_cells(const RbfVolume& volume, const HexMesh& twic
     return errors;
 }
 
-/// More intervals where a cell at the edge errs too much: errors fall with the square of the spacing. Returns whether any.
-bool refine_intervals(const Topology& topology, const std::vector<double>& errors, double tolerance,
-                      std::vector<int>& intervals) {
+/// More intervals where a cell at one of the edge's ends errs too much: errors fall with the square of the spacing, and a large
+/// kernel reaches into the next cell. Returns whether any.
+bool refine_intervals(const Topology& topology, const std::vector<double>& errors, double tolerance, std::vector<int>& intervals) {
+    std::vector<double> at_points(topology.point_count, 0);
+    for (std::size_t c = 0; c < errors.size(); ++c) {
+        for (const Index p : topology.cells[c]) at_points[p] = std::max(at_points[p], errors[c]);
+    }
     bool any = false;
     for (std::size_t e = 0; e < intervals.size(); ++e) {
-        double error = 0;
-        for (const Index c : topology.edge_cells[e]) error = std::max(error, errors[c]);
+        const auto& [a, b] = topology.edges[e];
+        const double error = std::max(at_points[a], at_points[b]);
         if (error <= tolerance || intervals[e] == kMostIntervals) continue;
         const double wanted = std::ceil(intervals[e] * std::sqrt(error / tolerance));
         intervals[e] = static_cast<int>(std::clamp(wanted, intervals[e] + 1.0, double(kMostIntervals)));
