@@ -18,7 +18,7 @@ constexpr int kUnknowns = 9;
 using Unknowns = std::array<double, kUnknowns>;
 
 constexpr double kLeastWeight = 0.02;
-constexpr double kMargin = 1.3;           // kernels that may come to reach a sample take part, within this growth
+constexpr double kMargin = 1.15;          // kernels that may come to reach a sample take part, within this growth
 constexpr double kShape = 0.1;            // how much more strongly shifts and growths are held than terms
 constexpr int kMostCholesky = 2000;       // kernels
 constexpr std::size_t kBlockBytes = 400;  // of one kernel at one sample: 9 derivatives, and Ceres' and our lists

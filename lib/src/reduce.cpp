@@ -13,7 +13,7 @@
 #include "sample_parts.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
-#include "subvol/sample.h"
+#include "thin_samples.h"
 
 namespace subvol {
 
@@ -57,6 +57,8 @@ void check(const ReduceOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the target error is " + std::to_string(options.rmse), {}, "a positive number");
     if (!(options.overlap >= .7 && options.overlap <= 2))
         throw Error(ErrorCode::InvalidInput, "the overlap is " + std::to_string(options.overlap), {}, "0.7 to 2");
+    if (!is_radial(options.kernel))
+        throw Error(ErrorCode::InvalidInput, "the kernel is not radial, frames have no axes for it", {}, "a radial kernel");
     if (options.max_points < 1) throw Error(ErrorCode::InvalidInput, "at most 0 points", {}, "1 or more");
 }
 
@@ -83,14 +85,20 @@ public:
     /// Fits all kernels together. Returns the error.
     double fit(int steps) {
         place_kernels();
-        const auto chosen = choose_samples();
+        // Parts are not in the samples' order.
+        std::vector<std::size_t> by_place(size()), starts(1, 0);
+        std::iota(by_place.begin(), by_place.end(), std::size_t{0});
+        std::sort(by_place.begin(), by_place.end(),
+                  [&](std::size_t a, std::size_t b) { return parts_.parts()[a].begin < parts_.parts()[b].begin; });
+        for (const std::size_t p : by_place) starts.push_back(parts_.parts()[p].end);
+        const auto chosen = detail::thin_samples(samples_, parts_.order(), starts, kMostSamples);
         const FieldFit fit(centers_, frames_, options_.kernel, chosen.samples);
         fit.solve(terms_, prior_, steps);
         const auto residual = fit.residuals(terms_);
         error_.assign(size(), 0);
         detail::parallel_each(size(), [&](std::size_t p) {
             for (std::size_t k = chosen.starts[p]; k < chosen.starts[p + 1]; ++k)
-                error_[p] += chosen.samples.weights[k] * residual[k] * residual[k];
+                error_[by_place[p]] += chosen.samples.weights[k] * residual[k] * residual[k];
         });
         return std::sqrt(std::accumulate(error_.begin(), error_.end(), 0.0) / weight_);
     }
@@ -109,39 +117,6 @@ public:
     }
 
 private:
-    struct Choice {
-        FieldSamples samples;
-        std::vector<std::size_t> starts;  // of a part
-    };
-
-    /// Some samples of each part stand for all: a kernel has but five terms.
-    [[nodiscard]] Choice choose_samples() const {
-        Choice choice;
-        choice.starts.assign(size() + 1, 0);
-        for (std::size_t p = 0; p < size(); ++p) {
-            const SamplePart& part = parts_.parts()[p];
-            choice.starts[p + 1] = choice.starts[p] + std::min(part.end - part.begin, kMostSamples);
-        }
-        auto& [points, values, weights] = choice.samples;
-        points.resize(choice.starts.back());
-        values.resize(points.size());
-        weights.resize(points.size());
-        detail::parallel_each(size(), [&](std::size_t p) {
-            const SamplePart& part = parts_.parts()[p];
-            const std::size_t first = choice.starts[p], count = choice.starts[p + 1] - first, all = part.end - part.begin;
-            double sum = 0;
-            for (std::size_t k = 0; k < count; ++k) {
-                const Index i = parts_.order()[part.begin + k * all / count];
-                points[first + k] = samples_.points[i];
-                values[first + k] = samples_.values[i];
-                sum += weights[first + k] = samples_.weights[i];
-            }
-            const double scale = sum > 0 ? part.weight / sum : 1;
-            for (std::size_t k = 0; k < count; ++k) weights[first + k] *= scale;
-        });
-        return choice;
-    }
-
     bool split_worst(const std::vector<double>& error, double allowed, double most_growth) {
         double excess = std::accumulate(error.begin(), error.end(), 0.0) - allowed;
         std::vector<std::size_t> worst;
@@ -261,6 +236,17 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
         if (!more) break;
         // The samples were met better than what lies between them: aim lower.
         target = std::min(target, report.rmse) * std::min(kAimLower, options.rmse / report.validation.rmse);
+    }
+    if (options.move) {
+        RbfRefineResult moved =
+            refine_rbf(result.volume, samples, {.move = true, .iterations = 15, .progress = options.progress});
+        const FieldError error = field_error(moved.volume, validation);
+        if (error.rmse < report.validation.rmse && error.uncovered <= report.validation.uncovered) {
+            result.volume = std::move(moved.volume);
+            report.rmse = moved.report.rmse_after;
+            report.validation = error;
+            report.reached = std::max(report.rmse, error.rmse) <= options.rmse;
+        }
     }
     report.points = result.volume.size();
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

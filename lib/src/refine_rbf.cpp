@@ -6,9 +6,12 @@
 #include "moving_fit.h"
 #include "rbf_terms.h"
 #include "subvol/error.h"
+#include "thin_samples.h"
 
 namespace subvol {
 namespace {
+
+constexpr std::size_t kMostSamples = 100;  // of each kernel: it has at most 9 unknowns
 
 void check(const RbfVolume& volume, const RbfRefineOptions& options) {
     detail::check_rbf_volume(volume);
@@ -41,8 +44,10 @@ RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples,
     result.volume = volume;
     result.volume.channels.resize(1);
     const FieldError before = field_error(result.volume, samples);
+    const auto groups = detail::group_by_kernel(result.volume, samples);
+    const FieldSamples chosen = detail::thin_samples(samples, groups.order, groups.starts, kMostSamples).samples;
     const auto fit =
-        options.move ? detail::fit_moving(result.volume, samples, options) : fit_fixed(result.volume, samples, options);
+        options.move ? detail::fit_moving(result.volume, chosen, options) : fit_fixed(result.volume, chosen, options);
     const FieldError after = field_error(result.volume, samples);
     const bool better = after.rmse <= before.rmse && after.uncovered <= before.uncovered;
     if (!better) {

@@ -62,7 +62,7 @@ LinearFit fit_linear(const LinearSums& s) {
 }
 
 SampleParts::SampleParts(const FieldSamples& samples) : samples_(samples), order_(space_order(samples.points)) {
-    parts_.push_back({.begin = 0, .end = order_.size()});
+    parts_.emplace_back().end = order_.size();
     analyse(parts_[0]);
 }
 
@@ -77,7 +77,6 @@ void SampleParts::analyse(SamplePart& part) const {
     };
     LinearSums all;
     each([&](double w, const Vec3& d, double f) { all.add(w, d, f); });
-    part.weight = all.w;
     part.fit = fit_linear(all);
     part.gain = -1;
     if (part.end - part.begin >= 2 * kLeastSamples) {

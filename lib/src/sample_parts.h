@@ -33,7 +33,6 @@ struct LinearFit {
 /// gain: how much of fit.error (Σ weight error²) goes if the part is halved across `normal` through its mean
 struct SamplePart {
     std::size_t begin = 0, end = 0;
-    double weight = 0;
     LinearFit fit;
     Vec3 normal{0.0};
     double gain = 0;

@@ -42,12 +42,14 @@ struct FieldError {
 /// kernel:     of the result; radial
 /// overlap:    0.7 to 2; 1 is that of uniform samples: a box of side h gets the support 1.43 h
 /// max_points: where the growth ends at the latest
+/// move:       at the end the kernels are moved and resized (`refine_rbf`); the error falls, the count does not
 /// limit:      the scheme, and how exact the validation samples are; its `progress` is not used
 struct ReduceOptions {
     double rmse = 0.01;
     Kernel kernel{};
     double overlap = 1;
     std::size_t max_points = 1'000'000;
+    bool move = false;
     LimitOptions limit{.tolerance = 1e-4, .crease_angle_deg = {}};
     Progress* progress = nullptr;
 };
