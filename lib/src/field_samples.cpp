@@ -6,7 +6,6 @@
 #include "corner_parameters.h"
 #include "subvol/error.h"
 #include "subvol/reduce.h"
-#include "subvol/surface.h"
 
 namespace subvol {
 namespace {
@@ -70,28 +69,6 @@ FieldSamples sample_cells(const HexMesh& mesh, std::size_t count, const LimitOpt
         samples.weights.push_back(share * std::max(0.0, glm::determinant(limit.jacobians[k])));
     }
     return samples;
-}
-
-ReduceResult reduce_rbf(const HexMesh& mesh, const ReduceOptions& options) {
-    // 8 samples a cell, more on coarse meshes; of the independent ones fewer, as each refines its cell.
-    constexpr std::size_t kSamples = 200'000, kValidation = 20'000, kMostSamples = 8'000'000;
-    const std::size_t cells = mesh.cells.size();
-    const int level = cells * 8 >= kSamples ? 1 : cells * 64 >= kSamples ? 2 : 3;
-    LimitOptions limit = options.limit;
-    limit.progress = options.progress;
-    const FieldSamples validation = sample_cells(mesh, kValidation, limit);
-    ReduceResult result = reduce_rbf(sample_vertices(mesh, level, limit), validation, options);
-    // What fails for want of samples gets eight times as many, once, as long as memory is a matter of course.
-    if (!result.report.reached && level < 3 && cells << (3 * level + 3) <= kMostSamples)
-        result = reduce_rbf(sample_vertices(mesh, level + 1, limit), validation, options);
-    result.volume.channels[0].name = first_attribute(mesh).name;
-    const HexMesh once = refine(mesh, {.scheme = limit.scheme,
-                                       .levels = 1,
-                                       .tension = limit.tension,
-                                       .crease_angle_deg = limit.crease_angle_deg,
-                                       .progress = limit.progress});
-    result.volume.boundary = boundary_surface(on_limit(once, limit.scheme));
-    return result;
 }
 
 }  // namespace subvol

@@ -13,6 +13,7 @@
 #include "sample_parts.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
+#include "subvol/surface.h"
 #include "thin_samples.h"
 
 namespace subvol {
@@ -34,6 +35,8 @@ constexpr double kThickness = 1e-3;       // of a flat part, of its largest exte
 constexpr int kSteps = 40;                // of conjugate gradients; 120 lower the error by less than a hundredth
 constexpr int kMostChecks = 8;            // against the validation samples
 constexpr double kAimLower = 0.98;
+constexpr double kMoveGain = 2;  // how many times moves lower the error, at first guess
+constexpr int kMoves = 12;       // steps of the solver that moves kernels
 
 void check(const FieldSamples& samples) {
     const bool same = samples.values.size() == samples.size() && samples.weights.size() == samples.size();
@@ -218,7 +221,7 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
     ReduceResult result;
     auto& report = result.report;
     report.samples = samples.size();
-    double target = options.rmse;
+    double target = options.move ? kMoveGain * options.rmse : options.rmse;
     reduction.grow_alone(target);
     for (int checks = 0; !report.reached && checks < kMostChecks; ++checks) {
         bool more = true;
@@ -231,25 +234,43 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
             if (!more) break;
         }
         result.volume = reduction.volume();
+        if (options.move) {
+            auto moved = refine_rbf(result.volume, samples, {.move = true, .iterations = kMoves, .progress = options.progress});
+            result.volume = std::move(moved.volume);
+            report.rmse = moved.report.rmse_after;
+        }
         report.validation = field_error(result.volume, validation);
         report.reached = std::max(report.rmse, report.validation.rmse) <= options.rmse;
         if (!more) break;
-        // The samples were met better than what lies between them: aim lower.
-        target = std::min(target, report.rmse) * std::min(kAimLower, options.rmse / report.validation.rmse);
-    }
-    if (options.move) {
-        RbfRefineResult moved =
-            refine_rbf(result.volume, samples, {.move = true, .iterations = 15, .progress = options.progress});
-        const FieldError error = field_error(moved.volume, validation);
-        if (error.rmse < report.validation.rmse && error.uncovered <= report.validation.uncovered) {
-            result.volume = std::move(moved.volume);
-            report.rmse = moved.report.rmse_after;
-            report.validation = error;
-            report.reached = std::max(report.rmse, error.rmse) <= options.rmse;
-        }
+        // The samples were met better than what lies between them, or moves gained less: aim lower.
+        const double error = std::max(report.rmse, report.validation.rmse);
+        target = (options.move ? target : std::min(target, report.rmse)) * std::min(kAimLower, options.rmse / error);
     }
     report.points = result.volume.size();
     report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+ReduceResult reduce_rbf(const HexMesh& mesh, const ReduceOptions& options) {
+    check(options);
+    // 8 samples a cell, more on coarse meshes; of the independent ones fewer, as each refines its cell.
+    constexpr std::size_t kSamples = 200'000, kValidation = 20'000, kMostSamples = 8'000'000;
+    const std::size_t cells = mesh.cells.size();
+    const int level = cells * 8 >= kSamples ? 1 : cells * 64 >= kSamples ? 2 : 3;
+    LimitOptions limit = options.limit;
+    limit.progress = options.progress;
+    const FieldSamples validation = sample_cells(mesh, kValidation, limit);
+    ReduceResult result = reduce_rbf(sample_vertices(mesh, level, limit), validation, options);
+    // What fails for want of samples gets eight times as many, once, as long as memory is a matter of course.
+    if (!result.report.reached && level < 3 && cells << (3 * level + 3) <= kMostSamples)
+        result = reduce_rbf(sample_vertices(mesh, level + 1, limit), validation, options);
+    result.volume.channels[0].name = mesh.attributes[0].name;
+    const HexMesh once = refine(mesh, {.scheme = limit.scheme,
+                                       .levels = 1,
+                                       .tension = limit.tension,
+                                       .crease_angle_deg = limit.crease_angle_deg,
+                                       .progress = limit.progress});
+    result.volume.boundary = boundary_surface(on_limit(once, limit.scheme));
     return result;
 }
 

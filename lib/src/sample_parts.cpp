@@ -57,7 +57,8 @@ LinearFit fit_linear(const LinearSums& s) {
     const Vec3 mixed = s.fx / s.w - fit.value * fit.mean;
     const double largest = std::max({fit.covariance[0][0], fit.covariance[1][1], fit.covariance[2][2]});
     if (largest > 0) fit.slope = glm::inverse(fit.covariance + Mat3(kThin * largest)) * mixed;
-    fit.error = std::max(0.0, s.ff - s.w * fit.value * fit.value - s.w * glm::dot(fit.slope, mixed));
+    const double explained = glm::dot(fit.slope, 2.0 * mixed - fit.covariance * fit.slope);
+    fit.error = std::max(0.0, s.ff - s.w * (fit.value * fit.value + explained));
     return fit;
 }
 

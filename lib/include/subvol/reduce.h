@@ -42,7 +42,7 @@ struct FieldError {
 /// kernel:     of the result; radial
 /// overlap:    0.7 to 2; 1 is that of uniform samples: a box of side h gets the support 1.43 h
 /// max_points: where the growth ends at the latest
-/// move:       at the end the kernels are moved and resized (`refine_rbf`); the error falls, the count does not
+/// move:       kernels are also moved and resized (`refine_rbf`): about half as many, ten times as slow
 /// limit:      the scheme, and how exact the validation samples are; its `progress` is not used
 struct ReduceOptions {
     double rmse = 0.01;
@@ -111,7 +111,7 @@ struct RbfRefineResult {
 /// Fits an RBF volume to samples by least squares, all kernels of its first channel together.
 ///
 /// With the centres and frames as they are this is one linear problem. With `move` each kernel may also shift and grow in its
-/// frame; that is nonlinear, and is solved by Ceres: sparse Cholesky up to 2000 kernels, conjugate gradients beyond.
+/// frame; that is nonlinear, and is solved by Ceres: sparse Cholesky up to 200 kernels, conjugate gradients beyond.
 /// returns: the volume with that one channel; boundary and bounds are kept. Never worse on the samples than before
 /// throws:  Error(InvalidInput) for options out of range, no channel, or samples that do not fit together
 /// cost:    O(samples · kernels over a point) an iteration; bitwise the same for any number of threads
