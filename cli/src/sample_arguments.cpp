@@ -5,6 +5,7 @@
 #include "picture_arguments.h"
 #include "subvol/empty_space.h"
 #include "subvol/error.h"
+#include "subvol/reduce.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -65,6 +66,15 @@ void SampleArguments::add_to(CLI::App& app) {
                            ->expected(0, 1);
     app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default), full")
         ->type_name("NAME");
+    auto* reduce = app.add_option("--reduce", reduce_rmse,
+                                  "instead: as few kernels as a root mean square error of RMSE, in units of the field, needs");
+    reduce->type_name("RMSE")
+        ->check(CLI::PositiveNumber)
+        ->excludes(edges)
+        ->excludes(world)
+        ->excludes("--tolerance")
+        ->excludes("--footprint");
+    app.add_flag("--refine", move_kernels, "with --reduce: then move and resize the kernels for a lower error")->needs(reduce);
 }
 
 SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refinement) const {
@@ -108,6 +118,32 @@ RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, 
     return std::move(visible.volume);
 }
 
+RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments, const LimitOptions& limit, Report& report) {
+    const ReduceOptions options{
+        .rmse = arguments.reduce_rmse, .move = arguments.move_kernels, .limit = limit, .progress = limit.progress};
+    ReduceResult reduced = report.timed("reduce", [&] { return reduce_rbf(mesh, options); });
+    report["points_before"] = mesh.points.size();
+    report["field_rmse"] = reduced.report.validation.rmse;
+    if (!reduced.report.reached) {
+        report.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
+                         ": the samples of the volume are too far apart for more kernels"));
+    }
+    return std::move(reduced.volume);
+}
+
+RbfVolume sample_and_warn(const HexMesh& mesh, const SampleOptions& options, Report& report) {
+    SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(mesh, options); });
+    if (options.tolerance > 0) {
+        report["largest_error"] = sampled.report.largest_error;
+        if (sampled.report.largest_error > options.tolerance)
+            report.warn("the tolerance was not reached with 64 samples a cell edge");
+    }
+    if (sampled.report.flat_frames > 0) {
+        report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
+    }
+    return std::move(sampled.volume);
+}
+
 }  // namespace
 
 RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments, const RefineArguments& refinement,
@@ -120,16 +156,18 @@ RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
         options.scheme = Scheme::Linear;
         options.boundary_levels = 0;
     }
-    SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(refinement.levels ? level : mesh, options); });
-    if (options.tolerance > 0) {
-        report["largest_error"] = sampled.report.largest_error;
-        if (sampled.report.largest_error > options.tolerance)
-            report.warn("the tolerance was not reached with 64 samples a cell edge");
+    RbfVolume all;
+    if (arguments.reduce_rmse > 0) {
+        const LimitOptions limit{.scheme = options.scheme,
+                                 .tension = options.tension,
+                                 .tolerance = ReduceOptions{}.limit.tolerance,
+                                 .crease_angle_deg = options.crease_angle_deg,
+                                 .progress = options.progress};
+        all = reduce_reported(refinement.levels ? level : mesh, arguments, limit, report);
+    } else {
+        all = sample_and_warn(refinement.levels ? level : mesh, options, report);
     }
-    if (sampled.report.flat_frames > 0) {
-        report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
-    }
-    RbfVolume volume = without_invisible(std::move(sampled.volume), arguments, seen, report);
+    RbfVolume volume = without_invisible(std::move(all), arguments, seen, report);
     report["points"] = volume.size();
     return volume;
 }

@@ -24,6 +24,8 @@ struct SampleArguments {
     std::string value_kernel;                 // the same; empty: the paper's BC spline
     std::string threshold;                    // a number
     CLI::Option* threshold_option = nullptr;  // given without a value: the transfer function decides
+    double reduce_rmse = 0;                   // > 0: as few kernels as this error needs, instead of samples at a spacing
+    bool move_kernels = false;
 
     void add_to(CLI::App& app);
 
