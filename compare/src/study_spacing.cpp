@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "studies.h"
-#include "subvol/field_error.h"
+#include "subvol/field_places.h"
 #include "subvol/sample.h"
 
 namespace subvol::detail {
@@ -68,7 +68,7 @@ std::vector<StudyTable> study_spacing(const StudyOptions& options) {
                 " cells: RMSE of the normalised sum at 100000 random places against the limit, by spacing in cells",
             {"kernel", "correction", "2", "1", "1/2", "1/4", "order 2-1", "order 1-1/2", "order 1/2-1/4"},
             {}};
-        const FieldPlaces places = random_places(mesh, "density", PlaceKind::Anywhere, 1, kPlaces, options.seed);
+        const FieldSamples places = random_places(mesh, "density", PlaceKind::Anywhere, 1, kPlaces, options.seed);
         for (std::size_t r = 0; r < kRows.size(); ++r) {
             report_progress(options.progress, "spacing",
                             static_cast<double>(m * kRows.size() + r) / static_cast<double>(meshes.size() * kRows.size()));
@@ -80,7 +80,7 @@ std::vector<StudyTable> study_spacing(const StudyOptions& options) {
                     sample_rbf_points(mesh, {.per_edge = per_edge, .correction = correction, .kernel = named_kernel(kernel)})
                         .volume;
                 if (n == 0) volume = every_second(std::move(volume), coarse_points);
-                e[n] = field_error(RbfField(volume), places).rmse;
+                e[n] = field_error(volume, places).rmse;
             }
             table.rows.push_back({kernel, correction_name, e[0], e[1], e[2], e[3], order_of(e[0], e[1]), order_of(e[1], e[2]),
                                   order_of(e[2], e[3])});

@@ -1,4 +1,4 @@
-#include "subvol/field_error.h"
+#include "subvol/field_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,8 +70,8 @@ std::vector<LimitQuery> random_queries(const std::vector<CellPart>& parts, doubl
 
 }  // namespace
 
-FieldPlaces random_places(const HexMesh& mesh, std::string_view attribute, PlaceKind kind, double within, std::size_t count,
-                          std::uint64_t seed, Scheme scheme) {
+FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, PlaceKind kind, double within, std::size_t count,
+                           std::uint64_t seed, Scheme scheme) {
     const Attribute* field = mesh.find_attribute(attribute);
     if (field == nullptr || field->channels != 1) {
         throw Error(ErrorCode::InvalidInput, "the mesh has no field '" + std::string(attribute) + "' of one channel");
@@ -81,25 +81,7 @@ FieldPlaces random_places(const HexMesh& mesh, std::string_view attribute, Place
     if (parts.empty()) return {};
     LimitSamples limit = evaluate_limit(bare, random_queries(parts, within, count, seed),
                                         {.scheme = scheme, .tolerance = 1e-9, .max_levels = kLevels});
-    return {std::move(limit.positions), std::move(limit.attributes.front().values)};
-}
-
-FieldError field_error(const RbfField& field, const FieldPlaces& places) {
-    const std::vector<double> values = field.evaluate(places.positions);
-    FieldError error;
-    double sum = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (std::isnan(values[i])) {
-            ++error.missing;
-            continue;
-        }
-        const double difference = values[i] - places.values[i];
-        sum += difference * difference;
-        error.max = std::max(error.max, std::abs(difference));
-    }
-    const std::size_t known = values.size() - error.missing;
-    if (known > 0) error.rmse = std::sqrt(sum / static_cast<double>(known));
-    return error;
+    return {std::move(limit.positions), std::move(limit.attributes.front().values), std::vector<double>(count, 1.0)};
 }
 
 }  // namespace subvol

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+#include "subvol/reduce.h"
+#include "subvol/refine.h"
+
+namespace subvol {
+
+/// Where in a mesh: anywhere; at interior edges of other than four cells; at the boundary.
+enum class PlaceKind { Anywhere, Extraordinary, Boundary };
+
+/// Random places in the cells of a mesh and the limit of an attribute's one channel there, to level 6; all of weight 1.
+///
+/// within:  for the last two kinds, how far from the edge or face a place may be, in cells: (0,1]
+/// returns: nothing if the mesh has no such edge
+/// throws:  Error(InvalidInput) as `evaluate_limit`, or if there is no such attribute of one channel
+[[nodiscard]] FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, PlaceKind kind, double within,
+                                         std::size_t count, std::uint64_t seed, Scheme scheme = Scheme::Mcq);
+
+}  // namespace subvol
