@@ -57,6 +57,36 @@ TEST(SampleWays, RefinedPointsAreTheRefinedMeshAndItsFieldIsTheLimits) {
     }
 }
 
+TEST(SampleWays, TheBoundaryIsThatOfTheFirstRefinement) {
+    HexMesh mesh = test::make_nested_cubes(2);
+    test::jitter(mesh, .02, 3);
+    put_wave(mesh);
+    using Triangle = std::array<std::array<double, 3>, 3>;
+    const auto triangles = [](const Surface& surface) {
+        std::vector<Triangle> all;
+        for (const auto& t : surface.triangles) {
+            Triangle corners;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3& p = surface.points[t[k]];
+                corners[k] = {p.x, p.y, p.z};
+            }
+            all.push_back(corners);
+        }
+        std::sort(all.begin(), all.end());
+        return all;
+    };
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::Linear}) {
+        const auto made = triangles(sample_rbf_points(mesh, {.scheme = scheme}).volume.boundary);
+        const auto expected = triangles(boundary_surface(refine(mesh, {.scheme = scheme})));
+        ASSERT_EQ(made.size(), expected.size());
+        for (std::size_t i = 0; i < made.size(); ++i) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(made[i][k][a], expected[i][k][a], 1e-15);
+            }
+        }
+    }
+}
+
 TEST(SampleWays, LinesAndCellsSeeTheGradientOfTheLimit) {
     // Four intervals go by the lines of the refined mesh, three cell by cell. Inside, both are of fourth order in their
     // spacing.
@@ -167,7 +197,7 @@ TEST(SampleWays, ToleranceIsMetWithFewerSamplesThanEverywhere) {
     const LimitSamples limit = evaluate_limit(mesh, places(mesh.cells.size()));
     const auto values = RbfField(result.volume).evaluate(limit.positions);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        EXPECT_NEAR(values[i], limit.attributes[0].values[i], 1.5 * kTolerance);  // measured at 125 places a cell, not at these
+        EXPECT_NEAR(values[i], limit.attributes[0].values[i], 2 * kTolerance);  // it is kept at 125 places a cell, not at these
     }
     int most = 1;
     while (true) {

@@ -28,7 +28,8 @@ struct Footprint {
 /// per_edge:        sample intervals a cell edge, 1 to 64; 1 is one kernel a control vertex
 /// spacing_world:   > 0: instead of per_edge, each edge gets ⌈length / spacing⌉ intervals
 /// footprint:       instead of both, each edge gets ⌈length in pixels / spacing⌉ intervals
-/// tolerance:       > 0: instead of these, as many intervals as it takes until the first channel errs by less, in its own unit
+/// tolerance:       > 0: instead of these, as many intervals as it takes until the first channel errs by less, in its own unit,
+///                  at the points of the second refinement
 /// values:          where values between control points come from; gradients and moments come from the scheme
 /// value_kernel:    of the rule `Paper`
 /// boundary_levels: refinements of the boundary surface
