@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "subvol/reduce.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -28,6 +29,10 @@ void SampleArguments::add_to(CLI::App& app) {
         ->excludes(world);
     app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default)")
         ->type_name("NAME");
+    auto* reduce = app.add_option("--reduce", reduce_rmse,
+                                  "instead: as few kernels as a root mean square error of RMSE, in units of the field, needs");
+    reduce->type_name("RMSE")->check(CLI::PositiveNumber)->excludes(edges)->excludes(world);
+    app.add_flag("--refine", move_kernels, "with --reduce: then move and resize the kernels for a lower error")->needs(reduce);
 }
 
 SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refinement) const {
@@ -42,6 +47,24 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
             .progress = refinement.progress};
 }
 
+namespace {
+
+RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments, const LimitOptions& limit, Report& report) {
+    const ReduceOptions options{
+        .rmse = arguments.reduce_rmse, .move = arguments.move_kernels, .limit = limit, .progress = limit.progress};
+    ReduceResult reduced = report.timed("reduce", [&] { return reduce_rbf(mesh, options); });
+    report["points"] = reduced.report.points;
+    report["points_before"] = mesh.points.size();
+    report["field_rmse"] = reduced.report.validation.rmse;
+    if (!reduced.report.reached) {
+        report.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
+                         ": the samples of the volume are too far apart for more kernels"));
+    }
+    return std::move(reduced.volume);
+}
+
+}  // namespace
+
 RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments, const RefineArguments& refinement,
                           Report& report) {
     const RefineOptions refine_options = refinement.options(0, report);
@@ -51,6 +74,15 @@ RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
         level = refine_reported(mesh, refine_options, Vertices::OnTheLimit, report);
         options.scheme = Scheme::Linear;
         options.boundary_levels = 0;
+    }
+    if (arguments.reduce_rmse > 0) {
+        return reduce_reported(refinement.levels ? level : mesh, arguments,
+                               {.scheme = options.scheme,
+                                .tension = options.tension,
+                                .tolerance = ReduceOptions{}.limit.tolerance,
+                                .crease_angle_deg = options.crease_angle_deg,
+                                .progress = options.progress},
+                               report);
     }
     SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(refinement.levels ? level : mesh, options); });
     report["points"] = sampled.volume.size();

@@ -14,6 +14,8 @@ struct SampleArguments {
     double spacing_world = 0;
     double spacing_voxels = 0;
     std::string correction = "second";
+    double reduce_rmse = 0;  // > 0: as few kernels as this error needs, instead of samples at a spacing
+    bool move_kernels = false;
 
     void add_to(CLI::App& app);
 

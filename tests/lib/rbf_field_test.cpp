@@ -84,7 +84,9 @@ TEST(RbfField, IsTheSumOverAllKernels) {
             ++inside;
             EXPECT_NEAR(*actual, *expected, 1e-9 * (1 + std::abs(*expected)));  // doubles, frames of condition 1e4
         }
-        if (count >= 64) EXPECT_GT(inside, 100u);
+        if (count >= 64) {
+            EXPECT_GT(inside, 100u);
+        }
     }
 }
 

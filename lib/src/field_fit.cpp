@@ -1,0 +1,215 @@
+#include "field_fit.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bucket_sort.h"
+#include "kernel_weight.h"
+
+namespace subvol::detail {
+namespace {
+
+constexpr double kLeastWeight = 0.02;  // as the splatter has it
+constexpr double kLeastGain = 1e-10;   // of the first step's, where the solver ends
+
+/// The same bits for any number of threads: fixed pieces, added in a fixed tree.
+double dot(std::span<const KernelTerms> a, std::span<const KernelTerms> b) {
+    return tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, a.size(), 512), 0.0,
+        [&](const auto& range, double sum) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                for (std::size_t k = 0; k < 5; ++k) sum += a[i][k] * b[i][k];
+            }
+            return sum;
+        },
+        std::plus<>());
+}
+
+/// Inverts a symmetric positive matrix in place, 5 × 5, by Gauss-Jordan: pivots cannot vanish.
+void invert(std::array<double, 25>& m) {
+    for (std::size_t p = 0; p < 5; ++p) {
+        const double inverse = 1 / m[6 * p];
+        m[6 * p] = 1;
+        for (std::size_t j = 0; j < 5; ++j) m[5 * p + j] *= inverse;
+        for (std::size_t i = 0; i < 5; ++i) {
+            if (i == p) continue;
+            const double factor = m[5 * i + p];
+            m[5 * i + p] = 0;
+            for (std::size_t j = 0; j < 5; ++j) m[5 * i + j] -= factor * m[5 * p + j];
+        }
+    }
+}
+
+}  // namespace
+
+double FieldFit::Entry::value(const KernelTerms& t) const {
+    return double(share) *
+           (t[0] + double(place[0]) * t[1] + double(place[1]) * t[2] + double(place[2]) * t[3] + double(e) * t[4]);
+}
+
+void FieldFit::Entry::add_to(KernelTerms& sum, double factor) const {
+    const double f = factor * double(share);
+    sum[0] += f;
+    for (std::size_t k = 0; k < 3; ++k) sum[k + 1] += f * double(place[k]);
+    sum[4] += f * double(e);
+}
+
+FieldFit::FieldFit(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel,
+                   const FieldSamples& samples)
+    : samples_(samples), row_starts_(samples.size() + 1) {
+    fill_rows(centers, frames, kernel);
+    fill_columns(centers.size());
+}
+
+void FieldFit::fill_rows(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel) {
+    const KernelTree tree(centers, frames);
+    std::vector<std::uint32_t> counts(samples_.size());
+    with_weight(kernel, [&](const auto& weight) {
+        // Twice: to count, then to write.
+        for (const bool write : {false, true}) {
+            parallel_each(samples_.size(), [&](std::size_t i) {
+                double sum = 0;
+                std::size_t next = row_starts_[i];
+                const std::size_t first = next;
+                tree.visit_at(samples_.points[i], [&](std::size_t slot, const Vec3&, const Vec3& place, double e) {
+                    const double w = weight(e);
+                    sum += w;
+                    if (write && next < row_starts_[i + 1]) {
+                        entries_[next] = {
+                            static_cast<Index>(tree.kernel(slot)),
+                            static_cast<float>(w),
+                            {static_cast<float>(place.x), static_cast<float>(place.y), static_cast<float>(place.z)},
+                            static_cast<float>(e)};
+                    }
+                    ++next;
+                });
+                if (write) {
+                    for (std::size_t k = first; k < row_starts_[i + 1]; ++k)
+                        entries_[k].share = static_cast<float>(double(entries_[k].share) / sum);
+                } else {
+                    counts[i] = sum > kLeastWeight ? static_cast<std::uint32_t>(next - first) : 0;
+                }
+            });
+            if (write) break;
+            for (std::size_t i = 0; i < samples_.size(); ++i) row_starts_[i + 1] = row_starts_[i] + counts[i];
+            entries_.resize(row_starts_.back());
+        }
+    });
+}
+
+void FieldFit::fill_columns(std::size_t kernels) {
+    column_starts_.assign(kernels + 1, 0);
+    for (const Entry& entry : entries_) ++column_starts_[entry.kernel + 1];
+    for (std::size_t k = 0; k < kernels; ++k) column_starts_[k + 1] += column_starts_[k];
+    columns_.resize(entries_.size());
+    auto next = column_starts_;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+        for (std::size_t k = row_starts_[i]; k < row_starts_[i + 1]; ++k)
+            columns_[next[entries_[k].kernel]++] = {static_cast<Index>(i), static_cast<std::uint32_t>(k - row_starts_[i])};
+    }
+}
+
+double FieldFit::row_value(std::size_t sample, std::span<const KernelTerms> terms) const {
+    double sum = 0;
+    for (std::size_t k = row_starts_[sample]; k < row_starts_[sample + 1]; ++k)
+        sum += entries_[k].value(terms[entries_[k].kernel]);
+    return sum;
+}
+
+std::vector<double> FieldFit::residuals(std::span<const KernelTerms> terms) const {
+    std::vector<double> result(samples_.size());
+    parallel_each(samples_.size(),
+                  [&](std::size_t i) { result[i] = covered(i) ? row_value(i, terms) - samples_.values[i] : 0; });
+    return result;
+}
+
+FieldFit::Vector FieldFit::transposed_times(std::span<const double> rows) const {
+    Vector result(column_starts_.size() - 1);
+    parallel_each(result.size(), [&](std::size_t kernel) {
+        KernelTerms sum{};
+        for (std::size_t c = column_starts_[kernel]; c < column_starts_[kernel + 1]; ++c) {
+            const Place p = columns_[c];
+            entries_[row_starts_[p.sample] + p.offset].add_to(sum, samples_.weights[p.sample] * rows[p.sample]);
+        }
+        result[kernel] = sum;
+    });
+    return result;
+}
+
+double FieldFit::mean_weight() const {
+    double total = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) total += samples_.weights[i];
+    return total / static_cast<double>(std::max<std::size_t>(column_starts_.size() - 1, 1));
+}
+
+std::vector<std::array<double, 25>> FieldFit::inverse_blocks(double ridge) const {
+    std::vector<std::array<double, 25>> blocks(column_starts_.size() - 1);
+    parallel_each(blocks.size(), [&](std::size_t kernel) {
+        auto& block = blocks[kernel];
+        for (std::size_t c = column_starts_[kernel]; c < column_starts_[kernel + 1]; ++c) {
+            const Place p = columns_[c];
+            KernelTerms row{};
+            entries_[row_starts_[p.sample] + p.offset].add_to(row, 1);
+            for (std::size_t k = 0; k < 25; ++k) block[k] += samples_.weights[p.sample] * row[k / 5] * row[k % 5];
+        }
+        for (std::size_t k = 0; k < 5; ++k) block[6 * k] += ridge;
+        invert(block);
+    });
+    return blocks;
+}
+
+int FieldFit::solve(std::vector<KernelTerms>& terms, std::span<const KernelTerms> prior, int steps, double ridge) const {
+    const double pull = ridge * mean_weight();
+    const auto blocks = inverse_blocks(pull);
+    const std::size_t count = terms.size();
+    Vector direction(count), preconditioned(count);
+    // gradient = −Jᵀ W residual − ridge (terms − prior)
+    Vector gradient = transposed_times(residuals(terms));
+    parallel_each(count, [&](std::size_t i) {
+        for (std::size_t k = 0; k < 5; ++k) gradient[i][k] = -gradient[i][k] - pull * (terms[i][k] - prior[i][k]);
+    });
+    std::vector<double> rows(samples_.size());
+    double before = 0, first = 0;
+    int step = 0;
+    for (; step < steps; ++step) {
+        parallel_each(count, [&](std::size_t i) {
+            for (std::size_t k = 0; k < 5; ++k) {
+                double sum = 0;
+                for (std::size_t j = 0; j < 5; ++j) sum += blocks[i][5 * k + j] * gradient[i][j];
+                preconditioned[i][k] = sum;
+            }
+        });
+        const double now = dot(gradient, preconditioned);
+        if (step == 0) first = now;
+        if (!(now > kLeastGain * first)) break;
+        const double keep = step == 0 ? 0 : now / before;
+        before = now;
+        parallel_each(count, [&](std::size_t i) {
+            for (std::size_t k = 0; k < 5; ++k) direction[i][k] = preconditioned[i][k] + keep * direction[i][k];
+        });
+        parallel_each(samples_.size(), [&](std::size_t i) { rows[i] = row_value(i, direction); });
+        Vector image = transposed_times(rows);
+        parallel_each(count, [&](std::size_t i) {
+            for (std::size_t k = 0; k < 5; ++k) image[i][k] += pull * direction[i][k];
+        });
+        const double length = now / dot(direction, image);
+        parallel_each(count, [&](std::size_t i) {
+            for (std::size_t k = 0; k < 5; ++k) {
+                terms[i][k] += length * direction[i][k];
+                gradient[i][k] -= length * image[i][k];
+            }
+        });
+    }
+    return step;
+}
+
+std::size_t FieldFit::bytes() const {
+    return entries_.size() * (sizeof(Entry) + sizeof(Place)) +
+           (row_starts_.size() + column_starts_.size()) * sizeof(std::size_t);
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "kernel_tree.h"
+#include "subvol/kernel.h"
+#include "subvol/reduce.h"
+
+namespace subvol::detail {
+
+/// What a kernel stands for, in its own scale: v + h·(A d) + m·e, all in units of the field.
+using KernelTerms = std::array<double, 5>;
+
+/// The linear least-squares problem of an RBF volume with fixed kernels: Σ weight (f(x) − value)² over samples.
+class FieldFit {
+public:
+    FieldFit(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel,
+             const FieldSamples& samples);
+
+    /// Improves `terms` by steps of preconditioned conjugate gradients on the normal equations, pulled lightly to `prior`.
+    ///
+    /// ridge: of a kernel's mean weight
+    /// returns: the steps taken; fewer where there is nothing left to gain
+    int solve(std::vector<KernelTerms>& terms, std::span<const KernelTerms> prior, int steps, double ridge = 1e-4) const;
+
+    /// Field minus sample, 0 where there is no field.
+    [[nodiscard]] std::vector<double> residuals(std::span<const KernelTerms> terms) const;
+
+    [[nodiscard]] bool covered(std::size_t sample) const { return row_starts_[sample] < row_starts_[sample + 1]; }
+    [[nodiscard]] std::size_t bytes() const;
+
+private:
+    /// One kernel at one sample: its share φ = w/Σw, and where the sample lies in its frame.
+    struct Entry {
+        Index kernel = 0;
+        float share = 0;
+        std::array<float, 3> place{};
+        float e = 0;
+
+        [[nodiscard]] double value(const KernelTerms& t) const;
+        void add_to(KernelTerms& sum, double factor) const;
+    };
+    using Vector = std::vector<KernelTerms>;
+
+    void fill_rows(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel);
+    void fill_columns(std::size_t kernels);
+    [[nodiscard]] double row_value(std::size_t sample, std::span<const KernelTerms> terms) const;
+    [[nodiscard]] Vector transposed_times(std::span<const double> rows) const;
+    [[nodiscard]] std::vector<std::array<double, 25>> inverse_blocks(double ridge) const;
+    [[nodiscard]] double mean_weight() const;
+
+    const FieldSamples& samples_;
+    std::vector<std::size_t> row_starts_;
+    std::vector<Entry> entries_;
+    std::vector<std::size_t> column_starts_;  // of a kernel, into columns_
+    struct Place {
+        Index sample;
+        std::uint32_t offset;  // of the entry in its row
+    };
+    std::vector<Place> columns_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/reduce.h"
+
+namespace subvol::detail {
+
+/// Weighted sums over samples, up to what a linear fit needs.
+struct LinearSums {
+    double w = 0, f = 0, ff = 0;
+    Vec3 x{0.0}, fx{0.0};
+    Mat3 xx{0.0};
+
+    void add(double weight, const Vec3& d, double value);
+    [[nodiscard]] LinearSums operator-(const LinearSums& other) const;
+};
+
+/// The best linear function of samples: value at their mean, slope, and the squared error left over.
+struct LinearFit {
+    Vec3 mean{0.0};
+    Mat3 covariance{0.0};
+    double value = 0;
+    Vec3 slope{0.0};
+    double error = 0;
+};
+[[nodiscard]] LinearFit fit_linear(const LinearSums& sums);
+
+/// Samples that share a kernel: a range of `SampleParts::order()`.
+///
+/// gain: how much of fit.error (Σ weight error²) goes if the part is halved across `normal` through its mean
+struct SamplePart {
+    std::size_t begin = 0, end = 0;
+    LinearFit fit;
+    Vec3 normal{0.0};
+    double gain = 0;
+};
+
+/// A partition of samples that grows finer where it is told to.
+class SampleParts {
+public:
+    explicit SampleParts(const FieldSamples& samples);
+
+    [[nodiscard]] const std::vector<SamplePart>& parts() const { return parts_; }
+    [[nodiscard]] const std::vector<Index>& order() const { return order_; }
+
+    /// Halves the parts of these numbers; one half takes the part's number, the other a new one at the end.
+    void split(const std::vector<std::size_t>& numbers);
+
+private:
+    void analyse(SamplePart& part) const;
+    std::size_t partition(const SamplePart& part);
+
+    const FieldSamples& samples_;
+    std::vector<Index> order_;
+    std::vector<SamplePart> parts_;
+};
+
+}  // namespace subvol::detail
