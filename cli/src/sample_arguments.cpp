@@ -32,7 +32,9 @@ void SampleArguments::add_to(CLI::App& app) {
     auto* reduce = app.add_option("--reduce", reduce_rmse,
                                   "instead: as few kernels as a root mean square error of RMSE, in units of the field, needs");
     reduce->type_name("RMSE")->check(CLI::PositiveNumber)->excludes(edges)->excludes(world);
-    app.add_flag("--refine", move_kernels, "with --reduce: then move and resize the kernels for a lower error")->needs(reduce);
+    app.add_flag("--refine", move_kernels,
+                 "with --reduce: move and resize the kernels too: about half as many, ten times as slow")
+        ->needs(reduce);
 }
 
 SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refinement) const {
