@@ -58,6 +58,9 @@ RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments,
     report["points"] = reduced.report.points;
     report["points_before"] = mesh.points.size();
     report["field_rmse"] = reduced.report.validation.rmse;
+    if (reduced.report.points > mesh.points.size()) {
+        report.warn("these are more kernels than control points: --per-edge 1 has fewer, maybe at no greater error");
+    }
     if (!reduced.report.reached) {
         report.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
                          ": the samples of the volume are too far apart for more kernels"));
