@@ -72,9 +72,12 @@ void SampleArguments::add_to(CLI::App& app) {
         ->check(CLI::PositiveNumber)
         ->excludes(edges)
         ->excludes(world)
+        ->excludes("--spacing-voxels")
         ->excludes("--tolerance")
         ->excludes("--footprint");
-    app.add_flag("--refine", move_kernels, "with --reduce: then move and resize the kernels for a lower error")->needs(reduce);
+    app.add_flag("--refine", move_kernels,
+                 "with --reduce: move and resize the kernels too: about half as many, ten times as slow")
+        ->needs(reduce);
 }
 
 SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refinement) const {
@@ -119,11 +122,17 @@ RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, 
 }
 
 RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments, const LimitOptions& limit, Report& report) {
-    const ReduceOptions options{
-        .rmse = arguments.reduce_rmse, .move = arguments.move_kernels, .limit = limit, .progress = limit.progress};
+    const ReduceOptions options{.rmse = arguments.reduce_rmse,
+                                .kernel = kernel_from(arguments.kernel, "compact"),
+                                .move = arguments.move_kernels,
+                                .limit = limit,
+                                .progress = limit.progress};
     ReduceResult reduced = report.timed("reduce", [&] { return reduce_rbf(mesh, options); });
     report["points_before"] = mesh.points.size();
     report["field_rmse"] = reduced.report.validation.rmse;
+    if (reduced.report.points > mesh.points.size()) {
+        report.warn("these are more kernels than control points: --per-edge 1 has fewer, maybe at no greater error");
+    }
     if (!reduced.report.reached) {
         report.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
                          ": the samples of the volume are too far apart for more kernels"));

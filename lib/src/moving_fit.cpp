@@ -21,7 +21,7 @@ constexpr double kLeastWeight = 0.02;
 constexpr double kMargin = 1.15;          // kernels that may come to reach a sample take part, within this growth
 constexpr double kShape = 0.1;            // how much more strongly shifts and growths are held than terms
 constexpr int kMostCholesky = 200;        // kernels: beyond, factors fill up and conjugate gradients are faster
-constexpr std::size_t kBlockBytes = 400;  // of one kernel at one sample: 9 derivatives, and Ceres' and our lists
+constexpr std::size_t kBlockBytes = 180;  // of one kernel at one sample: 9 derivatives, and Ceres' and our lists
 
 struct Neighbour {
     Index kernel;

@@ -25,11 +25,10 @@ using detail::SampleParts;
 
 namespace {
 
-constexpr double kReach = 1.43;           // of the compact kernel, in sample intervals
 constexpr double kUniform = 12;           // side² of a box over its variance
-constexpr double kWellInside = 0.5;       // e of the farthest sample of a part: it has a weight of .125 there
+constexpr double kFarthest = 1.01;        // ρ of a part's farthest sample: the compact kernel weighs .125 there
 constexpr double kFirstError = 5;         // times the target: up to there parts are split by their own fits
-constexpr std::size_t kMostSamples = 64;  // of a part that take part in the fit
+constexpr std::size_t kPartSamples = 64;  // of a part that take part in the fit
 constexpr double kMostGrowth = 0.3;       // of the parts are split in a round
 constexpr double kThickness = 1e-3;       // of a flat part, of its largest extent
 constexpr int kSteps = 40;                // of conjugate gradients; 120 lower the error by less than a hundredth
@@ -94,7 +93,7 @@ public:
         std::sort(by_place.begin(), by_place.end(),
                   [&](std::size_t a, std::size_t b) { return parts_.parts()[a].begin < parts_.parts()[b].begin; });
         for (const std::size_t p : by_place) starts.push_back(parts_.parts()[p].end);
-        const auto chosen = detail::thin_samples(samples_, parts_.order(), starts, kMostSamples);
+        const auto chosen = detail::thin_samples(samples_, parts_.order(), starts, kPartSamples);
         const FieldFit fit(centers_, frames_, options_.kernel, chosen.samples);
         fit.solve(terms_, prior_, steps);
         const auto residual = fit.residuals(terms_);
@@ -159,7 +158,7 @@ private:
     void place_kernel(std::size_t p) {
         const SamplePart& part = parts_.parts()[p];
         centers_[p] = part.fit.mean;
-        const double r = options_.overlap * kReach;
+        const double radius = support_radius(options_.kernel), r = options_.overlap * radius;
         Mat3 s = (r * r * kUniform) * part.fit.covariance;
         const double trace = s[0][0] + s[1][1] + s[2][2];
         s += Mat3(kThickness * kThickness * (trace > 0 ? trace : 1e-12));
@@ -171,7 +170,8 @@ private:
             const Vec3 place = root.times(samples_.points[parts_.order()[k]] - part.fit.mean);
             farthest = std::max(farthest, glm::dot(place, place));
         }
-        if (farthest > kWellInside) frames_[p] = frame(s, farthest / kWellInside);
+        const double allowed = std::pow(kFarthest / radius, 2);
+        if (farthest > allowed) frames_[p] = frame(s, farthest / allowed);
         const Vec3 h = detail::to_frame(frames_[p], part.fit.slope);
         terms_[p] = prior_[p] = {part.fit.value, h.x, h.y, h.z, 0};
     }
@@ -240,7 +240,7 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
             report.rmse = moved.report.rmse_after;
         }
         report.validation = field_error(result.volume, validation);
-        report.reached = std::max(report.rmse, report.validation.rmse) <= options.rmse;
+        report.reached = std::max(report.rmse, report.validation.rmse) <= options.rmse && report.validation.uncovered == 0;
         if (!more) break;
         // The samples were met better than what lies between them, or moves gained less: aim lower.
         const double error = std::max(report.rmse, report.validation.rmse);
@@ -262,7 +262,8 @@ ReduceResult reduce_rbf(const HexMesh& mesh, const ReduceOptions& options) {
     const FieldSamples validation = sample_cells(mesh, kValidation, limit);
     ReduceResult result = reduce_rbf(sample_vertices(mesh, level, limit), validation, options);
     // What fails for want of samples gets eight times as many, once, as long as memory is a matter of course.
-    if (!result.report.reached && level < 3 && cells << (3 * level + 3) <= kMostSamples)
+    const bool more = !result.report.reached && result.report.points < options.max_points;
+    if (more && level < 3 && cells << (3 * level + 3) <= kMostSamples)
         result = reduce_rbf(sample_vertices(mesh, level + 1, limit), validation, options);
     result.volume.channels[0].name = mesh.attributes[0].name;
     const HexMesh once = refine(mesh, {.scheme = limit.scheme,

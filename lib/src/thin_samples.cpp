@@ -34,7 +34,8 @@ ThinSamples thin_samples(const FieldSamples& samples, std::span<const Index> ord
     result.starts.assign(groups + 1, 0);
     for (std::size_t g = 0; g < groups; ++g)
         result.starts[g + 1] = result.starts[g] + std::min(starts[g + 1] - starts[g], most);
-    auto& [points, values, weights] = result.samples;
+    auto& points = result.samples.points;
+    auto &values = result.samples.values, &weights = result.samples.weights;
     points.resize(result.starts.back());
     values.resize(points.size());
     weights.resize(points.size());

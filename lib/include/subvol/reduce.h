@@ -40,7 +40,7 @@ struct FieldError {
 
 /// rmse:       to be reached, in units of the field, > 0
 /// kernel:     of the result; radial
-/// overlap:    0.7 to 2; 1 is that of uniform samples: a box of side h gets the support 1.43 h
+/// overlap:    0.7 to 2; 1 is that of uniform samples: a box of side h gets the support R h, R that of the kernel
 /// max_points: where the growth ends at the latest
 /// move:       kernels are also moved and resized (`refine_rbf`): about half as many, ten times as slow
 /// limit:      the scheme, and how exact the validation samples are; its `progress` is not used
@@ -55,7 +55,7 @@ struct ReduceOptions {
 };
 
 /// rmse, validation: on the samples that made the volume, and on independent ones
-/// reached:          whether both meet the target
+/// reached:          whether both meet the target and no sample is uncovered
 struct ReduceReport {
     std::size_t points = 0;
     std::size_t samples = 0;
