@@ -32,7 +32,8 @@ std::vector<double> errors_of_cells(const RbfVolume& volume, const HexMesh& twic
 
 /// More intervals where a cell at one of the edge's ends errs too much: errors fall with the square of the spacing, and a large
 /// kernel reaches into the next cell. Returns whether any.
-bool refine_intervals(const Topology& topology, const std::vector<double>& errors, double tolerance, std::vector<int>& intervals) {
+bool refine_intervals(const Topology& topology, const std::vector<double>& errors, double tolerance,
+                      std::vector<int>& intervals) {
     std::vector<double> at_points(topology.point_count, 0);
     for (std::size_t c = 0; c < errors.size(); ++c) {
         for (const Index p : topology.cells[c]) at_points[p] = std::max(at_points[p], errors[c]);

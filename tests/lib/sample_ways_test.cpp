@@ -142,7 +142,7 @@ TEST(SampleWays, FullCorrectionIsOfThirdOrderWhereTheMomentAloneIsOfSecond) {
     const double full = rmse(1, Correction::Full), full_half = rmse(2, Correction::Full);
     EXPECT_NEAR(std::log2(second / second_half), 2, .4);
     EXPECT_GT(std::log2(full / full_half), 2.7);
-    EXPECT_LT(full, second / 2);  // at this spacing third derivatives have their part in both
+    EXPECT_LT(full, second / 2);                     // at this spacing third derivatives have their part in both
     const double cells = rmse(3, Correction::Full);  // cell by cell, with another formula for the Hessian
     EXPECT_LT(cells, full / 4);
 }
@@ -256,8 +256,8 @@ TEST(SampleWays, RefuseWhatCannotBe) {
     EXPECT_THROW((void)sample_rbf_points(mesh, {.tolerance = -1}), Error);
     EXPECT_THROW((void)sample_rbf_points(mesh, {.tolerance = std::nan("")}), Error);
     EXPECT_THROW((void)sample_rbf_points(mesh, {.kernel = CubicConvolutionKernel{}}), Error);
-    EXPECT_THROW((void)sample_rbf_points(mesh, {.footprint = Footprint{.spacing_px = 0}}), Error);
-    EXPECT_THROW((void)sample_rbf_points(mesh, {.footprint = Footprint{.width_px = 0}}), Error);
+    EXPECT_THROW((void)sample_rbf_points(mesh, {.footprint = Footprint{.camera = {}, .spacing_px = 0}}), Error);
+    EXPECT_THROW((void)sample_rbf_points(mesh, {.footprint = Footprint{.camera = {}, .width_px = 0}}), Error);
 }
 
 }  // namespace

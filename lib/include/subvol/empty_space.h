@@ -16,7 +16,8 @@ struct VisibleVolume {
 /// it is their mean. So what is dropped changes nothing that is seen.
 ///
 /// function: of the channel's values; only its opacity counts. `above(t)` hides what is at or below t.
-/// throws:   Error(InvalidInput) if there is no such channel, the function is not valid, or the kernel has negative lobes: their
+/// throws:   Error(InvalidInput) if there is no such channel, the function is not valid, or the kernel has negative lobes:
+/// their
 ///           field is not bounded by the kernels' values
 /// cost:     O(n) in time; memory of a grid with about eight boxes a point
 [[nodiscard]] VisibleVolume drop_invisible(const RbfVolume& volume, std::size_t channel, const TransferFunction& function);
