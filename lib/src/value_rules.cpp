@@ -17,40 +17,56 @@ namespace {
 
 constexpr std::array<int, 3> kStrides{1, 4, 16};
 
-/// Fills in nodes outside the known ones: along an axis quadratically if the three next nodes are real, else by what the sides
-/// next to it say: f(i,j) = f(i,0) + f(0,j) − f(0,0).
-void extrapolate(const GridPoints& grid, double* nodes) {
-    for (int outside = 1; outside <= 3; ++outside) {  // nodes beyond a side, then beyond two, then beyond three
+/// A node of the grid that is not one of the cell's corners: steps towards the cell, 0 along axes on which it stands beside it.
+struct OuterNode {
+    std::array<int, 3> inward{};
+    int axes = 0;
+
+    explicit OuterNode(int node) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            const int at = node / kStrides[a] % 4;
+            inward[a] = at == 0 ? kStrides[a] : at == 3 ? -kStrides[a] : 0;
+            axes += inward[a] != 0;
+        }
+    }
+};
+
+/// Nodes that have three known ones next to them along an axis continue these as a quadratic; so do, then, their neighbours.
+void continue_lines(std::array<bool, 64>& known, double* nodes) {
+    for (int sweep = 0; sweep < 3; ++sweep) {  // beyond one side of a box, beyond two, beyond three
+        const std::array<bool, 64> before = known;
         for (int n = 0; n < 64; ++n) {
-            if (grid[static_cast<std::size_t>(n)] != kNone) continue;
-            std::array<int, 3> inward{};  // steps towards the cell, 0 along axes on which the node is not outside
-            int axes = 0;
+            const auto has = [&](int m) { return before[static_cast<std::size_t>(m)]; };
+            const OuterNode outer(n);
+            for (std::size_t a = 0; a < 3 && !known[static_cast<std::size_t>(n)]; ++a) {
+                const int one = n + outer.inward[a], two = one + outer.inward[a], three = two + outer.inward[a];
+                if (outer.inward[a] == 0 || !has(one) || !has(two) || !has(three)) continue;
+                nodes[n] = 3 * nodes[one] - 3 * nodes[two] + nodes[three];
+                known[static_cast<std::size_t>(n)] = true;
+            }
+        }
+    }
+}
+
+/// Fills in the nodes that are no points: by lines where they can be continued; else beyond one side linearly, and beyond two
+/// or three by what these sides say: f(i,j) = f(i,0) + f(0,j) − f(0,0).
+void extrapolate(const GridPoints& grid, double* nodes) {
+    std::array<bool, 64> known;
+    for (std::size_t n = 0; n < 64; ++n) known[n] = grid[n] != kNone;
+    continue_lines(known, nodes);
+    for (int axes = 1; axes <= 3; ++axes) {
+        for (int n = 0; n < 64; ++n) {
+            const OuterNode outer(n);
+            if (known[static_cast<std::size_t>(n)] || outer.axes != axes) continue;
+            const int corner = n + outer.inward[0] + outer.inward[1] + outer.inward[2];
+            if (axes == 1) {
+                nodes[n] = 2 * nodes[corner] - nodes[2 * corner - n];
+                continue;
+            }
+            nodes[n] = -(axes - 1) * nodes[corner];
             for (std::size_t a = 0; a < 3; ++a) {
-                const int at = n / kStrides[a] % 4;
-                inward[a] = at == 0 ? kStrides[a] : at == 3 ? -kStrides[a] : 0;
-                axes += inward[a] != 0;
+                if (outer.inward[a] != 0) nodes[n] += nodes[corner - outer.inward[a]];
             }
-            if (axes != outside) continue;
-            double sum = 0;
-            bool real = false;
-            for (std::size_t a = 0; a < 3 && !real; ++a) {
-                if (inward[a] == 0) continue;
-                const int one = n + inward[a], two = one + inward[a], three = two + inward[a];
-                const auto known = [&](int m) { return grid[static_cast<std::size_t>(m)] != kNone; };
-                real = known(one) && known(two) && known(three);
-                if (real) sum = 3 * nodes[one] - 3 * nodes[two] + nodes[three];
-            }
-            if (!real && axes == 1) {
-                const int step = inward[0] + inward[1] + inward[2];
-                sum = 2 * nodes[n + step] - nodes[n + 2 * step];
-            } else if (!real) {
-                const int corner = n + inward[0] + inward[1] + inward[2];
-                for (std::size_t a = 0; a < 3; ++a) {
-                    if (inward[a] != 0) sum += nodes[corner - inward[a]];
-                }
-                sum -= (axes - 1) * nodes[corner];
-            }
-            nodes[n] = sum;
         }
     }
 }

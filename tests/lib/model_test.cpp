@@ -157,15 +157,15 @@ TEST(Pawn, IsSolidAndItsLatticeResolvesTheSurface) {
     constexpr double kCell = 1.0 / 32;  // at the default resolution
     for (double z = -0.99; z < 1; z += 0.01) {
         if (z > -0.85 && z < 0.82) {
-            EXPECT_GT(PawnField::density({0, 0, z}), 0.8) << z;
+            EXPECT_GT(PawnField::density({0, 0, z}), 0.5) << z;  // a cell inside
         }
-        // From -1 to 1 at the steepest slope takes at least 1.5 cells.
-        for (double r = 0; r < 0.5; r += 0.01) ASSERT_LT(steepness(r, z) * kCell, 2 / 1.5) << r << " " << z;
+        // From -1 to 1 at the steepest slope takes at least three cells.
+        for (double r = 0; r < 0.5; r += 0.01) ASSERT_LT(steepness(r, z) * kCell, 2. / 3) << r << " " << z;
     }
     const auto mesh = make_model("pawn");
     const auto [low, high] = std::minmax_element(density(mesh).begin(), density(mesh).end());
     EXPECT_LT(*low, -0.999);
-    EXPECT_GT(*high, 0.999);
+    EXPECT_GT(*high, 0.95);  // four cells inside the base
 }
 
 TEST(Ball, IsACubeWithSixSectors) {

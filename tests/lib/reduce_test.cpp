@@ -138,7 +138,7 @@ TEST(Reduce, RefusesWrongOptionsAndSamples) {
     const RbfVolume volume = sample_rbf_points(mesh).volume;
     refuse("iterations", [&] { (void)refine_rbf(volume, samples, {.iterations = 0}); });
     refuse("ridge", [&] { (void)refine_rbf(volume, samples, {.ridge = 0}); });
-    refuse("no kernels", [&] { (void)refine_rbf(RbfVolume{}, samples); });
+    refuse("no channel", [&] { (void)refine_rbf(RbfVolume{}, samples); });
     samples.values[3] = INFINITY;
     refuse("sample 3", [&] { (void)field_error(volume, samples); });
     samples.values.pop_back();
