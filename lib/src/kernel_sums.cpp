@@ -1,5 +1,7 @@
 #include "kernel_sums.h"
 
+#include <tbb/task_group.h>
+
 #include <algorithm>
 
 #include "subvol/error.h"
@@ -74,19 +76,21 @@ RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const SampleOptio
         throw Error(ErrorCode::InvalidInput, std::to_string(count) + " samples are too many", {}, "fewer than 2³²");
     RbfVolume volume;
     volume.kernel = options.kernel;
-    volume.centers.resize(count);
-    volume.frames.resize(count);
+    std::vector<RbfChannel>& channels = volume.channels;
     for (const auto& attribute : mesh.attributes) {
         for (int c = 0; c < attribute.channels; ++c) {
-            RbfChannel channel;
-            channel.name = attribute.channels == 1 ? attribute.name : attribute.name + "." + std::to_string(c);
-            channel.values.resize(count);
-            channel.gradients.resize(count);
-            channel.moments.resize(count);
-            if (options.correction == Correction::Full) channel.hessians.resize(count);
-            volume.channels.push_back(std::move(channel));
+            channels.emplace_back().name = attribute.channels == 1 ? attribute.name : attribute.name + "." + std::to_string(c);
         }
     }
+    tbb::task_group arrays;  // to clear memory for the first time takes a while: several threads do
+    arrays.run([&] { volume.frames.resize(count); });
+    for (RbfChannel& channel : channels) {
+        arrays.run([&] { channel.values.resize(count); });
+        arrays.run([&] { channel.gradients.resize(count); });
+        arrays.run([&] { channel.moments.resize(count); });
+        if (options.correction == Correction::Full) arrays.run([&] { channel.hessians.resize(count); });
+    }
+    arrays.wait();
     return volume;
 }
 

@@ -35,7 +35,7 @@ private:
 /// What the moment leaves of a Hessian: H less its part along the frame's inverse, as six numbers.
 [[nodiscard]] std::array<float, 6> without_moment(const Mat3& hessian, const std::array<float, 6>& frame);
 
-/// An RBF volume of `count` points with the channels of a mesh, nothing filled in.
+/// An RBF volume of `count` points with the channels of a mesh, nothing filled in; its centers are yet to come.
 ///
 /// throws: Error(InvalidInput) if they are too many
 [[nodiscard]] RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const SampleOptions& options);

@@ -34,7 +34,22 @@ public:
         }
     }
 
+    /// How many entries `at` makes, without a look at who the neighbours are where that is clear.
+    [[nodiscard]] std::size_t entries(std::size_t point) const {
+        if (point >= first_.cells) return 6;
+        if (point >= first_.faces && !sharp_inside(static_cast<Index>(point - first_.faces))) return 6;
+        if (point >= first_.edges && point < first_.faces && in_full_ring(static_cast<Index>(point - first_.edges))) return 6;
+        std::size_t count = 0;
+        at(point, [&](Index, Index, unsigned, unsigned) { count += 2; });
+        return count;
+    }
+
 private:
+    [[nodiscard]] bool in_full_ring(Index e) const {
+        return !t_.edge_on_boundary[e] && t_.edge_has_ring[e] && t_.edge_faces[e].size() == 4;
+    }
+    [[nodiscard]] bool sharp_inside(Index f) const { return !t_.face_on_hull(f) && t_.face_on_boundary(f); }
+
     [[nodiscard]] Index edge_point(Index e) const { return static_cast<Index>(first_.edges + e); }
     [[nodiscard]] Index face_point(Index f) const { return static_cast<Index>(first_.faces + f); }
     [[nodiscard]] Index cell_point(Index c) const {
@@ -96,7 +111,7 @@ private:
         const auto pair = [&](Index f, Index g) {
             emit(face_point(f), face_point(g), 2 * cells_at_face(f), 2 * cells_at_face(g));
         };
-        if (!t_.edge_on_boundary[e] && t_.edge_has_ring[e] && faces.size() == 4) {
+        if (in_full_ring(e)) {
             pair(faces[0], faces[2]);
             pair(faces[1], faces[3]);
             return;
@@ -116,7 +131,7 @@ private:
         emit(edge_point(e[0]), edge_point(e[2]), n, n);
         emit(edge_point(e[1]), edge_point(e[3]), n, n);
         const auto& [c0, c1] = t_.face_cells[f];
-        if (c1 != kNone && t_.face_on_boundary(f)) {  // a sharp face: both sides end at it
+        if (sharp_inside(f)) {  // both sides end at it
             emit(cell_point(c0), kNone, 4u, 0u);
             emit(cell_point(c1), kNone, 4u, 0u);
         } else {
@@ -145,11 +160,7 @@ PointLines collect(const Topology& topology, bool child) {
     PointLines lines;
     lines.offsets.resize(stars.size() + 1);
     lines.offsets[0] = 0;
-    parallel_each(stars.size(), [&](std::size_t p) {
-        std::size_t count = 0;
-        stars.at(p, [&](Index, Index, unsigned, unsigned) { count += 2; });
-        lines.offsets[p + 1] = count;
-    });
+    parallel_each(stars.size(), [&](std::size_t p) { lines.offsets[p + 1] = stars.entries(p); });
     for (std::size_t p = 0; p < stars.size(); ++p) lines.offsets[p + 1] += lines.offsets[p];
     lines.neighbours.resize(lines.offsets.back());
     lines.cells.resize(lines.offsets.back());

@@ -96,7 +96,7 @@ SampleResult sample_level(HexMesh control, int level, const SampleOptions& optio
         if (!interpolates(options.scheme)) control.cells = detail::child_cells(last.parent);
     }
     if (!interpolates(options.scheme)) control = on_limit(std::move(control), options.scheme);
-    SampleResult result = detail::sample_at_points(control, lines, options.scheme != Scheme::Linear, options);
+    SampleResult result = detail::sample_at_points(std::move(control), lines, options.scheme != Scheme::Linear, options);
     result.volume.boundary = std::move(boundary);
     counts.points = result.report.points;
     counts.flat_frames = result.report.flat_frames;

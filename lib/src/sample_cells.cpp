@@ -170,6 +170,7 @@ public:
         report.in_cells = first_cell.back() - first_face.back();
         report.points = first_cell.back();
         result_.volume = empty_volume(mesh, report.points, options_);
+        result_.volume.centers.resize(report.points);
 
         each(topology_.point_count, "sample vertices", [&](std::size_t p, auto& writer) { return sample_vertex(p, writer); });
         each(topology_.edges.size(), "sample edges",

@@ -61,7 +61,6 @@ public:
 
     /// returns: whether the point's frame was flat
     bool sample(Index p) {
-        volume_.centers[p] = mesh_.points[p];
         for (std::size_t c = 0; c < sources_.size(); ++c) volume_.channels[c].values[p] = static_cast<float>(sources_[c].at(p));
         sums_.begin(p);
         double cells = 0;
@@ -120,8 +119,7 @@ private:
 
 }  // namespace
 
-SampleResult sample_at_points(const HexMesh& on_limit, const PointLines& lines, bool across_points,
-                              const SampleOptions& options) {
+SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool across_points, const SampleOptions& options) {
     constexpr std::size_t kTurn = std::size_t{1} << 20;  // points between two reports of progress
     SampleResult result;
     result.volume = empty_volume(on_limit, lines.size(), options);
@@ -136,6 +134,7 @@ SampleResult sample_at_points(const HexMesh& on_limit, const PointLines& lines, 
             flat += flat_here;
         });
     }
+    result.volume.centers = std::move(on_limit.points);
     if (options.correction == Correction::Full) fit_hessians(lines, result.volume);
     report_progress(options.progress, "sample", 1);
     result.report.points = lines.size();
