@@ -44,6 +44,7 @@ RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples,
     result.volume = volume;
     result.volume.channels.resize(1);
     const FieldError before = field_error(result.volume, samples);
+    result.volume.channels[0].hessians.clear();  // what is fitted are values, gradients and moments
     const auto groups = detail::group_by_kernel(result.volume, samples);
     const FieldSamples chosen = detail::thin_samples(samples, groups.order, groups.starts, kMostSamples).samples;
     const auto fit =

@@ -112,7 +112,8 @@ struct RbfRefineResult {
 ///
 /// With the centres and frames as they are this is one linear problem. With `move` each kernel may also shift and grow in its
 /// frame; that is nonlinear, and is solved by Ceres: sparse Cholesky up to 200 kernels, conjugate gradients beyond.
-/// returns: the volume with that one channel; boundary and bounds are kept. Never worse on the samples than before
+/// returns: the volume with that one channel, without Hessians unless they were better; boundary and bounds are kept. Never
+///          worse on the samples than before
 /// throws:  Error(InvalidInput) for options out of range, no channel, or samples that do not fit together
 /// cost:    O(samples · kernels over a point) an iteration; bitwise the same for any number of threads
 /// source:  SCIENCE §5 (Weiler 05, Jang 06); analytic derivatives
