@@ -1,5 +1,6 @@
 #include "point_lines.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "boundary_rings.h"
@@ -55,7 +56,10 @@ private:
     [[nodiscard]] Index cell_point(Index c) const {
         return c == kNone ? kNone : static_cast<Index>(first_.cells + t_.cell_rank[c]);
     }
-    [[nodiscard]] unsigned cells_at_edge(Index e) const { return static_cast<unsigned>(t_.edge_cells[e].size()); }
+    /// As many as a byte holds: beyond that weights need not be exact.
+    [[nodiscard]] unsigned cells_at_edge(Index e) const {
+        return static_cast<unsigned>(std::min<std::size_t>(t_.edge_cells[e].size(), 255));
+    }
     [[nodiscard]] unsigned cells_at_face(Index f) const { return t_.face_on_hull(f) ? 1 : 2; }
 
     /// The edge at a vertex that goes on from another of its edges: the only one that shares no face with it.
