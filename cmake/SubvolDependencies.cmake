@@ -23,6 +23,7 @@ endif()
 
 if(SUBVOL_RENDER)
   find_package(embree 3.13 CONFIG REQUIRED)
+  find_package(hwy CONFIG REQUIRED)
   pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 endif()
 

@@ -111,7 +111,7 @@ int last_pixel(std::int64_t snapped) {
     return static_cast<int>(std::floor(static_cast<double>(snapped) / kSnap - 0.5));
 }
 
-void rasterize(const ScreenTriangle& t, const View& view, int y_begin, int y_end, std::vector<Hit>& hits) {
+void rasterize(const ScreenTriangle& t, const View& view, double middle, int y_begin, int y_end, std::vector<Hit>& hits) {
     const auto [x_low, x_high] = std::minmax({t.corners[0].x, t.corners[1].x, t.corners[2].x});
     const auto [y_low, y_high] = std::minmax({t.corners[0].y, t.corners[1].y, t.corners[2].y});
     const int x0 = std::max(0, first_pixel(x_low)), x1 = std::min(view.width() - 1, last_pixel(x_high));
@@ -126,7 +126,7 @@ void rasterize(const ScreenTriangle& t, const View& view, int y_begin, int y_end
             if (!inside) continue;
             const auto pixel =
                 static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view.width()) + static_cast<std::uint32_t>(x);
-            hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5)), t.sign});
+            hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5) - middle), t.sign});
         }
     }
 }
@@ -165,7 +165,7 @@ struct Band {
 
 }  // namespace
 
-PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near) {
+PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle) {
     const auto chunks = project(surface, view, near);
     const int band_count = (view.height() + kBandRows - 1) / kBandRows;
     // Which triangles a band meets, so that each band looks at its own only.
@@ -186,7 +186,7 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
         const std::uint32_t first_pixel_id = static_cast<std::uint32_t>(y0) * static_cast<std::uint32_t>(view.width());
         Band& band = bands[static_cast<std::size_t>(b)];
         std::vector<Hit> hits;
-        for (const auto* t : of_band[static_cast<std::size_t>(b)]) rasterize(*t, view, y0, y1, hits);
+        for (const auto* t : of_band[static_cast<std::size_t>(b)]) rasterize(*t, view, middle, y0, y1, hits);
         std::sort(hits.begin(), hits.end(), [](const Hit& l, const Hit& r) {
             // Where two shells touch, leaving comes after entering: no gap opens between them.
             return l.pixel != r.pixel ? l.pixel < r.pixel : l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
@@ -197,7 +197,7 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
             std::size_t end = i;
             while (end < hits.size() && hits[end].pixel == hits[i].pixel) ++end;
             const std::size_t before = band.depths.size();
-            resolve(std::span(hits).subspan(i, end - i), static_cast<float>(near), band.depths);
+            resolve(std::span(hits).subspan(i, end - i), static_cast<float>(near - middle), band.depths);
             band.counts[hits[i].pixel - first_pixel_id] = static_cast<std::uint32_t>((band.depths.size() - before) / 2);
             i = end;
         }

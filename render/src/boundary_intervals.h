@@ -19,7 +19,8 @@ struct PixelIntervals {
 /// Rasterizes a closed surface, watertight: vertices are snapped to 1/4096 px and a pixel centre on a shared edge counts once.
 /// A ray is inside while it has entered more often than left, so shells may be nested, overlap or enclose the eye.
 ///
-/// near: depth below which nothing is seen
-[[nodiscard]] PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near);
+/// near:   depth below which nothing is seen
+/// middle: what all depths are taken relative to
+[[nodiscard]] PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle);
 
 }  // namespace subvol::detail

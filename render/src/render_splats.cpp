@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "gl_context.h"
 #include "splat_backend.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
@@ -9,10 +10,6 @@
 namespace subvol {
 
 namespace {
-
-/// GL tiles are one work group; CPU tiles are larger, so that a kernel is read less often.
-constexpr int kTileGl_px = 16;
-constexpr int kTileCpu_px = 32;
 
 struct Choice {
     bool gl = false;
@@ -29,7 +26,7 @@ Choice choose(Backend wanted) {
     // Software GL is slower than the CPU backend and draws the same: only when asked for.
     if (device && (wanted == Backend::Gl || device->hardware)) return {true, device->renderer};
     if (wanted == Backend::Gl) {
-        throw Error(ErrorCode::MissingCapability, "no OpenGL 4.3 was found through EGL", {}, "use the CPU backend");
+        throw Error(ErrorCode::MissingCapability, "no OpenGL 4.5 was found through EGL", {}, "use the CPU backend");
     }
     return cpu();
 }
@@ -45,21 +42,33 @@ SplatResult render_splats(const RbfVolume& volume, const View& view, const Optic
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
-    const auto values = make_preintegrated_table(optics);
-    const auto frame = detail::prepare_splats(volume, view, values, options, choice.gl ? kTileGl_px : kTileCpu_px);
-    const auto table = detail::over_unit_range(values);
+    const auto scene = detail::make_scene(volume, options);
+    const auto look = detail::classify(scene, optics);
+    const auto frame = detail::prepare_frame(scene, view, look, options.sheets, options.progress);
     report.seconds_prepare = seconds_since(start);
 
     const auto drawing = std::chrono::steady_clock::now();
-    result.image = choice.gl ? detail::draw_splats_gl(frame, view, table, options.progress)
-                             : detail::draw_splats_cpu(frame, view, table, options.progress);
+    auto drawn = detail::draw_splats_cpu(frame, options.progress);
+    result.image = std::move(drawn.image);
+    result.depth = std::move(drawn.depth);
     report.seconds_draw = seconds_since(drawing);
     report.backend = choice.gl ? "gl" : "cpu";
     report.device = choice.device;
     report.points = volume.size();
-    report.bin_entries = frame.bin_splats.size();
+    report.bin_entries = frame.tile_splats.size();
     report.boundary_hits = frame.intervals.hits;
     return result;
 }
 
+}  // namespace subvol
+
+namespace subvol {
+std::optional<GlDevice> find_gl_device() {
+    try {
+        const detail::GlContext context;
+        return GlDevice{context.renderer(), context.hardware()};
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
 }  // namespace subvol

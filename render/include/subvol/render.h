@@ -25,12 +25,30 @@ struct GlDevice {
 /// Looks for OpenGL 4.3 without a display, hardware first; nothing if there is none.
 [[nodiscard]] std::optional<GlDevice> find_gl_device();
 
-/// sheets:  planes of constant eye depth over the volume's depth range, 2..65536
-/// channel: which channel of the volume is shown
+/// Light on the surfaces of equal value: Blinn and Phong's, with one light at the eye and a key light, both from either side.
+/// Where the value hardly changes there is no surface, and colours stay what they are.
+///
+/// ambient, diffuse, specular: parts of the light, ≥ 0
+/// key:                        towards the key light, in eye space (right, up, away from the eye)
+struct Shading {
+    double ambient = 0.3;
+    double diffuse = 0.7;
+    double specular = 0.25;
+    double shininess = 32;
+    Vec3 key{-0.5, 0.7, -0.5};
+};
+
+/// sheets:        planes of constant eye depth over the volume's depth range, 2..65536
+/// channel:       which channel of the volume is shown
+/// color_channel: takes the colours from another channel than the opacities; not pre-integrated
+/// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
 struct SplatOptions {
     Backend backend = Backend::Auto;
     int sheets = 200;
     std::size_t channel = 0;
+    std::optional<std::size_t> color_channel{};
+    bool normalized = true;
+    std::optional<Shading> shading{};
     Progress* progress = nullptr;
 };
 
@@ -38,22 +56,25 @@ struct SplatReport {
     std::string backend;  // "gl" or "cpu"
     std::string device;   // GL renderer string, or the number of CPU threads
     std::size_t points = 0;
-    std::size_t bin_entries = 0;    // (tile, sheet batch, kernel) triples
+    std::size_t bin_entries = 0;    // (tile, kernel) pairs
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_prepare = 0, seconds_draw = 0;
 };
 
+/// depth: of each pixel, the mean eye depth of what is seen, by opacity; infinity where nothing is
 struct SplatResult {
     Image image;
+    std::vector<float> depth;
     SplatReport report;
 };
 
 /// Draws an RBF volume: kernels summed on image-aligned sheets, clipped per pixel to the boundary's entry and exit depths, the
-/// transfer function applied after reconstruction, intervals pre-integrated, composited front to back.
+/// transfer function applied after reconstruction, intervals pre-integrated, composited front to back. Without a boundary the
+/// volume ends where the sum of weights falls to half of what it is inside.
 ///
 /// Bitwise the same for any number of threads. `Auto` takes a hardware GPU if there is one, else the CPU.
 /// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
-///         Error(MissingCapability) if Backend::Gl finds no OpenGL 4.3
+///         Error(MissingCapability) if Backend::Gl finds no OpenGL 4.5
 /// source: SCIENCE §3, §3.1
 [[nodiscard]] SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics,
                                         const SplatOptions& options = {});

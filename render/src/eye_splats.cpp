@@ -1,0 +1,164 @@
+#include "eye_splats.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel_axes.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// What turns values into cells of a table.
+struct Cells {
+    double scale, offset;
+
+    Cells(double min, double max, bool normalized)
+        : scale(PreintegratedTable::kCells / (max - min)), offset(normalized ? -min * scale : 0) {}
+};
+
+Cells opacity_cells(const SplatScene& scene, const Classification& look) {
+    return {look.table.min, look.table.max, scene.normalized};
+}
+Cells color_cells(const SplatScene& scene, const Classification& look) {
+    return {look.colors.min, look.colors.max, scene.normalized};
+}
+
+float to_float(double v) {
+    return static_cast<float>(v);
+}
+
+/// Makes the parts of one kernel after the other, all from the same cut of its frame.
+class ToEye {
+public:
+    ToEye(const SplatScene& scene, const View& view)
+        : scene_(scene),
+          to_eye_(glm::transpose(Mat3(view.axes()[0], view.axes()[1], view.axes()[2]))),
+          middle_(view.to_eye(scene.middle)),
+          reach_(scene.shape == KernelShape::Separable ? 3 : 1) {}
+
+    /// Sets the kernel that the others are about.
+    void look_at(std::size_t i) {
+        i_ = i;
+        const Mat3 s = to_eye_ * (reach_ * frame_matrix(scene_.volume->frames[i])) * glm::transpose(to_eye_);
+        szz_ = s[2][2];
+        shear_ = {s[2][0] / szz_, s[2][1] / szz_};
+        cxx_ = s[0][0] - s[2][0] * shear_.x;
+        cxy_ = s[0][1] - s[2][0] * shear_.y;
+        cyy_ = s[1][1] - s[2][1] * shear_.y;
+    }
+
+    [[nodiscard]] EyeSplat splat(const RbfChannel& channel, const Cells& cells) const {
+        const Vec3 center = to_eye_ * (scene_.volume->centers[i_] - scene_.middle);
+        const Vec3 g = gradient(channel, cells);
+        const double det = cxx_ * cyy_ - cxy_ * cxy_;
+        return {to_float(middle_.x + center.x),
+                to_float(middle_.y + center.y),
+                to_float(center.z),
+                to_float(1 / szz_),
+                to_float(shear_.x),
+                to_float(shear_.y),
+                to_float(cyy_ / det),
+                to_float(-cxy_ / det),
+                to_float(cxx_ / det),
+                value(channel, cells),
+                to_float(g.x),
+                to_float(g.y),
+                to_float(g.x * shear_.x + g.y * shear_.y + g.z),
+                moment(channel, cells),
+                to_float(std::sqrt(std::max(cxx_, 0.0))),
+                to_float(std::sqrt(std::max(cyy_, 0.0)))};
+    }
+
+    [[nodiscard]] EyeColor color(const RbfChannel& channel, const Cells& cells) const {
+        const Vec3 g = gradient(channel, cells);
+        return {value(channel, cells),  to_float(g.x * shear_.x + g.y * shear_.y + g.z),
+                to_float(g.x),          to_float(g.y),
+                moment(channel, cells), {}};
+    }
+
+    [[nodiscard]] EyeBend bend(const RbfChannel& channel, const Cells& cells) const {
+        if (channel.hessians.empty()) return {};
+        const Mat3 bend = 0.5 * cells.scale * (to_eye_ * frame_matrix(channel.hessians[i_]) * glm::transpose(to_eye_));
+        const Vec3 shear(shear_.x, shear_.y, 1), sheared = bend * shear;
+        return {to_float(glm::dot(shear, sheared)),
+                to_float(2 * sheared.x),
+                to_float(2 * sheared.y),
+                to_float(bend[0][0]),
+                to_float(bend[0][1]),
+                to_float(bend[1][1]),
+                {}};
+    }
+
+    [[nodiscard]] EyeAxes axes() const {
+        const Mat3 world = inverse_symmetric_root(scene_.volume->frames[i_]);
+        const Mat3 rows = world * glm::transpose(to_eye_);  // of an offset in eye space
+        EyeAxes result{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            const int row = static_cast<int>(a);
+            result.rows[4 * a] = to_float(rows[0][row]);
+            result.rows[4 * a + 1] = to_float(rows[1][row]);
+            result.rows[4 * a + 2] = to_float(rows[0][row] * shear_.x + rows[1][row] * shear_.y + rows[2][row]);
+        }
+        return result;
+    }
+
+private:
+    [[nodiscard]] Vec3 gradient(const RbfChannel& channel, const Cells& cells) const {
+        const auto& g = channel.gradients[i_];
+        return cells.scale * (to_eye_ * Vec3(g[0], g[1], g[2]));
+    }
+    [[nodiscard]] float value(const RbfChannel& channel, const Cells& cells) const {
+        return to_float(static_cast<double>(channel.values[i_]) * cells.scale + cells.offset);
+    }
+    /// e counts in the widened frame.
+    [[nodiscard]] float moment(const RbfChannel& channel, const Cells& cells) const {
+        return to_float(static_cast<double>(channel.moments[i_]) * cells.scale * reach_);
+    }
+
+    const SplatScene& scene_;
+    Mat3 to_eye_;
+    Vec3 middle_;
+    double reach_;
+    std::size_t i_ = 0;
+    double szz_ = 1, cxx_ = 1, cxy_ = 0, cyy_ = 1;
+    Vec2 shear_{0.0};
+};
+
+}  // namespace
+
+EyeSplats eye_splats(const SplatScene& scene, const View& view, const Classification& look) {
+    const std::size_t count = scene.volume->size();
+    const bool separable = scene.shape == KernelShape::Separable;
+    EyeSplats result;
+    result.splats.resize(count);
+    if (scene.bent) result.bends.resize(count);
+    if (scene.color_channel) result.colors.resize(count);
+    if (scene.color_channel && scene.bent) result.color_bends.resize(count);
+    if (separable) result.axes.resize(count);
+    const Cells values = opacity_cells(scene, look), colors = color_cells(scene, look);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
+        ToEye to_eye(scene, view);
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            to_eye.look_at(i);
+            result.splats[i] = to_eye.splat(scene.opacity_values(), values);
+            if (scene.bent) result.bends[i] = to_eye.bend(scene.opacity_values(), values);
+            if (scene.color_channel) result.colors[i] = to_eye.color(scene.color_values(), colors);
+            if (scene.color_channel && scene.bent) result.color_bends[i] = to_eye.bend(scene.color_values(), colors);
+            if (separable) result.axes[i] = to_eye.axes();
+        }
+    });
+    return result;
+}
+
+float value_offset(const SplatScene& scene, const Classification& look) {
+    return scene.normalized ? 0.0f : to_float(-look.table.min * opacity_cells(scene, look).scale);
+}
+
+float color_offset(const SplatScene& scene, const Classification& look) {
+    return scene.normalized ? 0.0f : to_float(-look.colors.min * color_cells(scene, look).scale);
+}
+
+}  // namespace subvol::detail

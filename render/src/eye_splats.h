@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "splat_scene.h"
+
+namespace subvol::detail {
+
+/// A kernel in eye space, ready to be cut by a plane of constant depth z: with z_s = z − depth, its section has the centre
+/// center + shear·z_s, and e = z_s²·inv_szz + Δᵀ·conic·Δ for an offset Δ from that centre; it stands for
+/// value + value_slope·z_s + gradient·Δ + moment·e, in cells of the table. Laid out as shaders have it.
+struct EyeSplat {
+    float center_x, center_y, depth, inv_szz;
+    float shear_x, shear_y, conic_xx, conic_xy;
+    float conic_yy, value, gradient_x, gradient_y;
+    float value_slope, moment, extent_x, extent_y;
+};
+static_assert(sizeof(EyeSplat) == 64);
+
+/// What a Hessian adds to the value: zz·z_s² + z_s·(zx, zy)·Δ + Δᵀ·(xx xy; xy yy)·Δ.
+struct EyeBend {
+    float zz, zx, zy, xx;
+    float xy, yy, unused[2];
+};
+
+/// The colour's value, as that of EyeSplat, in cells of the colour table.
+struct EyeColor {
+    float value, value_slope, gradient_x, gradient_y;
+    float moment, unused[3];
+};
+
+/// Separable kernels: ξ = rows · (Δ, z_s), each row of four floats, scaled so that the support ends at |ξ| = 1.
+struct EyeAxes {
+    std::array<float, 12> rows;
+};
+
+/// All kernels of a frame; bends, colors, color_bends and axes only where the scene has them.
+struct EyeSplats {
+    std::vector<EyeSplat> splats;
+    std::vector<EyeBend> bends;
+    std::vector<EyeColor> colors;
+    std::vector<EyeBend> color_bends;
+    std::vector<EyeAxes> axes;
+};
+
+/// Values become cells: (value − min) · cells / (max − min); where sums are not normalised, value · cells / (max − min), and
+/// `value_offset` is added to the sum.
+[[nodiscard]] EyeSplats eye_splats(const SplatScene& scene, const View& view, const Classification& look);
+
+/// What has to be added to a sum of kernels' values: 0 if it is normalised.
+[[nodiscard]] float value_offset(const SplatScene& scene, const Classification& look);
+[[nodiscard]] float color_offset(const SplatScene& scene, const Classification& look);
+
+}  // namespace subvol::detail

@@ -1,0 +1,143 @@
+// Classification and compositing of the sheets of a batch, a block of pixels at a time. Included once for every instruction
+// set: see splat_cpu.cpp.
+#if defined(SUBVOL_SPLAT_CLASSIFY_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SUBVOL_SPLAT_CLASSIFY_INL_H
+#undef SUBVOL_SPLAT_CLASSIFY_INL_H
+#else
+#define SUBVOL_SPLAT_CLASSIFY_INL_H
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "splat_sums-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace subvol::detail::HWY_NAMESPACE {
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+/// The pixels of a block on their way from front to back.
+struct BlockState {
+    HWY_ALIGN float transmittance[kBlock], red[kBlock], green[kBlock], blue[kBlock], depth[kBlock];
+    HWY_ALIGN float value[kBlock], known[kBlock], weight[kBlock];  // on the last sheet
+    HWY_ALIGN float color[kBlock], diffuse[kBlock], specular[kBlock];
+    HWY_ALIGN float enter[kBlock], exit[kBlock];  // the interval that a ray is in or comes to; enter = kNever: it is done
+    HWY_ALIGN float ray_length[kBlock];
+    std::uint32_t interval[kBlock], intervals_end[kBlock];
+};
+
+/// A value's place in the table, and the four integrals from its cell's lower end.
+struct Place {
+    Floats x;
+    Ints prefix[4];
+    Floats within[4];
+};
+
+/// Four numbers a lane, from rows that lie `stride` floats apart.
+HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, Floats& a, Floats& b, Floats& c, Floats& d4) {
+    const Lanes d;
+    const hn::CappedTag<float, 4> quad;
+    HWY_ALIGN float staged[4 * kBlock];
+    if constexpr (hn::MaxLanes(Lanes()) >= 4) {
+        for (std::size_t i = 0; i < kBlock; ++i) hn::Store(hn::LoadU(quad, table + offsets[i]), quad, staged + 4 * i);
+    } else {
+        for (std::size_t i = 0; i < 4 * kBlock; ++i) staged[i] = table[offsets[i / 4] + static_cast<std::int32_t>(i % 4)];
+    }
+    hn::LoadInterleaved4(d, staged, a, b, c, d4);
+}
+
+/// The optical model of a frame as vectors see it.
+class Classifier {
+public:
+    explicit Classifier(const Classification& look) : look_(look) {}
+
+    /// Mean extinction and emission (x premultiplied by extinction) of a stretch of ray between two values.
+    HWY_ATTR void means(const Place& front, const Place& back, Floats mean[4]) const {
+        const Lanes d;
+        const auto dx = hn::Sub(back.x, front.x);
+        const auto near = hn::Lt(hn::Abs(dx), hn::Set(d, kNearValues));
+        const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(near, hn::Set(d, 1.0f), dx));
+        for (std::size_t c = 0; c < 4; ++c) {
+            const auto counts = hn::ConvertTo(d, hn::Sub(back.prefix[c], front.prefix[c]));
+            const auto integral = hn::MulAdd(hn::Set(d, look_.table.unit[c]), counts, hn::Sub(back.within[c], front.within[c]));
+            mean[c] = hn::Max(hn::Mul(integral, inverse), hn::Zero(d));
+        }
+        if (hn::AllFalse(d, near)) return;
+        Floats here[4];
+        middle(hn::Mul(hn::Set(d, 0.5f), hn::Add(front.x, back.x)), here);
+        for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::IfThenElse(near, here[c], mean[c]);
+    }
+
+    HWY_ATTR Place place(Floats x) const {
+        const Lanes d;
+        Place p;
+        p.x = x;
+        Floats s, bend[4], prefix[4];
+        HWY_ALIGN std::int32_t offsets[kBlock];
+        find(x, s, offsets);
+        const float* rows = reinterpret_cast<const float*>(look_.table.rows.data());
+        load_rows(rows, offsets, prefix[0], prefix[1], prefix[2], prefix[3]);
+        load_rows(rows + 4, offsets, p.within[0], p.within[1], p.within[2], p.within[3]);
+        load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
+        const auto left = hn::Sub(s, hn::Set(d, 1.0f));
+        for (std::size_t c = 0; c < 4; ++c) {
+            p.prefix[c] = hn::BitCast(IntLanes(), prefix[c]);
+            p.within[c] = hn::Mul(s, hn::MulAdd(left, bend[c], p.within[c]));
+        }
+        return p;
+    }
+
+    HWY_ATTR void color(Floats x, Floats rgb[3]) const {
+        Floats s, low[4], step[4];
+        HWY_ALIGN std::int32_t offsets[kBlock];
+        find(x, s, offsets);
+        for (std::size_t i = 0; i < kBlock; ++i) offsets[i] = offsets[i] / kRowFloats * kColorFloats;
+        const float* rows = reinterpret_cast<const float*>(look_.colors.rows.data());
+        load_rows(rows, offsets, low[0], low[1], low[2], low[3]);
+        load_rows(rows + 4, offsets, step[0], step[1], step[2], step[3]);
+        for (std::size_t c = 0; c < 3; ++c) rgb[c] = hn::MulAdd(s, step[c], low[c]);
+    }
+
+    /// Whether no value between the least and the largest of two vectors can be seen.
+    HWY_ATTR bool transparent(Floats x0, Floats x1) const {
+        const Lanes d;
+        return look_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, hn::Min(x0, x1)))),
+                                       static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, hn::Max(x0, x1)))));
+    }
+
+private:
+    static constexpr std::int32_t kRowFloats = sizeof(PreintegratedTable::Row) / sizeof(float);
+    static constexpr std::int32_t kColorFloats = sizeof(ColorTable::Row) / sizeof(float);
+
+    /// The row of a value and how far it lies in it.
+    HWY_ATTR static void find(Floats x, Floats& s, std::int32_t* offsets) {
+        const Lanes d;
+        const IntLanes di;
+        const auto cell = hn::Min(hn::Max(hn::Floor(x), hn::Set(d, -1.0f)), hn::Set(d, PreintegratedTable::kCells));
+        s = hn::Sub(x, cell);
+        const auto row = hn::Add(hn::ConvertTo(di, cell), hn::Set(di, 1));
+        hn::Store(hn::Mul(row, hn::Set(di, kRowFloats)), di, offsets);
+    }
+
+    HWY_ATTR void middle(Floats x, Floats mean[4]) const {
+        const Lanes d;
+        Floats s, bend[4];
+        HWY_ALIGN std::int32_t offsets[kBlock];
+        find(x, s, offsets);
+        const float* rows = reinterpret_cast<const float*>(look_.table.rows.data());
+        load_rows(rows + 4, offsets, mean[0], mean[1], mean[2], mean[3]);
+        load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
+        const auto slope = hn::MulSub(hn::Set(d, 2.0f), s, hn::Set(d, 1.0f));
+        for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::MulAdd(slope, bend[c], mean[c]);
+    }
+
+    const Classification& look_;
+};
+
+}  // namespace subvol::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

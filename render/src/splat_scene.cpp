@@ -1,0 +1,163 @@
+#include "splat_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string_view>
+
+#include "kernel_profile.h"
+#include "subvol/error.h"
+#include "weight_inside.h"
+
+namespace subvol::detail {
+
+namespace {
+
+// Squares of lengths, and their inverses, have to be normal floats.
+constexpr double kLeastSize_world = 1e-12, kMostSize_world = 1e18;
+constexpr double kLeastRange = 1e-30, kMostRange = 1e37;
+constexpr double kRounding = 0x1p-24;  // of a 32-bit float, relative
+
+[[noreturn]] void refuse(std::string_view what, double amount, const char* allowed) {
+    std::ostringstream message;
+    message << what << amount << ", beyond what kernels hold in 32-bit floats";
+    throw Error(ErrorCode::InvalidInput, message.str(), {}, allowed);
+}
+
+void check_channel(const RbfVolume& volume, std::size_t channel) {
+    if (channel >= volume.channels.size()) {
+        throw Error(ErrorCode::InvalidInput, "there is no channel " + std::to_string(channel), {},
+                    "the volume has " + std::to_string(volume.channels.size()));
+    }
+    for (const float v : volume.channels[channel].values) {
+        if (!std::isfinite(v)) refuse("a value is ", static_cast<double>(v), "up to 3e38");
+    }
+}
+
+void check_range(const RbfChannel& channel, double min, double max) {
+    const double range = max - min;
+    if (!(range >= kLeastRange && range <= kMostRange)) refuse("the transfer function's range is ", range, "1e-30 to 1e37");
+    for (const float v : channel.values) {
+        const double value = static_cast<double>(v), rounding = std::abs(value) * kRounding;
+        // Rounded to a tenth of the range and more, a field is noise.
+        if (rounding > 0.1 * range && value + rounding >= min && value - rounding <= max) {
+            refuse("beside a value of " + std::to_string(value) + " the transfer function's range is ", range,
+                   "a wider range, or the field less its mean");
+        }
+    }
+}
+
+bool finite(const PreintegratedTable& table) {
+    const auto all = [](const auto& values) {
+        return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+    };
+    return all(table.unit) &&
+           std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return all(row.mean) && all(row.bend); });
+}
+
+void check_shading(const Shading& shading, const RbfChannel& channel) {
+    for (const double part : {shading.ambient, shading.diffuse, shading.specular, shading.shininess}) {
+        if (!(part >= 0) || !std::isfinite(part)) {
+            throw Error(ErrorCode::InvalidInput, "a part of the shading is " + std::to_string(part), {}, "0 or more");
+        }
+    }
+    const bool flat = std::all_of(channel.gradients.begin(), channel.gradients.end(),
+                                  [](const auto& g) { return g[0] == 0 && g[1] == 0 && g[2] == 0; });
+    const bool constant =
+        std::all_of(channel.values.begin(), channel.values.end(), [&](float v) { return v == channel.values.front(); });
+    if (flat && !constant) {
+        throw Error(ErrorCode::InvalidInput, "shading needs gradients, and these points have none", {},
+                    "points with a correction");
+    }
+}
+
+ColorTable color_table(const Optics& optics) {
+    constexpr int kCells = PreintegratedTable::kCells;
+    const auto& knots = optics.function().color;
+    ColorTable table{.min = knots.front().value, .max = knots.back().value, .rows = {}};
+    if (!(table.min < table.max)) table.max = table.min + 1;
+    const auto color_at = [&](int i) {
+        const Vec3 c = optics.color(table.min + (table.max - table.min) * i / kCells);
+        return std::array{static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z), 0.0f};
+    };
+    for (int i = -1; i <= kCells; ++i) {
+        ColorTable::Row row{color_at(std::max(i, 0)), {}};
+        if (i >= 0 && i < kCells) {
+            const auto next = color_at(i + 1);
+            for (std::size_t c = 0; c < 3; ++c) row.step[c] = next[c] - row.color[c];
+        }
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
+}  // namespace
+
+SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
+    if (options.sheets < 2 || options.sheets > 65536) {
+        throw Error(ErrorCode::InvalidInput, "the number of sheets is " + std::to_string(options.sheets), {}, "2 to 65536");
+    }
+    check_channel(volume, options.channel);
+    if (options.color_channel) check_channel(volume, *options.color_channel);
+    const Box box = box_of(volume);
+    const double size = box.diagonal();
+    if (!(size >= kLeastSize_world && size <= kMostSize_world)) refuse("the volume's diagonal is ", size, "1e-12 to 1e18");
+
+    const auto [shape, kernel_table] = kernel_profile(volume.kernel);
+    SplatScene scene{.volume = &volume,
+                     .channel = options.channel,
+                     .color_channel = options.color_channel,
+                     .shape = shape,
+                     .kernel_table = kernel_table,
+                     .normalized = options.normalized,
+                     .shading = options.shading,
+                     .middle = 0.5 * (box.lower + box.upper)};
+    if (scene.color_channel == scene.channel) scene.color_channel.reset();
+    scene.bent = !scene.opacity_values().hessians.empty() || !scene.color_values().hessians.empty();
+    if (volume.boundary.triangles.empty()) scene.half_weight = static_cast<float>(0.5 * weight_inside(volume));
+    if (scene.shading) check_shading(*scene.shading, scene.opacity_values());
+    return scene;
+}
+
+Classification classify(const SplatScene& scene, const Optics& optics) {
+    Classification look{make_preintegrated_table(optics), {}};
+    check_range(scene.opacity_values(), look.table.min, look.table.max);
+    if (!finite(look.table)) {
+        throw Error(ErrorCode::InvalidInput, "the extinction is beyond 32-bit floats", {}, "a larger opacity unit");
+    }
+    if (scene.color_channel) {
+        look.colors = color_table(optics);
+        check_range(scene.color_values(), look.colors.min, look.colors.max);
+    }
+    return look;
+}
+
+SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
+    const RbfVolume& volume = *scene.volume;
+    const double middle = view.to_eye(scene.middle).z;
+    double z_min = std::numeric_limits<double>::infinity(), z_max = -z_min;
+    const auto add = [&](double z, double around) {
+        z_min = std::min(z_min, z - around);
+        z_max = std::max(z_max, z + around);
+    };
+    for (const auto& p : volume.boundary.points) add(view.to_eye(p).z, 0);
+    if (scene.half_weight > 0) {
+        const Vec3& forward = view.axes()[2];
+        for (std::size_t i = 0; i < volume.size(); ++i) {
+            const auto& f = volume.frames[i];
+            const Mat3 s(Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5]));
+            add(view.to_eye(volume.centers[i]).z, std::sqrt(std::max(0.0, glm::dot(forward, s * forward))));
+        }
+    }
+    const double near = view.perspective() ? 1e-4 * box_of(volume).diagonal() : 0.0;
+    z_min = std::max(z_min, near);
+    z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all behind the eye: an empty picture
+    return {.count = count,
+            .first = static_cast<float>(z_min - middle),
+            .distance = static_cast<float>((z_max - z_min) / (count - 1)),
+            .middle = static_cast<float>(middle),
+            .near = static_cast<float>(near - middle)};
+}
+
+}  // namespace subvol::detail

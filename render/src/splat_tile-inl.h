@@ -1,0 +1,305 @@
+// One tile of the picture. Included once for every instruction set: see splat_cpu.cpp.
+#if defined(SUBVOL_SPLAT_TILE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SUBVOL_SPLAT_TILE_INL_H
+#undef SUBVOL_SPLAT_TILE_INL_H
+#else
+#define SUBVOL_SPLAT_TILE_INL_H
+#endif
+
+#include <hwy/aligned_allocator.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "splat_composite-inl.h"
+#include "splat_general-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace subvol::detail::HWY_NAMESPACE {
+
+template <bool kPlain>
+class TileRenderer {
+public:
+    explicit TileRenderer(const SplatFrame& frame)
+        : frame_(frame), view_(*frame.view), sheets_(frame.sheets), classifier_(*frame.look), general_(frame) {
+        scratch().resize();
+        x_offset_ = value_offset(*frame.scene, *frame.look);
+        color_offset_ = color_offset(*frame.scene, *frame.look);
+        batch_.mid_x = 0.5f * static_cast<float>(view_.width());
+        batch_.mid_y = 0.5f * static_cast<float>(view_.height());
+        const Box box = box_of(*frame.scene->volume);
+        least_gradient_ = kLeastChange * PreintegratedTable::kCells / static_cast<float>(box.diagonal());
+    }
+
+    HWY_ATTR void draw(int tile, Drawn& drawn) {
+        x0_ = tile % frame_.tiles_x * SplatFrame::kTile_px;
+        y0_ = tile / frame_.tiles_x * SplatFrame::kTile_px;
+        place_pixels();
+        if (!start_blocks()) return;
+        list_batches(tile);
+        int summed = -2;  // the last batch that was
+        for (int batch = 0; batch < sheets_.batches() && !done(); ++batch) {
+            if (!scratch().wanted[static_cast<std::size_t>(batch)]) continue;
+            summed = batch;
+            sum(batch);
+            for (std::size_t block = 0; block < kBlocks; ++block) composite(block, batch);
+        }
+        (void)summed;
+        write(drawn);
+    }
+
+private:
+    static constexpr std::size_t kStride = kPlain ? 2 : std::size_t{kSums};  // sums a pixel
+    static constexpr float kLeastChange = 0.25f;  // of the range, over the volume's diagonal: half of a surface
+
+    /// Memory that a thread keeps from tile to tile.
+    struct Scratch {
+        std::vector<float> sums_storage;
+        float* sums = nullptr;
+        hwy::AlignedFreeUniquePtr<BlockState[]> blocks;
+        std::vector<std::uint32_t> offsets, splats;
+        std::vector<char> wanted;
+
+        void resize() {
+            if (blocks) return;
+            blocks = hwy::AllocateAligned<BlockState>(kBlocks);
+            sums_storage.resize(kBatch * kBlocks * kSums * kBlock + 64);
+            const auto address = reinterpret_cast<std::uintptr_t>(sums_storage.data());
+            sums = sums_storage.data() + ((64 - address % 64) % 64) / sizeof(float);
+        }
+    };
+    static Scratch& scratch() {
+        thread_local Scratch memory;
+        return memory;
+    }
+
+    HWY_ATTR void place_pixels() {
+        const auto pixel = static_cast<float>(view_.pixel());
+        tile_.left = static_cast<float>(x0_);
+        tile_.top = static_cast<float>(y0_);
+        for (std::size_t column = 0; column < kColumns; ++column) {
+            for (std::size_t lane = 0; lane < kBlock; ++lane) {
+                const float x = tile_.left + static_cast<float>(column * kBlockWidth + lane % kBlockWidth) + 0.5f;
+                tile_.x[column * kBlock + lane] = (x - batch_.mid_x) * pixel;
+            }
+        }
+        for (std::size_t row = 0; row < kRows; ++row) {
+            for (std::size_t lane = 0; lane < kBlock; ++lane) {
+                const float y = tile_.top + static_cast<float>(row * kBlockHeight + lane / kBlockWidth) + 0.5f;
+                tile_.y[row * kBlock + lane] = (batch_.mid_y - y) * pixel;
+            }
+        }
+    }
+
+    /// Returns whether any pixel of the tile sees the volume.
+    HWY_ATTR bool start_blocks() {
+        bool any = false;
+        const std::size_t batches = static_cast<std::size_t>(sheets_.batches());
+        scratch().wanted.assign(batches, frame_.scene->half_weight > 0);
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            BlockState& b = scratch().blocks[block];
+            std::fill_n(b.transmittance, kBlock, 1.0f);
+            for (float* zero : {b.red, b.green, b.blue, b.depth, b.value, b.known, b.weight, b.color, b.diffuse, b.specular}) {
+                std::fill_n(zero, kBlock, 0.0f);
+            }
+            for (std::size_t lane = 0; lane < kBlock; ++lane) any |= start_pixel(b, block, lane);
+        }
+        return any;
+    }
+
+    bool start_pixel(BlockState& b, std::size_t block, std::size_t lane) {
+        const float sx = tile_.x[block % kColumns * kBlock + lane], sy = tile_.y[block / kColumns * kBlock + lane];
+        b.ray_length[lane] = view_.perspective() ? std::sqrt(1 + sx * sx + sy * sy) : 1.0f;
+        b.enter[lane] = b.exit[lane] = kNever;
+        const auto [x, y] = pixel(block, lane);
+        if (x >= view_.width() || y >= view_.height()) return false;
+        if (frame_.scene->half_weight > 0) {
+            b.enter[lane] = sheets_.near;
+            return true;
+        }
+        const auto id = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
+        const std::uint32_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
+        b.interval[lane] = first;
+        b.intervals_end[lane] = end;
+        for (std::uint32_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
+        if (first == end) return false;
+        b.enter[lane] = frame_.intervals.depths[2 * first];
+        b.exit[lane] = frame_.intervals.depths[2 * first + 1];
+        return true;
+    }
+
+    /// Marks the batches whose sheets are needed between two depths: those on either side, too.
+    void want(float enter, float exit) {
+        const auto batch = [&](float z, float more) {
+            const float sheet =
+                std::clamp((z - sheets_.first) / sheets_.distance + more, 0.0f, static_cast<float>(sheets_.count - 1));
+            return static_cast<std::size_t>(sheet) / kBatch;
+        };
+        for (std::size_t b = batch(enter, -1.01f); b <= batch(exit, 1.01f); ++b) scratch().wanted[b] = 1;
+    }
+
+    [[nodiscard]] std::pair<int, int> pixel(std::size_t block, std::size_t lane) const {
+        return {x0_ + static_cast<int>(block % kColumns * kBlockWidth + lane % kBlockWidth),
+                y0_ + static_cast<int>(block / kColumns * kBlockHeight + lane / kBlockWidth)};
+    }
+
+    [[nodiscard]] std::pair<int, int> batches_of(const EyeSplat& s) const {
+        const float reach = 1.0f / std::sqrt(s.inv_szz), per_sheet = 1.0f / sheets_.distance;
+        const auto sheet = [&](float z) {
+            return std::clamp((z - sheets_.first) * per_sheet, -1.0f, static_cast<float>(sheets_.count));
+        };
+        // Half a sheet more on each side: rounding may not lose one.
+        const int first = std::max(static_cast<int>(sheet(s.depth - reach) - 0.5f), 0);
+        const int last = std::min(static_cast<int>(sheet(s.depth + reach) + 0.5f), sheets_.count - 1);
+        return {first / kBatch, last / kBatch};
+    }
+
+    /// Sorts the tile's kernels by batches, in their order.
+    void list_batches(int tile) {
+        auto& [storage, sums, blocks, offsets, splats, wanted] = scratch();
+        const auto begin =
+            frame_.tile_splats.begin() + static_cast<std::ptrdiff_t>(frame_.tile_offsets[static_cast<std::size_t>(tile)]);
+        const auto end =
+            frame_.tile_splats.begin() + static_cast<std::ptrdiff_t>(frame_.tile_offsets[static_cast<std::size_t>(tile) + 1]);
+        offsets.assign(static_cast<std::size_t>(sheets_.batches()) + 1, 0);
+        const auto each = [&](const auto& visit) {
+            for (auto id = begin; id != end; ++id) {
+                const auto [first, last] = batches_of(frame_.kernels.splats[*id]);
+                for (int b = first; b <= last; ++b) {
+                    if (wanted[static_cast<std::size_t>(b)]) visit(*id, static_cast<std::size_t>(b));
+                }
+            }
+        };
+        each([&](std::uint32_t, std::size_t b) { ++offsets[b + 1]; });
+        for (std::size_t b = 1; b < offsets.size(); ++b) offsets[b] += offsets[b - 1];
+        splats.resize(offsets.back());
+        each([&](std::uint32_t id, std::size_t b) { splats[offsets[b]++] = id; });
+        std::rotate(offsets.begin(), offsets.end() - 1, offsets.end());  // each became the next one's
+        offsets.front() = 0;
+    }
+
+    [[nodiscard]] bool done() const {
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            const BlockState& b = scratch().blocks[block];
+            for (std::size_t lane = 0; lane < kBlock; ++lane) {
+                if (b.enter[lane] != kNever) return false;
+            }
+        }
+        return true;
+    }
+
+    HWY_ATTR void sum(int batch) {
+        for (int k = 0; k < kBatch; ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            batch_.depth[i] = sheets_.depth(batch * kBatch + k);
+            batch_.across[i] = view_.perspective() ? sheets_.middle + batch_.depth[i] : 1.0f;
+            batch_.to_pixels[i] = 1.0f / (batch_.across[i] * static_cast<float>(view_.pixel()));
+        }
+        batch_.begin = 0;
+        batch_.end = std::min(kBatch, sheets_.count - batch * kBatch);
+        float* sums = scratch().sums;
+        std::fill_n(sums, static_cast<std::size_t>(batch_.end) * kBlocks * kStride * kBlock, 0.0f);
+        const auto& offsets = scratch().offsets;
+        for (std::uint32_t i = offsets[static_cast<std::size_t>(batch)]; i < offsets[static_cast<std::size_t>(batch) + 1];
+             ++i) {
+            const std::uint32_t id = scratch().splats[i];
+            if constexpr (kPlain) {
+                add_plain(frame_.kernels.splats[id], batch_, tile_, cuts_, sums);
+            } else {
+                general_.add(id, batch_, tile_, cuts_, sums);
+            }
+        }
+    }
+
+    HWY_ATTR void composite(std::size_t block, int batch) {
+        const Lanes d;
+        BlockState& state = scratch().blocks[block];
+        const auto enter = hn::Load(d, state.enter);
+        const float last_depth = sheets_.depth(batch * kBatch + batch_.end - 1);
+        if (hn::AllTrue(d, hn::Ge(enter, hn::Set(d, last_depth + 1.5f * sheets_.distance)))) return;
+        BlockWalk<kPlain> walk(frame_, classifier_, state);
+        for (int k = 0; k < batch_.end; ++k) {
+            const int sheet = batch * kBatch + k;
+            const SheetValues here = values(block, k);
+            if (sheet > 0) {
+                walk.go(sheets_.depth(sheet - 1), sheets_.depth(sheet), here);
+            } else {
+                walk.skip_to(here);
+            }
+        }
+        walk.store();
+    }
+
+    HWY_ATTR SheetValues values(std::size_t block, int k) const {
+        const Lanes d;
+        const float* sums = scratch().sums + (static_cast<std::size_t>(k) * kBlocks + block) * (kStride * kBlock);
+        SheetValues here;
+        here.weight = hn::Load(d, sums);
+        here.color = here.light.diffuse = here.light.specular = hn::Zero(d);
+        const bool normalized = kPlain || frame_.scene->normalized;
+        here.known = normalized ? hn::Gt(here.weight, hn::Set(d, kLeastWeight)) : hn::Eq(here.weight, here.weight);
+        const auto per_weight = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(here.known, here.weight, hn::Set(d, 1.0f)));
+        const auto mean = [&](std::size_t which, float offset) HWY_ATTR {
+            const auto total = hn::Load(d, sums + which * kBlock);
+            if (!normalized) return hn::Add(total, hn::Set(d, offset));
+            return hn::IfThenElseZero(here.known, hn::Div(total, here.weight));
+        };
+        const auto far = hn::Set(d, kFarCells);
+        here.x = hn::Min(hn::Max(mean(kValue, x_offset_), hn::Neg(far)), far);
+        if constexpr (!kPlain) {
+            if (frame_.scene->color_channel) here.color = hn::Min(hn::Max(mean(kColor, color_offset_), hn::Neg(far)), far);
+            here.light = light_on(block, sums, per_weight);
+        }
+        return here;
+    }
+
+    HWY_ATTR Light light_on(std::size_t block, const float* sums, Floats per_weight) const {
+        const Lanes d;
+        const auto one = hn::Set(d, 1.0f);
+        if (!frame_.scene->shading) return {one, hn::Zero(d)};
+        const auto scale = frame_.scene->normalized ? per_weight : one;
+        const auto part = [&](std::size_t axis)
+                              HWY_ATTR { return hn::Mul(hn::Load(d, sums + (kGradient + axis) * kBlock), scale); };
+        const auto back = hn::Set(d, view_.perspective() ? -1.0f : 0.0f);
+        const Vector to_eye{hn::Mul(back, hn::Load(d, tile_.x + block % kColumns * kBlock)),
+                            hn::Mul(back, hn::Load(d, tile_.y + block / kColumns * kBlock)), hn::Set(d, -1.0f)};
+        return light(*frame_.scene->shading, {part(0), part(1), part(2)}, normalize(to_eye), least_gradient_);
+    }
+
+    void write(Drawn& drawn) const {
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            const BlockState& b = scratch().blocks[block];
+            for (std::size_t lane = 0; lane < kBlock; ++lane) {
+                const auto [x, y] = pixel(block, lane);
+                if (x >= view_.width() || y >= view_.height()) continue;
+                const auto out = drawn.image.pixel(x, y);
+                const float opacity = 1 - b.transmittance[lane];
+                out[0] = b.red[lane];
+                out[1] = b.green[lane];
+                out[2] = b.blue[lane];
+                out[3] = opacity;
+                if (opacity > 0) {
+                    drawn.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) +
+                                static_cast<std::size_t>(x)] = sheets_.middle + b.depth[lane] / opacity;
+                }
+            }
+        }
+    }
+
+    const SplatFrame& frame_;
+    const View& view_;
+    const SheetStack& sheets_;
+    Classifier classifier_;
+    GeneralSums general_;
+    TilePixels tile_;
+    BatchView batch_{};
+    Cuts cuts_;
+    float x_offset_ = 0, color_offset_ = 0, least_gradient_ = 0;
+    int x0_ = 0, y0_ = 0;
+};
+
+}  // namespace subvol::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
