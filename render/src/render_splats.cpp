@@ -29,7 +29,7 @@ Choice choose(Backend wanted) {
     // Software GL is slower than the CPU backend and draws the same: only when asked for.
     if (device && (wanted == Backend::Gl || device->hardware)) return {true, device->renderer};
     if (wanted == Backend::Gl) {
-        throw Error(ErrorCode::MissingCapability, "no OpenGL 4.3 was found through EGL", {}, "use the CPU backend");
+        throw Error(ErrorCode::MissingCapability, "no OpenGL 4.5 was found through EGL", {}, "use the CPU backend");
     }
     return cpu();
 }

@@ -1,9 +1,10 @@
 #include <algorithm>
 
+#include "gl_buffer.h"
 #include "gl_context.h"
+#include "gl_program.h"
 #include "shader_splat_comp.h"
 #include "splat_backend.h"
-#include "subvol/error.h"
 
 namespace subvol::detail {
 
@@ -61,22 +62,8 @@ Image draw_splats_gl(const SplatFrame& frame, const View& view, const Preintegra
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     picture.read(bytes(image.rgba), image.rgba.data());
     report_progress(progress, "splat", 1);
-    if (glGetError() != GL_NO_ERROR)
-        throw Error(ErrorCode::MissingCapability, "the GL device failed while drawing", context.renderer());
+    check_gl(context.renderer());
     return image;
 }
 
 }  // namespace subvol::detail
-
-namespace subvol {
-
-std::optional<GlDevice> find_gl_device() {
-    try {
-        const detail::GlContext context;
-        return GlDevice{context.renderer(), context.hardware()};
-    } catch (const Error&) {
-        return std::nullopt;
-    }
-}
-
-}  // namespace subvol

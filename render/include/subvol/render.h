@@ -6,6 +6,7 @@
 #include <string>
 
 #include "subvol/camera.h"
+#include "subvol/gl_device.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
@@ -15,15 +16,6 @@
 namespace subvol {
 
 enum class Backend { Auto, Gl, Cpu };
-
-/// The OpenGL that Backend::Gl would draw with.
-struct GlDevice {
-    std::string renderer;
-    bool hardware = false;  // false: software, which `Auto` passes over
-};
-
-/// Looks for OpenGL 4.3 without a display, hardware first; nothing if there is none.
-[[nodiscard]] std::optional<GlDevice> find_gl_device();
 
 /// sheets:  planes of constant eye depth over the volume's depth range, 2..65536
 /// channel: which channel of the volume is shown
@@ -53,7 +45,7 @@ struct SplatResult {
 ///
 /// Bitwise the same for any number of threads. `Auto` takes a hardware GPU if there is one, else the CPU.
 /// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
-///         Error(MissingCapability) if Backend::Gl finds no OpenGL 4.3
+///         Error(MissingCapability) if Backend::Gl finds no OpenGL 4.5
 /// source: SCIENCE §3, §3.1
 [[nodiscard]] SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics,
                                         const SplatOptions& options = {});
