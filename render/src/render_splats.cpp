@@ -2,7 +2,6 @@
 
 #include <chrono>
 
-#include "gl_context.h"
 #include "splat_backend.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
@@ -78,15 +77,4 @@ SplatResult render_splats(const RbfVolume& volume, const View& view, const Optic
     return Splatter(volume, options).draw(view, optics);
 }
 
-}  // namespace subvol
-
-namespace subvol {
-std::optional<GlDevice> find_gl_device() {
-    try {
-        const detail::GlContext context;
-        return GlDevice{context.renderer(), context.hardware()};
-    } catch (const Error&) {
-        return std::nullopt;
-    }
-}
 }  // namespace subvol
