@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/gl_device.h"
@@ -35,14 +36,22 @@ struct Shading {
 /// channel:       which channel of the volume is shown
 /// color_channel: takes the colours from another channel than the opacities; not pre-integrated
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
+/// device:        which of gl_devices() draws; without one, the first
 struct SplatOptions {
     Backend backend = Backend::Auto;
+    std::optional<int> device{};
     int sheets = 200;
     std::size_t channel = 0;
     std::optional<std::size_t> color_channel{};
     bool normalized = true;
     std::optional<Shading> shading{};
     Progress* progress = nullptr;
+};
+
+/// Time that a device spent on a part of the work.
+struct StageTime {
+    std::string stage;
+    double seconds = 0;
 };
 
 struct SplatReport {
@@ -52,6 +61,7 @@ struct SplatReport {
     std::size_t bin_entries = 0;    // (tile, kernel) pairs
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_prepare = 0, seconds_draw = 0;
+    std::vector<StageTime> stages{};  // of the GPU
 };
 
 /// depth: of each pixel, the mean eye depth of what is seen, by opacity; infinity where nothing is
