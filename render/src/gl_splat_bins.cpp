@@ -33,6 +33,10 @@ GlSplatBins::GlSplatBins(const std::string& defines, std::uint32_t extras)
       total_(2 * kWord_bytes) {
 }
 
+std::size_t GlSplatBins::kernel_bytes(std::uint32_t extras) {
+    return std::max(kSplat_bytes, extras * kVector_bytes);
+}
+
 void GlSplatBins::upload(const GlKernelData& data) {
     kernels_ = static_cast<std::uint32_t>(data.kernels.size() / GlKernelData::kFloats);
     kernel_buffer_.grow(data.kernels.size() * sizeof(float));
@@ -73,7 +77,8 @@ std::uint64_t GlSplatBins::entries() const {
     return std::uint64_t{words[1]} << 32 | words[0];
 }
 
-void GlSplatBins::list(const GlSplatFrame& frame, std::uint32_t most, GlStages& stages) {
+void GlSplatBins::list(const GlSplatFrame& frame, GlStages& stages) {
+    const std::uint32_t most = frame.most_entries;
     stages.begin("bins");
     keys_.grow(std::size_t{most} * kWord_bytes);
     ids_.grow(std::size_t{most} * kWord_bytes);

@@ -18,6 +18,9 @@ class GlSplatBins {
 public:
     GlSplatBins(const std::string& defines, std::uint32_t extras);
 
+    /// The most that a kernel takes of any buffer.
+    [[nodiscard]] static std::size_t kernel_bytes(std::uint32_t extras);
+
     void upload(const GlKernelData& data);
     [[nodiscard]] std::uint32_t kernels() const { return kernels_; }
 
@@ -27,8 +30,8 @@ public:
     /// How many entries the last count found; beyond 2³² − 1 the lower digits do not matter. Waits for the device.
     [[nodiscard]] std::uint64_t entries() const;
 
-    /// Lists the entries by bins: `most` of them at the most.
-    void list(const GlSplatFrame& frame, std::uint32_t most, GlStages& stages);
+    /// Lists the entries by bins, as many as the frame allows.
+    void list(const GlSplatFrame& frame, GlStages& stages);
 
     /// For the shader that draws.
     void bind();

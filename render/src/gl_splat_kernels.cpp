@@ -118,15 +118,15 @@ std::string gl_scene_defines(const SplatScene& scene) {
     return text;
 }
 
-GlKernelData pack_kernels(const SplatScene& scene, std::span<const std::uint32_t> ids) {
+GlKernelData pack_kernels(const SplatScene& scene, std::optional<std::span<const std::uint32_t>> ids) {
     const GlExtras layout(scene);
-    const std::size_t count = ids.empty() ? scene.volume->size() : ids.size(), extras = 4 * std::size_t{layout.count};
+    const std::size_t count = ids ? ids->size() : scene.volume->size(), extras = 4 * std::size_t{layout.count};
     GlKernelData data;
     data.kernels.resize(count * GlKernelData::kFloats);
     data.extras.resize(count * extras);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const std::size_t id = ids.empty() ? i : ids[i];
+            const std::size_t id = ids ? (*ids)[i] : i;
             pack_kernel(scene, id, data.kernels.data() + i * GlKernelData::kFloats);
             pack_extras(scene, layout, id, data.extras.data() + i * extras);
         }

@@ -26,7 +26,7 @@ struct GlKernelData {
     std::vector<float> kernels, extras;
 };
 
-/// ids: which kernels, ascending; none: all
-[[nodiscard]] GlKernelData pack_kernels(const SplatScene& scene, std::span<const std::uint32_t> ids);
+/// ids: which kernels, ascending; without it, all
+[[nodiscard]] GlKernelData pack_kernels(const SplatScene& scene, std::optional<std::span<const std::uint32_t>> ids = {});
 
 }  // namespace subvol::detail

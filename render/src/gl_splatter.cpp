@@ -1,10 +1,14 @@
 #include "gl_splatter.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "gl_context.h"
 #include "gl_splat_bins.h"
+#include "kernel_axes.h"
 #include "shader_gl_groups_glsl.h"
 #include "shader_splat_classify_glsl.h"
 #include "shader_splat_draw_comp.h"
@@ -18,6 +22,7 @@ namespace subvol::detail {
 
 namespace {
 
+constexpr std::size_t kPixel_bytes = 16;  // of the picture
 constexpr std::size_t kState_bytes = 64;  // of a pixel, between passes
 constexpr int kStaged = 512;              // cuts of kernels in shared memory
 constexpr int kMostChunk = 64;            // kernels there
@@ -44,10 +49,27 @@ void upload(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(values.size() * sizeof(T), values.data());
 }
 
-/// What kernel i has of eye depth, from that of the middle.
-struct DepthRange {
-    float front, back;
-};
+/// The kernels that may meet some batches, a sheet more on each side: rounding may not lose one.
+std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
+                                           int end_sheet) {
+    const double middle = view.to_eye(scene.middle).z, distance = static_cast<double>(sheets.distance);
+    const double front = static_cast<double>(sheets.depth(first_sheet)) - distance;
+    const double back = static_cast<double>(sheets.depth(end_sheet - 1)) + distance;
+    const double widening = scene.shape == KernelShape::Separable ? 3 : 1;
+    std::vector<char> wanted(scene.volume->size());
+    tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+        const Vec3& forward = view.axes()[2];
+        const double z = view.to_eye(scene.volume->centers[i]).z - middle;
+        const double szz = glm::dot(forward, frame_matrix(scene.volume->frames[i]) * forward);
+        const double reach = std::sqrt(std::max(0.0, widening * szz)) * (1 + 1e-5);
+        wanted[i] = z + reach >= front && z - reach <= back;
+    });
+    std::vector<std::uint32_t> ids;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i]) ids.push_back(static_cast<std::uint32_t>(i));
+    }
+    return ids;
+}
 
 }  // namespace
 
@@ -67,9 +89,13 @@ public:
                  {"splat_walk.glsl", kShader_splat_walk_glsl}}) {
         GLint64 most = 0;
         glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
-        most_bytes_ = std::min(tuning.most_buffer_bytes, static_cast<std::size_t>(std::max<GLint64>(most, 0)));
+        const std::size_t bytes = std::min(tuning.most_buffer_bytes, static_cast<std::size_t>(std::max<GLint64>(most, 0)));
+        most_kernels_ = bytes / GlSplatBins::kernel_bytes(GlExtras(scene).count) - 1;
+        most_entries_ = std::min({tuning.most_entries, bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems}});
+        most_bins_ = std::min(bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems});
         upload(kernel_table_, scene.kernel_table);
-        bins_.upload(pack_kernels(scene, {}));
+        resident_ = scene.volume->size() <= most_kernels_;
+        if (resident_) bins_.upload(pack_kernels(scene));
     }
 
     Drawn draw(const View& view, const Classification& look, int sheets, Progress* progress);
@@ -78,14 +104,21 @@ public:
     GlSplatReport report_;
 
 private:
-    void prepare(const View& view, const Classification& look, const SheetStack& sheets);
+    void prepare(const View& view, const Classification& look);
+    [[nodiscard]] bool draw_at_once();
+    [[nodiscard]] bool fits_bins(int first, int end) const;
+    void draw_in_passes(const View& view, int first, int end, Progress* progress);
+    void split(const View& view, int first, int end, Progress* progress);
     void set_pass(int first, int end);
-    void draw_pass(std::uint32_t most);
+    void draw_pass();
     [[nodiscard]] Drawn read(const View& view);
 
     const SplatScene& scene_;
     GlTuning tuning_;
-    std::size_t most_bytes_ = 0, room_ = 0;  // entries that there is room for
+    std::size_t most_kernels_ = 0, most_entries_ = 0, most_bins_ = 0;
+    bool resident_ = false;  // all kernels are on the device
+    std::size_t room_ = 0;   // entries that there is room for
+    SheetStack sheets_;
     GlSplatFrame frame_;
     GlSplatBins bins_;
     GlProgram draw_;
@@ -94,10 +127,9 @@ private:
         states_;
 };
 
-void GlSplatter::State::prepare(const View& view, const Classification& look, const SheetStack& sheets) {
+void GlSplatter::State::prepare(const View& view, const Classification& look) {
     stages_.clear();
-    frame_ = gl_splat_frame(scene_, view, look, sheets, tuning_.tile_px, tuning_.batch);
-    frame_.kernels = bins_.kernels();
+    frame_ = gl_splat_frame(scene_, view, look, sheets_, tuning_.tile_px, tuning_.batch);
     upload(rows_, look.table.rows);
     upload(visible_, look.table.visible);
     upload(color_rows_, look.colors.rows);
@@ -105,8 +137,8 @@ void GlSplatter::State::prepare(const View& view, const Classification& look, co
     picture_.grow(pixels * 4 * sizeof(float));
     depths_.grow(pixels * sizeof(float));
     if (scene_.half_weight > 0) return;
-    const double near = static_cast<double>(sheets.near) + static_cast<double>(sheets.middle);
-    const auto intervals = boundary_intervals(scene_.volume->boundary, view, near, static_cast<double>(sheets.middle));
+    const double near = static_cast<double>(sheets_.near) + static_cast<double>(sheets_.middle);
+    const auto intervals = boundary_intervals(scene_.volume->boundary, view, near, static_cast<double>(sheets_.middle));
     upload(interval_offsets_, intervals.offsets);
     upload(intervals_, intervals.depths);
     report_.boundary_hits = intervals.hits;
@@ -115,14 +147,15 @@ void GlSplatter::State::prepare(const View& view, const Classification& look, co
 void GlSplatter::State::set_pass(int first, int end) {
     frame_.first_batch = first;
     frame_.end_batch = end;
+    frame_.kernels = bins_.kernels();
     frame_.most_entries = static_cast<std::uint32_t>(room_);
     frame_buffer_.grow(sizeof frame_);
     frame_buffer_.upload(sizeof frame_, &frame_);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer_.id());
 }
 
-void GlSplatter::State::draw_pass(std::uint32_t most) {
-    bins_.list(frame_, most, stages_);
+void GlSplatter::State::draw_pass() {
+    bins_.list(frame_, stages_);
     stages_.begin("draw");
     draw_.use();
     bins_.bind();
@@ -143,21 +176,63 @@ void GlSplatter::State::draw_pass(std::uint32_t most) {
 Drawn GlSplatter::State::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
     report_progress(progress, "splat", 0);
     report_ = {};
-    prepare(view, look, make_sheets(scene_, view, sheets));
-    // As much room as the last picture took is mostly enough: the device is asked only at the end.
-    for (;;) {
-        set_pass(0, frame_.batches);
-        bins_.count(stages_);
-        if (room_ > 0) draw_pass(static_cast<std::uint32_t>(room_));
-        report_.bin_entries = bins_.entries();
-        if (room_ > 0 && report_.bin_entries <= room_) break;
-        room_ = report_.bin_entries + report_.bin_entries / 8 + 1;
+    sheets_ = make_sheets(scene_, view, sheets);
+    prepare(view, look);
+    if (!draw_at_once()) {
+        report_.passes = 0;
+        report_.bin_entries = 0;
+        draw_in_passes(view, 0, frame_.batches, progress);
     }
-    report_.passes = 1;
     Drawn drawn = read(view);
     report_.stages = stages_.times();
     report_progress(progress, "splat", 1);
     return drawn;
+}
+
+/// As much room as the last picture took is mostly enough: the device is asked only at the end. Returns whether it was.
+bool GlSplatter::State::draw_at_once() {
+    if (room_ == 0 || !resident_ || !fits_bins(0, frame_.batches)) return false;
+    set_pass(0, frame_.batches);
+    bins_.count(stages_);
+    draw_pass();
+    report_.bin_entries = bins_.entries();
+    report_.passes = 1;
+    return report_.bin_entries <= room_;
+}
+
+void GlSplatter::State::draw_in_passes(const View& view, int first, int end, Progress* progress) {
+    if (!fits_bins(first, end)) return split(view, first, end, progress);
+    if (!resident_) {
+        const auto ids =
+            kernels_between(scene_, view, sheets_, first * tuning_.batch, std::min(end * tuning_.batch, sheets_.count));
+        if (ids.size() > most_kernels_) return split(view, first, end, progress);
+        bins_.upload(pack_kernels(scene_, ids));
+    }
+    set_pass(first, end);
+    bins_.count(stages_);
+    const std::size_t entries = bins_.entries();
+    if (entries > most_entries_) return split(view, first, end, progress);
+    if (entries > room_ || room_ == 0) room_ = std::min(entries + entries / 8 + 1, most_entries_);
+    if (end - first < frame_.batches) states_.grow(picture_.bytes() / kPixel_bytes * kState_bytes);
+    set_pass(first, end);
+    draw_pass();
+    report_.bin_entries += entries;
+    ++report_.passes;
+    report_progress(progress, "splat", static_cast<double>(end) / frame_.batches);
+}
+
+void GlSplatter::State::split(const View& view, int first, int end, Progress* progress) {
+    if (end - first == 1) {
+        throw Error(ErrorCode::MissingCapability, "a few sheets meet more kernels than the GL device has room for", {},
+                    "more sheets, a smaller picture or the CPU backend");
+    }
+    const int middle = first + (end - first) / 2;
+    draw_in_passes(view, first, middle, progress);
+    draw_in_passes(view, middle, end, progress);
+}
+
+bool GlSplatter::State::fits_bins(int first, int end) const {
+    return static_cast<std::size_t>(frame_.tiles()) * static_cast<std::size_t>(end - first) <= most_bins_;
 }
 
 Drawn GlSplatter::State::read(const View& view) {

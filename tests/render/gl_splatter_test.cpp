@@ -120,8 +120,8 @@ TEST_F(GlSplatterTest, EveryKernelLooksAsOnTheCpu) {
 }
 
 TEST_F(GlSplatterTest, PlainSumsLookAsOnTheCpu) {
-    expect_like_cpu(sampled(Correction::None, [](RbfVolume& v) { set_kernel(v, GaussianKernel{}); }), {.normalized = false}, 1e-5f,
-                    1e-4f);
+    expect_like_cpu(sampled(Correction::None, [](RbfVolume& v) { set_kernel(v, GaussianKernel{}); }), {.normalized = false},
+                    1e-5f, 1e-4f);
 }
 
 TEST_F(GlSplatterTest, ASecondChannelLooksAsOnTheCpu) {
@@ -155,6 +155,70 @@ TEST_F(GlSplatterTest, TilesBatchesAndRepeatsChangeNoBit) {
             }
         }
     }
+}
+
+TEST_F(GlSplatterTest, PassesChangeNoBit) {
+    for (const bool bounded : {true, false}) {
+        const RbfVolume volume = sampled(Correction::Full, [&](RbfVolume& v) {
+            if (!bounded) v.boundary = {};
+        });
+        const auto scene = detail::make_scene(volume, {.color_channel = 1});
+        const auto look = detail::classify(scene, optics());
+        GlSplatter reference(scene, {});
+        const Drawn expected = reference.draw(perspective(), look, 61, nullptr);
+        EXPECT_EQ(reference.report().passes, 1);
+        for (const GlTuning& tuning : {GlTuning{.most_entries = reference.report().bin_entries / 3},
+                                       GlTuning{.batch = 4, .most_buffer_bytes = 64 * volume.size()}}) {
+            GlSplatter splatter(scene, {}, tuning);
+            for (int repeat = 0; repeat < 2; ++repeat) {
+                const Drawn drawn = splatter.draw(perspective(), look, 61, nullptr);
+                EXPECT_GT(splatter.report().passes, 2);
+                EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
+                EXPECT_EQ(drawn.depth, expected.depth);
+            }
+        }
+        GlSplatter tiny(scene, {}, {.most_entries = 100});
+        EXPECT_THROW((void)tiny.draw(perspective(), look, 61, nullptr), Error);
+    }
+}
+
+TEST_F(GlSplatterTest, WhatThePictureBeforeLeftDoesNotMatter) {
+    // Less, then more than there is room for, and another transfer function.
+    const RbfVolume volume = sampled(Correction::Second);
+    const auto scene = detail::make_scene(volume, {});
+    const auto look = detail::classify(scene, optics());
+    GlSplatter kept(scene, {});
+    for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(), 61}, {inside(), 33}}) {
+        const Drawn drawn = kept.draw(view, look, sheets, nullptr),
+                    fresh = GlSplatter(scene, {}).draw(view, look, sheets, nullptr);
+        EXPECT_EQ(drawn.image.rgba, fresh.image.rgba);
+        EXPECT_EQ(drawn.depth, fresh.depth);
+    }
+}
+
+TEST_F(GlSplatterTest, TheOrderOfKernelsMattersWithinRoundingOnly) {
+    const RbfVolume volume = sampled(Correction::Second);
+    std::vector<std::size_t> order(volume.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), std::mt19937(5));
+    RbfVolume shuffled = volume;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        shuffled.centers[i] = volume.centers[order[i]];
+        shuffled.frames[i] = volume.frames[order[i]];
+        shuffled.channels[0].values[i] = volume.channels[0].values[order[i]];
+        shuffled.channels[0].gradients[i] = volume.channels[0].gradients[order[i]];
+        shuffled.channels[0].moments[i] = volume.channels[0].moments[order[i]];
+    }
+    const auto draw = [&](const RbfVolume& v) {
+        return render_splats(v, perspective(), optics(), {.backend = Backend::Gl, .sheets = 60}).image.rgba;
+    };
+    EXPECT_LT(largest_difference(draw(volume), draw(shuffled)), 5e-6f);  // sums of some ten kernels, over 60 sheets
+}
+
+TEST_F(GlSplatterTest, RefusesADeviceThatIsNotThere) {
+    const RbfVolume volume = sampled(Correction::None);
+    EXPECT_THROW(Splatter(volume, {.backend = Backend::Gl, .device = 99}), Error);
+    EXPECT_THROW(Splatter(volume, {.device = 99}), Error);
 }
 
 }  // namespace
