@@ -55,8 +55,8 @@ void start_pixel(uint tile) {
 #if UNBOUNDED
     enter_z = near_depth;
 #else
-    interval = interval_offsets[pixel_id];
-    intervals_end = interval_offsets[pixel_id + 1u];
+    interval = interval_ranges[pixel_id].x;
+    intervals_end = interval_ranges[pixel_id].y;
     take_interval();
 #endif
 }

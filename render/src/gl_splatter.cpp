@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "gl_boundary.h"
 #include "gl_context.h"
 #include "gl_splat_bins.h"
 #include "kernel_axes.h"
@@ -80,6 +81,7 @@ public:
           scene_(scene),
           tuning_(tuning),
           bins_(common_defines(scene, tuning), GlExtras(scene).count),
+          boundary_(context_.hardware() || tuning.boundary_on_device),
           draw_("splat_draw.comp", kShader_splat_draw_comp, common_defines(scene, tuning),
                 {{"gl_groups.glsl", kShader_gl_groups_glsl},
                  {"splat_frame.glsl", kShader_splat_frame_glsl},
@@ -105,6 +107,7 @@ public:
 
 private:
     void prepare(const View& view, const Classification& look);
+    void find_intervals(const View& view);
     [[nodiscard]] bool draw_at_once();
     [[nodiscard]] bool fits_bins(int first, int end) const;
     void draw_in_passes(const View& view, int first, int end, Progress* progress);
@@ -121,10 +124,10 @@ private:
     SheetStack sheets_;
     GlSplatFrame frame_;
     GlSplatBins bins_;
+    GlBoundary boundary_;
     GlProgram draw_;
     GlStages stages_;
-    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, interval_offsets_, intervals_, picture_, depths_,
-        states_;
+    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_;
 };
 
 void GlSplatter::State::prepare(const View& view, const Classification& look) {
@@ -136,12 +139,13 @@ void GlSplatter::State::prepare(const View& view, const Classification& look) {
     const std::size_t pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
     picture_.grow(pixels * 4 * sizeof(float));
     depths_.grow(pixels * sizeof(float));
+    find_intervals(view);
+}
+
+void GlSplatter::State::find_intervals(const View& view) {
     if (scene_.half_weight > 0) return;
-    const double near = static_cast<double>(sheets_.near) + static_cast<double>(sheets_.middle);
-    const auto intervals = boundary_intervals(scene_.volume->boundary, view, near, static_cast<double>(sheets_.middle));
-    upload(interval_offsets_, intervals.offsets);
-    upload(intervals_, intervals.depths);
-    report_.boundary_hits = intervals.hits;
+    const double middle = static_cast<double>(sheets_.middle), near = static_cast<double>(sheets_.near) + middle;
+    boundary_.find(scene_.volume->boundary, view, near, middle, stages_);
 }
 
 void GlSplatter::State::set_pass(int first, int end) {
@@ -159,8 +163,7 @@ void GlSplatter::State::draw_pass() {
     stages_.begin("draw");
     draw_.use();
     bins_.bind();
-    interval_offsets_.bind(5);
-    intervals_.bind(6);
+    boundary_.bind(5, 6);
     rows_.bind(7);
     visible_.bind(8);
     color_rows_.bind(9);
@@ -178,11 +181,14 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& look, int 
     report_ = {};
     sheets_ = make_sheets(scene_, view, sheets);
     prepare(view, look);
-    if (!draw_at_once()) {
-        report_.passes = 0;
-        report_.bin_entries = 0;
+    if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
+    // Likewise for the boundary's hits.
+    if (scene_.half_weight == 0 && !boundary_.found_all()) {
+        report_ = {};
+        find_intervals(view);
         draw_in_passes(view, 0, frame_.batches, progress);
     }
+    report_.boundary_hits = scene_.half_weight == 0 ? boundary_.hits() : 0;
     Drawn drawn = read(view);
     report_.stages = stages_.times();
     report_progress(progress, "splat", 1);
@@ -195,9 +201,11 @@ bool GlSplatter::State::draw_at_once() {
     set_pass(0, frame_.batches);
     bins_.count(stages_);
     draw_pass();
-    report_.bin_entries = bins_.entries();
+    const std::size_t entries = bins_.entries();
+    if (entries > room_) return false;
+    report_.bin_entries = entries;
     report_.passes = 1;
-    return report_.bin_entries <= room_;
+    return true;
 }
 
 void GlSplatter::State::draw_in_passes(const View& view, int first, int end, Progress* progress) {

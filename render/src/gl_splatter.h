@@ -13,11 +13,13 @@ namespace subvol::detail {
 ///
 /// tile_px: 8, 16; batch: sheets, 1..16
 /// most_buffer_bytes: of a buffer, if the device does not set a lower limit; most_entries: pairs of a bin and a kernel
+/// boundary_on_device: also if it is software, whose rasterizer for boundaries is slower than the CPU's own
 struct GlTuning {
     int tile_px = 16;
     int batch = kBatch;
     std::size_t most_buffer_bytes = std::size_t{1} << 31;
     std::size_t most_entries = std::size_t{1} << 26;
+    bool boundary_on_device = false;
 };
 
 struct GlSplatReport {
