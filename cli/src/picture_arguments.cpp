@@ -13,6 +13,10 @@ constexpr double kOpacityUnitsPerDiagonal = 100;
 }  // namespace
 
 TransferFunction find_transfer_function(const std::string& name, const Range& range) {
+    // FILE.json:NAME picks one of several maps.
+    if (const std::size_t end = name.find(".json:"); end != std::string::npos) {
+        return read_transfer_function(name.substr(0, end + 5), name.substr(end + 6));
+    }
     const std::filesystem::path path(name);
     if (path.has_extension() || path.has_parent_path()) return read_transfer_function(path);
     return transfer_function_preset(name, range.min, range.max);
@@ -40,10 +44,16 @@ void PictureArguments::add_to(CLI::App& app) {
     app.add_option("--view", view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
         ->type_name("SIDE")
         ->excludes(place);
-    app.add_option("--tf", transfer_function,
-                   "colour map: viridis (default), coolwarm, grey, surface or constant over the field's range, or a ParaView "
-                   "colour-map JSON file")
+    app.add_option(
+           "--tf", transfer_function,
+           "colour map: viridis (default), coolwarm, grey, bone, xray, isosurface, surface or constant over the field's "
+           "range, or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)")
         ->type_name("FILE|NAME");
+    app.add_option(
+           "--opacity", opacity,
+           "opacities instead of those of --tf, straight in between: values of the field or per cent of its range, such "
+           "as 0%:0,50%:.2,100%:.9")
+        ->type_name("V:A,V:A,…");
     app.add_option("--opacity-unit", opacity_unit_world,
                    "world distance that the opacities are for (default: 1/100 of the bounding box's diagonal)")
         ->type_name("D")
@@ -59,8 +69,9 @@ View PictureArguments::make_view(const Box& box) const {
 }
 
 Optics PictureArguments::make_optics(const Box& box, const Range& range) const {
-    return {find_transfer_function(transfer_function, range),
-            opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
+    TransferFunction function = find_transfer_function(transfer_function, range);
+    if (opacity) function.opacity = parse_opacity(*opacity, range.min, range.max);
+    return {std::move(function), opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
 }
 
 }  // namespace subvol::cli

@@ -29,6 +29,7 @@ struct PictureArguments {
     std::optional<std::string> camera;
     std::string view = "iso";
     std::string transfer_function = "viridis";
+    std::optional<std::string> opacity;
     std::optional<double> opacity_unit_world;
     std::string background = "0,0,0";
 
