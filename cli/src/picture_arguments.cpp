@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "subvol/error.h"
+#include "subvol/legend.h"
 
 namespace subvol::cli {
 namespace {
@@ -58,6 +59,8 @@ void PictureArguments::add_to(CLI::App& app) {
                    "world distance that the opacities are for (default: 1/100 of the bounding box's diagonal)")
         ->type_name("D")
         ->check(CLI::PositiveNumber);
+    app.add_option("--legend", legend, "also write a colour bar with the opacities and the field's name")
+        ->type_name("FILE.svg");
     app.add_option("--background", background, "what .png is laid over, linear red, green, blue in 0..1 (default 0,0,0)")
         ->type_name("R,G,B");
 }
@@ -72,6 +75,17 @@ Optics PictureArguments::make_optics(const Box& box, const Range& range) const {
     TransferFunction function = find_transfer_function(transfer_function, range);
     if (opacity) function.opacity = parse_opacity(*opacity, range.min, range.max);
     return {std::move(function), opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
+}
+
+void PictureArguments::check_legend() const {
+    if (legend) check_output(*legend, {".svg"});
+}
+
+void PictureArguments::write_legend(const Optics& optics, const Range& range, Report& report) const {
+    if (!legend) return;
+    subvol::write_legend(*legend, optics.function(),
+                         {.title = report.json().value("field", ""), .min = range.min, .max = range.max});
+    report["legend"] = *legend;
 }
 
 }  // namespace subvol::cli

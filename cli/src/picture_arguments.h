@@ -31,12 +31,19 @@ struct PictureArguments {
     std::string transfer_function = "viridis";
     std::optional<std::string> opacity;
     std::optional<double> opacity_unit_world;
+    std::optional<std::string> legend;
     std::string background = "0,0,0";
 
     void add_to(CLI::App& app);
 
     [[nodiscard]] View make_view(const Box& box) const;
     [[nodiscard]] Optics make_optics(const Box& box, const Range& range) const;
+
+    /// Refuses a --legend that cannot be written, before any work is done.
+    void check_legend() const;
+
+    /// Writes the --legend, if one is wanted, over the field's range and with its name, the report's "field".
+    void write_legend(const Optics& optics, const Range& range, Report& report) const;
 };
 
 }  // namespace subvol::cli

@@ -50,6 +50,7 @@ public:
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "tets"}, {"sheets", "dense", "grid", "pt"});
         check_output(output_, {".png", ".exr"});
+        picture_.check_legend();
         const Vec3 background = parse_vector("--background", picture_.background);
         const Backend backend = backend_named(backend_);
         if (method_ == "tets" && backend == Backend::Gl) {
@@ -66,7 +67,9 @@ private:
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
         const Box box = bounds(mesh);
         const View view = picture_.make_view(box);
-        const Optics optics = picture_.make_optics(box, first_field_range(mesh));
+        const Range range = first_field_range(mesh);
+        const Optics optics = picture_.make_optics(box, range);
+        picture_.write_legend(optics, range, report);
         if (method_ == "tets") return tets(mesh, view, optics, report);
         return splat(sample_reported(mesh, sample_, refine_, optics.function(), report), view, optics, backend, report);
     }
@@ -75,7 +78,9 @@ private:
         if (method_ != "splat") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), app(), report);
         const View view = picture_.make_view(volume.bounds);
-        const Optics optics = picture_.make_optics(volume.bounds, first_channel_range(volume));
+        const Range range = first_channel_range(volume);
+        const Optics optics = picture_.make_optics(volume.bounds, range);
+        picture_.write_legend(optics, range, report);
         return splat(volume, view, optics, backend, report);
     }
 
