@@ -37,6 +37,11 @@ PictureSize parse_size(const std::string& option, const std::string& text) {
 }
 
 void PictureArguments::add_to(CLI::App& app) {
+    add_camera_to(app);
+    add_light_to(app);
+}
+
+void PictureArguments::add_camera_to(CLI::App& app) {
     app.add_option("--size", size, "width and height of the picture in pixels (default 512x512)")->type_name("WxH");
     auto* place = app.add_option("--camera", camera,
                                  "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy (eye, target, up, vertical field of view in degrees), or a "
@@ -45,6 +50,19 @@ void PictureArguments::add_to(CLI::App& app) {
     app.add_option("--view", view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
         ->type_name("SIDE")
         ->excludes(place);
+    app.add_flag("--fit", fit, "move the camera along its line of sight until the whole box is in the picture");
+    app.add_flag("--ortho", orthographic, "an orthographic camera: as high as the box needs, or the JSON file's ortho_height");
+    app.add_option("--turntable", turntable_frames,
+                   "N pictures of one turn about the camera's up axis: -o NAME.png (or .exr) writes NAME_0000.png and so on; "
+                   ".mp4, .webm and .gif make a video with the program ffmpeg")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100000));
+    app.add_option("--fps", frames_per_second, "pictures a second of a video (default 30)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 240));
+}
+
+void PictureArguments::add_light_to(CLI::App& app) {
     app.add_option(
            "--tf", transfer_function,
            "colour map: viridis (default), coolwarm, grey, bone, xray, isosurface, surface or constant over the field's "
@@ -65,10 +83,22 @@ void PictureArguments::add_to(CLI::App& app) {
         ->type_name("R,G,B");
 }
 
-View PictureArguments::make_view(const Box& box) const {
+Camera PictureArguments::make_camera(const Box& box, double aspect) const {
+    Camera given = parse_camera(camera.value_or(view), box, aspect);
+    const bool made_orthographic = orthographic && given.ortho_height == 0;
+    if (made_orthographic) given = orthographic_camera(given, box, aspect);
+    // A named view sees the whole box, and so it does from all sides.
+    if (turntable_frames && (fit || !camera || made_orthographic)) return fit_turntable(given, box, *turntable_frames, aspect);
+    return fit ? fit_camera(given, box, aspect) : given;
+}
+
+std::vector<View> PictureArguments::make_views(const Box& box) const {
     const auto [width, height] = parse_size("--size", size);
-    const double aspect = static_cast<double>(width) / height;
-    return {parse_camera(camera.value_or(view), box, aspect), width, height};
+    const Camera first = make_camera(box, static_cast<double>(width) / height);
+    if (!turntable_frames) return {View(first, width, height)};
+    std::vector<View> views;
+    for (const Camera& frame : turntable(first, box.center(), *turntable_frames)) views.emplace_back(frame, width, height);
+    return views;
 }
 
 Optics PictureArguments::make_optics(const Box& box, const Range& range) const {

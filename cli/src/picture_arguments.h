@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "input.h"
 #include "subvol/camera.h"
@@ -28,6 +29,10 @@ struct PictureArguments {
     std::string size = "512x512";
     std::optional<std::string> camera;
     std::string view = "iso";
+    bool fit = false;
+    bool orthographic = false;
+    std::optional<int> turntable_frames;
+    int frames_per_second = 30;
     std::string transfer_function = "viridis";
     std::optional<std::string> opacity;
     std::optional<double> opacity_unit_world;
@@ -36,7 +41,8 @@ struct PictureArguments {
 
     void add_to(CLI::App& app);
 
-    [[nodiscard]] View make_view(const Box& box) const;
+    /// One view, or those of the turntable.
+    [[nodiscard]] std::vector<View> make_views(const Box& box) const;
     [[nodiscard]] Optics make_optics(const Box& box, const Range& range) const;
 
     /// Refuses a --legend that cannot be written, before any work is done.
@@ -44,6 +50,11 @@ struct PictureArguments {
 
     /// Writes the --legend, if one is wanted, over the field's range and with its name, the report's "field".
     void write_legend(const Optics& optics, const Range& range, Report& report) const;
+
+private:
+    void add_camera_to(CLI::App& app);
+    void add_light_to(CLI::App& app);
+    [[nodiscard]] Camera make_camera(const Box& box, double aspect) const;
 };
 
 }  // namespace subvol::cli
