@@ -5,6 +5,7 @@
 
 #include "subvol/error.h"
 #include "subvol/legend.h"
+#include "text.h"
 
 namespace subvol::cli {
 namespace {
@@ -13,14 +14,16 @@ constexpr double kOpacityUnitsPerDiagonal = 100;
 
 }  // namespace
 
-TransferFunction find_transfer_function(const std::string& name, const Range& range) {
-    // FILE.json:NAME picks one of several maps.
-    if (const std::size_t end = name.find(".json:"); end != std::string::npos) {
-        return read_transfer_function(name.substr(0, end + 5), name.substr(end + 6));
-    }
+TransferFunction find_transfer_function(const std::string& name, const Range& range, bool stretch) {
     const std::filesystem::path path(name);
-    if (path.has_extension() || path.has_parent_path()) return read_transfer_function(path);
-    return transfer_function_preset(name, range.min, range.max);
+    const std::size_t end = name.find(".json:");  // FILE.json:NAME picks one of several maps
+    const bool one_of_several = end != std::string::npos;
+    if (!one_of_several && !path.has_extension() && !path.has_parent_path()) {
+        return transfer_function_preset(name, range.min, range.max);
+    }
+    TransferFunction function =
+        one_of_several ? read_transfer_function(name.substr(0, end + 5), name.substr(end + 6)) : read_transfer_function(path);
+    return stretch ? stretched(function, range.min, range.max) : function;
 }
 
 PictureSize parse_size(const std::string& option, const std::string& text) {
@@ -69,6 +72,11 @@ void PictureArguments::add_light_to(CLI::App& app) {
            "range, or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)")
         ->type_name("FILE|NAME");
     app.add_option(
+           "--tf-range", transfer_range,
+           "values that the colour map and the per cents of --opacity spread over: MIN,MAX or field (default: the field's "
+           "range, but a file's map keeps its own values)")
+        ->type_name("MIN,MAX|field");
+    app.add_option(
            "--opacity", opacity,
            "opacities instead of those of --tf, straight in between: values of the field or per cent of its range, such "
            "as 0%:0,50%:.2,100%:.9")
@@ -101,8 +109,23 @@ std::vector<View> PictureArguments::make_views(const Box& box) const {
     return views;
 }
 
-Optics PictureArguments::make_optics(const Box& box, const Range& range) const {
-    TransferFunction function = find_transfer_function(transfer_function, range);
+Range PictureArguments::shown_range(const Range& field) const {
+    if (!transfer_range || *transfer_range == "field") return field;
+    const std::size_t comma = transfer_range->find(',');
+    if (comma == std::string::npos) {
+        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' is no range", "--tf-range", "MIN,MAX or field");
+    }
+    const Range range{parse_number("--tf-range", transfer_range->substr(0, comma)),
+                      parse_number("--tf-range", transfer_range->substr(comma + 1))};
+    if (!(range.min < range.max)) {
+        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' does not ascend", "--tf-range", "MIN,MAX or field");
+    }
+    return range;
+}
+
+Optics PictureArguments::make_optics(const Box& box, const Range& field) const {
+    const Range range = shown_range(field);
+    TransferFunction function = find_transfer_function(transfer_function, range, transfer_range.has_value());
     if (opacity) function.opacity = parse_opacity(*opacity, range.min, range.max);
     return {std::move(function), opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
 }
@@ -111,8 +134,9 @@ void PictureArguments::check_legend() const {
     if (legend) check_output(*legend, {".svg"});
 }
 
-void PictureArguments::write_legend(const Optics& optics, const Range& range, Report& report) const {
+void PictureArguments::write_legend(const Optics& optics, const Range& field, Report& report) const {
     if (!legend) return;
+    const Range range = shown_range(field);
     subvol::write_legend(*legend, optics.function(),
                          {.title = report.json().value("field", ""), .min = range.min, .max = range.max});
     report["legend"] = *legend;

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "knots.h"
 #include "subvol/error.h"
+#include "value_range.h"
 
 namespace subvol {
 namespace {
@@ -26,6 +28,21 @@ bool in_unit(double x) {
 }
 
 }  // namespace
+
+TransferFunction stretched(const TransferFunction& function, double min, double max) {
+    validate(function);
+    const ValueRange to = usable_range(min, max);
+    const double first = function.color.front().value, width = function.color.back().value - first;
+    TransferFunction result = function;
+    if (!(width > 0)) return result;
+    for (auto& knot : result.color) knot.value = to.at((knot.value - first) / width);
+    for (auto& knot : result.opacity) knot.value = to.at((knot.value - first) / width);
+    // Where the new range is narrow for its distance from 0, neighbours may have become one.
+    part_equal_values(result.color);
+    part_equal_values(result.opacity);
+    validate(result);
+    return result;
+}
 
 void validate(const TransferFunction& function) {
     check_values(function.color, "colour");

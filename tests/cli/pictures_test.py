@@ -142,5 +142,17 @@ class Legends(Pictures):
         self.assertIn("density", texts)
 
 
+    def test_a_map_is_stretched_to_a_range(self):
+        (self.folder / "map.json").write_text('[{"Name": "n m", "RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1]}]')
+        for name, options in [("file", ["--tf", "map.json:n m", "--tf-range", "-3,5"]),
+                              ("preset", ["--tf", "grey", "--tf-range", "-3,5"])]:
+            done = self.render("-o", f"{name}.png", "--legend", f"{name}.svg", *options)
+            self.assertEqual(done.code, 0, done.err)
+        self.assertEqual(self.bytes_of("file.png"), self.bytes_of("preset.png"))
+        self.assertEqual(self.bytes_of("file.svg"), self.bytes_of("preset.svg"))
+        self.assertEqual(self.render("-o", "a.png", "--tf-range", "5,-3").code, 2)
+        self.assertEqual(self.render("-o", "a.png", "--tf-range", "5").code, 2)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -230,6 +230,22 @@ TEST(ParseOpacity, NamesTheEntry) {
     expect_error(kInvalid, "range", [] { (void)parse_opacity("0:0", 1, 0); });
 }
 
+TEST(Stretched, MovesColoursAndOpacitiesAlike) {
+    const TransferFunction f{{{0, Vec3(0)}, {0.5, Vec3(0.2)}, {1, Vec3(1)}}, {{-1, 0}, {0.25, 0.5}}};
+    const TransferFunction g = stretched(f, 300, 400);
+    EXPECT_EQ(g.color[0].value, 300);
+    EXPECT_EQ(g.color[1].value, 350);
+    EXPECT_EQ(g.color[1].rgb, Vec3(0.2));
+    EXPECT_EQ(g.color[2].value, 400);
+    EXPECT_EQ(g.opacity[0].value, 200);
+    EXPECT_EQ(g.opacity[1].value, 325);
+    EXPECT_EQ(g.opacity[1].alpha, 0.5);
+    EXPECT_EQ(stretched(f, 7, 7).color[1].value, 7);  // a constant field lies in the middle
+    EXPECT_EQ(stretched({{{3, Vec3(1)}}, {{3, 1}}}, 0, 1).color[0].value, 3);
+    EXPECT_NO_THROW((void)stretched({{{0, Vec3(0)}, {1e-9, Vec3(1)}, {1, Vec3(1)}}, {{0, 1}}}, 1e9, 1e9 + 1e-3));
+    expect_error(kInvalid, "range", [&] { (void)stretched(f, 1, 0); });
+}
+
 TEST(Validate, RefusesWhatCannotBeInterpolated) {
     const TransferFunction good{{{0, Vec3(0)}, {1, Vec3(1)}}, {{0, 0}, {1, 1}}};
     EXPECT_NO_THROW(validate(good));

@@ -54,6 +54,12 @@ struct TransferFunction {
 /// throws:   Error(InvalidInput) that names the entry
 [[nodiscard]] std::vector<TransferFunction::OpacityKnot> parse_opacity(const std::string& text, double min, double max);
 
+/// The same colours and opacities over another range: the colours' ends go to min and max, as when ParaView fits a map, most of
+/// which lie on [0,1], to data. Of no width, the range is widened as for a preset; a function of one colour is left as it is.
+///
+/// throws: Error(InvalidInput) as validate(function), or for a range not finite or upside down
+[[nodiscard]] TransferFunction stretched(const TransferFunction& function, double min, double max);
+
 /// throws: Error(InvalidInput) if a list is empty, not strictly ascending, not finite, or out of [0,1]
 void validate(const TransferFunction& function);
 
