@@ -51,17 +51,18 @@ Splatter::~Splatter() = default;
 Splatter::Splatter(Splatter&&) noexcept = default;
 Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 
-SplatResult Splatter::draw(const View& view, const Optics& optics) {
+SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
     auto& [options, choice, scene, frame] = *state_;
+    if (!progress) progress = options.progress;
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
     const auto look = detail::classify(scene, optics);
-    detail::prepare_frame(frame, scene, view, look, options.sheets, options.progress);
+    detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
     report.seconds_prepare = seconds_since(start);
 
     const auto drawing = std::chrono::steady_clock::now();
-    auto drawn = detail::draw_splats_cpu(frame, options.progress);
+    auto drawn = detail::draw_splats_cpu(frame, progress);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
     report.seconds_draw = seconds_since(drawing);
