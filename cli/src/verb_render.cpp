@@ -1,9 +1,11 @@
 #include "input.h"
 #include "picture_arguments.h"
+#include "picture_output.h"
 #include "points_input.h"
 #include "sample_arguments.h"
+#include "splat_arguments.h"
 #include "subvol/error.h"
-#include "subvol/image_io.h"
+#include "subvol/progressive.h"
 #include "subvol/render.h"
 #include "text.h"
 #include "verb.h"
@@ -13,89 +15,112 @@ namespace {
 
 constexpr int kTetsLevel = 1;
 
-Backend backend_named(const std::string& name) {
-    check_choice("--backend", name, {"auto", "gl", "cpu"});
-    return name == "gl" ? Backend::Gl : name == "cpu" ? Backend::Cpu : Backend::Auto;
-}
-
 class RenderVerb : public Verb {
 public:
     explicit RenderVerb(CLI::App& program)
         : Verb(program, "render", "Make a picture.",
                "  subvol render model:ball -o ball.png\n"
                "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
+               "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2") {
         app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
         app()
-            .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats)")
+            .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")
             ->type_name("IMAGE")
             ->required();
         app()
             .add_option("--method", method_, "splat (kernels, the default) or tets (rays through tetrahedra)")
             ->type_name("NAME");
-        app().add_option("--backend", backend_, "where to splat: auto (default), gl, cpu")->type_name("NAME");
         picture_.add_to(app());
-        app()
-            .add_option("--sheets", sheets_, "splat: planes over the volume's depth (default 200)")
-            ->type_name("N")
-            ->check(CLI::Range(2, 65536));
         app()
             .add_option("--samples", samples_, "tets: n x n rays a pixel (default 1)")
             ->type_name("N")
             ->check(CLI::Range(1, 16));
         sample_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; splat: omitted shows the limit)");
+        splat_.add_to(app());
     }
 
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "tets"}, {"sheets", "dense", "grid", "pt"});
-        check_output(output_, {".png", ".exr"});
-        const Vec3 background = parse_vector("--background", picture_.background);
-        const Backend backend = backend_named(backend_);
-        if (method_ == "tets" && backend == Backend::Gl) {
-            throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
+        options_ = splat_.options();
+        if (method_ == "tets" && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
+            throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU, without light and of one field",
+                        "--backend gl, --shade, --color-field, --seconds");
         }
-        const Image image = holds_points(input_) ? of_points(backend, report) : of_mesh(backend, report);
-        report.timed("write", [&] { write_image(output_, image, background); });
-        report["output"] = output_;
+        picture_.check_legend();
+        PictureOutput output(output_, picture_.turntable_frames, picture_);
+        if (holds_points(input_)) {
+            draw_points(output, report);
+        } else {
+            draw_mesh(output, report);
+        }
         return 0;
     }
 
 private:
-    [[nodiscard]] Image of_mesh(Backend backend, Report& report) {
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+    void draw_mesh(PictureOutput& output, Report& report) {
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
         const Box box = bounds(mesh);
-        const View view = picture_.make_view(box);
-        const Optics optics = picture_.make_optics(box, first_field_range(mesh));
-        if (method_ == "tets") return tets(mesh, view, optics, report);
-        return splat(sample_reported(mesh, sample_, refine_, optics.function(), report), view, optics, backend, report);
+        const std::vector<View> views = picture_.make_views(box);
+        const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
+        const Optics optics = picture_.make_optics(box, range, colors);
+        picture_.write_legend(optics, colors, report);
+        if (method_ == "tets") {
+            const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
+            output.write(
+                views, [&](const View& view, Progress* progress) { return tets(fine, view, optics, progress, report); },
+                report);
+        } else if (splat_.seconds) {
+            splat_in_time(mesh, views.front(), optics, output, report);
+        } else {
+            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
+        }
     }
 
-    [[nodiscard]] Image of_points(Backend backend, Report& report) {
+    void draw_points(PictureOutput& output, Report& report) {
         if (method_ != "splat") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
-        const RbfVolume volume = load_points(input_, common(), app(), report);
-        const View view = picture_.make_view(volume.bounds);
-        const Optics optics = picture_.make_optics(volume.bounds, first_channel_range(volume));
-        return splat(volume, view, optics, backend, report);
+        const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
+        const std::vector<View> views = picture_.make_views(volume.bounds);
+        const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
+        const Optics optics = picture_.make_optics(volume.bounds, range, colors);
+        picture_.write_legend(optics, colors, report);
+        splat(volume, views, optics, output, report);
     }
 
-    [[nodiscard]] Image splat(const RbfVolume& volume, const View& view, const Optics& optics, Backend backend,
-                              Report& report) const {
-        SplatResult drawn =
-            render_splats(volume, view, optics, {.backend = backend, .sheets = sheets_, .progress = report.progress()});
-        report.add_seconds("prepare", drawn.report.seconds_prepare);
-        report.add_seconds("draw", drawn.report.seconds_draw);
-        report["method"] = method_;
-        report["backend"] = drawn.report.backend;
-        report["device"] = drawn.report.device;
-        report["sheets"] = sheets_;
-        return std::move(drawn.image);
+    void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+               Report& report) const {
+        Splatter splatter(volume, options_);
+        const auto draw = [&](const View& view, Progress* progress) {
+            SplatResult drawn = splatter.draw(view, optics, progress);
+            report["method"] = method_;
+            report_splats(drawn.report, splat_, report);
+            return Picture{std::move(drawn.image), std::move(drawn.depth)};
+        };
+        output.write(views, draw, report);
     }
 
-    [[nodiscard]] Image tets(const HexMesh& mesh, const View& view, const Optics& optics, Report& report) const {
-        const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-        TetsResult drawn = render_tets(fine, fine.attributes.front().values, view, optics,
-                                       {.samples = samples_, .progress = report.progress()});
+    void splat_in_time(const HexMesh& mesh, const View& view, const Optics& optics, PictureOutput& output,
+                       Report& report) const {
+        const auto draw = [&](const View&, Progress* progress) {
+            const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
+            ProgressiveResult drawn = render_progressively(
+                mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
+            report["method"] = method_;
+            report_splats(drawn.splat.report, splat_, report);
+            report["points"] = drawn.splat.report.points;
+            report["steps"] = drawn.steps;
+            report["picture_scale"] = drawn.picture_scale;
+            report["footprint_px"] = drawn.footprint_px;
+            return Picture{std::move(drawn.splat.image), std::move(drawn.splat.depth)};
+        };
+        output.write({view}, draw, report);
+    }
+
+    [[nodiscard]] Picture tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
+                               Report& report) const {
+        TetsResult drawn =
+            render_tets(mesh, mesh.attributes.front().values, view, optics, {.samples = samples_, .progress = progress});
         report.add_seconds("prepare", drawn.report.seconds_build);
         report.add_seconds("draw", drawn.report.seconds_draw);
         report["method"] = method_;
@@ -106,17 +131,17 @@ private:
         report["rays"] = drawn.report.rays;
         report["lost_rays"] = drawn.report.lost_rays;
         if (drawn.report.lost_rays > 0) report.warn(text(drawn.report.lost_rays, " rays were lost inside the mesh"));
-        return std::move(drawn.image);
+        return Picture{std::move(drawn.image)};
     }
 
     std::string input_;
     std::string output_;
     std::string method_ = "splat";
-    std::string backend_ = "auto";
-    int sheets_ = 200;
     int samples_ = 1;
     PictureArguments picture_;
     SampleArguments sample_;
+    SplatArguments splat_;
+    SplatOptions options_;
     RefineArguments refine_;
 };
 

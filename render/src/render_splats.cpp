@@ -36,19 +36,21 @@ struct Splatter::State {
     State(const RbfVolume& volume, const SplatOptions& wanted)
         : options(wanted), scene(detail::make_scene(volume, wanted)), gpu(choose(scene, wanted)) {}
 
-    [[nodiscard]] detail::Drawn draw_on_cpu(const View& view, const detail::Classification& look, SplatReport& report) {
+    [[nodiscard]] detail::Drawn draw_on_cpu(const View& view, const detail::Classification& look, Progress* progress,
+                                            SplatReport& report) {
         const auto start = std::chrono::steady_clock::now();
-        detail::prepare_frame(frame, scene, view, look, options.sheets, options.progress);
+        detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
         report.seconds_prepare += seconds_since(start);
         report.backend = "cpu";
         report.device = cpu_threads();
         report.bin_entries = frame.tile_splats.size();
         report.boundary_hits = frame.intervals.hits;
-        return detail::draw_splats_cpu(frame, options.progress);
+        return detail::draw_splats_cpu(frame, progress);
     }
 
-    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, SplatReport& report) {
-        auto drawn = gpu->draw(view, look, options.sheets, options.progress);
+    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, Progress* progress,
+                                            SplatReport& report) {
+        auto drawn = gpu->draw(view, look, options.sheets, progress);
         report.backend = "gl";
         report.device = gpu->renderer();
         report.bin_entries = gpu->report().bin_entries;
@@ -70,14 +72,15 @@ Splatter::~Splatter() = default;
 Splatter::Splatter(Splatter&&) noexcept = default;
 Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 
-SplatResult Splatter::draw(const View& view, const Optics& optics) {
+SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
     State& state = *state_;
+    if (!progress) progress = state.options.progress;
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
     const auto look = detail::classify(state.scene, optics);
     report.seconds_prepare = seconds_since(start);
-    auto drawn = state.gpu ? state.draw_on_gpu(view, look, report) : state.draw_on_cpu(view, look, report);
+    auto drawn = state.gpu ? state.draw_on_gpu(view, look, progress, report) : state.draw_on_cpu(view, look, progress, report);
     report.seconds_draw = seconds_since(start) - report.seconds_prepare;
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);

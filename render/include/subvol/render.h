@@ -34,9 +34,9 @@ struct Shading {
 
 /// sheets:        planes of constant eye depth over the volume's depth range, 2..65536
 /// channel:       which channel of the volume is shown
+/// device:        of OpenGL, its number in gl_devices(); none: the first hardware, else software
 /// color_channel: takes the colours from another channel than the opacities; not pre-integrated
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
-/// device:        which of gl_devices() draws; without one, the first
 struct SplatOptions {
     Backend backend = Backend::Auto;
     std::optional<int> device{};
@@ -88,7 +88,8 @@ public:
     Splatter(Splatter&&) noexcept;
     Splatter& operator=(Splatter&&) noexcept;
 
-    [[nodiscard]] SplatResult draw(const View& view, const Optics& optics);
+    /// progress: who listens to this picture; null: the options' own
+    [[nodiscard]] SplatResult draw(const View& view, const Optics& optics, Progress* progress = nullptr);
 
 private:
     struct State;
