@@ -1,6 +1,6 @@
 // Sums of kernels on the sheets of a batch, for the pixel of each thread. Kernels are cut by the sheets once for the whole group
-// and laid in shared memory, a chunk at a time, with the sheets on which they may meet each block of 8×4 pixels: threads of a
-// block pass over the others together.
+// and laid in shared memory, a chunk at a time. Each block of 8×4 pixels knows which kernels it may meet, and on which sheets:
+// its threads go through these only, together.
 layout(std430, binding = 0) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 1) readonly buffer SplatExtras { vec4 splat_extras[]; };
 layout(std430, binding = 3) readonly buffer BinOffsets { uint bin_offsets[]; };
@@ -8,12 +8,14 @@ layout(std430, binding = 4) readonly buffer BinSplats { uint bin_splats[]; };
 layout(std430, binding = 10) readonly buffer KernelTable { float kernel_table[]; };
 
 const uint kPixels = uint(kTile) * uint(kTile);
+const uint kWords = kChunk / 32;
 const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBlocksY;
 
 shared vec4 cuts[kChunk * kBatch];  // of a kernel on a sheet: its middle x, y; e and value there
 shared vec4 shapes[kChunk];         // conic xx, 2 xy, yy; moment
 shared vec2 gradients[kChunk];
 shared uint met_sheets[kChunk * kBlocks];  // a bit a sheet
+shared uint met_kernels[kWords * kBlocks];  // a bit a kernel
 #if GENERAL
 shared vec4 rests[kChunk];  // depth, 1 / S_zz, value slope
 shared vec2 shears[kChunk];
@@ -44,7 +46,11 @@ void mark_blocks(uint j, uint k, vec2 px, vec2 half_size) {
     ivec2 first = max(ivec2(clamp((px - half_size) / kSize, -1.0, 64.0) + 1.0) - 1, 0);
     ivec2 last = min(ivec2(clamp((px + half_size) / kSize, -1.0, 64.0) + 1.0) - 1, ivec2(kBlocksX, kBlocksY) - 1);
     for (int y = first.y; y <= last.y; ++y) {
-        for (int x = first.x; x <= last.x; ++x) atomicOr(met_sheets[int(j) * kBlocks + y * kBlocksX + x], 1u << k);
+        for (int x = first.x; x <= last.x; ++x) {
+            uint of = uint(y * kBlocksX + x);
+            atomicOr(met_sheets[j * kBlocks + of], 1u << k);
+            atomicOr(met_kernels[of * kWords + j / 32u], 1u << (j % 32u));
+        }
     }
 }
 
@@ -75,6 +81,7 @@ void cut(uint j, uint k, uint id, int sheet, bool wanted) {
 void stage(uint first, uint end, int first_sheet, uint wanted_sheets) {
     barrier();  // the last chunk has been used
     for (uint i = gl_LocalInvocationIndex; i < kChunk * kBlocks; i += kPixels) met_sheets[i] = 0u;
+    for (uint i = gl_LocalInvocationIndex; i < kWords * kBlocks; i += kPixels) met_kernels[i] = 0u;
     barrier();
     for (uint i = gl_LocalInvocationIndex; i < (end - first) * kBatch; i += kPixels) {
         uint j = i / kBatch, k = i % kBatch;
@@ -197,11 +204,12 @@ void sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
     }
     uint end = bin_offsets[bin + 1u];
     for (uint first = bin_offsets[bin]; first < end; first += kChunk) {
-        uint count = min(end - first, kChunk);
-        stage(first, first + count, first_sheet, wanted_sheets);
-        for (uint j = 0u; awake && j < count; ++j) {
-            uint met = met_sheets[j * kBlocks + block];
-            if (met != 0u) add_kernel(j, met, first_sheet);
+        stage(first, min(first + kChunk, end), first_sheet, wanted_sheets);
+        for (uint word = 0u; word < kWords; ++word) {
+            for (uint left = awake ? met_kernels[block * kWords + word] : 0u; left != 0u; left &= left - 1u) {
+                uint j = word * 32u + uint(findLSB(left));
+                add_kernel(j, met_sheets[j * kBlocks + block], first_sheet);
+            }
         }
     }
 }
