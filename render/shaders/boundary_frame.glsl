@@ -29,5 +29,5 @@ Product product(int a, int b) {
     p.low = uint(low);
     return p;
 }
-bool equal(Product a, Product b) { return a.high == b.high && a.low == b.low; }
-bool less(Product a, Product b) { return a.high < b.high || (a.high == b.high && a.low < b.low); }
+bool same_product(Product a, Product b) { return a.high == b.high && a.low == b.low; }
+bool less_product(Product a, Product b) { return a.high < b.high || (a.high == b.high && a.low < b.low); }

@@ -36,7 +36,7 @@ bool owns_edge(ivec2 a, ivec2 b) { return a.y != b.y ? b.y > a.y : b.x < a.x; }
 
 bool inside_edge(ivec2 a, ivec2 b, ivec2 p) {
     Product left = product(b.x - a.x, p.y - a.y), right_side = product(b.y - a.y, p.x - a.x);
-    return less(right_side, left) || (equal(left, right_side) && owns_edge(a, b));
+    return less_product(right_side, left) || (same_product(left, right_side) && owns_edge(a, b));
 }
 
 void cover(uint id, uint strip) {
@@ -44,7 +44,7 @@ void cover(uint id, uint strip) {
     ivec4 box = boxes[id];
     int y = box.y + int(strip) / box.z, x0 = box.x + int(strip) % box.z * kStrip_px, x1 = min(x0 + kStrip_px - 1, box.w);
     // Counter-clockwise from outside has negative area where it faces us: picture rows run downwards.
-    bool enters = less(product(b.px.x - a.px.x, c.px.y - a.px.y), product(b.px.y - a.px.y, c.px.x - a.px.x));
+    bool enters = less_product(product(b.px.x - a.px.x, c.px.y - a.px.y), product(b.px.y - a.px.y, c.px.x - a.px.x));
     ivec2 second = enters ? c.px : b.px, third = enters ? b.px : c.px;
 #if FILL
     Plane plane = plane_of(a, b, c);

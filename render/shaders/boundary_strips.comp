@@ -15,7 +15,7 @@ void main() {
     if (id >= triangles) return;
     strips[id] = 0u;
     ivec2 a = eye_points[corners[3u * id]].px, b = eye_points[corners[3u * id + 1u]].px, c = eye_points[corners[3u * id + 2u]].px;
-    if (equal(product(b.x - a.x, c.y - a.y), product(b.y - a.y, c.x - a.x))) return;
+    if (same_product(product(b.x - a.x, c.y - a.y), product(b.y - a.y, c.x - a.x))) return;
     ivec2 low = min(min(a, b), c), high = max(max(a, b), c);
     int x0 = max(first_pixel(low.x), 0), x1 = min(last_pixel(high.x), size.x - 1);
     int y0 = max(first_pixel(low.y), 0), y1 = min(last_pixel(high.y), size.y - 1);

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 
@@ -25,8 +26,6 @@ namespace {
 
 constexpr std::size_t kPixel_bytes = 16;  // of the picture
 constexpr std::size_t kState_bytes = 64;  // of a pixel, between passes
-constexpr int kStaged = 512;              // cuts of kernels in shared memory
-constexpr int kMostChunk = 64;            // kernels there
 
 std::string decimal(float value) {
     char text[32];
@@ -37,8 +36,7 @@ std::string decimal(float value) {
 std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
     const auto line = [](const char* name, const std::string& value) { return "#define " + (name + (" " + value)) + "\n"; };
     return gl_scene_defines(scene) + line("kTile", std::to_string(tuning.tile_px)) +
-           line("kBatch", std::to_string(tuning.batch)) +
-           line("kChunk", std::to_string(std::min(kMostChunk, kStaged / tuning.batch))) +
+           line("kBatch", std::to_string(tuning.batch)) + line("kChunk", tuning.batch <= 8 ? "64" : "32") +
            line("kCells", std::to_string(PreintegratedTable::kCells)) + line("kLeastWeight", decimal(kLeastWeight)) +
            line("kNearValues", decimal(kNearValues)) + line("kOpaque", decimal(kOpaque)) +
            line("kFarCells", decimal(kFarCells));
@@ -49,6 +47,12 @@ void upload(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.grow(values.size() * sizeof(T));
     buffer.upload(values.size() * sizeof(T), values.data());
 }
+
+/// The context that was current is so again.
+struct KeepCurrent {
+    EglContext before = EglContext::current();
+    ~KeepCurrent() { (void)before.make_current(); }
+};
 
 /// The kernels that may meet some batches, a sheet more on each side: rounding may not lose one.
 std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
@@ -251,9 +255,10 @@ Drawn GlSplatter::State::read(const View& view) {
     return drawn;
 }
 
-GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning)
-    : state_(std::make_unique<State>(scene, device, tuning)) {
-    state_->context_.release();
+GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning) {
+    assert((tuning.tile_px == 8 || tuning.tile_px == 16) && tuning.batch >= 1 && tuning.batch <= 16);
+    const KeepCurrent keep;
+    state_ = std::make_unique<State>(scene, device, tuning);
 }
 
 GlSplatter::~GlSplatter() {

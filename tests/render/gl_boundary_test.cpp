@@ -16,7 +16,7 @@ using detail::GlBoundary;
 using detail::GlStages;
 using detail::PixelIntervals;
 
-class GlBoundaryTest : public testing::Test {
+class GlBoundaries : public testing::Test {
 protected:
     void SetUp() override {
         if (!find_gl_device()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
@@ -64,7 +64,7 @@ View view_of(bool perspective, int width = 75, int height = 61) {
                 height);
 }
 
-TEST_F(GlBoundaryTest, NestedTouchingAndCrumpledShellsAreAsOnTheCpu) {
+TEST_F(GlBoundaries, NestedTouchingAndCrumpledShellsAreAsOnTheCpu) {
     for (const bool perspective : {true, false}) {
         Surface surface = surface_of(test::make_nested_cubes(2), 1, {0, 0, 0});
         append(surface, surface_of(test::make_nested_cubes(1), .4, {.1, .1, .2}));
@@ -78,14 +78,14 @@ TEST_F(GlBoundaryTest, NestedTouchingAndCrumpledShellsAreAsOnTheCpu) {
     }
 }
 
-TEST_F(GlBoundaryTest, EdgesThroughPixelCentresAreOwnedOnce) {
+TEST_F(GlBoundaries, EdgesThroughPixelCentresAreOwnedOnce) {
     // Whole pixels a unit: edges, diagonals and corners lie on pixel centres.
     Surface surface = surface_of(test::make_box(5, 3, 5), 1, {0, 0, 0});
     const View view({.eye = {2.5, -4, 2.5}, .target = {2.5, 0, 2.5}, .up = {0, 0, 1}, .ortho_height = 7}, 49, 49);
     expect_like_cpu(surface, view);
 }
 
-TEST_F(GlBoundaryTest, WhatHasToBeClippedComesFromTheCpu) {
+TEST_F(GlBoundaries, WhatHasToBeClippedComesFromTheCpu) {
     const Surface surface = surface_of(test::make_nested_cubes(2), 1, {0, 0, 0});
     const View inside({.eye = {.1, 0, 0}, .target = {1, .2, .1}, .up = {0, 0, 1}, .fovy_deg = 70}, 40, 40);
     EXPECT_TRUE(detail::needs_clipping(surface, inside, kNear));
@@ -93,7 +93,7 @@ TEST_F(GlBoundaryTest, WhatHasToBeClippedComesFromTheCpu) {
     expect_like_cpu(surface, inside);
 }
 
-TEST_F(GlBoundaryTest, ViewsThatNeedMoreRoomGetIt) {
+TEST_F(GlBoundaries, ViewsThatNeedMoreRoomGetIt) {
     const Surface surface = surface_of(test::make_nested_cubes(2), 1, {0, 0, 0});
     GlBoundary boundary(true);
     for (const int size : {20, 70, 33}) {

@@ -38,14 +38,19 @@ Optics optics() {
                   .3);
 }
 
-View perspective(int width = 90, int height = 77) {
+/// Most of the volume cannot be seen at all.
+Optics one_shell() {
+    return Optics({.color = {{0, {1, 1, .5}}}, .opacity = {{0, 0}, {.78, 0}, {.8, .7}, {.82, 0}, {1, 0}}}, .3);
+}
+
+View perspective(int width = 60, int height = 51) {
     return View({.eye = {1.5, -2.5, 1.2}, .target = {0, 0, 0}, .up = {0, 0, 1}}, width, height);
 }
 View orthographic() {
-    return View({.eye = {1, -3, .7}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 2.2}, 70, 81);
+    return View({.eye = {1, -3, .7}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 2.2}, 49, 45);
 }
 View inside() {
-    return View({.eye = {.2, -.3, .1}, .target = {0, 1, .2}, .up = {0, 0, 1}, .fovy_deg = 80}, 64, 50);
+    return View({.eye = {.2, -.3, .1}, .target = {0, 1, .2}, .up = {0, 0, 1}, .fovy_deg = 80}, 40, 33);
 }
 
 Drawn draw_on_cpu(const detail::SplatScene& scene, const View& view, const detail::Classification& look, int sheets) {
@@ -63,12 +68,6 @@ float largest_difference(const std::vector<float>& a, const std::vector<float>& 
     return largest;
 }
 
-struct Case {
-    std::string name;
-    RbfVolume volume;
-    SplatOptions options{};
-};
-
 RbfVolume sampled(Correction correction, const std::function<void(RbfVolume&)>& change = {}) {
     RbfVolume volume = sample_rbf_points(make_ball(), {.correction = correction}).volume;
     if (change) change(volume);
@@ -84,80 +83,98 @@ void set_kernel(RbfVolume& volume, Kernel kernel) {
     volume.kernel = std::move(kernel);
 }
 
-class GlSplatterTest : public testing::Test {
+class GlSplats : public testing::Test {
 protected:
     void SetUp() override {
         if (!find_gl_device()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
     }
 };
 
+constexpr int kSheets = 45;  // five batches and a part
+
+// The same operations, some with another last bit, in sums of some ten kernels over 45 sheets: a few 1e-7 were seen. Depths are
+// quotients by the opacity, of thin stuff, too.
+constexpr float kRounding = 2e-6f, kDepthRounding = 1e-4f;
+
+// Plain sums keep the rounding that a quotient of two sums loses.
+constexpr float kPlainRounding = 1e-5f;
+// Where weights end is a quotient of small differences.
+constexpr float kCutRounding = 2e-5f;
+
 /// Draws every view on both backends.
-void expect_like_cpu(const RbfVolume& volume, const SplatOptions& options, float most_color, float most_depth) {
+void expect_like_cpu(const RbfVolume& volume, const SplatOptions& options, float most_color = kRounding) {
     const auto scene = detail::make_scene(volume, options);
     const auto look = detail::classify(scene, optics());
     GlSplatter gpu(scene, {});
     for (const View& view : {perspective(), orthographic(), inside()}) {
-        const Drawn cpu = draw_on_cpu(scene, view, look, 60), gl = gpu.draw(view, look, 60, nullptr);
+        const Drawn cpu = draw_on_cpu(scene, view, look, kSheets), gl = gpu.draw(view, look, kSheets, nullptr);
         const float color = largest_difference(cpu.image.rgba, gl.image.rgba);
         const float depth = largest_difference(cpu.depth, gl.depth);
         EXPECT_LT(color, most_color);
-        EXPECT_LT(depth, most_depth);
-        std::printf("    colour %.2e, depth %.2e\n", double(color), double(depth));
-        EXPECT_GT(std::accumulate(cpu.image.rgba.begin(), cpu.image.rgba.end(), 0.0), 1000) << "the ball is in the picture";
+        EXPECT_LT(depth, kDepthRounding);
+        EXPECT_GT(std::accumulate(cpu.image.rgba.begin(), cpu.image.rgba.end(), 0.0), 300) << "the ball is in the picture";
     }
 }
 
-TEST_F(GlSplatterTest, EveryCorrectionLooksAsOnTheCpu) {
+TEST_F(GlSplats, EveryCorrectionLooksAsOnTheCpu) {
     for (const Correction correction : {Correction::None, Correction::Second, Correction::Full}) {
-        expect_like_cpu(sampled(correction), {}, 1e-5f, 1e-4f);
+        expect_like_cpu(sampled(correction), {});
     }
 }
 
-TEST_F(GlSplatterTest, EveryKernelLooksAsOnTheCpu) {
-    for (const Kernel& kernel : {Kernel(GaussianKernel{}), Kernel(SeparableGaussianKernel{})}) {
-        expect_like_cpu(sampled(Correction::Second, [&](RbfVolume& v) { set_kernel(v, kernel); }), {}, 1e-5f, 1e-4f);
+TEST_F(GlSplats, EveryKernelLooksAsOnTheCpu) {
+    for (const Kernel& kernel : {Kernel(GaussianKernel{.radius = 2}), Kernel(SeparableGaussianKernel{.radius = 2})}) {
+        expect_like_cpu(sampled(Correction::Second, [&](RbfVolume& v) { set_kernel(v, kernel); }), {});
     }
 }
 
-TEST_F(GlSplatterTest, PlainSumsLookAsOnTheCpu) {
-    expect_like_cpu(sampled(Correction::None, [](RbfVolume& v) { set_kernel(v, GaussianKernel{}); }), {.normalized = false},
-                    1e-5f, 1e-4f);
+TEST_F(GlSplats, PlainSumsLookAsOnTheCpu) {
+    expect_like_cpu(sampled(Correction::None, [](RbfVolume& v) { set_kernel(v, GaussianKernel{.radius = 2}); }),
+                    {.normalized = false}, kPlainRounding);
 }
 
-TEST_F(GlSplatterTest, ASecondChannelLooksAsOnTheCpu) {
-    expect_like_cpu(sampled(Correction::Full), {.color_channel = 1}, 1e-5f, 1e-4f);
+TEST_F(GlSplats, ASecondChannelLooksAsOnTheCpu) {
+    expect_like_cpu(sampled(Correction::Full), {.color_channel = 1});
 }
 
-TEST_F(GlSplatterTest, ShadingLooksAsOnTheCpu) {
-    expect_like_cpu(sampled(Correction::Full), {.shading = Shading{}}, 1e-5f, 1e-4f);
-    expect_like_cpu(sampled(Correction::Second), {.shading = Shading{}}, 1e-5f, 1e-4f);
+TEST_F(GlSplats, ShadingLooksAsOnTheCpu) {
+    expect_like_cpu(sampled(Correction::Full), {.shading = Shading{}});
+    expect_like_cpu(sampled(Correction::Second), {.shading = Shading{}});
 }
 
-TEST_F(GlSplatterTest, WithoutABoundaryItLooksAsOnTheCpu) {
-    expect_like_cpu(sampled(Correction::Second, [](RbfVolume& v) { v.boundary = {}; }), {}, 1e-5f, 1e-4f);
+TEST_F(GlSplats, WithoutABoundaryItLooksAsOnTheCpu) {
+    expect_like_cpu(sampled(Correction::Second, [](RbfVolume& v) { v.boundary = {}; }), {}, kCutRounding);
 }
 
-TEST_F(GlSplatterTest, TilesBatchesAndRepeatsChangeNoBit) {
+TEST_F(GlSplats, TilesBatchesAndRepeatsChangeNoBit) {
     for (const bool bounded : {true, false}) {
         const RbfVolume volume = sampled(Correction::Second, [&](RbfVolume& v) {
             if (!bounded) v.boundary = {};
         });
         const auto scene = detail::make_scene(volume, {});
-        const auto look = detail::classify(scene, optics());
-        for (const View& view : {perspective(), inside()}) {
-            GlSplatter reference(scene, {});
-            const Drawn expected = reference.draw(view, look, 61, nullptr);
-            EXPECT_EQ(reference.draw(view, look, 61, nullptr).image.rgba, expected.image.rgba);
-            for (const GlTuning& tuning : {GlTuning{.tile_px = 8}, GlTuning{.batch = 4}, GlTuning{.tile_px = 8, .batch = 16}}) {
-                const Drawn drawn = GlSplatter(scene, {}, tuning).draw(view, look, 61, nullptr);
-                EXPECT_EQ(drawn.image.rgba, expected.image.rgba) << tuning.tile_px << " px, " << tuning.batch << " sheets";
+        GlSplatter reference(scene, {});
+        std::vector<GlSplatter> others;
+        for (const GlTuning& tuning : {GlTuning{.tile_px = 8}, GlTuning{.batch = 4}, GlTuning{.tile_px = 8, .batch = 16}}) {
+            others.emplace_back(scene, std::nullopt, tuning);
+        }
+        for (const auto& [view, seen] :
+             {std::pair(perspective(), optics()), {perspective(), one_shell()}, {inside(), optics()}}) {
+            const auto look = detail::classify(scene, seen);
+            const Drawn expected = reference.draw(view, look, kSheets, nullptr);
+            EXPECT_LT(largest_difference(draw_on_cpu(scene, view, look, kSheets).image.rgba, expected.image.rgba),
+                      kCutRounding);
+            EXPECT_EQ(reference.draw(view, look, kSheets, nullptr).image.rgba, expected.image.rgba);
+            for (GlSplatter& other : others) {
+                const Drawn drawn = other.draw(view, look, kSheets, nullptr);
+                EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
                 EXPECT_EQ(drawn.depth, expected.depth);
             }
         }
     }
 }
 
-TEST_F(GlSplatterTest, PassesChangeNoBit) {
+TEST_F(GlSplats, PassesChangeNoBit) {
+    constexpr int kMany = 80;  // thin batches: a third of the kernels meets each
     for (const bool bounded : {true, false}) {
         const RbfVolume volume = sampled(Correction::Full, [&](RbfVolume& v) {
             if (!bounded) v.boundary = {};
@@ -165,30 +182,30 @@ TEST_F(GlSplatterTest, PassesChangeNoBit) {
         const auto scene = detail::make_scene(volume, {.color_channel = 1});
         const auto look = detail::classify(scene, optics());
         GlSplatter reference(scene, {});
-        const Drawn expected = reference.draw(perspective(), look, 61, nullptr);
+        const Drawn expected = reference.draw(perspective(), look, kMany, nullptr);
         EXPECT_EQ(reference.report().passes, 1);
         for (const GlTuning& tuning : {GlTuning{.most_entries = reference.report().bin_entries / 3},
                                        GlTuning{.batch = 4, .most_buffer_bytes = 64 * volume.size()}}) {
             GlSplatter splatter(scene, {}, tuning);
             for (int repeat = 0; repeat < 2; ++repeat) {
-                const Drawn drawn = splatter.draw(perspective(), look, 61, nullptr);
+                const Drawn drawn = splatter.draw(perspective(), look, kMany, nullptr);
                 EXPECT_GT(splatter.report().passes, 2);
                 EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
                 EXPECT_EQ(drawn.depth, expected.depth);
             }
         }
         GlSplatter tiny(scene, {}, {.most_entries = 100});
-        EXPECT_THROW((void)tiny.draw(perspective(), look, 61, nullptr), Error);
+        EXPECT_THROW((void)tiny.draw(perspective(), look, kMany, nullptr), Error);
     }
 }
 
-TEST_F(GlSplatterTest, WhatThePictureBeforeLeftDoesNotMatter) {
+TEST_F(GlSplats, WhatThePictureBeforeLeftDoesNotMatter) {
     // Less, then more than there is room for, and another transfer function.
     const RbfVolume volume = sampled(Correction::Second);
     const auto scene = detail::make_scene(volume, {});
     const auto look = detail::classify(scene, optics());
     GlSplatter kept(scene, {});
-    for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(), 61}, {inside(), 33}}) {
+    for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(), kSheets}, {inside(), 33}}) {
         const Drawn drawn = kept.draw(view, look, sheets, nullptr),
                     fresh = GlSplatter(scene, {}).draw(view, look, sheets, nullptr);
         EXPECT_EQ(drawn.image.rgba, fresh.image.rgba);
@@ -196,7 +213,7 @@ TEST_F(GlSplatterTest, WhatThePictureBeforeLeftDoesNotMatter) {
     }
 }
 
-TEST_F(GlSplatterTest, TheOrderOfKernelsMattersWithinRoundingOnly) {
+TEST_F(GlSplats, TheOrderOfKernelsMattersWithinRoundingOnly) {
     const RbfVolume volume = sampled(Correction::Second);
     std::vector<std::size_t> order(volume.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -210,12 +227,12 @@ TEST_F(GlSplatterTest, TheOrderOfKernelsMattersWithinRoundingOnly) {
         shuffled.channels[0].moments[i] = volume.channels[0].moments[order[i]];
     }
     const auto draw = [&](const RbfVolume& v) {
-        return render_splats(v, perspective(), optics(), {.backend = Backend::Gl, .sheets = 60}).image.rgba;
+        return render_splats(v, perspective(), optics(), {.backend = Backend::Gl, .sheets = kSheets}).image.rgba;
     };
-    EXPECT_LT(largest_difference(draw(volume), draw(shuffled)), 5e-6f);  // sums of some ten kernels, over 60 sheets
+    EXPECT_LT(largest_difference(draw(volume), draw(shuffled)), 5e-6f);  // sums of some ten kernels, over 45 sheets
 }
 
-TEST_F(GlSplatterTest, RefusesADeviceThatIsNotThere) {
+TEST_F(GlSplats, RefusesADeviceThatIsNotThere) {
     const RbfVolume volume = sampled(Correction::None);
     EXPECT_THROW(Splatter(volume, {.backend = Backend::Gl, .device = 99}), Error);
     EXPECT_THROW(Splatter(volume, {.device = 99}), Error);
