@@ -58,7 +58,7 @@ struct SplatReport {
     std::string backend;  // "gl" or "cpu"
     std::string device;   // GL renderer string, or the number of CPU threads
     std::size_t points = 0;
-    std::size_t bin_entries = 0;    // (tile, kernel) pairs
+    std::size_t bin_entries = 0;    // pairs of a tile and a kernel; on a GPU, of a tile, a batch of sheets and a kernel
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_prepare = 0, seconds_draw = 0;
     std::vector<StageTime> stages{};  // of the GPU
