@@ -117,20 +117,22 @@ TEST(SplatInvariance, TheOrderOfPointsIsSeenInRoundingOnly) {
 }
 
 TEST(SplatInvariance, BatchesThatArePassedOverAreNotMissed) {
+    // Values rise with the depth: what can be seen is in few of the batches, which most kernels of the others do not reach.
+    HexMesh mesh = nested_ball(6);
+    const Vec3 forward = view().axes()[2];
+    add_field(mesh, "f", [&](const Vec3& p) { return .5 + .4 * glm::dot(p, forward) + .03 * std::sin(5 * p.z); });
+    add_field(mesh, "g", [](const Vec3& p) { return .5 + .4 * std::sin(p.x); });
     for (const bool boundary : {true, false}) {
-        RbfVolume volume = waves(boundary ? Correction::Second : Correction::Full);
+        RbfVolume volume = sample_rbf_points(mesh, {.correction = boundary ? Correction::Second : Correction::Full}).volume;
         if (!boundary) volume.boundary = {};
-        for (const double peak : {.1, .3, .5, .7, .95}) {
-            for (const int sheets : {24, 75}) {
-                for (SplatOptions options : all_kinds()) {
-                    options.sheets = sheets;
-                    Frame frame(volume, one_peak(peak), options);
-                    const auto passed_over = frame.draw();
-                    frame.frame.kernels.ranges.clear();
-                    const auto all = frame.draw();
-                    EXPECT_EQ(passed_over.image.rgba, all.image.rgba) << peak << ' ' << sheets;
-                    EXPECT_EQ(passed_over.depth, all.depth) << peak << ' ' << sheets;
-                }
+        for (const double peak : {.15, .3, .5, .7, .85}) {
+            for (SplatOptions options : all_kinds()) {
+                Frame frame(volume, one_peak(peak), options);
+                const auto passed_over = frame.draw();
+                frame.frame.kernels.ranges.clear();
+                const auto all = frame.draw();
+                EXPECT_EQ(passed_over.image.rgba, all.image.rgba) << peak;
+                EXPECT_EQ(passed_over.depth, all.depth) << peak;
             }
         }
     }
