@@ -33,11 +33,11 @@ Optics one_peak(double value) {
 struct Frame {
     detail::SplatScene scene;
     detail::Classification look;
-    View view = test::view();
+    View view;
     detail::SplatFrame frame;
 
-    Frame(const RbfVolume& volume, const Optics& optics, const SplatOptions& options)
-        : scene(detail::make_scene(volume, options)), look(classify(scene, optics)) {
+    Frame(const RbfVolume& volume, const Optics& optics, const SplatOptions& options, const View& seen = test::view())
+        : scene(detail::make_scene(volume, options)), look(classify(scene, optics)), view(seen) {
         prepare_frame(frame, scene, view, look, options.sheets, nullptr);
     }
     [[nodiscard]] detail::Drawn draw() const { return draw_splats_cpu(frame, nullptr); }
@@ -136,6 +136,20 @@ TEST(SplatInvariance, BatchesThatArePassedOverAreNotMissed) {
             }
         }
     }
+}
+
+TEST(SplatInvariance, WhatLiesBetweenBatchesIsNotMissed) {
+    // Layers of kernels 1/16 apart that reach .09 to either side. Of the ten sheets, the first batch ends at depth 7/9, which
+    // only kernels with a value of .1 reach; at 8/9 the last two layers, with .9, raise the sum to .3: the peak lies between.
+    HexMesh mesh = test::box(16);
+    add_field(mesh, "f", [](const Vec3& p) { return p.y < .9 ? .1 : .9; });
+    const RbfVolume volume = sample_rbf_points(mesh, {.correction = Correction::None}).volume;
+    const View along_y({.eye = {.5, -2, .5}, .target = {.5, 0, .5}, .up = {0, 0, 1}, .ortho_height = 1.2}, 40, 40);
+    Frame frame(volume, one_peak(.2), {.backend = Backend::Cpu, .sheets = 10}, along_y);
+    const auto passed_over = frame.draw();
+    frame.frame.kernels.ranges.clear();
+    EXPECT_EQ(passed_over.image.rgba, frame.draw().image.rgba);
+    EXPECT_GT(passed_over.image.pixel(20, 20)[3], .1);
 }
 
 TEST(SplatInvariance, WhereNothingCanBeSeenNothingIsDrawn) {
