@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "gl_splatter.h"
 #include "splat_backend.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
@@ -10,24 +11,19 @@ namespace subvol {
 
 namespace {
 
-struct Choice {
-    bool gl = false;
-    std::string device;
-};
-
-Choice choose(Backend wanted) {
-    const auto cpu = [] {
-        const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-        return Choice{false, std::to_string(threads) + " CPU threads"};
-    };
-    if (wanted == Backend::Cpu) return cpu();
-    const auto device = find_gl_device();
+/// The GPU to draw with; nothing: the CPU does.
+std::optional<detail::GlSplatter> choose(const detail::SplatScene& scene, const SplatOptions& options) {
+    if (options.backend == Backend::Cpu) return std::nullopt;
     // Software GL is slower than the CPU backend and draws the same: only when asked for.
-    if (device && (wanted == Backend::Gl || device->hardware)) return {true, device->renderer};
-    if (wanted == Backend::Gl) {
-        throw Error(ErrorCode::MissingCapability, "no OpenGL 4.5 was found through EGL", {}, "use the CPU backend");
+    if (options.backend == Backend::Auto) {
+        const auto device = find_gl_device(options.device);
+        if (!device || !device->hardware) return std::nullopt;
     }
-    return cpu();
+    return detail::GlSplatter(scene, options.device);
+}
+
+std::string cpu_threads() {
+    return std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) + " CPU threads";
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -37,14 +33,39 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 struct Splatter::State {
+    State(const RbfVolume& volume, const SplatOptions& wanted)
+        : options(wanted), scene(detail::make_scene(volume, wanted)), gpu(choose(scene, wanted)) {}
+
+    [[nodiscard]] detail::Drawn draw_on_cpu(const View& view, const detail::Classification& look, Progress* progress,
+                                            SplatReport& report) {
+        const auto start = std::chrono::steady_clock::now();
+        detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
+        report.seconds_prepare += seconds_since(start);
+        report.backend = "cpu";
+        report.device = cpu_threads();
+        report.bin_entries = frame.tile_splats.size();
+        report.boundary_hits = frame.intervals.hits;
+        return detail::draw_splats_cpu(frame, progress);
+    }
+
+    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, Progress* progress,
+                                            SplatReport& report) {
+        auto drawn = gpu->draw(view, look, options.sheets, progress);
+        report.backend = "gl";
+        report.device = gpu->renderer();
+        report.bin_entries = gpu->report().bin_entries;
+        report.boundary_hits = gpu->report().boundary_hits;
+        report.stages = gpu->report().stages;
+        return drawn;
+    }
+
     SplatOptions options;
-    Choice choice;
     detail::SplatScene scene;
+    std::optional<detail::GlSplatter> gpu;
     detail::SplatFrame frame{};  // its memory is used again
 };
 
-Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options)
-    : state_(std::make_unique<State>(State{options, choose(options.backend), detail::make_scene(volume, options)})) {
+Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) : state_(std::make_unique<State>(volume, options)) {
 }
 
 Splatter::~Splatter() = default;
@@ -52,25 +73,18 @@ Splatter::Splatter(Splatter&&) noexcept = default;
 Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 
 SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
-    auto& [options, choice, scene, frame] = *state_;
-    if (!progress) progress = options.progress;
+    State& state = *state_;
+    if (!progress) progress = state.options.progress;
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
-    const auto look = detail::classify(scene, optics);
-    detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
+    const auto look = detail::classify(state.scene, optics);
     report.seconds_prepare = seconds_since(start);
-
-    const auto drawing = std::chrono::steady_clock::now();
-    auto drawn = detail::draw_splats_cpu(frame, progress);
+    auto drawn = state.gpu ? state.draw_on_gpu(view, look, progress, report) : state.draw_on_cpu(view, look, progress, report);
+    report.seconds_draw = seconds_since(start) - report.seconds_prepare;
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
-    report.seconds_draw = seconds_since(drawing);
-    report.backend = choice.gl ? "gl" : "cpu";
-    report.device = choice.device;
-    report.points = scene.volume->size();
-    report.bin_entries = frame.tile_splats.size();
-    report.boundary_hits = frame.intervals.hits;
+    report.points = state.scene.volume->size();
     return result;
 }
 

@@ -16,8 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
-constexpr float kFarCells = 1e12f;  // values further out look like this one
-
 /// What the pixels of a block see on one sheet.
 struct SheetValues {
     Floats x;  // in cells

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/gl_device.h"
@@ -47,6 +48,12 @@ struct SplatOptions {
     Progress* progress = nullptr;
 };
 
+/// Time that a device spent on a part of the work.
+struct StageTime {
+    std::string stage;
+    double seconds = 0;
+};
+
 struct SplatReport {
     std::string backend;  // "gl" or "cpu"
     std::string device;   // GL renderer string, or the number of CPU threads
@@ -54,6 +61,7 @@ struct SplatReport {
     std::size_t bin_entries = 0;    // (tile, kernel) pairs
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_prepare = 0, seconds_draw = 0;
+    std::vector<StageTime> stages{};  // of the GPU
 };
 
 /// depth: of each pixel, the mean eye depth of what is seen, by opacity; infinity where nothing is
