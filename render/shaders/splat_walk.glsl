@@ -65,11 +65,12 @@ void stretch(float front, float back, Sheet here, inout Place place, inout bool 
     precise float depth = (to - from) * ray_length * mean.x, passes = exp_of(-depth), light = transmittance * (1.0 - passes);
     precise vec3 emission = min(mean.yzw, mean.x);
 #if COLORED
-    emission = 0.5 * mean.x * (color_at(last.known ? last.color : here.color) + color_at(here.color));
+    emission = 0.5 * mean.x * (color_at(last.known ? last.color : here.color) + color_at(here.known ? here.color : last.color));
 #endif
     precise float per_extinction = light / max(mean.x, 1e-37);
 #if SHADED
-    precise vec2 lit = 0.5 * (last.light + here.light) * vec2(per_extinction, light);
+    // An end that knows nothing is like the other.
+    precise vec2 lit = 0.5 * ((last.known ? last.light : here.light) + (here.known ? here.light : last.light)) * vec2(per_extinction, light);
     seen_color += fma(vec3(lit.x), emission, vec3(lit.y));
 #else
     seen_color = fma(vec3(per_extinction), emission, seen_color);

@@ -148,7 +148,7 @@ void GlSplatter::State::prepare(const View& view, const Classification& look) {
 
 void GlSplatter::State::find_intervals(const View& view) {
     if (scene_.half_weight > 0) return;
-    const double middle = static_cast<double>(sheets_.middle), near = static_cast<double>(sheets_.near) + middle;
+    const double middle = view.to_eye(scene_.middle).z, near = static_cast<double>(sheets_.near) + middle;
     boundary_.find(scene_.volume->boundary, view, near, middle, stages_);
 }
 
