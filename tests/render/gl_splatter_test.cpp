@@ -222,6 +222,18 @@ TEST_F(GlSplats, WhatThePictureBeforeLeftDoesNotMatter) {
     }
 }
 
+TEST_F(GlSplats, TheDevicesOwnBoundaryIsThatOfTheCpu) {
+    const RbfVolume volume = sampled(Correction::Second);
+    const auto scene = detail::make_scene(volume, {});
+    const auto look = detail::classify(scene, optics());
+    GlSplatter own(scene, {}, {.boundary_on_device = true}), from_cpu(scene, {});
+    for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(120, 90), 33}, {inside(), 33}}) {
+        const Drawn drawn = own.draw(view, look, sheets, nullptr), expected = from_cpu.draw(view, look, sheets, nullptr);
+        EXPECT_EQ(own.report().boundary_hits, from_cpu.report().boundary_hits);
+        EXPECT_LT(largest_difference(drawn.image.rgba, expected.image.rgba), kRounding);
+    }
+}
+
 TEST_F(GlSplats, TheOrderOfKernelsMattersWithinRoundingOnly) {
     const RbfVolume volume = sampled(Correction::Second);
     std::vector<std::size_t> order(volume.size());
