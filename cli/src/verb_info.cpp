@@ -17,6 +17,15 @@ Json to_json(const Vec3& v) {
     return Json::array({v.x, v.y, v.z});
 }
 
+Json to_json(const GlDevice& device) {
+    return {{"index", device.index},
+            {"renderer", device.renderer},
+            {"hardware", device.hardware},
+            {"version", device.version},
+            {"max_ssbo_bytes", device.max_ssbo_bytes},
+            {"memory_bytes", device.memory_bytes > 0 ? Json(device.memory_bytes) : Json(nullptr)}};
+}
+
 Json to_json(const Box& box) {
     return Json::array({to_json(box.lower), to_json(box.upper)});
 }
@@ -73,8 +82,12 @@ public:
 
 private:
     static void describe_gl(Report& report) {
-        const auto device = find_gl_device();
-        report["gl"] = device ? Json{{"renderer", device->renderer}, {"hardware", device->hardware}} : Json(nullptr);
+        const std::vector<GlDevice> devices = gl_devices();
+        report["gl"] = Json(nullptr);
+        if (!devices.empty())
+            report["gl"] = {{"renderer", devices.front().renderer}, {"hardware", devices.front().hardware}};
+        report["gl_devices"] = Json::array();
+        for (const GlDevice& device : devices) report["gl_devices"].push_back(to_json(device));
     }
 
     void refuse_at(const std::string& what) const {

@@ -1,62 +1,52 @@
 #pragma once
 
-#include <epoxy/gl.h>
-
-#include <memory>
 #include <string>
+
+#include "gl_display.h"
 
 namespace subvol::detail {
 
-/// An OpenGL 4.3 core context without a window, current on the thread that made it: a hardware device if there is one, else
-/// Mesa's software.
-///
-/// throws: Error(MissingCapability) if there is neither
+/// An OpenGL 4.5 core context without a window. It begins as the current one of the thread that made it; a GlScope makes it
+/// that of a piece of code. A process may have several; each is current on one thread at a time.
 class GlContext {
 public:
-    GlContext();
-    ~GlContext();
+    /// device: its index in gl_devices(); without one, the first: hardware if there is any
+    /// throws: Error(MissingCapability) if it is not there
+    explicit GlContext(std::optional<int> device = {});
+    ~GlContext() { opened_.context.destroy(); }
     GlContext(const GlContext&) = delete;
     GlContext& operator=(const GlContext&) = delete;
 
-    [[nodiscard]] const std::string& renderer() const { return renderer_; }
-    [[nodiscard]] bool hardware() const { return hardware_; }
+    [[nodiscard]] const GlDevice& device() const { return opened_.device; }
+    [[nodiscard]] const std::string& renderer() const { return opened_.device.renderer; }
+    [[nodiscard]] bool hardware() const { return opened_.device.hardware; }
+
+    /// Leaves this thread without it, so that another may use it. Nothing happens if it is not current here.
+    void release() const;
 
 private:
-    void* display_ = nullptr;
-    void* context_ = nullptr;
-    std::string renderer_;
-    bool hardware_ = false;
+    friend class GlScope;
+    OpenedGl opened_;
 };
 
-/// A shader storage buffer.
-class GlBuffer {
+/// A context is the current one of this thread as long as this lives; then that from before is again.
+class GlScope {
 public:
-    /// data may be null: uninitialised; throws Error(MissingCapability) if the device has no room for it
-    GlBuffer(GLuint binding, std::size_t bytes, const void* data);
-    ~GlBuffer();
-    GlBuffer(const GlBuffer&) = delete;
-    GlBuffer& operator=(const GlBuffer&) = delete;
-
-    void read(std::size_t bytes, void* to) const;
+    /// throws: Error(MissingCapability) if the context is current on another thread
+    explicit GlScope(const GlContext& context);
+    ~GlScope() { (void)before_.make_current(); }
+    GlScope(const GlScope&) = delete;
+    GlScope& operator=(const GlScope&) = delete;
 
 private:
-    GLuint id_ = 0;
+    EglContext before_ = EglContext::current();
 };
 
-/// A compute program. Errors of the compiler name the shader's file and line.
-class GlProgram {
-public:
-    /// defines: text put after the version line
-    GlProgram(const std::string& file, const std::string& source, const std::string& defines);
-    ~GlProgram();
-    GlProgram(const GlProgram&) = delete;
-    GlProgram& operator=(const GlProgram&) = delete;
-
-    [[nodiscard]] GLuint id() const { return id_; }
-    [[nodiscard]] GLint uniform(const char* name) const { return glGetUniformLocation(id_, name); }
-
-private:
-    GLuint id_ = 0;
-};
+/// Asks the current context whether something failed since it was last asked: a call, memory, the device itself.
+///
+/// where:  what was done, for the message: "splat", a shader's file
+/// throws: Error(MissingCapability)
+/// cost:   waits for nothing: failures of work that is still under way are seen later
+void check_gl(const std::string& where);
 
 }  // namespace subvol::detail

@@ -61,14 +61,3 @@ SplatResult render_splats(const RbfVolume& volume, const View& view, const Optic
 }
 
 }  // namespace subvol
-
-namespace subvol {
-std::optional<GlDevice> find_gl_device() {
-    try {
-        const detail::GlContext context;
-        return GlDevice{context.renderer(), context.hardware()};
-    } catch (const Error&) {
-        return std::nullopt;
-    }
-}
-}  // namespace subvol

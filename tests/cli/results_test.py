@@ -30,10 +30,19 @@ class Results(InFolder):
             self.assertLess(field["min"], field["max"])
 
     def test_info_says_what_opengl_there_is(self):
-        gl = self.run_ok("info", "--gl", "--json").json()["gl"]
+        info = self.run_ok("info", "--gl", "--json").json()
+        gl, devices = info["gl"], info["gl_devices"]
+        self.assertEqual(gl is None, not devices)
         if gl is not None:
             self.assertIsInstance(gl["renderer"], str)
             self.assertIsInstance(gl["hardware"], bool)
+            self.assertEqual(gl, {key: devices[0][key] for key in ("renderer", "hardware")})
+        for index, device in enumerate(devices):
+            self.assert_keys(device, "renderer", "hardware", "version", "memory_bytes")
+            self.assertEqual(device["index"], index)
+            self.assertGreaterEqual(device["max_ssbo_bytes"], 1 << 24)  # the least that OpenGL 4.5 allows
+        # Hardware first.
+        self.assertEqual(devices, sorted(devices, key=lambda device: not device["hardware"]))
 
     def test_model_and_subdivide_write_meshes_that_are_read_again(self):
         model = self.run_ok("model", "ball", "-o", "ball.mesh", "--resolution", 2, "--json").json()

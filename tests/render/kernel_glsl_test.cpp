@@ -5,7 +5,9 @@
 #include <optional>
 #include <random>
 
+#include "gl_buffer.h"
 #include "gl_context.h"
+#include "gl_program.h"
 #include "lib/kernel_samples.h"
 #include "subvol/error.h"
 #include "subvol/kernel_code.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "subvol/camera.h"
+#include "subvol/gl_device.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
@@ -15,15 +16,6 @@
 namespace subvol {
 
 enum class Backend { Auto, Gl, Cpu };
-
-/// The OpenGL that Backend::Gl would draw with.
-struct GlDevice {
-    std::string renderer;
-    bool hardware = false;  // false: software, which `Auto` passes over
-};
-
-/// Looks for OpenGL 4.3 without a display, hardware first; nothing if there is none.
-[[nodiscard]] std::optional<GlDevice> find_gl_device();
 
 /// Light on the surfaces of equal value: Blinn and Phong's, with one light at the eye and a key light, both from either side.
 /// Where the value hardly changes there is no surface, and colours stay what they are.

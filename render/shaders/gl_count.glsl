@@ -1,0 +1,6 @@
+// A number of items that the host knows, or one that a buffer holds.
+layout(std430, binding = 7) readonly buffer CountSource { uint count_source[]; };
+layout(location = 0) uniform uint most_items;
+layout(location = 1) uniform int count_word;  // -1: the host knows it
+
+uint item_count() { return count_word < 0 ? most_items : min(count_source[count_word], most_items); }

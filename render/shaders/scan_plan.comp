@@ -1,0 +1,13 @@
+#version 450
+// How many groups each level of a scan takes: the sums of a level's blocks are the items of the next.
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) writeonly buffer Plan { uvec4 plan[]; };
+layout(location = 2) uniform uint levels;
+
+void main() {
+    uint items = item_count() + 1u;  // the total comes last
+    for (uint level = 0u; level < levels; ++level) {
+        plan[level] = dispatch_of(items);
+        items = blocks_of(items);
+    }
+}

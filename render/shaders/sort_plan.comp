@@ -1,0 +1,11 @@
+#version 450
+// The groups of a sort's passes, and how many counts of digits they write.
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) writeonly buffer Plan { uvec4 plan[]; };
+layout(location = 2) uniform uint bins;
+
+void main() {
+    uint items = item_count();
+    plan[0] = dispatch_of(items);
+    plan[1] = uvec4(bins * blocks_of(items));
+}

@@ -1,0 +1,94 @@
+#include "gl_buffer.h"
+
+#include <cassert>
+#include <string>
+
+#include "gl_context.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kGranule_bytes = 16;  // a shader may see the buffer as vectors of four
+
+std::size_t largest_block() {
+    GLint64 most = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    return most > 0 ? static_cast<std::size_t>(most) : 0;
+}
+
+GLsizeiptr size(std::size_t bytes) {
+    return static_cast<GLsizeiptr>(bytes);
+}
+
+}  // namespace
+
+GlBuffer::GlBuffer(GLuint binding, std::size_t bytes, const void* data) {
+    grow(bytes);
+    if (data) upload(bytes, data);
+    bind(binding);
+}
+
+GlBuffer::~GlBuffer() {
+    if (id_ != 0) glDeleteBuffers(1, &id_);
+}
+
+bool GlBuffer::fits(std::size_t bytes) {
+    return bytes <= largest_block();
+}
+
+void GlBuffer::grow(std::size_t bytes) {
+    if (bytes <= bytes_) return;
+    if (!fits(bytes)) {
+        throw Error(ErrorCode::MissingCapability,
+                    "the GL device takes buffers of " + std::to_string(largest_block()) + " bytes, this work needs " +
+                        std::to_string(bytes),
+                    {}, "use the CPU backend");
+    }
+    const std::size_t room = (bytes + kGranule_bytes - 1) / kGranule_bytes * kGranule_bytes;
+    const std::string where = "a buffer of " + std::to_string(room) + " bytes";
+    check_gl("earlier work");
+    *this = GlBuffer();  // the old room is given back first
+    GlBuffer grown;
+    glCreateBuffers(1, &grown.id_);
+    glNamedBufferStorage(grown.id_, size(room), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    check_gl(where);
+    grown.bytes_ = room;
+    swap(grown);
+}
+
+void GlBuffer::bind(GLuint binding) {
+    grow(1);  // nothing cannot be bound
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
+}
+
+void GlBuffer::check_range(std::size_t bytes, std::size_t at_byte) const {
+    assert(at_byte <= bytes_ && bytes <= bytes_ - at_byte);
+    (void)bytes, (void)at_byte;
+}
+
+void GlBuffer::upload(std::size_t bytes, const void* from, std::size_t at_byte) {
+    check_range(bytes, at_byte);
+    if (bytes == 0) return;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glNamedBufferSubData(id_, static_cast<GLintptr>(at_byte), size(bytes), from);
+    check_gl("an upload");
+}
+
+void GlBuffer::read(std::size_t bytes, void* to, std::size_t at_byte) const {
+    check_range(bytes, at_byte);
+    if (bytes == 0) return;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glGetNamedBufferSubData(id_, static_cast<GLintptr>(at_byte), size(bytes), to);
+    check_gl("reading from the GL device");
+}
+
+void GlBuffer::clear() {
+    if (bytes_ == 0) return;
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    glClearNamedBufferData(id_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+    check_gl("clearing a buffer");
+}
+
+}  // namespace subvol::detail

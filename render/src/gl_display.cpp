@@ -1,0 +1,184 @@
+#include "gl_display.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace subvol::detail {
+
+namespace {
+
+/// A display that may have OpenGL: nothing has been asked of it yet.
+struct Candidate {
+    EGLDisplay display = EGL_NO_DISPLAY;
+    bool surfaceless = false;  // Mesa's own choice among what it can run on
+    std::string file;          // of the graphics card; empty if it is not told
+};
+
+/// Whether a blank-separated list has a name, which may be the beginning of another.
+bool has_extension(const char* list, std::string_view name) {
+    std::string_view rest = list ? list : "";
+    while (!rest.empty()) {
+        const std::string_view word = rest.substr(0, rest.find(' '));
+        if (word == name) return true;
+        rest.remove_prefix(std::min(rest.size(), word.size() + 1));
+    }
+    return false;
+}
+
+std::string card_file(EGLDeviceEXT device, const char* extensions) {
+    if (!has_extension(extensions, "EGL_EXT_device_drm")) return {};
+    const char* file = eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT);
+    return file ? file : "";
+}
+
+/// Hardware, then Mesa's software by its own platform, then by that of devices: the former may turn out to be hardware.
+std::vector<Candidate> find_candidates() {
+    std::vector<Candidate> hardware, software;
+    if (!epoxy_has_egl()) return {};
+    const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (!has_extension(client, "EGL_EXT_platform_base")) return {};
+    if (has_extension(client, "EGL_MESA_platform_surfaceless"))
+        software.push_back({eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), true, {}});
+    if (has_extension(client, "EGL_EXT_platform_device") &&
+        (has_extension(client, "EGL_EXT_device_enumeration") || has_extension(client, "EGL_EXT_device_base"))) {
+        std::array<EGLDeviceEXT, 64> devices{};
+        EGLint count = 0;
+        if (!eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count)) count = 0;
+        for (const EGLDeviceEXT device : std::span(devices).first(static_cast<std::size_t>(count))) {
+            const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+            auto& list = has_extension(extensions, "EGL_MESA_device_software") ? software : hardware;
+            list.push_back(
+                {eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr), false, card_file(device, extensions)});
+        }
+    }
+    hardware.insert(hardware.end(), software.begin(), software.end());
+    return hardware;
+}
+
+/// A current context, that tells of a lost device if the driver can; a null one if the display does not work.
+EglContext make_context(EGLDisplay display) {
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return {};
+    if (!eglBindAPI(EGL_OPENGL_API)) return {};
+    constexpr std::array<EGLint, 11> kAttributes{
+        EGL_CONTEXT_MAJOR_VERSION,
+        4,
+        EGL_CONTEXT_MINOR_VERSION,
+        5,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+        EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+        EGL_LOSE_CONTEXT_ON_RESET,
+        EGL_CONTEXT_OPENGL_ROBUST_ACCESS,
+        EGL_TRUE,
+        EGL_NONE,
+    };
+    std::array<EGLint, 11> attributes = kAttributes;
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    if (context == EGL_NO_CONTEXT) {
+        attributes[6] = EGL_NONE;  // a driver without robustness refuses to be asked for it
+        context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    }
+    if (context == EGL_NO_CONTEXT) return {};
+    const EglContext made{display, context};
+    if (made.make_current()) return made;
+    made.destroy();
+    return {};
+}
+
+std::string text_of(GLenum name) {
+    const GLubyte* text = glGetString(name);
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+bool is_software(const std::string& renderer) {
+    constexpr std::array kNames{"llvmpipe", "softpipe", "swrast", "SwiftShader"};
+    return std::ranges::any_of(kNames, [&](const char* name) { return renderer.find(name) != std::string::npos; });
+}
+
+std::size_t device_memory_bytes() {
+    std::array<GLint, 4> kib{};  // ATI's has four figures, the first of which is the free memory
+    if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
+        glGetIntegerv(GL_GPU_MEMORY_INFO_TOTAL_AVAILABLE_MEMORY_NVX, kib.data());
+    } else if (epoxy_has_gl_extension("GL_ATI_meminfo")) {
+        glGetIntegerv(GL_VBO_FREE_MEMORY_ATI, kib.data());
+    }
+    return static_cast<std::size_t>(std::max(kib[0], 0)) * 1024;
+}
+
+/// Of the context that is current; its index is not known here.
+GlDevice describe() {
+    GLint64 most = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+    GlDevice device{.renderer = text_of(GL_RENDERER), .version = text_of(GL_VERSION)};
+    device.hardware = !is_software(device.renderer);
+    device.max_ssbo_bytes = static_cast<std::size_t>(std::max<GLint64>(most, 0));
+    device.memory_bytes = device_memory_bytes();
+    return device;
+}
+
+}  // namespace
+
+EglContext EglContext::current() {
+    eglBindAPI(EGL_OPENGL_API);
+    return {eglGetCurrentDisplay(), eglGetCurrentContext()};
+}
+
+bool EglContext::make_current() const {
+    eglBindAPI(EGL_OPENGL_API);  // a thread begins with another one
+    if (context) return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
+    const EglContext old = current();
+    return !old.context || eglMakeCurrent(old.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) == EGL_TRUE;
+}
+
+void EglContext::destroy() const {
+    if (!context) return;
+    if (current() == *this) (void)EglContext{}.make_current();
+    eglDestroyContext(display, context);  // the display stays: others may use it, and eglTerminate leaks in Mesa
+}
+
+struct GlFinder::State {
+    std::vector<Candidate> candidates = find_candidates();
+    std::size_t next = 0;
+    std::vector<std::string> files;
+    int found = 0;
+    bool software_found = false;
+
+    /// One card may be offered by two drivers; software is one device, however it is reached.
+    [[nodiscard]] bool known(const Candidate& candidate, const GlDevice& device) const {
+        if (!device.hardware) return software_found;
+        if (candidate.surfaceless) return found > 0;
+        return !candidate.file.empty() && std::ranges::find(files, candidate.file) != files.end();
+    }
+};
+
+GlFinder::GlFinder() : state_(std::make_unique<State>()) {
+}
+
+GlFinder::~GlFinder() = default;
+
+std::optional<OpenedGl> GlFinder::next() {
+    State& s = *state_;
+    while (s.next < s.candidates.size()) {
+        const Candidate& candidate = s.candidates[s.next++];
+        const EglContext context = make_context(candidate.display);
+        if (!context.context) continue;
+        GlDevice device = describe();
+        if (s.known(candidate, device)) {
+            context.destroy();
+            continue;
+        }
+        device.index = s.found++;
+        s.files.push_back(candidate.file);
+        s.software_found = s.software_found || !device.hardware;
+        return OpenedGl{context, device};
+    }
+    return std::nullopt;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,82 @@
+#include "gl_program.h"
+
+#include <regex>
+#include <sstream>
+
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// The source's version line, the defines, the common pieces, the rest of the source. Messages know a piece by its number: the
+/// source is 0, the common pieces follow.
+std::string compose(const std::string& source, const std::string& defines, const std::vector<ShaderText>& common) {
+    const auto after_version = source.find('\n') + 1;
+    std::string text = source.substr(0, after_version) + defines;
+    for (std::size_t i = 0; i < common.size(); ++i) text += "\n#line 1 " + std::to_string(i + 1) + "\n" + common[i].text;
+    return text + "\n#line 2 0\n" + source.substr(after_version);
+}
+
+/// Drivers write "1:23(5): error" or "1(23) : error": the leading number becomes a file, so that a line reads "file:23…".
+std::string with_files(const std::string& log, const std::vector<std::string>& files) {
+    static const std::regex kPlace(R"(^(\d{1,4})(:(\d+)|\((\d+)\)))");
+    std::istringstream lines(log);
+    std::string result;
+    for (std::string line; std::getline(lines, line);) {
+        std::smatch at;
+        if (std::regex_search(line, at, kPlace) && std::stoul(at[1]) < files.size()) {
+            const std::string number = at[3].matched ? at[3].str() : at[4].str();
+            line = files[std::stoul(at[1])] + ":" + number + at.suffix().str();
+        }
+        result += (result.empty() ? "" : "\n") + line;
+    }
+    return result;
+}
+
+template <class GetLength, class GetLog>
+std::string log_of(GLuint id, GetLength get_length, GetLog get_log) {
+    GLint length = 0;
+    get_length(id, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(length > 0 ? length : 0), '\0');
+    GLsizei written = 0;
+    if (!log.empty()) get_log(id, length, &written, log.data());
+    log.resize(static_cast<std::size_t>(written));
+    return log;
+}
+
+}  // namespace
+
+GlProgram::GlProgram(const std::string& file, const std::string& source, const std::string& defines,
+                     const std::vector<ShaderText>& common) {
+    std::vector<std::string> files{file};
+    for (const ShaderText& piece : common) files.push_back(piece.file);
+    const std::string text = compose(source, defines, common);
+    const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
+    const char* pointer = text.c_str();
+    glShaderSource(shader, 1, &pointer, nullptr);
+    glCompileShader(shader);
+    GLint ok = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (!ok) {
+        const std::string log = log_of(shader, glGetShaderiv, glGetShaderInfoLog);
+        glDeleteShader(shader);
+        throw Error(ErrorCode::MissingCapability, "the GL driver refuses the shader: " + with_files(log, files), file);
+    }
+    id_ = glCreateProgram();
+    glAttachShader(id_, shader);
+    glLinkProgram(id_);
+    glDeleteShader(shader);
+    glGetProgramiv(id_, GL_LINK_STATUS, &ok);
+    if (!ok) {
+        const std::string log = log_of(id_, glGetProgramiv, glGetProgramInfoLog);
+        glDeleteProgram(id_);
+        throw Error(ErrorCode::MissingCapability, "the GL driver cannot link the shader: " + with_files(log, files), file);
+    }
+}
+
+GlProgram::~GlProgram() {
+    if (id_ != 0) glDeleteProgram(id_);
+}
+
+}  // namespace subvol::detail

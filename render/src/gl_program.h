@@ -1,0 +1,40 @@
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace subvol::detail {
+
+/// A piece of shader source and the file that messages name.
+struct ShaderText {
+    std::string file;
+    std::string text;
+};
+
+/// A compute program of the current context. Messages of the compiler name file and line.
+class GlProgram {
+public:
+    /// defines: text put after the version line, which the source begins with
+    /// common:  pieces put between the defines and the source; they have no version line
+    /// throws:  Error(MissingCapability) with the driver's message
+    GlProgram(const std::string& file, const std::string& source, const std::string& defines,
+              const std::vector<ShaderText>& common = {});
+    ~GlProgram();
+    GlProgram(GlProgram&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+    GlProgram& operator=(GlProgram&& other) noexcept {
+        std::swap(id_, other.id_);
+        return *this;
+    }
+
+    void use() const { glUseProgram(id_); }
+    [[nodiscard]] GLuint id() const { return id_; }
+    [[nodiscard]] GLint uniform(const char* name) const { return glGetUniformLocation(id_, name); }
+
+private:
+    GLuint id_ = 0;
+};
+
+}  // namespace subvol::detail

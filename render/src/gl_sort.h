@@ -1,0 +1,31 @@
+#pragma once
+
+#include "gl_scan.h"
+
+namespace subvol::detail {
+
+/// Sorts by integer keys, on the current context.
+class GlSort {
+public:
+    GlSort();
+
+    /// Sorts pairs of a key and a value by the lowest bits of the key; what is equal there stays in order.
+    ///
+    /// keys, values: words; afterwards they may be other buffers than before, of no less room: bind them again
+    /// bits:         1..32
+    /// throws:       Error(InvalidInput) for fewer words than `count` may be; Error(MissingCapability) if the device has no
+    /// room cost:         a pass for 8 bits, that reads 12 bytes a pair and writes 8; scratch memory of 8.5 bytes a pair.
+    /// Changes the
+    ///               program and bindings 0..5 and 7
+    void radix_sort(GlBuffer& keys, GlBuffer& values, const GlCount& count, int bits);
+
+private:
+    void plan(const GlCount& count, int bits);
+    void pass(GlBuffer& keys, GlBuffer& values, int shift, int bits);
+
+    GlProgram plan_program_, count_program_, move_program_;
+    GlScan scan_;
+    GlBuffer plan_, counts_, other_keys_, other_values_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,193 @@
+#include "gl_context.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "gl_buffer.h"
+#include "gl_program.h"
+#include "subvol/error.h"
+
+namespace subvol {
+namespace {
+
+using detail::check_gl;
+using detail::GlBuffer;
+using detail::GlContext;
+using detail::GlProgram;
+using detail::GlScope;
+
+class Gl : public testing::Test {
+protected:
+    void SetUp() override {
+        if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
+    }
+};
+
+using GlContexts = Gl;
+using GlBuffers = Gl;
+using GlPrograms = Gl;
+
+std::string message_of(const auto& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::MissingCapability) << error.what();
+        return error.what();
+    }
+    ADD_FAILURE() << "nothing was thrown";
+    return {};
+}
+
+/// Doubles the numbers of a buffer on the current context.
+std::vector<std::uint32_t> doubled(std::vector<std::uint32_t> numbers) {
+    const GlProgram program("double.comp", R"glsl(#version 450
+layout(local_size_x = 1) in;
+layout(std430, binding = 0) buffer Numbers { uint numbers[]; };
+void main() { numbers[gl_WorkGroupID.x] *= 2; }
+)glsl",
+                            "");
+    GlBuffer buffer(0, 4 * numbers.size(), numbers.data());
+    program.use();
+    glDispatchCompute(static_cast<GLuint>(numbers.size()), 1, 1);
+    buffer.read(4 * numbers.size(), numbers.data());
+    return numbers;
+}
+
+TEST_F(GlContexts, AreThoseOfTheList) {
+    const auto devices = gl_devices();
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+        EXPECT_EQ(devices[i].index, static_cast<int>(i));
+        const GlContext context(static_cast<int>(i));
+        EXPECT_EQ(context.renderer(), devices[i].renderer);
+        EXPECT_EQ(context.hardware(), devices[i].hardware);
+        EXPECT_EQ(find_gl_device(static_cast<int>(i))->version, devices[i].version);
+        if (i > 0) {
+            EXPECT_GE(devices[i - 1].hardware, devices[i].hardware) << "hardware first";
+        }
+    }
+    EXPECT_EQ(find_gl_device()->index, 0);
+}
+
+TEST_F(GlContexts, OfNoSuchNumberListWhatThereIs) {
+    for (const int index : {-1, static_cast<int>(gl_devices().size())}) {
+        const std::string message = message_of([&] { const GlContext context(index); });
+        EXPECT_NE(message.find(std::to_string(index)), std::string::npos) << message;
+        EXPECT_NE(message.find(gl_devices().front().renderer), std::string::npos) << message;
+        EXPECT_EQ(message_of([&] { (void)find_gl_device(index); }), message);
+    }
+}
+
+TEST_F(GlContexts, LiveSideBySide) {
+    const GlContext first;
+    const GLuint made = glCreateShader(GL_COMPUTE_SHADER);
+    {
+        const GlContext second;
+        EXPECT_FALSE(glIsShader(made)) << "contexts share nothing";
+        {
+            const GlScope scope(first);
+            EXPECT_TRUE(glIsShader(made));
+            EXPECT_EQ(gl_devices().front().index, 0);
+            EXPECT_TRUE(glIsShader(made)) << "listing devices leaves the current context alone";
+        }
+        EXPECT_FALSE(glIsShader(made)) << "the scope gives the second back";
+        EXPECT_EQ(doubled({1, 2, 3}), (std::vector<std::uint32_t>{2, 4, 6}));
+    }
+    const GlScope scope(first);
+    EXPECT_TRUE(glIsShader(made));
+    EXPECT_EQ(doubled({4, 5}), (std::vector<std::uint32_t>{8, 10}));
+}
+
+TEST_F(GlContexts, GoFromThreadToThread) {
+    const GlContext context;
+    std::string refused;
+    std::thread([&] { refused = message_of([&] { const GlScope scope(context); }); }).join();
+    EXPECT_NE(refused.find("another thread"), std::string::npos) << refused;
+    context.release();
+    std::vector<std::uint32_t> result;
+    for (int i = 0; i < 2; ++i) {
+        std::thread([&] {
+            const GlScope scope(context);
+            result = doubled({7});
+        }).join();
+        EXPECT_EQ(result, std::vector<std::uint32_t>{14});
+    }
+    const GlScope scope(context);
+    EXPECT_EQ(doubled({8}), std::vector<std::uint32_t>{16});
+}
+
+TEST_F(GlContexts, WorkOnSeveralThreadsAtOnce) {
+    std::array<std::vector<std::uint32_t>, 3> results;
+    std::vector<std::thread> threads;
+    for (auto& result : results) {
+        threads.emplace_back([&result] {
+            const GlContext context;
+            for (int i = 0; i < 5; ++i) result = doubled({1, 10, 100});
+        });
+    }
+    for (auto& thread : threads) thread.join();
+    for (const auto& result : results) EXPECT_EQ(result, (std::vector<std::uint32_t>{2, 20, 200}));
+}
+
+TEST_F(GlContexts, TellOfErrorsOnce) {
+    const GlContext context;
+    EXPECT_NO_THROW(check_gl("nothing"));
+    glEnable(0xffff);
+    glDispatchCompute(1, 1, 1);  // without a program
+    const std::string message = message_of([] { check_gl("the test"); });
+    EXPECT_EQ(message.find("the test: "), 0U) << message;
+    EXPECT_NE(message.find("invalid enumerant"), std::string::npos) << "the first counts: " << message;
+    EXPECT_NO_THROW(check_gl("nothing"));
+}
+
+TEST_F(GlBuffers, GrowAreFilledReadAndCleared) {
+    const GlContext context;
+    GlBuffer buffer;
+    EXPECT_EQ(buffer.bytes(), 0U);
+    buffer.read(0, nullptr);
+    buffer.grow(40);
+    const GLuint id = buffer.id();
+    buffer.grow(20);
+    EXPECT_EQ(buffer.id(), id) << "it is used again";
+    std::array<std::uint32_t, 10> numbers;
+    std::iota(numbers.begin(), numbers.end(), 1U);
+    buffer.upload(40, numbers.data());
+    const std::uint32_t changed = 77;
+    buffer.upload(4, &changed, 12);
+    std::array<std::uint32_t, 3> some{};
+    buffer.read(12, some.data(), 8);
+    EXPECT_EQ(some, (std::array<std::uint32_t, 3>{3, 77, 5}));
+    GlBuffer moved = std::move(buffer);
+    moved.clear();
+    moved.read(40, numbers.data());
+    EXPECT_EQ(numbers, (std::array<std::uint32_t, 10>{}));
+    moved.grow(4000);
+    EXPECT_GE(moved.bytes(), 4000U);
+}
+
+TEST_F(GlBuffers, ThatDoNotFitAreRefused) {
+    const GlContext context;
+    EXPECT_TRUE(GlBuffer::fits(context.device().max_ssbo_bytes));
+    EXPECT_FALSE(GlBuffer::fits(context.device().max_ssbo_bytes + 1));
+    GlBuffer buffer(16);
+    const std::string message = message_of([&] { buffer.grow(context.device().max_ssbo_bytes + 1); });
+    EXPECT_NE(message.find(std::to_string(context.device().max_ssbo_bytes)), std::string::npos) << message;
+    EXPECT_EQ(buffer.bytes(), 16U) << "it is as it was";
+}
+
+TEST_F(GlPrograms, NameFileAndLineOfAnError) {
+    const GlContext context;
+    const std::vector<detail::ShaderText> common{{"good.glsl", "const uint kTwo = 2u;\n"},
+                                                 {"bad.glsl", "uint twice(uint i) { return kTwo * i; }\nuint broken(;\n"}};
+    const std::string main = "#version 450\nlayout(local_size_x = 1) in;\nvoid main() {\n    undeclared = 1;\n}\n";
+    const std::string in_common = message_of([&] { const GlProgram program("main.comp", main, "#define X\n", common); });
+    EXPECT_NE(in_common.find("bad.glsl:2"), std::string::npos) << in_common;
+    const std::string in_main = message_of([&] { const GlProgram program("main.comp", main, "#define X\n", {common[0]}); });
+    EXPECT_NE(in_main.find("main.comp:4"), std::string::npos) << in_main;
+}
+
+}  // namespace
+}  // namespace subvol
