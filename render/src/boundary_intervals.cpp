@@ -13,7 +13,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr int kBandRows = 8;
-constexpr double kSnap = 4096;         // units a pixel
+constexpr std::int64_t kSnap = 4096;   // units a pixel
 constexpr double kGuard_px = 1 << 17;  // beyond it edge functions could overflow 64 bits: such triangles are clipped
 constexpr std::size_t kChunks = 64;
 
@@ -29,16 +29,19 @@ struct ScreenTriangle {
     double offset, z_min, z_max;
 };
 
-/// A crossing of the surface by the ray of a pixel.
+/// A crossing of the surface by the ray of a pixel of a band.
 struct Hit {
     std::uint32_t pixel;
     float depth;
     std::int8_t sign;
-    auto operator<=>(const Hit&) const = default;
 };
 
 std::int64_t snap(double px) {
-    return static_cast<std::int64_t>(std::llround(px * kSnap));
+    return static_cast<std::int64_t>(std::llround(px * static_cast<double>(kSnap)));
+}
+
+SnappedPoint center(int x, int y) {
+    return {x * kSnap + kSnap / 2, y * kSnap + kSnap / 2};
 }
 
 /// Twice the area of (a, b, p); the sign says on which side of ab p lies.
@@ -105,29 +108,60 @@ double depth_at(const ScreenTriangle& t, const View& view, double x_px, double y
 }
 
 int first_pixel(std::int64_t snapped) {
-    return static_cast<int>(std::ceil(static_cast<double>(snapped) / kSnap - 0.5));
+    return static_cast<int>(std::ceil(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
 }
 int last_pixel(std::int64_t snapped) {
-    return static_cast<int>(std::floor(static_cast<double>(snapped) / kSnap - 0.5));
+    return static_cast<int>(std::floor(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
 }
+
+/// The edge function of one side of a triangle, stepped from pixel to pixel; positive inside.
+struct Edge {
+    std::int64_t right, down, at_row;
+
+    Edge(const SnappedPoint& a, const SnappedPoint& b, int x, int y)
+        : right((a.y - b.y) * kSnap),
+          down((b.x - a.x) * kSnap),
+          at_row(area(a, b, center(x, y)) + (owns_edge(a, b) ? 0 : -1)) {}
+};
 
 void rasterize(const ScreenTriangle& t, const View& view, double middle, int y_begin, int y_end, std::vector<Hit>& hits) {
     const auto [x_low, x_high] = std::minmax({t.corners[0].x, t.corners[1].x, t.corners[2].x});
     const auto [y_low, y_high] = std::minmax({t.corners[0].y, t.corners[1].y, t.corners[2].y});
     const int x0 = std::max(0, first_pixel(x_low)), x1 = std::min(view.width() - 1, last_pixel(x_high));
     const int y0 = std::max(y_begin, first_pixel(y_low)), y1 = std::min(y_end - 1, last_pixel(y_high));
-    std::array<std::int64_t, 3> bias;
-    for (std::size_t k = 0; k < 3; ++k) bias[k] = owns_edge(t.corners[k], t.corners[(k + 1) % 3]) ? 0 : -1;
+    if (x0 > x1 || y0 > y1) return;
+    std::array<Edge, 3> edges{Edge(t.corners[0], t.corners[1], x0, y0), Edge(t.corners[1], t.corners[2], x0, y0),
+                              Edge(t.corners[2], t.corners[0], x0, y0)};
     for (int y = y0; y <= y1; ++y) {
+        std::int64_t a = edges[0].at_row, b = edges[1].at_row, c = edges[2].at_row;
         for (int x = x0; x <= x1; ++x) {
-            const SnappedPoint p{snap(x + 0.5), snap(y + 0.5)};
-            bool inside = true;
-            for (std::size_t k = 0; k < 3 && inside; ++k) inside = area(t.corners[k], t.corners[(k + 1) % 3], p) + bias[k] >= 0;
-            if (!inside) continue;
-            const auto pixel =
-                static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view.width()) + static_cast<std::uint32_t>(x);
-            hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5) - middle), t.sign});
+            if ((a | b | c) >= 0) {
+                const auto pixel = static_cast<std::uint32_t>(y - y_begin) * static_cast<std::uint32_t>(view.width()) +
+                                   static_cast<std::uint32_t>(x);
+                hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5) - middle), t.sign});
+            }
+            a += edges[0].right;
+            b += edges[1].right;
+            c += edges[2].right;
         }
+        for (Edge& edge : edges) edge.at_row += edge.down;
+    }
+}
+
+/// Hits by pixel, those of a pixel by depth.
+void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint32_t>& ends, std::vector<Hit>& sorted) {
+    ends.assign(pixels + 1, 0);
+    for (const Hit& hit : hits) ++ends[hit.pixel + 1];
+    for (std::size_t i = 1; i <= pixels; ++i) ends[i] += ends[i - 1];
+    sorted.resize(hits.size());
+    for (const Hit& hit : hits) sorted[ends[hit.pixel]++] = hit;
+    for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
+        if (ends[i] < begin + 2) continue;
+        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin), sorted.begin() + static_cast<std::ptrdiff_t>(ends[i]),
+                  [](const Hit& l, const Hit& r) {
+                      // Where two shells touch, leaving comes after entering: no gap opens between them.
+                      return l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
+                  });
     }
 }
 
@@ -183,23 +217,19 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
     std::vector<Band> bands(static_cast<std::size_t>(band_count));
     tbb::parallel_for(0, band_count, [&](int b) {
         const int y0 = b * kBandRows, y1 = std::min(view.height(), y0 + kBandRows);
-        const std::uint32_t first_pixel_id = static_cast<std::uint32_t>(y0) * static_cast<std::uint32_t>(view.width());
         Band& band = bands[static_cast<std::size_t>(b)];
-        std::vector<Hit> hits;
+        std::vector<Hit> hits, sorted;
+        std::vector<std::uint32_t> ends;
         for (const auto* t : of_band[static_cast<std::size_t>(b)]) rasterize(*t, view, middle, y0, y1, hits);
-        std::sort(hits.begin(), hits.end(), [](const Hit& l, const Hit& r) {
-            // Where two shells touch, leaving comes after entering: no gap opens between them.
-            return l.pixel != r.pixel ? l.pixel < r.pixel : l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
-        });
+        const std::size_t pixels = static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(view.width());
+        sort_hits(hits, pixels, ends, sorted);
         band.hits = hits.size();
-        band.counts.resize(static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(view.width()));
-        for (std::size_t i = 0; i < hits.size();) {
-            std::size_t end = i;
-            while (end < hits.size() && hits[end].pixel == hits[i].pixel) ++end;
+        band.counts.resize(pixels);
+        for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
+            if (ends[i] == begin) continue;
             const std::size_t before = band.depths.size();
-            resolve(std::span(hits).subspan(i, end - i), static_cast<float>(near - middle), band.depths);
-            band.counts[hits[i].pixel - first_pixel_id] = static_cast<std::uint32_t>((band.depths.size() - before) / 2);
-            i = end;
+            resolve(std::span(sorted).subspan(begin, ends[i] - begin), static_cast<float>(near - middle), band.depths);
+            band.counts[i] = static_cast<std::uint32_t>((band.depths.size() - before) / 2);
         }
     });
 

@@ -72,6 +72,22 @@ public:
                 to_float(std::sqrt(std::max(cyy_, 0.0)))};
     }
 
+    /// |g·d| ≤ √(gᵀSg) where e ≤ 1; a Hessian's part is at most half its norm times the trace of S.
+    [[nodiscard]] EyeRange range(const RbfChannel& channel, const Cells& cells) const {
+        const auto& g = channel.gradients[i_];
+        const Mat3 s = reach_ * frame_matrix(scene_.volume->frames[i_]);
+        const Vec3 gradient(g[0], g[1], g[2]);
+        double spread = std::sqrt(std::max(0.0, glm::dot(gradient, s * gradient)));
+        if (!channel.hessians.empty()) {
+            const Mat3 h = frame_matrix(channel.hessians[i_]);
+            const double norm = std::sqrt(glm::dot(h[0], h[0]) + glm::dot(h[1], h[1]) + glm::dot(h[2], h[2]));
+            spread += 0.5 * norm * (s[0][0] + s[1][1] + s[2][2]);
+        }
+        const double middle = static_cast<double>(value(channel, cells)), bow = static_cast<double>(moment(channel, cells));
+        spread = spread * cells.scale * 1.001 + 1e-5 * (std::abs(middle) + std::abs(bow)) + 0.01;
+        return {to_float(middle - spread + std::min(bow, 0.0)), to_float(middle + spread + std::max(bow, 0.0))};
+    }
+
     [[nodiscard]] EyeColor color(const RbfChannel& channel, const Cells& cells) const {
         const Vec3 g = gradient(channel, cells);
         return {value(channel, cells),  to_float(g.x * shear_.x + g.y * shear_.y + g.z),
@@ -129,11 +145,11 @@ private:
 
 }  // namespace
 
-EyeSplats eye_splats(const SplatScene& scene, const View& view, const Classification& look) {
+void eye_splats(EyeSplats& result, const SplatScene& scene, const View& view, const Classification& look) {
     const std::size_t count = scene.volume->size();
     const bool separable = scene.shape == KernelShape::Separable;
-    EyeSplats result;
     result.splats.resize(count);
+    if (scene.convex()) result.ranges.resize(count);
     if (scene.bent) result.bends.resize(count);
     if (scene.color_channel) result.colors.resize(count);
     if (scene.color_channel && scene.bent) result.color_bends.resize(count);
@@ -144,13 +160,13 @@ EyeSplats eye_splats(const SplatScene& scene, const View& view, const Classifica
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             to_eye.look_at(i);
             result.splats[i] = to_eye.splat(scene.opacity_values(), values);
+            if (scene.convex()) result.ranges[i] = to_eye.range(scene.opacity_values(), values);
             if (scene.bent) result.bends[i] = to_eye.bend(scene.opacity_values(), values);
             if (scene.color_channel) result.colors[i] = to_eye.color(scene.color_values(), colors);
             if (scene.color_channel && scene.bent) result.color_bends[i] = to_eye.bend(scene.color_values(), colors);
             if (separable) result.axes[i] = to_eye.axes();
         }
     });
-    return result;
 }
 
 float value_offset(const SplatScene& scene, const Classification& look) {

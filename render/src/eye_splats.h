@@ -35,9 +35,15 @@ struct EyeAxes {
     std::array<float, 12> rows;
 };
 
+/// What a kernel's value stays within over its support, in cells; widened by more than rounding.
+struct EyeRange {
+    float low, high;
+};
+
 /// All kernels of a frame; bends, colors, color_bends and axes only where the scene has them.
 struct EyeSplats {
     std::vector<EyeSplat> splats;
+    std::vector<EyeRange> ranges;  // empty: sums may leave them, as weights may be negative or are not divided by
     std::vector<EyeBend> bends;
     std::vector<EyeColor> colors;
     std::vector<EyeBend> color_bends;
@@ -46,7 +52,7 @@ struct EyeSplats {
 
 /// Values become cells: (value − min) · cells / (max − min); where sums are not normalised, value · cells / (max − min), and
 /// `value_offset` is added to the sum.
-[[nodiscard]] EyeSplats eye_splats(const SplatScene& scene, const View& view, const Classification& look);
+void eye_splats(EyeSplats& result, const SplatScene& scene, const View& view, const Classification& look);
 
 /// What has to be added to a sum of kernels' values: 0 if it is normalised.
 [[nodiscard]] float value_offset(const SplatScene& scene, const Classification& look);

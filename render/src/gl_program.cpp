@@ -1,6 +1,5 @@
 #include "gl_program.h"
 
-#include <regex>
 #include <sstream>
 
 #include "subvol/error.h"
@@ -19,18 +18,20 @@ std::string compose(const std::string& source, const std::string& defines, const
 }
 
 /// Drivers write "1:23(5): error" or "1(23) : error": the leading number becomes a file, so that a line reads "file:23…".
+std::string with_file(const std::string& line, const std::vector<std::string>& files) {
+    constexpr const char* kDigits = "0123456789";
+    const std::size_t end = line.find_first_not_of(kDigits);
+    if (end == 0 || end > 4 || (line[end] != ':' && line[end] != '(')) return line;  // more digits are no piece's number
+    const std::size_t piece = std::stoul(line), number_end = line.find_first_not_of(kDigits, end + 1);
+    if (piece >= files.size() || number_end == std::string::npos || number_end == end + 1) return line;
+    const std::size_t rest = number_end + (line[end] == '(' && line[number_end] == ')' ? 1 : 0);
+    return files[piece] + ":" + line.substr(end + 1, number_end - end - 1) + line.substr(rest);
+}
+
 std::string with_files(const std::string& log, const std::vector<std::string>& files) {
-    static const std::regex kPlace(R"(^(\d{1,4})(:(\d+)|\((\d+)\)))");
     std::istringstream lines(log);
     std::string result;
-    for (std::string line; std::getline(lines, line);) {
-        std::smatch at;
-        if (std::regex_search(line, at, kPlace) && std::stoul(at[1]) < files.size()) {
-            const std::string number = at[3].matched ? at[3].str() : at[4].str();
-            line = files[std::stoul(at[1])] + ":" + number + at.suffix().str();
-        }
-        result += (result.empty() ? "" : "\n") + line;
-    }
+    for (std::string line; std::getline(lines, line);) result += (result.empty() ? "" : "\n") + with_file(line, files);
     return result;
 }
 

@@ -2,7 +2,6 @@
 
 #include <chrono>
 
-#include "gl_context.h"
 #include "splat_backend.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
@@ -37,14 +36,28 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics, const SplatOptions& options) {
-    const Choice choice = choose(options.backend);
+struct Splatter::State {
+    SplatOptions options;
+    Choice choice;
+    detail::SplatScene scene;
+    detail::SplatFrame frame{};  // its memory is used again
+};
+
+Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options)
+    : state_(std::make_unique<State>(State{options, choose(options.backend), detail::make_scene(volume, options)})) {
+}
+
+Splatter::~Splatter() = default;
+Splatter::Splatter(Splatter&&) noexcept = default;
+Splatter& Splatter::operator=(Splatter&&) noexcept = default;
+
+SplatResult Splatter::draw(const View& view, const Optics& optics) {
+    auto& [options, choice, scene, frame] = *state_;
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
-    const auto scene = detail::make_scene(volume, options);
     const auto look = detail::classify(scene, optics);
-    const auto frame = detail::prepare_frame(scene, view, look, options.sheets, options.progress);
+    detail::prepare_frame(frame, scene, view, look, options.sheets, options.progress);
     report.seconds_prepare = seconds_since(start);
 
     const auto drawing = std::chrono::steady_clock::now();
@@ -54,10 +67,14 @@ SplatResult render_splats(const RbfVolume& volume, const View& view, const Optic
     report.seconds_draw = seconds_since(drawing);
     report.backend = choice.gl ? "gl" : "cpu";
     report.device = choice.device;
-    report.points = volume.size();
+    report.points = scene.volume->size();
     report.bin_entries = frame.tile_splats.size();
     report.boundary_hits = frame.intervals.hits;
     return result;
+}
+
+SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics, const SplatOptions& options) {
+    return Splatter(volume, options).draw(view, optics);
 }
 
 }  // namespace subvol

@@ -36,23 +36,48 @@ struct Place {
     Floats within[4];
 };
 
-/// Four numbers a lane, from rows that lie `stride` floats apart.
-HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, Floats& a, Floats& b, Floats& c, Floats& d4) {
-    const Lanes d;
-    const hn::CappedTag<float, 4> quad;
-    HWY_ALIGN float staged[4 * kBlock];
-    if constexpr (hn::MaxLanes(Lanes()) >= 4) {
-        for (std::size_t i = 0; i < kBlock; ++i) hn::Store(hn::LoadU(quad, table + offsets[i]), quad, staged + 4 * i);
+#if HWY_TARGET != HWY_SCALAR
+/// The rows of every fourth lane, one in each 128 bits of a vector.
+template <class D>
+HWY_ATTR inline hn::Vec<D> load_quads(D d, const float* table, const std::int32_t* offsets) {
+    if constexpr (hn::MaxLanes(d) <= 4) {
+        return hn::LoadU(d, table + offsets[0]);
     } else {
-        for (std::size_t i = 0; i < 4 * kBlock; ++i) staged[i] = table[offsets[i / 4] + static_cast<std::int32_t>(i % 4)];
+        const hn::Half<D> half;
+        return hn::Combine(d, load_quads(half, table, offsets + hn::MaxLanes(d) / 2), load_quads(half, table, offsets));
     }
-    hn::LoadInterleaved4(d, staged, a, b, c, d4);
+}
+
+#endif
+
+/// Four numbers a lane, from rows at offsets into a table: rows are loaded whole and turned, which gathers would not beat.
+HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, Floats& a, Floats& b, Floats& c, Floats& e) {
+    const Lanes d;
+#if HWY_TARGET == HWY_SCALAR
+    a = hn::Set(d, table[offsets[0]]);
+    b = hn::Set(d, table[offsets[0] + 1]);
+    c = hn::Set(d, table[offsets[0] + 2]);
+    e = hn::Set(d, table[offsets[0] + 3]);
+#else
+    const hn::RepartitionToWide<Lanes> wide;
+    const auto row0 = load_quads(d, table, offsets), row1 = load_quads(d, table, offsets + 1);
+    const auto row2 = load_quads(d, table, offsets + 2), row3 = load_quads(d, table, offsets + 3);
+    const auto low01 = hn::BitCast(wide, hn::InterleaveLower(d, row0, row1));
+    const auto low23 = hn::BitCast(wide, hn::InterleaveLower(d, row2, row3));
+    const auto high01 = hn::BitCast(wide, hn::InterleaveUpper(d, row0, row1));
+    const auto high23 = hn::BitCast(wide, hn::InterleaveUpper(d, row2, row3));
+    a = hn::BitCast(d, hn::InterleaveLower(wide, low01, low23));
+    b = hn::BitCast(d, hn::InterleaveUpper(wide, low01, low23));
+    c = hn::BitCast(d, hn::InterleaveLower(wide, high01, high23));
+    e = hn::BitCast(d, hn::InterleaveUpper(wide, high01, high23));
+#endif
 }
 
 /// The optical model of a frame as vectors see it.
 class Classifier {
 public:
-    explicit Classifier(const Classification& look) : look_(look) {}
+    explicit Classifier(const Classification& look)
+        : look_(look), all_visible_(static_cast<std::size_t>(look.table.visible.back()) == look.table.rows.size()) {}
 
     /// Mean extinction and emission (x premultiplied by extinction) of a stretch of ray between two values.
     HWY_ATTR void means(const Place& front, const Place& back, Floats mean[4]) const {
@@ -101,12 +126,20 @@ public:
         for (std::size_t c = 0; c < 3; ++c) rgb[c] = hn::MulAdd(s, step[c], low[c]);
     }
 
-    /// Whether no value between the least and the largest of two vectors can be seen.
-    HWY_ATTR bool transparent(Floats x0, Floats x1) const {
+    /// Whether no value between two ends can be seen, in any of the lanes.
+    HWY_ATTR bool transparent(Mask lanes, Floats x0, Floats x1) const {
+        if (all_visible_) return false;
         const Lanes d;
-        return look_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, hn::Min(x0, x1)))),
-                                       static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, hn::Max(x0, x1)))));
+        const auto low = hn::IfThenElse(lanes, hn::Min(x0, x1), hn::Set(d, 3e38f));
+        const auto high = hn::IfThenElse(lanes, hn::Max(x0, x1), hn::Set(d, -3e38f));
+        return look_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, low))),
+                                       static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, high))));
     }
+
+    [[nodiscard]] bool transparent(float x0, float x1) const {
+        return look_.table.transparent(static_cast<double>(x0), static_cast<double>(x1));
+    }
+    [[nodiscard]] bool all_visible() const { return all_visible_; }
 
 private:
     static constexpr std::int32_t kRowFloats = sizeof(PreintegratedTable::Row) / sizeof(float);
@@ -135,6 +168,7 @@ private:
     }
 
     const Classification& look_;
+    bool all_visible_;
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

@@ -106,8 +106,7 @@ private:
         const auto slope = hn::Mul(hn::Sub(x_back, x_front), per_depth);
         const auto x0 = hn::IfThenElse(hn::Eq(from, front), x_front, hn::MulAdd(slope, hn::Sub(from, front), x_front));
         const auto x1 = hn::IfThenElse(hn::Eq(to, back), x_back, hn::MulAdd(slope, hn::Sub(to, front), x_front));
-        const auto some = hn::Set(d, hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(seen, x0, hn::Set(d, kNever)))));
-        if (classifier_.transparent(hn::IfThenElse(seen, x0, some), hn::IfThenElse(seen, x1, some))) return;
+        if (classifier_.transparent(seen, x0, x1)) return;
 
         Floats mean[4];
         const auto whole = hn::And(hn::Eq(x0, last_.x), hn::Eq(x1, here.x));

@@ -105,10 +105,9 @@ void list_tiles(SplatFrame& frame) {
 
 }  // namespace
 
-SplatFrame prepare_frame(const SplatScene& scene, const View& view, const Classification& look, int sheets,
-                         Progress* progress) {
+void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& look, int sheets,
+                   Progress* progress) {
     report_progress(progress, "prepare splats", 0);
-    SplatFrame frame;
     frame.scene = &scene;
     frame.view = &view;
     frame.look = &look;
@@ -120,11 +119,10 @@ SplatFrame prepare_frame(const SplatScene& scene, const View& view, const Classi
         frame.intervals = boundary_intervals(scene.volume->boundary, view, near, static_cast<double>(frame.sheets.middle));
     }
     report_progress(progress, "prepare splats", 0.4);
-    frame.kernels = eye_splats(scene, view, look);
+    eye_splats(frame.kernels, scene, view, look);
     report_progress(progress, "prepare splats", 0.7);
     list_tiles(frame);
     report_progress(progress, "prepare splats", 1);
-    return frame;
 }
 
 }  // namespace subvol::detail

@@ -24,7 +24,8 @@ struct SplatFrame {
     std::vector<std::uint32_t> tile_splats;
 };
 
-[[nodiscard]] SplatFrame prepare_frame(const SplatScene& scene, const View& view, const Classification& look, int sheets,
-                                       Progress* progress);
+/// Fills a frame; one that was filled before keeps its memory.
+void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& look, int sheets,
+                   Progress* progress);
 
 }  // namespace subvol::detail

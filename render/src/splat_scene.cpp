@@ -112,7 +112,8 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
                      .kernel_table = kernel_table,
                      .normalized = options.normalized,
                      .shading = options.shading,
-                     .middle = 0.5 * (box.lower + box.upper)};
+                     .middle = 0.5 * (box.lower + box.upper),
+                     .diagonal = size};
     if (scene.color_channel == scene.channel) scene.color_channel.reset();
     scene.bent = !scene.opacity_values().hessians.empty() || !scene.color_values().hessians.empty();
     if (volume.boundary.triangles.empty()) scene.half_weight = static_cast<float>(0.5 * weight_inside(volume));
@@ -150,7 +151,7 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
             add(view.to_eye(volume.centers[i]).z, std::sqrt(std::max(0.0, glm::dot(forward, s * forward))));
         }
     }
-    const double near = view.perspective() ? 1e-4 * box_of(volume).diagonal() : 0.0;
+    const double near = view.perspective() ? 1e-4 * scene.diagonal : 0.0;
     z_min = std::max(z_min, near);
     z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all behind the eye: an empty picture
     return {.count = count,

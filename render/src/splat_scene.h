@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -37,9 +38,14 @@ struct SplatScene {
     float half_weight = 0;  // > 0: there is no boundary, the volume ends where weights fall below
     std::optional<Shading> shading{};
     Vec3 middle{0.0};  // of the bounds; depths count from its depth
+    double diagonal = 0;
 
     [[nodiscard]] const RbfChannel& opacity_values() const { return volume->channels[channel]; }
     [[nodiscard]] const RbfChannel& color_values() const { return volume->channels[color_channel.value_or(channel)]; }
+    /// Whether a sum lies between the values of its kernels.
+    [[nodiscard]] bool convex() const {
+        return normalized && std::all_of(kernel_table.begin(), kernel_table.end(), [](float w) { return w >= 0; });
+    }
     /// Whether the short loops do: one value, compact kernels, normalised, a boundary, no light.
     [[nodiscard]] bool plain() const {
         return shape == KernelShape::Compact && !bent && normalized && half_weight == 0 && !shading && !color_channel;

@@ -28,8 +28,7 @@ public:
         color_offset_ = color_offset(*frame.scene, *frame.look);
         batch_.mid_x = 0.5f * static_cast<float>(view_.width());
         batch_.mid_y = 0.5f * static_cast<float>(view_.height());
-        const Box box = box_of(*frame.scene->volume);
-        least_gradient_ = kLeastChange * PreintegratedTable::kCells / static_cast<float>(box.diagonal());
+        least_gradient_ = kLeastChange * PreintegratedTable::kCells / static_cast<float>(frame.scene->diagonal);
     }
 
     HWY_ATTR void draw(int tile, Drawn& drawn) {
@@ -38,14 +37,18 @@ public:
         place_pixels();
         if (!start_blocks()) return;
         list_batches(tile);
-        int summed = -2;  // the last batch that was
+        bool passed_over = false;  // whether the batch before was wanted, but had nothing to be seen
         for (int batch = 0; batch < sheets_.batches() && !done(); ++batch) {
             if (!scratch().wanted[static_cast<std::size_t>(batch)]) continue;
-            summed = batch;
-            sum(batch);
+            if (invisible(batch)) {
+                passed_over = true;
+                continue;
+            }
+            if (passed_over) look_back(batch - 1);
+            passed_over = false;
+            sum(batch, 0, std::min(kBatch, sheets_.count - batch * kBatch));
             for (std::size_t block = 0; block < kBlocks; ++block) composite(block, batch);
         }
-        (void)summed;
         write(drawn);
     }
 
@@ -189,17 +192,43 @@ private:
         return true;
     }
 
-    HWY_ATTR void sum(int batch) {
+    /// Whether no value between the sheets of a batch, and from the last sheet before it, can be seen.
+    [[nodiscard]] bool invisible(int batch) const {
+        const auto& ranges = frame_.kernels.ranges;
+        if (ranges.empty() || classifier_.all_visible()) return false;
+        EyeRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+        const auto& [storage, sums, blocks, offsets, splats, wanted] = scratch();
+        const auto b = static_cast<std::size_t>(batch);
+        for (std::uint32_t i = offsets[b > 0 ? b - 1 : b]; i < offsets[b + 1]; ++i) {
+            range.low = std::min(range.low, ranges[splats[i]].low);
+            range.high = std::max(range.high, ranges[splats[i]].high);
+        }
+        return range.low > range.high || classifier_.transparent(range.low, range.high);
+    }
+
+    /// Brings the pixels to the last sheet of a batch that was passed over.
+    HWY_ATTR void look_back(int batch) {
+        sum(batch, kBatch - 1, kBatch);
+        for (std::size_t block = 0; block < kBlocks; ++block) {
+            BlockWalk<kPlain> walk(frame_, classifier_, scratch().blocks[block]);
+            walk.skip_to(values(block, kBatch - 1));
+            walk.store();
+        }
+    }
+
+    /// Sums the sheets [begin, end) of a batch.
+    HWY_ATTR void sum(int batch, int begin, int end) {
         for (int k = 0; k < kBatch; ++k) {
             const auto i = static_cast<std::size_t>(k);
             batch_.depth[i] = sheets_.depth(batch * kBatch + k);
             batch_.across[i] = view_.perspective() ? sheets_.middle + batch_.depth[i] : 1.0f;
             batch_.to_pixels[i] = 1.0f / (batch_.across[i] * static_cast<float>(view_.pixel()));
         }
-        batch_.begin = 0;
-        batch_.end = std::min(kBatch, sheets_.count - batch * kBatch);
+        batch_.begin = begin;
+        batch_.end = end;
+        constexpr std::size_t kSheet = kBlocks * kStride * kBlock;
         float* sums = scratch().sums;
-        std::fill_n(sums, static_cast<std::size_t>(batch_.end) * kBlocks * kStride * kBlock, 0.0f);
+        std::fill(sums + static_cast<std::size_t>(begin) * kSheet, sums + static_cast<std::size_t>(end) * kSheet, 0.0f);
         const auto& offsets = scratch().offsets;
         for (std::uint32_t i = offsets[static_cast<std::size_t>(batch)]; i < offsets[static_cast<std::size_t>(batch) + 1];
              ++i) {

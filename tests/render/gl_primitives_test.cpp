@@ -115,20 +115,23 @@ void expect_sorted(GlSort& sort, const Words& keys, std::uint32_t count, int bit
     EXPECT_NO_THROW(detail::check_gl("sort"));
 }
 
+void expect_scanned(GlScan& scan, std::uint32_t count, std::uint32_t most) {
+    Words words = random_words(count, most);
+    words.insert(words.end(), {kGuard, kGuard});
+    GlBuffer buffer = buffer_of(words);
+    scan.exclusive_scan(buffer, count);
+    std::exclusive_scan(words.begin(), words.end() - 1, words.begin(), 0U);
+    EXPECT_EQ(words_of(buffer, count + 2), words) << count << " values up to " << most;
+}
+
 TEST_F(GlPrimitives, ScanIsThatOfTheStandardLibrary) {
     GlScan scan;
     for (const std::uint32_t count : kSizes) {
-        for (const std::uint32_t most : {1U, 1000U, kAny}) {  // the last wraps around
-            Words words = random_words(count, most);
-            words.insert(words.end(), {kGuard, kGuard});
-            GlBuffer buffer = buffer_of(words);
-            scan.exclusive_scan(buffer, count);
-            Words expected(count + 1);
-            std::exclusive_scan(words.begin(), words.begin() + count + 1, expected.begin(), 0U);
-            expected.push_back(kGuard);
-            EXPECT_EQ(words_of(buffer, count + 2), expected) << count << " values up to " << most;
-        }
+        for (const std::uint32_t most : {1U, 1000U, kAny}) expect_scanned(scan, count, most);  // the last wraps around
     }
+    expect_scanned(scan, detail::kGlBlock * detail::kGlBlock - 1, 9);  // with the total, two full levels
+    expect_scanned(scan, detail::kGlBlock * detail::kGlBlock, 9);      // three levels
+    expect_scanned(scan, 6000000, 9);
     EXPECT_NO_THROW(detail::check_gl("scan"));
 }
 

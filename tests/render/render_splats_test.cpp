@@ -238,8 +238,12 @@ TEST(RenderSplats, RefusesWhatItCannotDraw) {
     const auto optics = constant_optics(.5, 1);
     EXPECT_THROW((void)render_splats(volume, view, optics, {.sheets = 1}), Error);
     EXPECT_THROW((void)render_splats(volume, view, optics, {.channel = 1}), Error);
-    volume.boundary = {};
+    volume.kernel = TableKernel{.radius = 1, .count = 2, .values = {1, .5, .5, .5, .5, .5, .5, 0}};
     EXPECT_THROW((void)render_splats(volume, view, optics, {.backend = Backend::Cpu}), Error);
+    volume.kernel = CompactKernel{};
+    for (auto& g : volume.channels[0].gradients) g = {};
+    volume.channels[0].values[0] = 2;
+    EXPECT_THROW((void)render_splats(volume, view, optics, {.backend = Backend::Cpu, .shading = Shading{}}), Error);
 }
 
 }  // namespace

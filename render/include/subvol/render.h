@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -64,10 +65,27 @@ struct SplatResult {
 /// transfer function applied after reconstruction, intervals pre-integrated, composited front to back. Without a boundary the
 /// volume ends where the sum of weights falls to half of what it is inside.
 ///
-/// Bitwise the same for any number of threads. `Auto` takes a hardware GPU if there is one, else the CPU.
+/// Keeps what does not depend on the view, and its memory, from picture to picture. The volume is referred to, not copied: it
+/// has to stay where it is. Pictures are bitwise the same for any number of threads. `Auto` takes a hardware GPU if there is
+/// one, else the CPU. One picture at a time.
 /// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
 ///         Error(MissingCapability) if Backend::Gl finds no OpenGL 4.5
 /// source: SCIENCE §3, §3.1
+class Splatter {
+public:
+    explicit Splatter(const RbfVolume& volume, const SplatOptions& options = {});
+    ~Splatter();
+    Splatter(Splatter&&) noexcept;
+    Splatter& operator=(Splatter&&) noexcept;
+
+    [[nodiscard]] SplatResult draw(const View& view, const Optics& optics);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// One picture of a Splatter.
 [[nodiscard]] SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics,
                                         const SplatOptions& options = {});
 
