@@ -31,12 +31,14 @@ public:
             ->type_name("IMAGE")
             ->required();
         app()
-            .add_option("--method", method_, "splat (kernels, the default) or tets (rays through tetrahedra)")
+            .add_option("--method", method_,
+                        "splat (kernels, the default), sheets (the same by OpenGL sheet buffers) or\n"
+                        "tets (rays through tetrahedra)")
             ->type_name("NAME");
         app().add_option("--backend", backend_, "where to splat: auto (default), gl, cpu")->type_name("NAME");
         picture_.add_to(app());
         app()
-            .add_option("--sheets", sheets_, "splat: planes over the volume's depth (default 200)")
+            .add_option("--sheets", sheets_, "splat, sheets: planes over the volume's depth (default 200)")
             ->type_name("N")
             ->check(CLI::Range(2, 65536));
         app()
@@ -44,16 +46,19 @@ public:
             ->type_name("N")
             ->check(CLI::Range(1, 16));
         sample_.add_to(app());
-        refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; splat: omitted shows the limit)");
+        refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; else: omitted shows the limit)");
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "tets"}, {"sheets", "dense", "grid", "pt"});
+        check_choice("--method", method_, {"splat", "sheets", "tets"}, {"dense", "grid", "pt"});
         check_output(output_, {".png", ".exr"});
         const Vec3 background = parse_vector("--background", picture_.background);
         const Backend backend = backend_named(backend_);
         if (method_ == "tets" && backend == Backend::Gl) {
             throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
+        }
+        if (method_ == "sheets" && backend == Backend::Cpu) {
+            throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
         }
         const Image image = holds_points(input_) ? of_points(backend, report) : of_mesh(backend, report);
         report.timed("write", [&] { write_image(output_, image, background); });
@@ -72,7 +77,7 @@ private:
     }
 
     [[nodiscard]] Image of_points(Backend backend, Report& report) {
-        if (method_ != "splat") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        if (method_ == "tets") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), app(), report);
         const View view = picture_.make_view(volume.bounds);
         const Optics optics = picture_.make_optics(volume.bounds, first_channel_range(volume));
@@ -81,8 +86,11 @@ private:
 
     [[nodiscard]] Image splat(const RbfVolume& volume, const View& view, const Optics& optics, Backend backend,
                               Report& report) const {
-        SplatResult drawn =
-            render_splats(volume, view, optics, {.backend = backend, .sheets = sheets_, .progress = report.progress()});
+        SplatResult drawn = render_splats(volume, view, optics,
+                                          {.method = method_ == "sheets" ? SplatMethod::Sheets : SplatMethod::Kernels,
+                                           .backend = backend,
+                                           .sheets = sheets_,
+                                           .progress = report.progress()});
         report.add_seconds("prepare", drawn.report.seconds_prepare);
         report.add_seconds("draw", drawn.report.seconds_draw);
         report["method"] = method_;

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "gl_context.h"
+#include "gl_sheets.h"
 #include "splat_backend.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
@@ -30,6 +32,38 @@ Choice choose(Backend wanted) {
     return cpu();
 }
 
+/// Draws sheets in a context of its own, which is current only while it is worked with.
+class SheetDrawer {
+public:
+    SheetDrawer() {
+        sheets_.emplace();
+        context_.release();
+    }
+    ~SheetDrawer() {
+        const detail::GlScope scope(context_);
+        sheets_.reset();
+    }
+    SheetDrawer(const SheetDrawer&) = delete;
+    SheetDrawer& operator=(const SheetDrawer&) = delete;
+
+    [[nodiscard]] detail::Drawn draw(const detail::SplatFrame& frame, Progress* progress) {
+        const detail::GlScope scope(context_);
+        return sheets_->draw(frame, progress);
+    }
+    [[nodiscard]] const std::string& device() const { return context_.renderer(); }
+
+private:
+    detail::GlContext context_;
+    std::optional<detail::GlSheets> sheets_;
+};
+
+/// Nothing if sheets are not what is asked for.
+std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
+    if (options.method != SplatMethod::Sheets) return nullptr;
+    if (options.backend != Backend::Cpu) return std::make_unique<SheetDrawer>();
+    throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", {}, "the backends auto and gl");
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -40,11 +74,15 @@ struct Splatter::State {
     SplatOptions options;
     Choice choice;
     detail::SplatScene scene;
+    std::unique_ptr<SheetDrawer> sheets{};
     detail::SplatFrame frame{};  // its memory is used again
 };
 
-Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options)
-    : state_(std::make_unique<State>(State{options, choose(options.backend), detail::make_scene(volume, options)})) {
+Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) {
+    auto scene = detail::make_scene(volume, options);
+    auto sheets = make_sheet_drawer(options);
+    const Choice choice = sheets ? Choice{true, sheets->device()} : choose(options.backend);
+    state_ = std::make_unique<State>(State{options, choice, std::move(scene), std::move(sheets)});
 }
 
 Splatter::~Splatter() = default;
@@ -52,7 +90,7 @@ Splatter::Splatter(Splatter&&) noexcept = default;
 Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 
 SplatResult Splatter::draw(const View& view, const Optics& optics) {
-    auto& [options, choice, scene, frame] = *state_;
+    auto& [options, choice, scene, sheets, frame] = *state_;
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
@@ -61,7 +99,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics) {
     report.seconds_prepare = seconds_since(start);
 
     const auto drawing = std::chrono::steady_clock::now();
-    auto drawn = detail::draw_splats_cpu(frame, options.progress);
+    auto drawn = sheets ? sheets->draw(frame, options.progress) : detail::draw_splats_cpu(frame, options.progress);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
     report.seconds_draw = seconds_since(drawing);

@@ -115,9 +115,8 @@ SheetLists list_sheets(const SplatFrame& frame, const PixelRect& window, int fir
     }
     lists.offsets[sheets] = sum;
     lists.splats.resize(sum);
-    each([&](std::size_t slot, std::size_t i, const PixelRect&) {
-        lists.splats[next[slot]++] = static_cast<std::uint32_t>(i);
-    });
+    each(
+        [&](std::size_t slot, std::size_t i, const PixelRect&) { lists.splats[next[slot]++] = static_cast<std::uint32_t>(i); });
     return lists;
 }
 

@@ -20,6 +20,8 @@ inline constexpr float kLeastWeight = 0.02f;
 inline constexpr float kNearValues = 0.5f;
 /// Transmittance at which a ray is done.
 inline constexpr float kOpaque = 1e-4f;
+/// Gradient at which half of a surface is seen, in parts of the transfer function's range over the volume's diagonal.
+inline constexpr float kLeastChange = 0.25f;
 /// Sheets that are summed together: no part of the picture depends on it.
 inline constexpr int kBatch = 8;
 

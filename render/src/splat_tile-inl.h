@@ -54,7 +54,6 @@ public:
 
 private:
     static constexpr std::size_t kStride = kPlain ? 2 : std::size_t{kSums};  // sums a pixel
-    static constexpr float kLeastChange = 0.25f;  // of the range, over the volume's diagonal: half of a surface
 
     /// Memory that a thread keeps from tile to tile.
     struct Scratch {
