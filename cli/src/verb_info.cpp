@@ -84,8 +84,7 @@ private:
     static void describe_gl(Report& report) {
         const std::vector<GlDevice> devices = gl_devices();
         report["gl"] = Json(nullptr);
-        if (!devices.empty())
-            report["gl"] = {{"renderer", devices.front().renderer}, {"hardware", devices.front().hardware}};
+        if (!devices.empty()) report["gl"] = {{"renderer", devices.front().renderer}, {"hardware", devices.front().hardware}};
         report["gl_devices"] = Json::array();
         for (const GlDevice& device : devices) report["gl_devices"].push_back(to_json(device));
     }

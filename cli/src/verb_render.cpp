@@ -1,9 +1,9 @@
 #include "input.h"
 #include "picture_arguments.h"
+#include "picture_output.h"
 #include "points_input.h"
 #include "sample_arguments.h"
 #include "subvol/error.h"
-#include "subvol/image_io.h"
 #include "subvol/render.h"
 #include "text.h"
 #include "verb.h"
@@ -24,10 +24,11 @@ public:
         : Verb(program, "render", "Make a picture.",
                "  subvol render model:ball -o ball.png\n"
                "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
+               "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2") {
         app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
         app()
-            .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats)")
+            .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")
             ->type_name("IMAGE")
             ->required();
         app()
@@ -51,8 +52,6 @@ public:
 
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets"}, {"dense", "grid", "pt"});
-        check_output(output_, {".png", ".exr"});
-        const Vec3 background = parse_vector("--background", picture_.background);
         const Backend backend = backend_named(backend_);
         if (method_ == "tets" && backend == Backend::Gl) {
             throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
@@ -60,50 +59,67 @@ public:
         if (method_ == "sheets" && backend == Backend::Cpu) {
             throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
         }
-        const Image image = holds_points(input_) ? of_points(backend, report) : of_mesh(backend, report);
-        report.timed("write", [&] { write_image(output_, image, background); });
-        report["output"] = output_;
+        picture_.check_legend();
+        PictureOutput output(output_, picture_.turntable_frames, picture_);
+        if (holds_points(input_)) {
+            draw_points(backend, output, report);
+        } else {
+            draw_mesh(backend, output, report);
+        }
         return 0;
     }
 
 private:
-    [[nodiscard]] Image of_mesh(Backend backend, Report& report) {
+    void draw_mesh(Backend backend, PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
         const Box box = bounds(mesh);
-        const View view = picture_.make_view(box);
-        const Optics optics = picture_.make_optics(box, first_field_range(mesh));
-        if (method_ == "tets") return tets(mesh, view, optics, report);
-        return splat(sample_reported(mesh, sample_, refine_, optics.function(), report), view, optics, backend, report);
+        const std::vector<View> views = picture_.make_views(box);
+        const Range range = first_field_range(mesh);
+        const Optics optics = picture_.make_optics(box, range);
+        picture_.write_legend(optics, range, report);
+        if (method_ == "tets") {
+            const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
+            output.write(
+                views, [&](const View& view, Progress* progress) { return tets(fine, view, optics, progress, report); },
+                report);
+        } else {
+            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, backend, output, report);
+        }
     }
 
-    [[nodiscard]] Image of_points(Backend backend, Report& report) {
+    void draw_points(Backend backend, PictureOutput& output, Report& report) {
         if (method_ == "tets") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), app(), report);
-        const View view = picture_.make_view(volume.bounds);
-        const Optics optics = picture_.make_optics(volume.bounds, first_channel_range(volume));
-        return splat(volume, view, optics, backend, report);
+        const std::vector<View> views = picture_.make_views(volume.bounds);
+        const Range range = first_channel_range(volume);
+        const Optics optics = picture_.make_optics(volume.bounds, range);
+        picture_.write_legend(optics, range, report);
+        splat(volume, views, optics, backend, output, report);
     }
 
-    [[nodiscard]] Image splat(const RbfVolume& volume, const View& view, const Optics& optics, Backend backend,
-                              Report& report) const {
-        SplatResult drawn = render_splats(volume, view, optics,
-                                          {.method = method_ == "sheets" ? SplatMethod::Sheets : SplatMethod::Kernels,
-                                           .backend = backend,
-                                           .sheets = sheets_,
-                                           .progress = report.progress()});
-        report.add_seconds("prepare", drawn.report.seconds_prepare);
-        report.add_seconds("draw", drawn.report.seconds_draw);
-        report["method"] = method_;
-        report["backend"] = drawn.report.backend;
-        report["device"] = drawn.report.device;
-        report["sheets"] = sheets_;
-        return std::move(drawn.image);
+    void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, Backend backend,
+               PictureOutput& output, Report& report) const {
+        const auto draw = [&](const View& view, Progress* progress) {
+            SplatResult drawn = render_splats(volume, view, optics,
+                                              {.method = method_ == "sheets" ? SplatMethod::Sheets : SplatMethod::Kernels,
+                                               .backend = backend,
+                                               .sheets = sheets_,
+                                               .progress = progress});
+            report.add_seconds("prepare", drawn.report.seconds_prepare);
+            report.add_seconds("draw", drawn.report.seconds_draw);
+            report["method"] = method_;
+            report["backend"] = drawn.report.backend;
+            report["device"] = drawn.report.device;
+            report["sheets"] = sheets_;
+            return Picture{std::move(drawn.image)};
+        };
+        output.write(views, draw, report);
     }
 
-    [[nodiscard]] Image tets(const HexMesh& mesh, const View& view, const Optics& optics, Report& report) const {
-        const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-        TetsResult drawn = render_tets(fine, fine.attributes.front().values, view, optics,
-                                       {.samples = samples_, .progress = report.progress()});
+    [[nodiscard]] Picture tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
+                               Report& report) const {
+        TetsResult drawn =
+            render_tets(mesh, mesh.attributes.front().values, view, optics, {.samples = samples_, .progress = progress});
         report.add_seconds("prepare", drawn.report.seconds_build);
         report.add_seconds("draw", drawn.report.seconds_draw);
         report["method"] = method_;
@@ -114,7 +130,7 @@ private:
         report["rays"] = drawn.report.rays;
         report["lost_rays"] = drawn.report.lost_rays;
         if (drawn.report.lost_rays > 0) report.warn(text(drawn.report.lost_rays, " rays were lost inside the mesh"));
-        return std::move(drawn.image);
+        return Picture{std::move(drawn.image)};
     }
 
     std::string input_;

@@ -44,19 +44,6 @@ std::uint8_t encoded_byte(double linear) {
     return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::min(linear, 1.0))));
 }
 
-std::vector<std::uint8_t> bytes_over(const Image& image, const Vec3& background) {
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(image.rgba.size() / 4 * 3);
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-        const double through = 1.0 - static_cast<double>(image.rgba[i + 3]);
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double over = static_cast<double>(image.rgba[i + c]) + through * background[static_cast<int>(c)];
-            bytes.push_back(encoded_byte(over));
-        }
-    }
-    return bytes;
-}
-
 void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void* pixels) {
     AtomicFile file(path);
     const auto output = OIIO::ImageOutput::create(file.path().string());
@@ -65,6 +52,21 @@ void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void*
         output->open(file.path().string(), spec) && output->write_image(spec.format, pixels) && output->close();
     if (!written) throw Error(ErrorCode::Io, "cannot be written: " + output->geterror(), path.string());
     file.commit();
+}
+
+void write_exr(const fs::path& path, const Image& image, std::span<const float> depth) {
+    OIIO::ImageSpec spec(image.width, image.height, depth.empty() ? 4 : 5, OIIO::TypeDesc::FLOAT);
+    spec.attribute("DateTime", "");  // else the time of writing: the same picture shall be the same file
+    if (depth.empty()) return write_pixels(path, spec, image.rgba.data());
+    spec.channelnames = {"R", "G", "B", "A", "Z"};
+    spec.z_channel = 4;
+    std::vector<float> pixels;
+    pixels.reserve(5 * depth.size());
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+        for (std::size_t c = 0; c < 4; ++c) pixels.push_back(image.rgba[4 * i + c]);
+        pixels.push_back(depth[i]);
+    }
+    write_pixels(path, spec, pixels.data());
 }
 
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
@@ -114,17 +116,32 @@ Image linear_image(const OIIO::ImageSpec& spec, const std::vector<float>& pixels
 
 }  // namespace
 
-void write_image(const fs::path& path, const Image& image, const Vec3& background) {
+std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background) {
     check_image(image);
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(image.rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const double through = 1.0 - static_cast<double>(image.rgba[i + 3]);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double over = static_cast<double>(image.rgba[i + c]) + through * background[static_cast<int>(c)];
+            bytes.push_back(encoded_byte(over));
+        }
+    }
+    return bytes;
+}
+
+void write_image(const fs::path& path, const Image& image, const Vec3& background, std::span<const float> depth) {
+    check_image(image);
+    if (!depth.empty() && 4 * depth.size() != image.rgba.size()) {
+        throw Error(ErrorCode::InvalidInput, "there is not one depth a pixel", path.string());
+    }
     const std::string extension = extension_of(path);
     if (extension == ".exr") {
-        OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT);
-        spec.attribute("DateTime", "");  // else the time of writing: the same picture shall be the same file
-        write_pixels(path, spec, image.rgba.data());
+        write_exr(path, image, depth);
     } else if (extension == ".png") {
         OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
         spec.attribute("oiio:ColorSpace", "sRGB");
-        write_pixels(path, spec, bytes_over(image, background).data());
+        write_pixels(path, spec, srgb_bytes(image, background).data());
     } else {
         throw Error(ErrorCode::InvalidInput, "\"" + extension + "\" is not a kind of image that is written", path.string(),
                     ".exr or .png");

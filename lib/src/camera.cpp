@@ -1,60 +1,21 @@
 #include "subvol/camera.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "camera_axes.h"
 #include "subvol/error.h"
 
 namespace subvol {
 namespace {
 
-constexpr double kMargin = 1.05;        // the box takes at most 1/1.05 of the picture
-constexpr double kParallelSine = 1e-9;  // below it, rounding decides where `up` points
 constexpr int kMaxSize = 65536;
-
-bool finite(const Vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-double half_fov_tangent(double fovy_deg) {
-    return std::tan(0.5 * fovy_deg * std::numbers::pi / 180);
-}
-
-void require(bool ok, const char* message, const char* allowed = "") {
-    if (!ok) throw Error(ErrorCode::InvalidInput, message, "camera", allowed);
-}
-
-void check(const Camera& camera) {
-    require(finite(camera.eye) && finite(camera.target) && finite(camera.up), "eye, target and up must be finite numbers");
-    require(camera.eye != camera.target, "eye and target are the same point");
-    require(camera.up != Vec3(0.0), "up is zero");
-    require(std::isfinite(camera.ortho_height) && camera.ortho_height >= 0, "ortho_height is negative or not finite",
-            "0: perspective; else world units");
-    if (camera.ortho_height == 0) {
-        require(camera.fovy_deg > 0 && camera.fovy_deg < 180, "the field of view is out of range", "0 < fovy_deg < 180");
-    }
-    const double sine = glm::length(glm::cross(glm::normalize(camera.target - camera.eye), glm::normalize(camera.up)));
-    require(sine > kParallelSine, "up is parallel to the direction of view");
-}
-
-std::array<Vec3, 3> camera_axes(const Vec3& forward_any_length, const Vec3& up) {
-    const Vec3 forward = glm::normalize(forward_any_length);
-    const Vec3 right = glm::normalize(glm::cross(forward, glm::normalize(up)));
-    return {right, glm::cross(right, forward), forward};
-}
-
-Vec3 upright_for(const Vec3& direction) {
-    const Vec3 d = glm::normalize(direction);
-    return std::abs(d.z) > 0.999 ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
-}
 
 std::optional<Vec3> view_direction(std::string_view name) {
     if (name == "+x") return Vec3(-1, 0, 0);
@@ -132,11 +93,25 @@ Camera read_camera(const std::string& file) {
 
 }  // namespace
 
+void validate(const Camera& camera) {
+    constexpr double kParallelSine = 1e-9;  // below it, rounding decides where `up` points
+    require(finite(camera.eye) && finite(camera.target) && finite(camera.up), "eye, target and up must be finite numbers");
+    require(camera.eye != camera.target, "eye and target are the same point");
+    require(camera.up != Vec3(0.0), "up is zero");
+    require(std::isfinite(camera.ortho_height) && camera.ortho_height >= 0, "ortho_height is negative or not finite",
+            "0: perspective; else world units");
+    if (camera.ortho_height == 0) {
+        require(camera.fovy_deg > 0 && camera.fovy_deg < 180, "the field of view is out of range", "0 < fovy_deg < 180");
+    }
+    const double sine = glm::length(glm::cross(glm::normalize(camera.target - camera.eye), glm::normalize(camera.up)));
+    require(sine > kParallelSine, "up is parallel to the direction of view");
+}
+
 View::View(const Camera& camera, int width, int height)
     : width_(width), height_(height), perspective_(camera.ortho_height == 0), pixel_(0), eye_(camera.eye), axes_() {
     require(width >= 1 && width <= kMaxSize && height >= 1 && height <= kMaxSize, "the picture's size is out of range",
             "1..65536 pixels a side");
-    check(camera);
+    validate(camera);
     pixel_ = (perspective_ ? 2 * half_fov_tangent(camera.fovy_deg) : camera.ortho_height) / height;
     axes_ = camera_axes(camera.target - camera.eye, camera.up);
 }
@@ -158,27 +133,6 @@ Ray View::ray(double x_px, double y_px) const {
     return {eye_ + across, axes_[2]};
 }
 
-Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg, double aspect) {
-    require(!box.empty(), "there is no box to look at");
-    require(finite(direction) && direction != Vec3(0.0), "the direction of view is zero or not finite");
-    require(fovy_deg > 0 && fovy_deg < 180, "the field of view is out of range", "0 < fovy_deg < 180");
-    require(std::isfinite(aspect) && aspect > 0, "the picture's aspect is not a positive number");
-
-    const Vec3 up = upright_for(direction);
-    const auto axes = camera_axes(direction, up);
-    const double tan_y = half_fov_tangent(fovy_deg), tan_x = tan_y * aspect;
-    const Vec3 center = box.center(), half = 0.5 * box.size();
-    double distance = 0;  // of the eye from the centre: every corner must fit, whatever its depth
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 d = half * Vec3((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);
-        const double sideways = std::max(std::abs(glm::dot(axes[0], d)) / tan_x, std::abs(glm::dot(axes[1], d)) / tan_y);
-        distance = std::max(distance, kMargin * sideways - glm::dot(axes[2], d));
-    }
-    // A box without extent across the view still needs an eye outside it.
-    distance = std::max(distance, box.diagonal() > 0 ? 0.55 * box.diagonal() : 1.0);
-    return {.eye = center - distance * axes[2], .target = center, .up = up, .fovy_deg = fovy_deg};
-}
-
 Camera parse_camera(const std::string& text, const Box& box, double aspect) {
     constexpr double kViewFovyDeg = 30;
     if (const auto direction = view_direction(text)) return fit_camera(box, *direction, kViewFovyDeg, aspect);
@@ -193,7 +147,7 @@ Camera parse_camera(const std::string& text, const Box& box, double aspect) {
         }
         camera = read_camera(text);
     }
-    check(camera);
+    validate(camera);
     return camera;
 }
 

@@ -1,20 +1,41 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "color_curve.h"
+#include "knots.h"
+#include "sharp_curve.h"
 #include "subvol/error.h"
-#include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {
 namespace {
 
 using nlohmann::json;
+using ColorKnots = std::vector<TransferFunction::ColorKnot>;
+using OpacityKnots = std::vector<TransferFunction::OpacityKnot>;
 
 [[noreturn]] void refuse(const std::string& file, const std::string& message, const std::string& allowed = {}) {
     throw Error(ErrorCode::InvalidInput, message, file, allowed);
 }
 
-json read_color_map(const std::string& file) {
+std::string name_of(const json& map) {
+    const auto found = map.is_object() ? map.find("Name") : map.end();
+    return map.is_object() && found != map.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+json map_named(const json& maps, const std::string& name, const std::string& file) {
+    constexpr std::size_t kShown = 8;
+    std::string names;
+    std::size_t others = 0;
+    for (const json& map : maps) {
+        if (name_of(map) == name) return map;
+        if (++others <= kShown) names += (names.empty() ? "" : ", ") + name_of(map);
+    }
+    refuse(file, "holds no colour map '" + name + "'", names + (others > kShown ? ", …" : ""));
+}
+
+json read_color_map(const std::string& file, const std::string& name) {
     std::ifstream stream(file);
     if (!stream) throw Error(ErrorCode::Io, "cannot be opened", file);
     json document;
@@ -23,10 +44,12 @@ json read_color_map(const std::string& file) {
     } catch (const json::exception& e) {
         refuse(file, e.what());
     }
-    // ParaView writes an array of colour maps; a bare one is as clear. The first counts.
-    if (document.is_array() && !document.empty()) document = json(document.front());
-    if (!document.is_object()) refuse(file, "holds no colour map", "an array with one object that has RGBPoints");
-    return document;
+    // ParaView writes an array of colour maps; a bare one is as clear.
+    if (document.is_object()) document = json::array({std::move(document)});
+    if (!document.is_array() || document.empty() || !document.front().is_object()) {
+        refuse(file, "holds no colour map", "an array with one object that has RGBPoints");
+    }
+    return name.empty() ? json(document.front()) : map_named(document, name, file);
 }
 
 /// The numbers at a key, four of them a knot.
@@ -45,46 +68,71 @@ std::vector<double> read_quadruples(const json& map, const std::string& file, co
     return numbers;
 }
 
-std::vector<TransferFunction::ColorKnot> read_colors(const json& map, const std::string& file) {
+ColorSpace read_color_space(const json& map, const std::string& file) {
+    const auto found = map.find("ColorSpace");
+    if (found == map.end()) return ColorSpace::Rgb;
+    const auto space = found->is_string() ? color_space_named(found->get<std::string>()) : std::nullopt;
+    if (!space) refuse(file, "key 'ColorSpace' is " + found->dump(), "RGB, HSV, Lab, Lab/CIELAB, Diverging or Step");
+    return *space;
+}
+
+/// As in the file: encoded, and values may repeat.
+ColorKnots read_colors(const json& map, const std::string& file) {
     const std::vector<double> n = read_quadruples(map, file, "RGBPoints");
-    std::vector<TransferFunction::ColorKnot> knots;
-    for (std::size_t i = 0; i < n.size(); i += 4) {
-        knots.push_back({n[i], linear_from_srgb(Vec3(n[i + 1], n[i + 2], n[i + 3]))});
-    }
+    ColorKnots knots;
+    for (std::size_t i = 0; i < n.size(); i += 4) knots.push_back({n[i], {n[i + 1], n[i + 2], n[i + 3]}});
     return knots;
 }
 
-std::vector<TransferFunction::OpacityKnot> read_opacities(const json& map, const std::string& file) {
+std::vector<SharpKnot> read_opacities(const json& map, const std::string& file) {
     const std::vector<double> n = read_quadruples(map, file, "Points");
-    std::vector<TransferFunction::OpacityKnot> knots;
+    std::vector<SharpKnot> knots;
     for (std::size_t i = 0; i < n.size(); i += 4) {
-        if (n[i + 2] != 0.5 || n[i + 3] != 0) {
-            refuse(file, "key 'Points', knot " + std::to_string(i / 4) + " is not linear", "midpoint 0.5 and sharpness 0");
+        for (std::size_t k : {i + 2, i + 3}) {
+            if (n[k] >= 0 && n[k] <= 1) continue;
+            refuse(file, "key 'Points', knot " + std::to_string(i / 4) + ": the midpoint or the sharpness is out of range",
+                   "[0,1]");
         }
-        knots.push_back({n[i], n[i + 1]});
+        knots.push_back({n[i], n[i + 1], n[i + 2], n[i + 3]});
     }
     return knots;
 }
 
-}  // namespace
+OpacityKnots default_opacity(const ColorKnots& colors) {
+    const double first = colors.front().value, last = colors.back().value;
+    if (first < last) return {{first, 0}, {last, 0.5}};
+    return {{first, 0.5}};
+}
 
-TransferFunction read_transfer_function(const std::filesystem::path& path) {
-    const std::string file = path.string();
-    const json map = read_color_map(file);
-    TransferFunction function{.color = read_colors(map, file), .opacity = {}};
-    if (map.contains("Points")) {
-        function.opacity = read_opacities(map, file);
-    } else if (const double first = function.color.front().value, last = function.color.back().value; first < last) {
-        function.opacity = {{first, 0}, {last, 0.5}};
-    } else {
-        function.opacity = {{first, 0.5}};
-    }
+/// Refuses what the file's knots have wrong, by their numbers in the file.
+void check(const ColorKnots& colors, const OpacityKnots& opacities, const std::string& file) {
+    TransferFunction function{colors, opacities};
+    part_equal_values(function.color);
+    part_equal_values(function.opacity);
     try {
         validate(function);
     } catch (const Error& e) {
         refuse(file, e.what());
     }
-    return function;
+}
+
+}  // namespace
+
+TransferFunction read_transfer_function(const std::filesystem::path& path, const std::string& name) {
+    const std::string file = path.string();
+    const json map = read_color_map(file, name);
+    const ColorKnots colors = read_colors(map, file);
+    const ColorSpace space = read_color_space(map, file);
+    if (const auto points = map.find("Points"); points == map.end() || points->is_null()) {
+        const OpacityKnots ramp = default_opacity(colors);
+        check(colors, ramp, file);
+        return {straight_pieces(colors, space), ramp};
+    }
+    const std::vector<SharpKnot> points = read_opacities(map, file);
+    OpacityKnots corners;
+    for (const SharpKnot& p : points) corners.push_back({p.value, p.alpha});
+    check(colors, corners, file);
+    return {straight_pieces(colors, space), straight_pieces(points)};
 }
 
 }  // namespace subvol

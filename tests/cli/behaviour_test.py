@@ -68,6 +68,8 @@ class Mistakes(InFolder):
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--size", "12y12", naming="--size")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--method", "dense", naming="splat, tets")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--view", "up", naming="up")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--opacity", "0%:0,50%:2", naming="50%:2")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--legend", "a.png", naming=".svg")
         self.assert_refused("compare", "a.png", "b.png", "--fail-under", "psnr", naming="--fail-under")
 
     def test_files(self):

@@ -99,6 +99,36 @@ TEST_F(ImageIo, ExrKeepsEveryBit) {
     EXPECT_EQ(read.rgba, image.rgba);
 }
 
+TEST_F(ImageIo, ExrCarriesDepthAsAFifthChannel) {
+    const Image image = random_image(7, 5);
+    std::vector<float> depth(35, std::numeric_limits<float>::infinity());
+    depth[3] = 1.25f;
+    depth[34] = 1e9f;
+    const fs::path path = folder_ / "a.exr";
+    write_image(path, image, Vec3(0.0), depth);
+    EXPECT_EQ(read_image(path).rgba, image.rgba);
+
+    const auto input = OIIO::ImageInput::open(path.string());
+    ASSERT_TRUE(input);
+    const OIIO::ImageSpec& spec = input->spec();
+    ASSERT_EQ(spec.channelnames, (std::vector<std::string>{"R", "G", "B", "A", "Z"}));
+    EXPECT_EQ(spec.z_channel, 4);
+    EXPECT_EQ(spec.channelformat(4), OIIO::TypeDesc::FLOAT);
+    std::vector<float> read(35);
+    ASSERT_TRUE(input->read_image(0, 0, 4, 5, OIIO::TypeDesc::FLOAT, read.data()));
+    EXPECT_EQ(read, depth);
+}
+
+TEST_F(ImageIo, PngTakesNoDepthAndNoFileTakesTooFew) {
+    const Image image = random_image(4, 2);
+    const std::vector<float> depth(8, 1.0f), few(7, 1.0f);
+    write_image(folder_ / "with.png", image, Vec3(0.0), depth);
+    write_image(folder_ / "without.png", image);
+    EXPECT_EQ(bytes_of(folder_ / "with.png"), bytes_of(folder_ / "without.png"));
+    EXPECT_EQ(code_of([&] { write_image(folder_ / "few.exr", image, Vec3(0.0), few); }), ErrorCode::InvalidInput);
+    EXPECT_FALSE(fs::exists(folder_ / "few.exr"));
+}
+
 TEST_F(ImageIo, PngIsRoundedSrgb) {
     Image image = random_image(64, 16);
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 1.0f;
@@ -131,6 +161,12 @@ TEST_F(ImageIo, PngLiesOverTheBackground) {
     EXPECT_EQ(bytes[0], 188);                            // .25 + .5 · .5
     EXPECT_EQ(bytes[1], 188);                            // 0 + .5 · 1
     EXPECT_EQ(bytes[2], std::lround(255 * srgb(0.25)));  // .25 + .5 · 0
+}
+
+TEST_F(ImageIo, BytesAreThoseOfThePng) {
+    const Image image = random_image(6, 4);
+    write_image(folder_ / "a.png", image, Vec3(0.2, 0.4, 0.6));
+    EXPECT_EQ(srgb_bytes(image, Vec3(0.2, 0.4, 0.6)), bytes_of(folder_ / "a.png"));
 }
 
 TEST_F(ImageIo, ForeignPngIsPremultipliedInLinearLight) {

@@ -114,6 +114,89 @@ TEST(FitCamera, TakesAFlatBoxAndAPointAndRefusesNone) {
     expect_error(ErrorCode::InvalidInput, "direction", [] { (void)fit_camera({{0, 0, 0}, {1, 1, 1}}, {0, 0, 0}); });
 }
 
+/// How far a box reaches in a picture; 1: a corner touches the edge.
+double reach(const Camera& camera, const Box& box, double aspect) {
+    const View view(camera, static_cast<int>(900 * aspect), 900);
+    double farthest = 0;
+    for (const Vec3& corner : corners(box)) {
+        const Vec3 eye_point = view.to_eye(corner);
+        EXPECT_GT(eye_point.z, 0);
+        const Vec2 pixel = view.to_pixels(eye_point);
+        farthest = std::max({farthest, std::abs(2 * pixel.x / view.width() - 1), std::abs(2 * pixel.y / view.height() - 1)});
+    }
+    return farthest;
+}
+
+const Box kSlab{{-1, 0.5, -3}, {2, 0.75, 4}};
+
+TEST(FitCamera, MovesAlongTheLineOfSightOnly) {
+    Camera orthographic = kBenchmark;
+    orthographic.ortho_height = 1e-3;
+    for (const Camera& camera : {kBenchmark, orthographic}) {
+        for (const double aspect : {0.5, 1.0, 1.5}) {
+            const Camera fitted = fit_camera(camera, kSlab, aspect);
+            EXPECT_NEAR(reach(fitted, kSlab, aspect), 1 / 1.05, 1e-9);
+            const Vec3 forward = glm::normalize(camera.target - camera.eye);
+            expect_near(glm::normalize(fitted.target - fitted.eye), forward);
+            const Vec3 moved = fitted.eye - camera.eye;
+            expect_near(moved, glm::dot(moved, forward) * forward);
+            EXPECT_EQ(fitted.fovy_deg, camera.fovy_deg);
+            EXPECT_EQ(fitted.up, camera.up);
+            EXPECT_EQ(fitted.ortho_height > 0, camera.ortho_height > 0);
+        }
+    }
+}
+
+TEST(FitCamera, WorksFromBehindAndFromInside) {
+    for (const Vec3 eye : {Vec3(0.5, 0.6, 0.1), Vec3(0.5, 40, 0.5)}) {
+        const Camera camera{.eye = eye, .target = eye + Vec3(0.1, 1, 0), .up = {0, 0, 1}, .fovy_deg = 60};
+        EXPECT_NEAR(reach(fit_camera(camera, kSlab, 1), kSlab, 1), 1 / 1.05, 1e-9);
+    }
+}
+
+TEST(FitCamera, MakesOrthographicCameras) {
+    const Camera camera = orthographic_camera(kBenchmark, kSlab, 1.5);
+    EXPECT_GT(camera.ortho_height, 0);
+    EXPECT_NEAR(reach(camera, kSlab, 1.5), 1 / 1.05, 1e-9);
+    // A cube of side 2 from the front is 2.1 high.
+    EXPECT_NEAR(orthographic_camera(parse_camera("-y", {{-1, -1, -1}, {1, 1, 1}}), {{-1, -1, -1}, {1, 1, 1}}).ortho_height, 2.1,
+                kRounding);
+    EXPECT_GT(orthographic_camera(kBenchmark, {{1, 1, 1}, {1, 1, 1}}).ortho_height, 0);
+}
+
+TEST(Turntable, TurnsAboutUpThroughTheCentre) {
+    const Vec3 center(1, 2, 3);
+    const Camera first{.eye = {4, 2, 5}, .target = {1, 2.5, 3}, .up = {0, 0, 2}, .fovy_deg = 25};
+    const auto cameras = turntable(first, center, 4);
+    ASSERT_EQ(cameras.size(), 4u);
+    EXPECT_EQ(cameras[0].eye, first.eye);
+    EXPECT_EQ(cameras[0].target, first.target);
+    expect_near(cameras[1].eye, {1, 5, 5});  // a quarter counter-clockwise: x to y
+    expect_near(cameras[1].target, {0.5, 2, 3});
+    expect_near(cameras[2].eye, {-2, 2, 5});
+    expect_near(cameras[3].eye, {1, -1, 5});
+    for (const Camera& camera : cameras) {
+        EXPECT_EQ(camera.up, first.up);
+        EXPECT_EQ(camera.fovy_deg, 25);
+    }
+    EXPECT_EQ(turntable(first, center, 1).size(), 1u);
+    for (const int frames : {0, -1, 100001}) {
+        expect_error(ErrorCode::InvalidInput, "frames", [&] { (void)turntable(first, center, frames); });
+    }
+}
+
+TEST(Turntable, IsFittedForEveryFrame) {
+    for (const double ortho_height : {0.0, 1.0}) {
+        Camera camera = kBenchmark;
+        camera.ortho_height = ortho_height;
+        double farthest = 0;
+        for (const Camera& frame : turntable(fit_turntable(camera, kSlab, 12, 1.5), kSlab.center(), 12)) {
+            farthest = std::max(farthest, reach(frame, kSlab, 1.5));
+        }
+        EXPECT_NEAR(farthest, 1 / 1.05, 1e-9);
+    }
+}
+
 TEST(ParseCamera, AViewStandsOnTheSideItIsNamedFor) {
     const Box box{{-1, -1, -1}, {1, 1, 1}};
     EXPECT_GT(parse_camera("+x", box).eye.x, 1);

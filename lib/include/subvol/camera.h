@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "subvol/vec.h"
 
@@ -70,6 +71,24 @@ private:
 /// aspect:    the picture's width / height
 /// throws:    Error(InvalidInput) if the box is empty or a number is out of range
 [[nodiscard]] Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg = 30, double aspect = 1);
+
+/// The camera moved along its own line of sight until it sees the whole box with a margin of 5 %, direction and field of view
+/// as they are; an orthographic one gets the height for it. The target becomes the place of the line next to the box's centre.
+///
+/// throws: Error(InvalidInput) if the box is empty or the camera can see nothing
+[[nodiscard]] Camera fit_camera(const Camera& camera, const Box& box, double aspect = 1);
+
+/// An orthographic camera with the direction of another, fitted to the box.
+[[nodiscard]] Camera orthographic_camera(const Camera& camera, const Box& box, double aspect = 1);
+
+/// Cameras on a circle: the first is `camera`, the others are turned by equal parts about the axis along `up` through a centre,
+/// counter-clockwise as seen from above.
+///
+/// frames: 1..100000
+[[nodiscard]] std::vector<Camera> turntable(const Camera& camera, const Vec3& center, int frames);
+
+/// `fit_camera` for all frames of a turntable about the box's centre: each of them sees the whole box.
+[[nodiscard]] Camera fit_turntable(const Camera& camera, const Box& box, int frames, double aspect = 1);
 
 /// A camera from text: a view name (±x ±y ±z iso), ten numbers "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", or a JSON file with the keys
 /// eye, target (both needed), up (default: as a view's), fovy_deg, ortho_height.

@@ -1,0 +1,79 @@
+#include "picture_output.h"
+
+#include <algorithm>
+
+#include "subvol/error.h"
+#include "subvol/image_io.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+/// The frames as one stage; what goes on within a frame is told as the frame it belongs to.
+class FrameProgress : public Progress {
+public:
+    FrameProgress(Progress* whole, std::size_t frame, std::size_t frames)
+        : whole_(whole),
+          stage_(text("frame ", frame + 1, " of ", frames)),
+          fraction_(static_cast<double>(frame) / static_cast<double>(frames)) {}
+
+    void report(std::string_view, double) override { whole_->report(stage_, fraction_); }
+    [[nodiscard]] bool cancelled() const override { return whole_->cancelled(); }
+
+private:
+    Progress* whole_;
+    std::string stage_;
+    double fraction_;
+};
+
+}  // namespace
+
+PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments)
+    : path_(path), frames_(frames), background_(parse_vector("--background", arguments.background)) {
+    if (!is_video(path_)) {
+        check_output(path_, {".png", ".exr"});
+    } else if (!frames_) {
+        throw Error(ErrorCode::InvalidInput, "a video is made by a turntable only", path, "--turntable N, or .png or .exr");
+    } else {
+        video_.emplace(path_, parse_size("--size", arguments.size), arguments.frames_per_second);
+    }
+}
+
+void PictureOutput::write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
+                          Report& report) {
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        FrameProgress of_frame(report.progress(), i, views.size());
+        Progress* const progress = frames_ ? &of_frame : report.progress();
+        report_progress(progress, "draw", 0);
+        const Picture picture = draw(views[i], progress);
+        const auto start = std::chrono::steady_clock::now();
+        write_frame(i, picture);
+        report.add_seconds("write", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+    report["output"] = frame_path(0).string();
+    if (!frames_) return;
+    report["frames"] = *frames_;
+    if (video_) {
+        report.timed("write", [&] { video_->finish(); });
+    } else {
+        for (std::size_t i = 0; i < views.size(); ++i) report["outputs"].push_back(frame_path(i).string());
+    }
+}
+
+std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {
+    if (!frames_ || video_) return path_;
+    const std::string number = std::to_string(frame);
+    const std::size_t digits = std::max<std::size_t>(4, std::to_string(*frames_ - 1).size());
+    return path_.parent_path() /
+           (path_.stem().string() + "_" + std::string(digits - number.size(), '0') + number + path_.extension().string());
+}
+
+void PictureOutput::write_frame(std::size_t frame, const Picture& picture) {
+    if (video_) {
+        video_->write(srgb_bytes(picture.image, background_));
+    } else {
+        write_image(frame_path(frame), picture.image, background_, picture.depth);
+    }
+}
+
+}  // namespace subvol::cli

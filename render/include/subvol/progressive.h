@@ -1,0 +1,38 @@
+#pragma once
+
+#include "subvol/render.h"
+#include "subvol/sample.h"
+
+namespace subvol {
+
+/// seconds:      how long the work may take; the first picture is always finished
+/// footprint_px: distances between neighbouring kernels that are tried when there is time left, in pixels, descending
+/// sample:       how the mesh is sampled; the finer steps set its footprint
+/// splat:        the last pictures are drawn so; the first ones with a part of the sheets
+/// progress:     its `picture` gets every picture as soon as it is there; a wish to stop ends the work as usual
+struct ProgressiveOptions {
+    double seconds = 1;
+    std::vector<double> footprint_px{4, 2, 1};
+    SampleOptions sample{};
+    SplatOptions splat{};
+    Progress* progress = nullptr;
+};
+
+/// The last picture, and how it came about.
+struct ProgressiveResult {
+    SplatResult splat;
+    int steps = 0;            // pictures made
+    int picture_scale = 1;    // pixels of the result are that wide
+    double footprint_px = 0;  // 0: one kernel a control vertex
+    double seconds = 0;
+};
+
+/// Draws a mesh within a time: first at a quarter and at half of the picture's size, then whole with one kernel a control
+/// vertex, then with the mesh sampled again for this view, ever finer. What is not finished in time is given up, and the last
+/// picture returned, always of the size asked for.
+///
+/// throws: as sample_rbf_points and Splatter; Error(InvalidInput) if seconds or a footprint is not positive
+[[nodiscard]] ProgressiveResult render_progressively(const HexMesh& mesh, const Camera& camera, int width, int height,
+                                                     const Optics& optics, const ProgressiveOptions& options = {});
+
+}  // namespace subvol

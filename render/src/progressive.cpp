@@ -1,0 +1,154 @@
+#include "subvol/progressive.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "subvol/error.h"
+
+namespace subvol {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Passes reports on, and wants to stop when time is up.
+class Deadline : public Progress {
+public:
+    Deadline(Progress* listener, double seconds) : listener_(listener), start_(Clock::now()), seconds_(seconds) {}
+
+    void report(std::string_view stage, double fraction) override {
+        if (listener_) listener_->report(stage, fraction);
+    }
+    void picture(const Image& image) override {
+        if (listener_) listener_->picture(image);
+    }
+    [[nodiscard]] bool cancelled() const override { return stopped() || (armed_ && elapsed() > seconds_); }
+
+    /// From now on the time counts; before there is a picture it does not.
+    void arm() { armed_ = true; }
+    [[nodiscard]] bool stopped() const { return listener_ && listener_->cancelled(); }
+    [[nodiscard]] double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+private:
+    Progress* listener_;
+    Clock::time_point start_;
+    double seconds_;
+    bool armed_ = false;
+};
+
+/// Each pixel as a square of scale² pixels.
+template <class T>
+std::vector<T> enlarge(const std::vector<T>& small, std::size_t channels, int small_width, int scale, int width, int height) {
+    std::vector<T> large;
+    large.reserve(channels * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const auto at = static_cast<std::size_t>(y / scale) * static_cast<std::size_t>(small_width) +
+                            static_cast<std::size_t>(x / scale);
+            large.insert(large.end(), small.begin() + static_cast<std::ptrdiff_t>(channels * at),
+                         small.begin() + static_cast<std::ptrdiff_t>(channels * (at + 1)));
+        }
+    }
+    return large;
+}
+
+void check(const ProgressiveOptions& options) {
+    if (!(options.seconds > 0)) {
+        throw Error(ErrorCode::InvalidInput, "the time is " + std::to_string(options.seconds), {},
+                    "a positive number of seconds");
+    }
+    for (const double px : options.footprint_px) {
+        if (!(px > 0))
+            throw Error(ErrorCode::InvalidInput, "a footprint is " + std::to_string(px), {}, "a positive number of pixels");
+    }
+}
+
+class Progressive {
+public:
+    Progressive(const HexMesh& mesh, const Camera& camera, int width, int height, const Optics& optics,
+                const ProgressiveOptions& options)
+        : mesh_(mesh),
+          camera_(camera),
+          width_(width),
+          height_(height),
+          optics_(optics),
+          options_(options),
+          deadline_(options.progress, options.seconds) {}
+
+    ProgressiveResult run() {
+        RbfVolume volume = sample({});
+        draw_at(volume, 4, 0);
+        deadline_.arm();
+        try {
+            draw_at(volume, 2, 0);
+            draw_at(volume, 1, 0);
+            for (const double px : options_.footprint_px) {
+                RbfVolume finer = sample(px);
+                if (finer.size() <= volume.size()) continue;
+                volume = std::move(finer);
+                draw_at(volume, 1, px);
+            }
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Cancelled || deadline_.stopped()) throw;
+        }
+        result_.seconds = deadline_.elapsed();
+        return std::move(result_);
+    }
+
+private:
+    [[nodiscard]] RbfVolume sample(std::optional<double> footprint_px) {
+        SampleOptions options = options_.sample;
+        options.progress = &deadline_;
+        if (footprint_px) {
+            options.footprint = Footprint{.camera = camera_,
+                                          .width_px = width_,
+                                          .height_px = height_,
+                                          .spacing_px = *footprint_px,
+                                          .least_cell_px = *footprint_px};
+        }
+        return sample_rbf_points(mesh_, options).volume;
+    }
+
+    [[nodiscard]] SplatOptions splat_options(int scale) {
+        SplatOptions options = options_.splat;
+        options.sheets = std::max(2, options.sheets / scale);
+        options.progress = &deadline_;
+        return options;
+    }
+
+    void draw_at(const RbfVolume& volume, int scale, double footprint_px) {
+        const int width = (width_ + scale - 1) / scale, height = (height_ + scale - 1) / scale;
+        SplatResult drawn = render_splats(volume, View(camera_, width, height), optics_, splat_options(scale));
+        if (scale > 1) {
+            drawn.image.rgba = enlarge(drawn.image.rgba, 4, width, scale, width_, height_);
+            drawn.depth = enlarge(drawn.depth, 1, width, scale, width_, height_);
+            drawn.image.width = width_;
+            drawn.image.height = height_;
+        }
+        result_.splat = std::move(drawn);
+        result_.picture_scale = scale;
+        result_.footprint_px = footprint_px;
+        ++result_.steps;
+        deadline_.picture(result_.splat.image);
+    }
+
+    const HexMesh& mesh_;
+    const Camera& camera_;
+    int width_, height_;
+    const Optics& optics_;
+    const ProgressiveOptions& options_;
+    Deadline deadline_;
+    ProgressiveResult result_;
+};
+
+}  // namespace
+
+ProgressiveResult render_progressively(const HexMesh& mesh, const Camera& camera, int width, int height, const Optics& optics,
+                                       const ProgressiveOptions& options) {
+    check(options);
+    return Progressive(mesh, camera, width, height, optics, options).run();
+}
+
+}  // namespace subvol

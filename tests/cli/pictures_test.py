@@ -1,0 +1,158 @@
+"""Turntables, cameras and legends of `render`; videos with a stand-in for ffmpeg that keeps what it is told."""
+
+import os
+import shutil
+import subprocess
+import unittest
+from pathlib import Path
+from xml.etree import ElementTree
+
+from command import COMMAND, InFolder, Run
+
+SMALL = ["--backend", "cpu", "--sheets", "20"]
+CAMERA = ["--camera", "3,-4,2,0,0,0,0,0,1,35"]
+
+# The last argument is file:NAME.
+KEEP_FRAMES = """#!/bin/sh
+for last; do :; done
+printf '%s\\n' "$@" > arguments.txt
+exec cat > "${last#file:}"
+"""
+FAIL = """#!/bin/sh
+echo 'first words' >&2
+echo 'Unknown encoder, alas' >&2
+exit 1
+"""
+
+
+class Pictures(InFolder):
+    def render(self, *arguments, path=None, size="48x32"):
+        environment = dict(os.environ, **({"PATH": path} if path else {}))
+        done = subprocess.run([COMMAND, "render", "model:ball:2", *map(str, arguments), "--size", size, *SMALL], cwd=self.folder,
+                              capture_output=True, text=True, timeout=120, env=environment)
+        return Run(done.returncode, done.stdout, done.stderr)
+
+    def bytes_of(self, name):
+        return (self.folder / name).read_bytes()
+
+    def put_ffmpeg(self, script):
+        tools = self.folder / "tools"
+        tools.mkdir()
+        (tools / "ffmpeg").write_text(script)
+        (tools / "ffmpeg").chmod(0o755)
+        return f"{tools}:/usr/bin:/bin"
+
+
+class Turntables(Pictures):
+    def test_frames_are_numbered_and_the_first_is_the_camera_itself(self):
+        self.assertEqual(self.render("-o", "one.png", *CAMERA).code, 0)
+        done = self.render("-o", "a.png", "--turntable", 3, "--json", *CAMERA)
+        self.assertEqual(done.code, 0, done.err)
+        names = [f"a_000{i}.png" for i in range(3)]
+        self.assertEqual(self.files(), names + ["one.png"])
+        self.assertEqual(done.json()["outputs"], names)
+        self.assertEqual((done.json()["output"], done.json()["frames"]), (names[0], 3))
+        frames = [self.bytes_of(name) for name in names]
+        self.assertEqual(frames[0], self.bytes_of("one.png"))
+        self.assertEqual(len(set(frames)), 3)
+
+    def test_one_frame_is_numbered_too(self):
+        self.assertEqual(self.render("-o", "a.exr", "--turntable", 1).code, 0)
+        self.assertEqual(self.files(), ["a_0000.exr"])
+
+    def test_the_other_renderer_turns_too(self):
+        self.assertEqual(self.render("-o", "a.png", "--turntable", 2, "--method", "tets").code, 0)
+        self.assertNotEqual(self.bytes_of("a_0000.png"), self.bytes_of("a_0001.png"))
+
+
+class Videos(Pictures):
+    def assert_refused(self, done, code, naming):
+        self.assertEqual(done.code, code, done.err)
+        self.assertRegex(done.err, r"^subvol: [^\n]+\n$")
+        self.assertIn(naming, done.err)
+        self.assertEqual([name for name in self.files() if name != "tools"], [])
+
+    def test_frames_go_to_ffmpeg_as_bytes(self):
+        path = self.put_ffmpeg(KEEP_FRAMES)
+        done = self.render("-o", "turn.mp4", "--turntable", 3, "--fps", 12, path=path)
+        self.assertEqual(done.code, 0, done.err)
+        self.assertEqual(self.files(), ["arguments.txt", "tools", "turn.mp4"])
+        frames, size = self.bytes_of("turn.mp4"), 48 * 32 * 3
+        self.assertEqual(len(frames), 3 * size)
+        self.assertEqual(len({frames[i * size:(i + 1) * size] for i in range(3)}), 3)
+        arguments = (self.folder / "arguments.txt").read_text().split("\n")
+        for option, value in [("-s", "48x32"), ("-r", "12"), ("-pix_fmt", "rgb24"), ("-i", "pipe:0")]:
+            self.assertEqual(arguments[arguments.index(option) + 1], value)
+
+    def test_without_ffmpeg(self):
+        self.assert_refused(self.render("-o", "a.webm", "--turntable", 2, path="/nowhere"), 3, "ffmpeg")
+
+    def test_failure_is_told_in_ffmpegs_last_words(self):
+        done = self.render("-o", "a.gif", "--turntable", 2, path=self.put_ffmpeg(FAIL))
+        self.assert_refused(done, 2, "Unknown encoder, alas")
+
+    def test_a_video_needs_a_turntable(self):
+        self.assert_refused(self.render("-o", "a.mp4"), 2, "--turntable")
+
+    @unittest.skipIf(shutil.which("ffmpeg") is None, "there is no ffmpeg")
+    def test_real_videos_of_odd_size(self):
+        for name in ["a.mp4", "a.webm", "a.gif"]:
+            done = self.render("-o", name, "--turntable", 3, size="33x31")
+            self.assertEqual(done.code, 0, done.err)
+            self.assertGreater((self.folder / name).stat().st_size, 200)
+
+
+class Cameras(Pictures):
+    def pixels_that_are_not_black(self, *arguments):
+        """By the way of a video of one frame."""
+        path = f"{self.folder / 'tools'}:/usr/bin:/bin" if (self.folder / "tools").exists() else self.put_ffmpeg(KEEP_FRAMES)
+        done = self.render("-o", "a.gif", "--turntable", 1, *arguments, path=path)
+        self.assertEqual(done.code, 0, done.err)
+        frame = self.bytes_of("a.gif")
+        lit = [i // 3 for i in range(0, len(frame), 3) if any(frame[i:i + 3])]
+        columns, rows = {i % 48 for i in lit}, {i // 48 for i in lit}
+        return len(lit), min(columns, default=0), max(columns, default=0), min(rows, default=0), max(rows, default=0)
+
+    def test_fit_brings_the_whole_box_in(self):
+        far = ["--camera", "300,-400,200,0,0,0,0,0,1,35", "--tf", "constant"]
+        near = ["--camera", "0.3,-0.4,0.2,0,0,0,0,0,1,35", "--tf", "constant"]
+        self.assertLess(self.pixels_that_are_not_black(*far)[0], 4)
+        fitted = self.pixels_that_are_not_black(*far, "--fit")
+        self.assertGreater(fitted[0], 200)
+        self.assertEqual(fitted, self.pixels_that_are_not_black(*near, "--fit"))
+        _, left, right, top, bottom = fitted
+        self.assertTrue(0 < left and right < 47 and 0 < top and bottom < 31, fitted)
+
+    def test_an_orthographic_ball_has_its_height(self):
+        # 32 / 1.05 = 30.5 rows; a pixel more or less by where the centres lie.
+        _, left, right, top, bottom = self.pixels_that_are_not_black("--view", "-y", "--ortho", "--tf", "constant")
+        self.assertIn(bottom - top + 1, (30, 31, 32))
+        self.assertEqual(right - left, bottom - top)
+        (self.folder / "camera.json").write_text('{"eye": [0, -9, 0], "target": [0, 0, 0], "ortho_height": 50}')
+        given = self.pixels_that_are_not_black("--camera", "camera.json", "--ortho", "--tf", "constant")
+        self.assertLess(given[0], 30)
+
+
+class Legends(Pictures):
+    def test_legend_names_the_field(self):
+        done = self.render("-o", "a.png", "--legend", "a.svg", "--opacity", "0%:0,100%:1", "--json")
+        self.assertEqual(done.code, 0, done.err)
+        self.assertEqual(done.json()["legend"], "a.svg")
+        texts = [node.text for node in ElementTree.parse(Path(self.folder) / "a.svg").iter() if node.tag.endswith("text")]
+        self.assertIn("density", texts)
+
+
+    def test_a_map_is_stretched_to_a_range(self):
+        (self.folder / "map.json").write_text('[{"Name": "n m", "RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1]}]')
+        for name, options in [("file", ["--tf", "map.json:n m", "--tf-range", "-3,5"]),
+                              ("preset", ["--tf", "grey", "--tf-range", "-3,5"])]:
+            done = self.render("-o", f"{name}.png", "--legend", f"{name}.svg", *options)
+            self.assertEqual(done.code, 0, done.err)
+        self.assertEqual(self.bytes_of("file.png"), self.bytes_of("preset.png"))
+        self.assertEqual(self.bytes_of("file.svg"), self.bytes_of("preset.svg"))
+        self.assertEqual(self.render("-o", "a.png", "--tf-range", "5,-3").code, 2)
+        self.assertEqual(self.render("-o", "a.png", "--tf-range", "5").code, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
