@@ -17,7 +17,7 @@ namespace {
 
 /// Sheets whose kernels are listed at a time: the lists take no more room than the kernels, which are 16 words each.
 constexpr int kListed = 16;
-constexpr GLuint kTableBinding = 6;  // the others follow, as in shaders/sheet_composite.comp
+constexpr GLuint kTableBinding = 6;  // the others follow, as in shaders/sheet_*
 
 std::string defines(const SplatFrame& frame) {
     const SplatScene& scene = *frame.scene;
@@ -119,11 +119,7 @@ std::size_t pixels_to_do(const SplatFrame& frame) {
 }  // namespace
 
 GlSheets::GlSheets() {
-    glCreateVertexArrays(1, &vertices_);
-    glVertexArrayAttribIFormat(vertices_, 0, 1, GL_UNSIGNED_INT, 0);
-    glVertexArrayAttribBinding(vertices_, 0, 0);
-    glVertexArrayBindingDivisor(vertices_, 0, 1);  // a kernel an instance
-    glEnableVertexArrayAttrib(vertices_, 0);
+    glCreateVertexArrays(1, &vertices_);  // without any attribute: nothing is drawn without one
     check_gl("sheet buffers");
 }
 
@@ -149,7 +145,7 @@ Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
         const SheetLists lists = list_sheets(frame, window, first, end);
         ids_.grow(lists.splats.size() * sizeof(std::uint32_t));
         ids_.upload(lists.splats.size() * sizeof(std::uint32_t), lists.splats.data());
-        glVertexArrayVertexBuffer(vertices_, 0, ids_.id(), 0, sizeof(std::uint32_t));
+        ids_.bind(kTableBinding + 9);
         for (int sheet = first; sheet < end; ++sheet) {
             const auto k = static_cast<std::size_t>(sheet - first);
             // Where neither this sheet nor the last one has kernels no value is known, if a sum without any is none.
@@ -214,7 +210,8 @@ void GlSheets::draw_kernels(const SplatFrame& frame, const GlProgram& program, i
     u.set("across", across);
     u.set("to_pixels", 1.0f / (across * static_cast<float>(frame.view->pixel())));
     program.use();
-    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count), static_cast<GLuint>(first));
+    // Triangles, not instances: hardware does not fill its units with four vertices; to software it is the same.
+    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * first), static_cast<GLsizei>(6 * count));
 }
 
 void GlSheets::composite(const SplatFrame& frame, const GlProgram& program, int sheet, const PixelRect& rect) {

@@ -60,8 +60,12 @@ private:
 /// Nothing if sheets are not what is asked for.
 std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
     if (options.method != SplatMethod::Sheets) return nullptr;
-    if (options.backend != Backend::Cpu) return std::make_unique<SheetDrawer>();
-    throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", {}, "the backends auto and gl");
+    if (options.backend == Backend::Cpu)
+        throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", {}, "the backends auto and gl");
+    if (!find_gl_device())
+        throw Error(ErrorCode::MissingCapability, "sheets need OpenGL 4.5, and none was found through EGL", {},
+                    "the method splat");
+    return std::make_unique<SheetDrawer>();
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
