@@ -16,7 +16,7 @@ Optics twist_optics() {
 }
 
 Optics preset_optics(const std::string& preset, const HexMesh& mesh) {
-    const auto [min, max] = first_field_range(mesh);
+    const auto [min, max] = field_range(mesh);
     return {transfer_function_preset(preset, min, max), bounds(mesh).diagonal() / 100};
 }
 

@@ -61,16 +61,19 @@ HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report
     return mesh;
 }
 
-HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report) {
+HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
+                            const std::optional<std::string>& second) {
     SelectedField selected = select_field(mesh, options.density ? std::optional<std::string>("density") : options.field);
     report.warn(selected.warning);
     report["field"] = selected.scalar.name;
-    mesh.attributes = {std::move(selected.scalar)};
+    std::vector<Attribute> chosen{std::move(selected.scalar)};
+    if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second).scalar);
+    mesh.attributes = std::move(chosen);
     return mesh;
 }
 
-Range first_field_range(const HexMesh& mesh) {
-    const auto [min, max] = std::ranges::minmax(mesh.attributes.front().values);
+Range field_range(const HexMesh& mesh, std::size_t attribute) {
+    const auto [min, max] = std::ranges::minmax(mesh.attributes[attribute].values);
     return {min, max};
 }
 

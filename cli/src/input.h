@@ -19,15 +19,16 @@ inline constexpr const char* kInputHelp = "a mesh (.mesh, .vtk, .vtu, .msh), or 
 /// `read_input` without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
 
-/// The mesh with nothing but the field that the options select, as its one scalar.
-[[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report);
+/// The mesh with nothing but the field that the options select, as its first scalar, and where it is named a second one.
+[[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
+                                          const std::optional<std::string>& second = {});
 
 struct Range {
     double min = 0, max = 0;
 };
 
-/// The range of the mesh's first attribute.
-[[nodiscard]] Range first_field_range(const HexMesh& mesh);
+/// The range of one of the mesh's attributes.
+[[nodiscard]] Range field_range(const HexMesh& mesh, std::size_t attribute = 0);
 
 /// Refuses an output before any work is done for it: a file name that ends in none of `extensions`, a folder that is not there.
 ///

@@ -123,9 +123,10 @@ Range PictureArguments::shown_range(const Range& field) const {
     return range;
 }
 
-Optics PictureArguments::make_optics(const Box& box, const Range& field) const {
+Optics PictureArguments::make_optics(const Box& box, const Range& field, const Range& colors) const {
     const Range range = shown_range(field);
     TransferFunction function = find_transfer_function(transfer_function, range, transfer_range.has_value());
+    function.color = find_transfer_function(transfer_function, shown_range(colors), transfer_range.has_value()).color;
     if (opacity) function.opacity = parse_opacity(*opacity, range.min, range.max);
     return {std::move(function), opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
 }

@@ -46,7 +46,8 @@ struct PictureArguments {
 
     /// One view, or those of the turntable.
     [[nodiscard]] std::vector<View> make_views(const Box& box) const;
-    [[nodiscard]] Optics make_optics(const Box& box, const Range& field) const;
+    /// field: whose opacities, colors: whose colours are shown, often the same
+    [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
 
     /// Refuses a --legend that cannot be written, before any work is done.
     void check_legend() const;

@@ -42,25 +42,28 @@ RbfVolume read_points_input(const std::string& input, Report& report) {
     return volume;
 }
 
-RbfVolume load_points(const std::string& input, const CommonOptions& options, const CLI::App& app, Report& report) {
+RbfVolume load_points(const std::string& input, const CommonOptions& options, const std::optional<std::string>& second,
+                      const CLI::App& app, Report& report) {
     check_options(app);
     RbfVolume volume = read_points_input(input, report);
     std::vector<std::string> names;
     for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
-    const std::string wanted = options.field.value_or(names.front());
-    const auto found = std::ranges::find(names, wanted);
-    if (found == names.end()) {
-        throw Error(ErrorCode::InvalidInput, "there is no field '" + wanted + "'", input, "it has: " + join(names));
-    }
-    RbfChannel channel = std::move(volume.channels[static_cast<std::size_t>(found - names.begin())]);
-    volume.channels.clear();
-    volume.channels.push_back(std::move(channel));
-    report["field"] = wanted;
+    const auto find = [&](const std::string& wanted) {
+        const auto found = std::ranges::find(names, wanted);
+        if (found == names.end()) {
+            throw Error(ErrorCode::InvalidInput, "there is no field '" + wanted + "'", input, "it has: " + join(names));
+        }
+        return volume.channels[static_cast<std::size_t>(found - names.begin())];
+    };
+    std::vector<RbfChannel> chosen{find(options.field.value_or(names.front()))};
+    if (second && *second != chosen.front().name) chosen.push_back(find(*second));
+    volume.channels = std::move(chosen);
+    report["field"] = volume.channels.front().name;
     return volume;
 }
 
-Range first_channel_range(const RbfVolume& volume) {
-    const auto [min, max] = std::ranges::minmax(volume.channels.front().values);
+Range channel_range(const RbfVolume& volume, std::size_t channel) {
+    const auto [min, max] = std::ranges::minmax(volume.channels[channel].values);
     return {min, max};
 }
 

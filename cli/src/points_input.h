@@ -14,13 +14,13 @@ namespace subvol::cli {
 /// Reads them, timed; puts "input" and "points" into the report.
 [[nodiscard]] RbfVolume read_points_input(const std::string& input, Report& report);
 
-/// `read_points_input` with nothing but the field that the options select as its one channel.
+/// `read_points_input` with nothing but the field that the options select as its first channel, and where it is named a second.
 ///
 /// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that only a mesh can follow
-[[nodiscard]] RbfVolume load_points(const std::string& input, const CommonOptions& options, const CLI::App& app,
-                                    Report& report);
+[[nodiscard]] RbfVolume load_points(const std::string& input, const CommonOptions& options,
+                                    const std::optional<std::string>& second, const CLI::App& app, Report& report);
 
-/// The range of the first channel.
-[[nodiscard]] Range first_channel_range(const RbfVolume& volume);
+/// The range of a channel.
+[[nodiscard]] Range channel_range(const RbfVolume& volume, std::size_t channel);
 
 }  // namespace subvol::cli

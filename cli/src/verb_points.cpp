@@ -37,7 +37,7 @@ public:
         }
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
         std::optional<TransferFunction> seen;
-        if (!transfer_function_.empty()) seen = find_transfer_function(transfer_function_, first_field_range(mesh));
+        if (!transfer_function_.empty()) seen = find_transfer_function(transfer_function_, field_range(mesh));
         const RbfVolume volume = sample_reported(mesh, sample_, refine_, seen, report);
         report.timed("write", [&] {
             if (extension == ".vdb") {

@@ -3,7 +3,9 @@
 #include "picture_output.h"
 #include "points_input.h"
 #include "sample_arguments.h"
+#include "splat_arguments.h"
 #include "subvol/error.h"
+#include "subvol/progressive.h"
 #include "subvol/render.h"
 #include "text.h"
 #include "verb.h"
@@ -12,11 +14,6 @@ namespace subvol::cli {
 namespace {
 
 constexpr int kTetsLevel = 1;
-
-Backend backend_named(const std::string& name) {
-    check_choice("--backend", name, {"auto", "gl", "cpu"});
-    return name == "gl" ? Backend::Gl : name == "cpu" ? Backend::Cpu : Backend::Auto;
-}
 
 class RenderVerb : public Verb {
 public:
@@ -36,84 +33,94 @@ public:
                         "splat (kernels, the default), sheets (the same by OpenGL sheet buffers) or\n"
                         "tets (rays through tetrahedra)")
             ->type_name("NAME");
-        app().add_option("--backend", backend_, "where to splat: auto (default), gl, cpu")->type_name("NAME");
         picture_.add_to(app());
-        app()
-            .add_option("--sheets", sheets_, "splat, sheets: planes over the volume's depth (default 200)")
-            ->type_name("N")
-            ->check(CLI::Range(2, 65536));
         app()
             .add_option("--samples", samples_, "tets: n x n rays a pixel (default 1)")
             ->type_name("N")
             ->check(CLI::Range(1, 16));
         sample_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; else: omitted shows the limit)");
+        splat_.add_to(app());
     }
 
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets"}, {"dense", "grid", "pt"});
-        const Backend backend = backend_named(backend_);
-        if (method_ == "tets" && backend == Backend::Gl) {
-            throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU only", "--backend gl");
-        }
-        if (method_ == "sheets" && backend == Backend::Cpu) {
+        options_ = splat_.options();
+        if (method_ == "sheets") options_.method = SplatMethod::Sheets;
+        if (method_ == "sheets" && options_.backend == Backend::Cpu) {
             throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
+        }
+        if (method_ == "tets" && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
+            throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU, without light and of one field",
+                        "--backend gl, --shade, --color-field, --seconds");
         }
         picture_.check_legend();
         PictureOutput output(output_, picture_.turntable_frames, picture_);
         if (holds_points(input_)) {
-            draw_points(backend, output, report);
+            draw_points(output, report);
         } else {
-            draw_mesh(backend, output, report);
+            draw_mesh(output, report);
         }
         return 0;
     }
 
 private:
-    void draw_mesh(Backend backend, PictureOutput& output, Report& report) {
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+    void draw_mesh(PictureOutput& output, Report& report) {
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
         const Box box = bounds(mesh);
         const std::vector<View> views = picture_.make_views(box);
-        const Range range = first_field_range(mesh);
-        const Optics optics = picture_.make_optics(box, range);
-        picture_.write_legend(optics, range, report);
+        const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
+        const Optics optics = picture_.make_optics(box, range, colors);
+        picture_.write_legend(optics, colors, report);
         if (method_ == "tets") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
             output.write(
                 views, [&](const View& view, Progress* progress) { return tets(fine, view, optics, progress, report); },
                 report);
+        } else if (splat_.seconds) {
+            splat_in_time(mesh, views.front(), optics, output, report);
         } else {
-            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, backend, output, report);
+            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
     }
 
-    void draw_points(Backend backend, PictureOutput& output, Report& report) {
+    void draw_points(PictureOutput& output, Report& report) {
         if (method_ == "tets") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
-        const RbfVolume volume = load_points(input_, common(), app(), report);
+        const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         const std::vector<View> views = picture_.make_views(volume.bounds);
-        const Range range = first_channel_range(volume);
-        const Optics optics = picture_.make_optics(volume.bounds, range);
-        picture_.write_legend(optics, range, report);
-        splat(volume, views, optics, backend, output, report);
+        const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
+        const Optics optics = picture_.make_optics(volume.bounds, range, colors);
+        picture_.write_legend(optics, colors, report);
+        splat(volume, views, optics, output, report);
     }
 
-    void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, Backend backend,
-               PictureOutput& output, Report& report) const {
+    void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+               Report& report) const {
+        Splatter splatter(volume, options_);
         const auto draw = [&](const View& view, Progress* progress) {
-            SplatResult drawn = render_splats(volume, view, optics,
-                                              {.method = method_ == "sheets" ? SplatMethod::Sheets : SplatMethod::Kernels,
-                                               .backend = backend,
-                                               .sheets = sheets_,
-                                               .progress = progress});
-            report.add_seconds("prepare", drawn.report.seconds_prepare);
-            report.add_seconds("draw", drawn.report.seconds_draw);
+            SplatResult drawn = splatter.draw(view, optics, progress);
             report["method"] = method_;
-            report["backend"] = drawn.report.backend;
-            report["device"] = drawn.report.device;
-            report["sheets"] = sheets_;
-            return Picture{std::move(drawn.image)};
+            report_splats(drawn.report, splat_, report);
+            return Picture{std::move(drawn.image), std::move(drawn.depth)};
         };
         output.write(views, draw, report);
+    }
+
+    void splat_in_time(const HexMesh& mesh, const View& view, const Optics& optics, PictureOutput& output,
+                       Report& report) const {
+        const auto draw = [&](const View&, Progress* progress) {
+            const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
+            ProgressiveResult drawn = render_progressively(
+                mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
+            report["method"] = method_;
+            report_splats(drawn.splat.report, splat_, report);
+            report["points"] = drawn.splat.report.points;
+            report["steps"] = drawn.steps;
+            report["picture_scale"] = drawn.picture_scale;
+            report["footprint_px"] = drawn.footprint_px;
+            return Picture{std::move(drawn.splat.image), std::move(drawn.splat.depth)};
+        };
+        output.write({view}, draw, report);
     }
 
     [[nodiscard]] Picture tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
@@ -136,11 +143,11 @@ private:
     std::string input_;
     std::string output_;
     std::string method_ = "splat";
-    std::string backend_ = "auto";
-    int sheets_ = 200;
     int samples_ = 1;
     PictureArguments picture_;
     SampleArguments sample_;
+    SplatArguments splat_;
+    SplatOptions options_;
     RefineArguments refine_;
 };
 

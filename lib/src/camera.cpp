@@ -108,7 +108,13 @@ void validate(const Camera& camera) {
 }
 
 View::View(const Camera& camera, int width, int height)
-    : width_(width), height_(height), perspective_(camera.ortho_height == 0), pixel_(0), eye_(camera.eye), axes_() {
+    : camera_(camera),
+      width_(width),
+      height_(height),
+      perspective_(camera.ortho_height == 0),
+      pixel_(0),
+      eye_(camera.eye),
+      axes_() {
     require(width >= 1 && width <= kMaxSize && height >= 1 && height <= kMaxSize, "the picture's size is out of range",
             "1..65536 pixels a side");
     validate(camera);

@@ -7,12 +7,12 @@ struct Last {
 };
 layout(binding = 0) uniform sampler2D sums;
 layout(binding = 1) uniform sampler2D more_sums;
-layout(std430, binding = 9) readonly buffer IntervalOffsets { uint interval_offsets[]; };
-layout(std430, binding = 10) readonly buffer Intervals { vec2 intervals[]; };
-layout(std430, binding = 11) buffer Beams { vec4 beams[]; };  // colour, transmittance
-layout(std430, binding = 12) buffer Lasts { Last lasts[]; };
-layout(std430, binding = 13) buffer Looks { vec4 looks[]; };  // of the last sheet: second colour's value, light
-layout(std430, binding = 14) buffer Done { uint done_pixels; };
+layout(std430, binding = 10) readonly buffer IntervalOffsets { uint interval_offsets[]; };
+layout(std430, binding = 11) readonly buffer Intervals { vec2 intervals[]; };
+layout(std430, binding = 12) buffer Beams { vec4 beams[]; };  // colour, transmittance
+layout(std430, binding = 13) buffer Lasts { Last lasts[]; };
+layout(std430, binding = 14) buffer Looks { vec4 looks[]; };  // of the last sheet: second colour's value, light
+layout(std430, binding = 15) buffer Done { uint done_pixels; };
 uniform ivec4 rectangle;  // corners; the second is outside
 uniform ivec2 size_px;
 uniform vec2 middle_px;
@@ -20,17 +20,15 @@ uniform float pixel, front_z, back_z, near;
 uniform vec2 offsets;  // added to the value and the second colour's where sums are not normalised
 uniform bool first;
 
-const float kFarCells = 1e12;  // values further out look like this one
-
 bool is_known(float weight) {
 #if NORMALIZED
-    return weight > LEAST_WEIGHT;
+    return weight > kLeastWeight;
 #else
     return true;
 #endif
 }
 
-Seen seen_here(ivec2 at, vec2 slope) {
+Seen seen_here(ivec2 at) {
     vec2 sum = texelFetch(sums, at, 0).xy;
     Seen here = Seen(0.0, sum.x, 0.0, vec2(1.0, 0.0), is_known(sum.x));
     float weight = NORMALIZED == 1 && here.known ? sum.x : 1.0;
@@ -39,8 +37,7 @@ Seen seen_here(ivec2 at, vec2 slope) {
     vec4 more = texelFetch(more_sums, at, 0);
     if (here.known) here.color = clamp(more.w / weight + offsets.y, -kFarCells, kFarCells);
 #if SHADED
-    vec3 to_eye = PERSPECTIVE == 1 ? vec3(-slope, -1.0) : vec3(0.0, 0.0, -1.0);
-    here.light = light_on(more.xyz * (1.0 / weight), unit(to_eye));
+    here.light = light_on(more.xyz * (1.0 / weight));
 #endif
 #endif
     return here;
@@ -73,8 +70,8 @@ void main() {
         if (last.weight != 0.0) lasts[id].weight = 0.0;
         return;
     }
-    vec2 slope = (vec2(at) + 0.5 - middle_px) * vec2(pixel, -pixel);
-    Seen here = seen_here(at, slope);
+    ray = (vec2(at) + 0.5 - middle_px) * vec2(pixel, -pixel);
+    Seen here = seen_here(at);
     if (!first) {
         Seen before = Seen(last.value, last.weight, 0.0, vec2(1.0, 0.0), is_known(last.weight));
 #if SHADED || COLORED
@@ -82,14 +79,14 @@ void main() {
         before.color = look.x;
         before.light = look.yz;
 #endif
-        float ray_length = PERSPECTIVE == 1 ? sqrt(1.0 + dot(slope, slope)) : 1.0;
+        float ray_length = perspective ? sqrt(1.0 + dot(ray, ray)) : 1.0;
         vec4 light = beams[id];
         Beam beam = Beam(light.rgb, light.a, last.depth);
         for (; last.interval < end; ++last.interval) {
             vec2 inside = interval(last.interval);
             if (inside.x >= back_z) break;
             follow(beam, before, here, front_z, back_z, inside.x, inside.y, ray_length);
-            if (beam.transmittance < OPAQUE) last.interval = end - 1u;
+            if (beam.transmittance < kOpaque) last.interval = end - 1u;
             else if (inside.y > back_z) break;
         }
         beams[id] = vec4(beam.color, beam.transmittance);

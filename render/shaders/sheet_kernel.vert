@@ -1,6 +1,6 @@
 #version 450
 // The section of a kernel with a sheet: a rectangle about it, two triangles each.
-layout(std430, binding = 15) readonly buffer Listed { uint listed[]; };
+layout(std430, binding = 6) readonly buffer Listed { uint listed[]; };
 uniform vec2 middle_px, size_px;
 uniform float sheet_z, across, to_pixels;  // across: world length of a unit of slope
 

@@ -1,120 +1,75 @@
-// From sums to light: the rules of classification and compositing that all splatters share (src/splat_scene.h has the numbers).
-struct TableRow {
+// What a value looks like: src/splat_classify-inl.h.
+struct Row {
     ivec4 prefix;
     vec4 mean, bend;
 };
 struct ColorRow {
-    vec4 color, slope;
+    vec4 color, step_to_next;
 };
-layout(std430, binding = TABLE_BINDING) readonly buffer Table { TableRow table_rows[]; };
-layout(std430, binding = TABLE_BINDING + 1) readonly buffer Visible { int table_visible[]; };
-layout(std430, binding = TABLE_BINDING + 2) readonly buffer ColorTable { ColorRow color_rows[]; };
-uniform vec4 table_unit;
-uniform float half_weight;    // where there is no boundary: the volume ends where weights fall below
-uniform float least_gradient;  // at which half of a surface is seen
-uniform vec4 shading;         // ambient, diffuse, specular, shininess
-uniform vec3 to_key;          // the key light, of unit length
+layout(std430, binding = 7) readonly buffer Rows { Row rows[]; };
+layout(std430, binding = 8) readonly buffer Visible { int visible[]; };
+layout(std430, binding = 9) readonly buffer ColorRows { ColorRow color_rows[]; };
 
-// What a ray sees on a sheet. Values are in cells of their tables; light is a factor, and the white that is added.
-struct Seen {
-    float value, weight, color;
-    vec2 light;
-    bool known;
+// A value's place in the table, and the four integrals from its cell's lower end.
+struct Place {
+    float x;
+    ivec4 prefix;
+    vec4 within;
 };
 
-// On its way from front to back; depth is weighted by opacity.
-struct Beam {
-    vec3 color;
-    float transmittance, depth;
-};
+int row_of(float x) { return int(clamp(floor(x), -1.0, float(kCells))) + 1; }
 
-float cell_of(float x) { return clamp(floor(x), -1.0, float(TABLE_CELLS)); }
-TableRow row_of(float cell) { return table_rows[int(cell) + 1]; }
+// How far a value lies in its row.
+float part_of(float x) { return x - clamp(floor(x), -1.0, float(kCells)); }
 
-bool transparent(float x0, float x1) {
-    return table_visible[int(cell_of(max(x0, x1))) + 2] == table_visible[int(cell_of(min(x0, x1))) + 1];
+Place place_of(float x) {
+    Row row = rows[row_of(x)];
+    precise float s = part_of(x);
+    precise vec4 within = s * fma(vec4(s - 1.0), row.bend, row.mean);
+    return Place(x, row.prefix, within);
 }
 
-// Mean extinction and emission on a stretch between two values.
-vec4 mean_emission(float x0, float x1) {
-    if (abs(x1 - x0) < NEAR_VALUES) {
-        float x = 0.5 * (x0 + x1), cell = cell_of(x);
-        TableRow row = row_of(cell);
-        return row.mean + (2.0 * (x - cell) - 1.0) * row.bend;
+// Mean extinction and emission of a stretch of ray between two values.
+vec4 means(Place front, Place back) {
+    precise float dx = back.x - front.x;
+    precise vec4 mean;
+    if (abs(dx) < kNearValues) {
+        precise float x = 0.5 * (front.x + back.x);
+        Row row = rows[row_of(x)];
+        mean = fma(vec4(fma(2.0, part_of(x), -1.0)), row.bend, row.mean);
+    } else {
+        precise float inverse = 1.0 / dx;
+        mean = max(fma(unit, vec4(back.prefix - front.prefix), back.within - front.within) * inverse, 0.0);
     }
-    float cell0 = cell_of(x0), cell1 = cell_of(x1), s0 = x0 - cell0, s1 = x1 - cell1;
-    TableRow row0 = row_of(cell0), row1 = row_of(cell1);
-    vec4 within0 = s0 * (row0.mean + (s0 - 1.0) * row0.bend), within1 = s1 * (row1.mean + (s1 - 1.0) * row1.bend);
-    vec4 integral = table_unit * vec4(row1.prefix - row0.prefix) + (within1 - within0);
-    return max(integral * (1.0 / (x1 - x0)), vec4(0.0));
+    return mean;
 }
 
-vec3 second_color(float x) {
-    float cell = cell_of(x);
-    ColorRow row = color_rows[int(cell) + 1];
-    return row.color.rgb + (x - cell) * row.slope.rgb;
+vec3 color_at(float x) {
+    ColorRow row = color_rows[row_of(x)];
+    precise vec3 color = fma(vec3(part_of(x)), row.step_to_next.xyz, row.color.xyz);
+    return color;
 }
 
-// 1 − exp(−t) for t ≥ 0 to float accuracy, small t too: drivers' exp is not good enough for hundreds of sheets.
-float opacity_of(float t) {
-    if (t < 0.25) return t * (1.0 - t * (0.5 - t * (1.0 / 6.0 - t * (1.0 / 24.0 - t * (1.0 / 120.0 - t * (1.0 / 720.0))))));
-    if (t > 40.0) return 1.0;
-    float k = floor(t * 1.44269504 + 0.5);
-    float r = -((t - k * 0.693145752) - k * 1.42860677e-6);  // ln 2 in two parts; |r| ≤ 0.35
-    float p = 1.0 + r * (1.0 + r * (0.5 + r * (1.0 / 6.0 + r * (1.0 / 24.0 + r * (1.0 / 120.0 + r * (1.0 / 720.0))))));
-    return 1.0 - ldexp(p, -int(k));
+// Whether no value between two ends can be seen.
+bool transparent(float x0, float x1) { return visible[row_of(max(x0, x1)) + 1] == visible[row_of(min(x0, x1))]; }
+
+// Drivers' own are too coarse for 1 − exp(−x) near 0; this is good to the last bit or two, and the same everywhere.
+float exp_of(float x) {
+    x = clamp(x, -87.0, 87.0);
+    precise float n = floor(fma(x, 1.44269504, 0.5));
+    precise float r = fma(n, 2.12194440e-4, fma(n, -0.693359375, x));
+    precise float p = fma(r, fma(r, 1.0 / 5040.0, 1.0 / 720.0), 1.0 / 120.0);
+    p = fma(r, fma(r, fma(r, p, 1.0 / 24.0), 1.0 / 6.0), 0.5);
+    p = fma(r * r, p, r) + 1.0;
+    p *= intBitsToFloat((int(n) + 127) << 23);
+    return p;
 }
 
-vec3 unit(vec3 v) { return v * (1.0 / sqrt(max(dot(v, v), 1e-30))); }
-
-float gloss(float cosine) { return exp(shading.w * log(max(cosine, 1e-3))); }
-
-// gradient: cells a world length, in eye space; to_eye: of unit length
-vec2 light_on(vec3 gradient, vec3 to_eye) {
-    vec3 normal = unit(gradient), halfway = unit(to_key + to_eye);
-    float head = abs(dot(normal, to_eye)), side = abs(dot(normal, to_key));
-    float lit = shading.y * (0.5 * (head + side)) + shading.x;
-    float shine = shading.z * (0.5 * (gloss(head) + gloss(abs(dot(normal, halfway)))));
-    float square = dot(gradient, gradient), surface = square / (square + least_gradient * least_gradient);
-    return vec2(surface * (lit - 1.0) + 1.0, surface * shine);
-}
-
-// Without a boundary the volume ends where the weight, linear between sheets, falls below a level.
-void cut_where_weights_end(Seen front, Seen back, float front_z, float back_z, inout float from, inout float to) {
-    bool inside0 = front.weight > half_weight, inside1 = back.weight > half_weight;
-    if (!inside0 && !inside1) to = from;
-    if (inside0 == inside1) return;
-    float crossing = (half_weight - front.weight) / (back.weight - front.weight) * (back_z - front_z) + front_z;
-    if (inside0) to = min(to, crossing);
-    else from = max(from, crossing);
-}
-
-// Follows a beam between two sheets, where it is inside the volume: from `enter` to `exit`.
-void follow(inout Beam beam, Seen front, Seen back, float front_z, float back_z, float enter, float exit, float ray_length) {
-    float from = max(enter, front_z), to = min(exit, back_z);
-#if !BOUNDED
-    cut_where_weights_end(front, back, front_z, back_z, from, to);
-#endif
-    if (!(from < to) || !(front.known || back.known)) return;
-    float x_front = front.known ? front.value : back.value, x_back = back.known ? back.value : front.value;
-    float slope = (x_back - x_front) * (1.0 / (back_z - front_z));
-    float x0 = from == front_z ? x_front : slope * (from - front_z) + x_front;
-    float x1 = to == back_z ? x_back : slope * (to - front_z) + x_front;
-    if (transparent(x0, x1)) return;
-    vec4 mean = mean_emission(x0, x1);
-    if (!(mean.x > 0.0)) return;  // nothing is left of rounding where there is nothing to see
-    mean.yzw = min(mean.yzw, mean.xxx);
-#if COLORED
-    mean.yzw = 0.5 * mean.x * (second_color(front.known ? front.color : back.color) + second_color(back.color));
-#endif
-    float opacity = opacity_of((to - from) * ray_length * mean.x), light = beam.transmittance * opacity;
-    float per_extinction = light / max(mean.x, 1e-37);
-#if SHADED
-    vec2 lit = 0.5 * (front.light + back.light);
-    beam.color += lit.x * per_extinction * mean.yzw + lit.y * light;
-#else
-    beam.color += per_extinction * mean.yzw;
-#endif
-    beam.depth += light * (0.5 * (from + to));
-    beam.transmittance -= light;
+// Of a normal number > 0.
+float log_of(float x) {
+    int bits = floatBitsToInt(x), power = (bits - 0x3f3504f3) >> 23;
+    precise float m = intBitsToFloat(bits - (power << 23)), s = (m - 1.0) / (m + 1.0), q = s * s;
+    precise float series = fma(q, fma(q, fma(q, fma(q, 1.0 / 9.0, 1.0 / 7.0), 1.0 / 5.0), 1.0 / 3.0), 1.0);
+    precise float result = fma(float(power), 0.693147181, 2.0 * s * series);
+    return result;
 }

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <span>
 
@@ -54,21 +55,27 @@ bool owns_edge(const SnappedPoint& a, const SnappedPoint& b) {
     return a.y != b.y ? b.y > a.y : b.x < a.x;
 }
 
+std::vector<ClipPlane> clip_planes(const View& view, double near) {
+    std::vector<ClipPlane> planes{{{0, 0, 1}, -near}};
+    const double reach = kGuard_px * view.pixel();
+    for (const auto& side : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+        planes.push_back(view.perspective() ? ClipPlane{side + Vec3(0, 0, reach), 0} : ClipPlane{side, reach});
+    }
+    return planes;
+}
+
+bool is_outside(const ClipPlane& plane, const Vec3& p) {
+    return glm::dot(plane.normal, p) + plane.offset < 0;
+}
+
 class TriangleSetup {
 public:
-    TriangleSetup(const View& view, double near) : view_(view) {
-        planes_.push_back({{0, 0, 1}, -near});
-        const double reach = kGuard_px * view.pixel();
-        for (const auto& side : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
-            planes_.push_back(view.perspective() ? ClipPlane{side + Vec3(0, 0, reach), 0} : ClipPlane{side, reach});
-        }
-    }
+    TriangleSetup(const View& view, double near) : view_(view), planes_(clip_planes(view, near)) {}
 
     void add(const std::array<Vec3, 3>& eye, std::vector<ScreenTriangle>& out) {
         polygon_.assign(eye.begin(), eye.end());
         for (const auto& plane : planes_) {
-            const bool cut = std::any_of(polygon_.begin(), polygon_.end(),
-                                         [&](const Vec3& p) { return glm::dot(plane.normal, p) + plane.offset < 0; });
+            const bool cut = std::any_of(polygon_.begin(), polygon_.end(), [&](const Vec3& p) { return is_outside(plane, p); });
             if (cut) clip_polygon(polygon_, plane, scratch_);
         }
         const Vec3 normal = glm::cross(eye[1] - eye[0], eye[2] - eye[0]);
@@ -198,6 +205,19 @@ struct Band {
 };
 
 }  // namespace
+
+bool needs_clipping(const Surface& surface, const View& view, double near) {
+    const auto planes = clip_planes(view, near);
+    std::atomic<bool> needed = false;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, surface.points.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end() && !needed; ++i) {
+            const Vec3 p = view.to_eye(surface.points[i]);
+            if (std::any_of(planes.begin(), planes.end(), [&](const auto& plane) { return is_outside(plane, p); }))
+                needed = true;
+        }
+    });
+    return needed;
+}
 
 PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle) {
     const auto chunks = project(surface, view, near);

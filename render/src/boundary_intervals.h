@@ -23,4 +23,7 @@ struct PixelIntervals {
 /// middle: what all depths are taken relative to
 [[nodiscard]] PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle);
 
+/// Whether any point of the surface lies before the near depth, or so far beside the picture that triangles are cut.
+[[nodiscard]] bool needs_clipping(const Surface& surface, const View& view, double near);
+
 }  // namespace subvol::detail

@@ -6,10 +6,13 @@
 
 #include "gl_context.h"
 #include "shader_sheet_composite_comp.h"
+#include "shader_sheet_frame_glsl.h"
 #include "shader_sheet_kernel_frag.h"
 #include "shader_sheet_kernel_vert.h"
+#include "shader_sheet_splats_glsl.h"
+#include "shader_sheet_walk_glsl.h"
 #include "shader_splat_classify_glsl.h"
-#include "shader_splat_kernel_glsl.h"
+#include "shader_splat_light_glsl.h"
 
 namespace subvol::detail {
 
@@ -17,7 +20,8 @@ namespace {
 
 /// Sheets whose kernels are listed at a time: the lists take no more room than the kernels, which are 16 words each.
 constexpr int kListed = 16;
-constexpr GLuint kTableBinding = 6;  // the others follow, as in shaders/sheet_*
+constexpr GLuint kListBinding = 6;
+constexpr GLuint kTableBinding = 7;  // as shaders/splat_classify.glsl has it; then those of sheet_composite.comp
 
 std::string defines(const SplatFrame& frame) {
     const SplatScene& scene = *frame.scene;
@@ -33,11 +37,11 @@ std::string defines(const SplatFrame& frame) {
     define("NORMALIZED", int{scene.normalized});
     define("BOUNDED", int{scene.half_weight == 0});
     define("PERSPECTIVE", int{frame.view->perspective()});
-    define("TABLE_CELLS", PreintegratedTable::kCells);
-    define("TABLE_BINDING", kTableBinding);
-    define("NEAR_VALUES", kNearValues);
-    define("LEAST_WEIGHT", kLeastWeight);
-    define("OPAQUE", kOpaque);
+    define("kCells", PreintegratedTable::kCells);
+    define("kNearValues", kNearValues);
+    define("kLeastWeight", kLeastWeight);
+    define("kOpaque", kOpaque);
+    define("kFarCells", kFarCells);
     return text.str();
 }
 
@@ -49,9 +53,6 @@ public:
     void set(const char* name, int v) const { glProgramUniform1i(program_.id(), at(name), v); }
     void set(const char* name, float v) const { glProgramUniform1f(program_.id(), at(name), v); }
     void set(const char* name, float x, float y) const { glProgramUniform2f(program_.id(), at(name), x, y); }
-    void set(const char* name, const Vec3& v) const {
-        glProgramUniform3f(program_.id(), at(name), static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
-    }
     void set(const char* name, const std::array<float, 4>& v) const {
         glProgramUniform4fv(program_.id(), at(name), 1, v.data());
     }
@@ -80,14 +81,15 @@ void set_frame(const SplatFrame& frame, const GlProgram& kernels, const GlProgra
     u.set_integers("size_px", view.width(), view.height());
     u.set("near", frame.sheets.near);
     u.set("offsets", value_offset(scene, *frame.look), scene.color_channel ? color_offset(scene, *frame.look) : 0.0f);
-    u.set("table_unit", frame.look->table.unit);
+    u.set("unit", frame.look->table.unit);
     u.set("half_weight", scene.half_weight);
     u.set("least_gradient", kLeastChange * PreintegratedTable::kCells / static_cast<float>(scene.diagonal));
     if (!scene.shading) return;
     const Shading& s = *scene.shading;
-    u.set("shading", std::array{static_cast<float>(s.ambient), static_cast<float>(s.diffuse), static_cast<float>(s.specular),
-                                static_cast<float>(s.shininess)});
-    u.set("to_key", glm::normalize(s.key));
+    u.set("material", std::array{static_cast<float>(s.ambient), static_cast<float>(s.diffuse), static_cast<float>(s.specular),
+                                 static_cast<float>(s.shininess)});
+    const Vec3 key = glm::normalize(s.key);
+    u.set("key", std::array{static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z), 0.0f});
 }
 
 template <class T>
@@ -145,7 +147,7 @@ Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
         const SheetLists lists = list_sheets(frame, window, first, end);
         ids_.grow(lists.splats.size() * sizeof(std::uint32_t));
         ids_.upload(lists.splats.size() * sizeof(std::uint32_t), lists.splats.data());
-        ids_.bind(kTableBinding + 9);
+        ids_.bind(kListBinding);
         for (int sheet = first; sheet < end; ++sheet) {
             const auto k = static_cast<std::size_t>(sheet - first);
             // Where neither this sheet nor the last one has kernels no value is known, if a sum without any is none.
@@ -168,9 +170,12 @@ const GlSheets::Programs& GlSheets::programs(const SplatFrame& frame) {
     if (const auto found = programs_.find(features); found != programs_.end()) return found->second;
     GlProgram kernels(ShaderText{"sheet_kernel.vert", kShader_sheet_kernel_vert},
                       ShaderText{"sheet_kernel.frag", kShader_sheet_kernel_frag}, features,
-                      {{"splat_kernel.glsl", kShader_splat_kernel_glsl}});
+                      {{"sheet_splats.glsl", kShader_sheet_splats_glsl}});
     GlProgram composite("sheet_composite.comp", kShader_sheet_composite_comp, features,
-                        {{"splat_classify.glsl", kShader_splat_classify_glsl}});
+                        {{"sheet_frame.glsl", kShader_sheet_frame_glsl},
+                         {"splat_classify.glsl", kShader_splat_classify_glsl},
+                         {"splat_light.glsl", kShader_splat_light_glsl},
+                         {"sheet_walk.glsl", kShader_sheet_walk_glsl}});
     return programs_.emplace(features, Programs{std::move(kernels), std::move(composite)}).first->second;
 }
 

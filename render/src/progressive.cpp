@@ -67,15 +67,8 @@ void check(const ProgressiveOptions& options) {
 
 class Progressive {
 public:
-    Progressive(const HexMesh& mesh, const Camera& camera, int width, int height, const Optics& optics,
-                const ProgressiveOptions& options)
-        : mesh_(mesh),
-          camera_(camera),
-          width_(width),
-          height_(height),
-          optics_(optics),
-          options_(options),
-          deadline_(options.progress, options.seconds) {}
+    Progressive(const HexMesh& mesh, const View& view, const Optics& optics, const ProgressiveOptions& options)
+        : mesh_(mesh), view_(view), optics_(optics), options_(options), deadline_(options.progress, options.seconds) {}
 
     ProgressiveResult run() {
         RbfVolume volume = sample({});
@@ -102,9 +95,9 @@ private:
         SampleOptions options = options_.sample;
         options.progress = &deadline_;
         if (footprint_px) {
-            options.footprint = Footprint{.camera = camera_,
-                                          .width_px = width_,
-                                          .height_px = height_,
+            options.footprint = Footprint{.camera = view_.camera(),
+                                          .width_px = view_.width(),
+                                          .height_px = view_.height(),
                                           .spacing_px = *footprint_px,
                                           .least_cell_px = *footprint_px};
         }
@@ -119,13 +112,13 @@ private:
     }
 
     void draw_at(const RbfVolume& volume, int scale, double footprint_px) {
-        const int width = (width_ + scale - 1) / scale, height = (height_ + scale - 1) / scale;
-        SplatResult drawn = render_splats(volume, View(camera_, width, height), optics_, splat_options(scale));
+        const int width = (view_.width() + scale - 1) / scale, height = (view_.height() + scale - 1) / scale;
+        SplatResult drawn = render_splats(volume, View(view_.camera(), width, height), optics_, splat_options(scale));
         if (scale > 1) {
-            drawn.image.rgba = enlarge(drawn.image.rgba, 4, width, scale, width_, height_);
-            drawn.depth = enlarge(drawn.depth, 1, width, scale, width_, height_);
-            drawn.image.width = width_;
-            drawn.image.height = height_;
+            drawn.image.rgba = enlarge(drawn.image.rgba, 4, width, scale, view_.width(), view_.height());
+            drawn.depth = enlarge(drawn.depth, 1, width, scale, view_.width(), view_.height());
+            drawn.image.width = view_.width();
+            drawn.image.height = view_.height();
         }
         result_.splat = std::move(drawn);
         result_.picture_scale = scale;
@@ -135,8 +128,7 @@ private:
     }
 
     const HexMesh& mesh_;
-    const Camera& camera_;
-    int width_, height_;
+    const View& view_;
     const Optics& optics_;
     const ProgressiveOptions& options_;
     Deadline deadline_;
@@ -145,10 +137,10 @@ private:
 
 }  // namespace
 
-ProgressiveResult render_progressively(const HexMesh& mesh, const Camera& camera, int width, int height, const Optics& optics,
+ProgressiveResult render_progressively(const HexMesh& mesh, const View& view, const Optics& optics,
                                        const ProgressiveOptions& options) {
     check(options);
-    return Progressive(mesh, camera, width, height, optics, options).run();
+    return Progressive(mesh, view, optics, options).run();
 }
 
 }  // namespace subvol

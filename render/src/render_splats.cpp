@@ -4,6 +4,7 @@
 
 #include "gl_context.h"
 #include "gl_sheets.h"
+#include "gl_splatter.h"
 #include "splat_backend.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
@@ -12,30 +13,21 @@ namespace subvol {
 
 namespace {
 
-struct Choice {
-    bool gl = false;
-    std::string device;
-};
-
-Choice choose(Backend wanted) {
-    const auto cpu = [] {
-        const auto threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-        return Choice{false, std::to_string(threads) + " CPU threads"};
-    };
-    if (wanted == Backend::Cpu) return cpu();
-    const auto device = find_gl_device();
+/// The GPU to draw with; nothing: the CPU does.
+std::optional<detail::GlSplatter> choose(const detail::SplatScene& scene, const SplatOptions& options) {
+    if (options.backend == Backend::Cpu || options.method == SplatMethod::Sheets) return std::nullopt;
     // Software GL is slower than the CPU backend and draws the same: only when asked for.
-    if (device && (wanted == Backend::Gl || device->hardware)) return {true, device->renderer};
-    if (wanted == Backend::Gl) {
-        throw Error(ErrorCode::MissingCapability, "no OpenGL 4.5 was found through EGL", {}, "use the CPU backend");
+    if (options.backend == Backend::Auto) {
+        const auto device = find_gl_device(options.device);
+        if (!device || !device->hardware) return std::nullopt;
     }
-    return cpu();
+    return detail::GlSplatter(scene, options.device);
 }
 
 /// Draws sheets in a context of its own, which is current only while it is worked with.
 class SheetDrawer {
 public:
-    SheetDrawer() {
+    explicit SheetDrawer(std::optional<int> device) : context_(device) {
         sheets_.emplace();
         context_.release();
     }
@@ -50,7 +42,7 @@ public:
         const detail::GlScope scope(context_);
         return sheets_->draw(frame, progress);
     }
-    [[nodiscard]] const std::string& device() const { return context_.renderer(); }
+    [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
 
 private:
     detail::GlContext context_;
@@ -62,10 +54,14 @@ std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
     if (options.method != SplatMethod::Sheets) return nullptr;
     if (options.backend == Backend::Cpu)
         throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", {}, "the backends auto and gl");
-    if (!find_gl_device())
+    if (!find_gl_device(options.device))
         throw Error(ErrorCode::MissingCapability, "sheets need OpenGL 4.5, and none was found through EGL", {},
                     "the method splat");
-    return std::make_unique<SheetDrawer>();
+    return std::make_unique<SheetDrawer>(options.device);
+}
+
+std::string cpu_threads() {
+    return std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) + " CPU threads";
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -75,43 +71,63 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 struct Splatter::State {
+    State(const RbfVolume& volume, const SplatOptions& wanted)
+        : options(wanted),
+          scene(detail::make_scene(volume, wanted)),
+          gpu(choose(scene, wanted)),
+          sheets(make_sheet_drawer(wanted)) {}
+
+    /// The CPU prepares what it or sheet buffers draw.
+    [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& look, Progress* progress,
+                                           SplatReport& report) {
+        const auto start = std::chrono::steady_clock::now();
+        detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
+        report.seconds_prepare += seconds_since(start);
+        report.backend = sheets ? "gl" : "cpu";
+        report.device = sheets ? sheets->renderer() : cpu_threads();
+        report.bin_entries = frame.tile_splats.size();
+        report.boundary_hits = frame.intervals.hits;
+        return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
+    }
+
+    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, Progress* progress,
+                                            SplatReport& report) {
+        auto drawn = gpu->draw(view, look, options.sheets, progress);
+        report.backend = "gl";
+        report.device = gpu->renderer();
+        report.bin_entries = gpu->report().bin_entries;
+        report.boundary_hits = gpu->report().boundary_hits;
+        report.stages = gpu->report().stages;
+        return drawn;
+    }
+
     SplatOptions options;
-    Choice choice;
     detail::SplatScene scene;
-    std::unique_ptr<SheetDrawer> sheets{};
+    std::optional<detail::GlSplatter> gpu;
+    std::unique_ptr<SheetDrawer> sheets;
     detail::SplatFrame frame{};  // its memory is used again
 };
 
-Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) {
-    auto scene = detail::make_scene(volume, options);
-    auto sheets = make_sheet_drawer(options);
-    const Choice choice = sheets ? Choice{true, sheets->device()} : choose(options.backend);
-    state_ = std::make_unique<State>(State{options, choice, std::move(scene), std::move(sheets)});
+Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) : state_(std::make_unique<State>(volume, options)) {
 }
 
 Splatter::~Splatter() = default;
 Splatter::Splatter(Splatter&&) noexcept = default;
 Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 
-SplatResult Splatter::draw(const View& view, const Optics& optics) {
-    auto& [options, choice, scene, sheets, frame] = *state_;
+SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
+    State& state = *state_;
+    if (!progress) progress = state.options.progress;
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
-    const auto look = detail::classify(scene, optics);
-    detail::prepare_frame(frame, scene, view, look, options.sheets, options.progress);
+    const auto look = detail::classify(state.scene, optics);
     report.seconds_prepare = seconds_since(start);
-
-    const auto drawing = std::chrono::steady_clock::now();
-    auto drawn = sheets ? sheets->draw(frame, options.progress) : detail::draw_splats_cpu(frame, options.progress);
+    auto drawn = state.gpu ? state.draw_on_gpu(view, look, progress, report) : state.draw_frame(view, look, progress, report);
+    report.seconds_draw = seconds_since(start) - report.seconds_prepare;
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
-    report.seconds_draw = seconds_since(drawing);
-    report.backend = choice.gl ? "gl" : "cpu";
-    report.device = choice.device;
-    report.points = scene.volume->size();
-    report.bin_entries = frame.tile_splats.size();
-    report.boundary_hits = frame.intervals.hits;
+    report.points = state.scene.volume->size();
     return result;
 }
 

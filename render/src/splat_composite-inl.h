@@ -16,8 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
-constexpr float kFarCells = 1e12f;  // values further out look like this one
-
 /// What the pixels of a block see on one sheet.
 struct SheetValues {
     Floats x;  // in cells
@@ -100,6 +98,9 @@ private:
         }
         const auto seen = hn::And(hn::And(active, hn::Lt(from, to)), hn::Or(last_.known, here.known));
         if (hn::AllFalse(d, seen)) return;
+        // Rays that are done are at infinity, which would make NaN of a depth.
+        from = hn::IfThenElse(seen, from, front);
+        to = hn::IfThenElse(seen, to, front);
         const auto x_front = hn::IfThenElse(last_.known, last_.x, here.x);
         const auto x_back = hn::IfThenElse(here.known, here.x, last_.x);
         const auto per_depth = hn::Div(hn::Set(d, 1.0f), hn::Sub(back, front));
@@ -126,7 +127,7 @@ private:
         for (std::size_t c = 1; c < 4; ++c) mean[c] = hn::Min(mean[c], mean[0]);
         const auto light = hn::Mul(transmittance_, opacity);
         if constexpr (!kPlain) {
-            if (frame_.scene->color_channel) take_second_color(here.color, mean);
+            if (frame_.scene->color_channel) take_second_color(here, mean);
         }
         const auto per_extinction = hn::Div(light, hn::Max(mean[0], hn::Set(d, 1e-37f)));
         if constexpr (kPlain) {
@@ -135,8 +136,8 @@ private:
             blue_ = hn::MulAdd(per_extinction, mean[3], blue_);
         } else {
             const auto half = hn::Set(d, 0.5f);
-            const auto lit = hn::Mul(hn::Mul(half, hn::Add(last_.light.diffuse, here.light.diffuse)), per_extinction);
-            const auto gloss = hn::Mul(hn::Mul(half, hn::Add(last_.light.specular, here.light.specular)), light);
+            const auto lit = hn::Mul(hn::Mul(half, both_ends(last_.light.diffuse, here.light.diffuse, here)), per_extinction);
+            const auto gloss = hn::Mul(hn::Mul(half, both_ends(last_.light.specular, here.light.specular, here)), light);
             red_ = hn::Add(red_, hn::MulAdd(lit, mean[1], gloss));
             green_ = hn::Add(green_, hn::MulAdd(lit, mean[2], gloss));
             blue_ = hn::Add(blue_, hn::MulAdd(lit, mean[3], gloss));
@@ -161,13 +162,18 @@ private:
     }
 
     /// The extinction stays, the emission is its product with the mean of the second channel's colours at the ends.
-    HWY_ATTR void take_second_color(Floats color, Floats mean[4]) const {
+    HWY_ATTR void take_second_color(const SheetValues& here, Floats mean[4]) const {
         const Lanes d;
         Floats front[3], back[3];
-        classifier_.color(hn::IfThenElse(last_.known, last_.color, color), front);
-        classifier_.color(color, back);
+        classifier_.color(hn::IfThenElse(last_.known, last_.color, here.color), front);
+        classifier_.color(hn::IfThenElse(here.known, here.color, last_.color), back);
         for (std::size_t c = 0; c < 3; ++c)
             mean[c + 1] = hn::Mul(hn::Mul(hn::Set(d, 0.5f), mean[0]), hn::Add(front[c], back[c]));
+    }
+
+    /// The sum over the two ends of a stretch; an end that knows nothing is like the other.
+    HWY_ATTR Floats both_ends(Floats front, Floats back, const SheetValues& here) const {
+        return hn::Add(hn::IfThenElse(last_.known, front, back), hn::IfThenElse(here.known, back, front));
     }
 
     HWY_ATTR void next_intervals(Mask through) {

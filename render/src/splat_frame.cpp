@@ -114,9 +114,11 @@ void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view,
     frame.sheets = make_sheets(scene, view, sheets);
     frame.tiles_x = (view.width() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
-    const double near = static_cast<double>(frame.sheets.near) + static_cast<double>(frame.sheets.middle);
+    // Kernels and sheets count from the middle in double precision: from far away, its float is another place.
+    const double middle = view.to_eye(scene.middle).z;
     if (scene.half_weight == 0) {
-        frame.intervals = boundary_intervals(scene.volume->boundary, view, near, static_cast<double>(frame.sheets.middle));
+        frame.intervals =
+            boundary_intervals(scene.volume->boundary, view, static_cast<double>(frame.sheets.near) + middle, middle);
     }
     report_progress(progress, "prepare splats", 0.4);
     eye_splats(frame.kernels, scene, view, look);

@@ -20,7 +20,9 @@ inline constexpr float kLeastWeight = 0.02f;
 inline constexpr float kNearValues = 0.5f;
 /// Transmittance at which a ray is done.
 inline constexpr float kOpaque = 1e-4f;
-/// Gradient at which half of a surface is seen, in parts of the transfer function's range over the volume's diagonal.
+/// Values further out, in cells of the table, look like this one.
+inline constexpr float kFarCells = 1e12f;
+/// Change of the value, in parts of the range over the volume's diagonal, at which half of a surface is seen.
 inline constexpr float kLeastChange = 0.25f;
 /// Sheets that are summed together: no part of the picture depends on it.
 inline constexpr int kBatch = 8;

@@ -35,7 +35,7 @@ public:
 TEST(Progressive, PicturesComeNearerToTheLastOne) {
     Pictures pictures;
     const auto result = render_progressively(
-        make_model("twist", 8), kCamera, 90, 71, optics(),
+        make_model("twist", 8), View(kCamera, 90, 71), optics(),
         {.seconds = 600, .footprint_px = {4, 2}, .splat = {.backend = Backend::Cpu}, .progress = &pictures});
     ASSERT_EQ(result.steps, 5);  // quarter, half, whole, and two finer samplings: cells are 8 pixels wide
     EXPECT_EQ(result.picture_scale, 1);
@@ -55,7 +55,7 @@ TEST(Progressive, PicturesComeNearerToTheLastOne) {
 }
 
 TEST(Progressive, WithoutTimeTheFirstPictureIsReturned) {
-    const auto result = render_progressively(make_model("twist", 8), kCamera, 64, 64, optics(),
+    const auto result = render_progressively(make_model("twist", 8), View(kCamera, 64, 64), optics(),
                                              {.seconds = 1e-9, .splat = {.backend = Backend::Cpu}});
     EXPECT_EQ(result.steps, 1);
     EXPECT_EQ(result.picture_scale, 4);
@@ -70,7 +70,7 @@ TEST(Progressive, AWishToStopEndsTheWork) {
     Pictures pictures;
     pictures.stop_after = 2;
     try {
-        (void)render_progressively(make_model("twist", 8), kCamera, 64, 64, optics(),
+        (void)render_progressively(make_model("twist", 8), View(kCamera, 64, 64), optics(),
                                    {.seconds = 600, .splat = {.backend = Backend::Cpu}, .progress = &pictures});
         FAIL() << "it went on";
     } catch (const Error& error) {
@@ -80,8 +80,9 @@ TEST(Progressive, AWishToStopEndsTheWork) {
 }
 
 TEST(Progressive, RefusesImpossibleTimes) {
-    EXPECT_THROW((void)render_progressively(make_model("twist", 4), kCamera, 8, 8, optics(), {.seconds = 0}), Error);
-    EXPECT_THROW((void)render_progressively(make_model("twist", 4), kCamera, 8, 8, optics(), {.footprint_px = {0}}), Error);
+    EXPECT_THROW((void)render_progressively(make_model("twist", 4), View(kCamera, 8, 8), optics(), {.seconds = 0}), Error);
+    EXPECT_THROW((void)render_progressively(make_model("twist", 4), View(kCamera, 8, 8), optics(), {.footprint_px = {0}}),
+                 Error);
 }
 
 }  // namespace

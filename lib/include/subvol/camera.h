@@ -33,6 +33,7 @@ public:
     ///         the size is not in 1..65536
     View(const Camera& camera, int width, int height);
 
+    [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] bool perspective() const { return perspective_; }
@@ -57,6 +58,7 @@ public:
     [[nodiscard]] Ray ray(double x_px, double y_px) const;
 
 private:
+    Camera camera_;
     int width_, height_;
     bool perspective_;
     double pixel_;

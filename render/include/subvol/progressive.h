@@ -32,7 +32,7 @@ struct ProgressiveResult {
 /// picture returned, always of the size asked for.
 ///
 /// throws: as sample_rbf_points and Splatter; Error(InvalidInput) if seconds or a footprint is not positive
-[[nodiscard]] ProgressiveResult render_progressively(const HexMesh& mesh, const Camera& camera, int width, int height,
-                                                     const Optics& optics, const ProgressiveOptions& options = {});
+[[nodiscard]] ProgressiveResult render_progressively(const HexMesh& mesh, const View& view, const Optics& optics,
+                                                     const ProgressiveOptions& options = {});
 
 }  // namespace subvol

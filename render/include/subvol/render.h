@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/gl_device.h"
@@ -37,17 +38,25 @@ struct Shading {
 
 /// sheets:        planes of constant eye depth over the volume's depth range, 2..65536
 /// channel:       which channel of the volume is shown
+/// device:        of OpenGL, its number in gl_devices(); none: the first hardware, else software
 /// color_channel: takes the colours from another channel than the opacities; not pre-integrated
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
 struct SplatOptions {
     SplatMethod method = SplatMethod::Kernels;
     Backend backend = Backend::Auto;
+    std::optional<int> device{};
     int sheets = 200;
     std::size_t channel = 0;
     std::optional<std::size_t> color_channel{};
     bool normalized = true;
     std::optional<Shading> shading{};
     Progress* progress = nullptr;
+};
+
+/// Time that a device spent on a part of the work.
+struct StageTime {
+    std::string stage;
+    double seconds = 0;
 };
 
 struct SplatReport {
@@ -57,6 +66,7 @@ struct SplatReport {
     std::size_t bin_entries = 0;    // (tile, kernel) pairs
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_prepare = 0, seconds_draw = 0;
+    std::vector<StageTime> stages{};  // of the GPU
 };
 
 /// depth: of each pixel, the mean eye depth of what is seen, by opacity; infinity where nothing is
@@ -84,7 +94,8 @@ public:
     Splatter(Splatter&&) noexcept;
     Splatter& operator=(Splatter&&) noexcept;
 
-    [[nodiscard]] SplatResult draw(const View& view, const Optics& optics);
+    /// progress: who listens to this picture; null: the options' own
+    [[nodiscard]] SplatResult draw(const View& view, const Optics& optics, Progress* progress = nullptr);
 
 private:
     struct State;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "report.h"
+#include "subvol/render.h"
+
+namespace subvol::cli {
+
+/// How points are splatted.
+struct SplatArguments {
+    std::string backend = "auto";
+    std::optional<int> device;
+    int sheets = 200;
+    bool shade = false;
+    bool plain_sums = false;
+    std::optional<std::string> color_field;
+    std::optional<double> seconds;
+
+    void add_to(CLI::App& app);
+
+    /// The colours' channel, if there is one, is the second.
+    ///
+    /// throws: Error(InvalidInput) if a name is unknown
+    [[nodiscard]] SplatOptions options() const;
+};
+
+/// Puts what a splatted picture took into the report.
+void report_splats(const SplatReport& splats, const SplatArguments& arguments, Report& report);
+
+}  // namespace subvol::cli

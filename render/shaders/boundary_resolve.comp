@@ -1,0 +1,43 @@
+#version 450
+// The hits of each pixel, sorted, become intervals in the same place.
+layout(local_size_x = 256) in;
+layout(std430, binding = 0) readonly buffer HitOffsets { uint hit_offsets[]; };
+layout(std430, binding = 1) buffer Hits { vec2 hits[]; };
+layout(std430, binding = 2) writeonly buffer IntervalRanges { uvec2 interval_ranges[]; };  // first, end
+
+// Where two shells touch, leaving comes after entering: no gap opens between them.
+bool before(vec2 l, vec2 r) { return l.x != r.x ? l.x < r.x : l.y > r.y; }
+
+void sort_hits(uint first, uint end) {
+    for (uint i = first + 1u; i < end; ++i) {
+        vec2 hit = hits[i];
+        uint to = i;
+        for (; to > first && before(hit, hits[to - 1u]); --to) hits[to] = hits[to - 1u];
+        hits[to] = hit;
+    }
+}
+
+uint resolve(uint first, uint end) {
+    int inside = 0;  // how many solids the eye is in
+    for (uint i = first; i < end; ++i) inside -= int(hits[i].y);
+    inside = max(inside, 0);
+    float enter = float(scale.z);
+    uint to = first;
+    for (uint i = first; i < end; ++i) {
+        vec2 hit = hits[i];
+        if (hit.y > 0.0) {
+            if (inside++ == 0) enter = hit.x;
+        } else if (inside > 0 && --inside == 0 && hit.x > enter) {
+            hits[to++] = vec2(enter, hit.x);
+        }
+    }
+    return to;
+}
+
+void main() {
+    uint pixel = group_number() * kThreads + gl_LocalInvocationIndex;
+    if (pixel >= uint(size.x) * uint(size.y)) return;
+    uint first = min(hit_offsets[pixel], most_hits), end = min(hit_offsets[pixel + 1u], most_hits);
+    sort_hits(first, end);
+    interval_ranges[pixel] = uvec2(first, resolve(first, end));
+}

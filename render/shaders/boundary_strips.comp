@@ -1,0 +1,26 @@
+#version 450
+// The pixels that each triangle may cover, and in how many strips of a row that is.
+layout(local_size_x = 256) in;
+layout(std430, binding = 1) readonly buffer EyePoints { EyePoint eye_points[]; };
+layout(std430, binding = 2) readonly buffer Triangles { uint corners[]; };
+layout(std430, binding = 3) writeonly buffer Boxes { ivec4 boxes[]; };  // first x, y; strips in a row; last x
+layout(std430, binding = 4) writeonly buffer Strips { uint strips[]; };
+
+// Of a snapped place: the first pixel whose centre is at it or beyond, the last whose centre is at it or before.
+int first_pixel(int snapped) { return (snapped + kSnap / 2 - 1) >> 12; }
+int last_pixel(int snapped) { return (snapped - kSnap / 2) >> 12; }
+
+void main() {
+    uint id = group_number() * kThreads + gl_LocalInvocationIndex;
+    if (id >= triangles) return;
+    strips[id] = 0u;
+    ivec2 a = eye_points[corners[3u * id]].px, b = eye_points[corners[3u * id + 1u]].px, c = eye_points[corners[3u * id + 2u]].px;
+    if (equal(product(b.x - a.x, c.y - a.y), product(b.y - a.y, c.x - a.x))) return;
+    ivec2 low = min(min(a, b), c), high = max(max(a, b), c);
+    int x0 = max(first_pixel(low.x), 0), x1 = min(last_pixel(high.x), size.x - 1);
+    int y0 = max(first_pixel(low.y), 0), y1 = min(last_pixel(high.y), size.y - 1);
+    if (x1 < x0 || y1 < y0) return;
+    int in_row = (x1 - x0) / kStrip_px + 1;
+    boxes[id] = ivec4(x0, y0, in_row, x1);
+    strips[id] = uint(in_row) * uint(y1 - y0 + 1);
+}

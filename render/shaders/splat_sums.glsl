@@ -1,0 +1,207 @@
+// Sums of kernels on the sheets of a batch, for the pixel of each thread. Kernels are cut by the sheets once for the whole group
+// and laid in shared memory, a chunk at a time, with the sheets on which they may meet each block of 8×4 pixels: threads of a
+// block pass over the others together.
+layout(std430, binding = 0) readonly buffer Splats { Splat splats[]; };
+layout(std430, binding = 1) readonly buffer SplatExtras { vec4 splat_extras[]; };
+layout(std430, binding = 3) readonly buffer BinOffsets { uint bin_offsets[]; };
+layout(std430, binding = 4) readonly buffer BinSplats { uint bin_splats[]; };
+layout(std430, binding = 10) readonly buffer KernelTable { float kernel_table[]; };
+
+const uint kPixels = uint(kTile) * uint(kTile);
+const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBlocksY;
+
+shared vec4 cuts[kChunk * kBatch];  // of a kernel on a sheet: its middle x, y; e and value there
+shared vec4 shapes[kChunk];         // conic xx, 2 xy, yy; moment
+shared vec2 gradients[kChunk];
+shared uint met_sheets[kChunk * kBlocks];  // a bit a sheet
+#if GENERAL
+shared vec4 rests[kChunk];  // depth, 1 / S_zz, value slope
+shared vec2 shears[kChunk];
+#endif
+#if kExtras > 0
+shared vec4 extras[kChunk * kExtras];
+#endif
+
+uint block;      // of this thread's pixel
+vec2 ray;        // slopes of the pixel, absolute, so that tiles do not matter
+float across[kBatch];  // world length of a unit of slope, on each sheet
+ivec2 tile_px;
+
+precise float weights[kBatch];
+precise float values[kBatch];
+#if COLORED
+precise float colors[kBatch];
+#endif
+#if SHADED
+precise vec3 gradient_sums[kBatch];
+#endif
+
+float across_at(int sheet) { return perspective ? middle_depth + sheet_depth(sheet) : 1.0; }
+
+// Marks the blocks that a section with its middle at px may meet: half a pixel and a little for rounding more than it has.
+void mark_blocks(uint j, uint k, vec2 px, vec2 half_size) {
+    const vec2 kSize = vec2(8.0, 4.0);
+    ivec2 first = max(ivec2(clamp((px - half_size) / kSize, -1.0, 64.0) + 1.0) - 1, 0);
+    ivec2 last = min(ivec2(clamp((px + half_size) / kSize, -1.0, 64.0) + 1.0) - 1, ivec2(kBlocksX, kBlocksY) - 1);
+    for (int y = first.y; y <= last.y; ++y) {
+        for (int x = first.x; x <= last.x; ++x) atomicOr(met_sheets[int(j) * kBlocks + y * kBlocksX + x], 1u << k);
+    }
+}
+
+void cut(uint j, uint k, uint id, int sheet, bool wanted) {
+    Splat s = splats[id];
+    float zs = sheet_depth(sheet) - s.place.z, e = zs * zs * s.place.w, left = 1.0 - e;
+    vec2 middle = fma(s.shape.xy, vec2(zs), s.place.xy);
+    cuts[j * kBatch + k] = vec4(middle, e, fma(zs, s.rest.x, s.slope.y));
+    if (left > 0.0 && wanted) {
+        float scale = 1.0 / (across_at(sheet) * pixel);
+        vec2 px = vec2(middle.x, -middle.y) * scale + (0.5 * vec2(size) - vec2(tile_px));
+        mark_blocks(j, k, px, s.rest.zw * (sqrt(left) * scale) + 0.55);
+    }
+    if (k == 0u) {
+        shapes[j] = vec4(s.shape.z, 2.0 * s.shape.w, s.slope.x, s.rest.y);
+        gradients[j] = s.slope.zw;
+#if GENERAL
+        rests[j] = vec4(s.place.z, s.place.w, s.rest.x, 0.0);
+        shears[j] = s.shape.xy;
+#endif
+    }
+#if kExtras > 0
+    for (uint i = k; i < kExtras; i += kBatch) extras[j * kExtras + i] = splat_extras[id * kExtras + i];
+#endif
+}
+
+// Lays kernels `first` to `end` in shared memory.
+void stage(uint first, uint end, int first_sheet, uint wanted_sheets) {
+    barrier();  // the last chunk has been used
+    for (uint i = gl_LocalInvocationIndex; i < kChunk * kBlocks; i += kPixels) met_sheets[i] = 0u;
+    barrier();
+    for (uint i = gl_LocalInvocationIndex; i < (end - first) * kBatch; i += kPixels) {
+        uint j = i / kBatch, k = i % kBatch;
+        cut(j, k, bin_splats[first + j], first_sheet + int(k), (wanted_sheets & (1u << k)) != 0u);
+    }
+    barrier();
+}
+
+#if !COMPACT
+// The kernel's table over [0,1], linear between its entries; 0 beyond.
+float profile(float t) {
+    float at = min(t * kernel_cells, kernel_cells), cell = min(floor(at), kernel_cells - 1.0);
+    float low = kernel_table[int(cell)], high = kernel_table[int(cell) + 1];
+    return fma(at - cell, high - low, low);
+}
+#endif
+
+float weight_of(uint j, vec3 d, float e) {
+#if COMPACT
+    precise float left = max(1.0 - e, 0.0), w = left * left * left;
+    return w;
+#elif SEPARABLE
+    precise float w = 1.0;
+    for (uint a = 0u; a < 3u; ++a) {
+        vec3 row = extras[j * kExtras + kAxesAt + a].xyz;
+        precise float xi = fma(row.x, d.x, fma(row.y, d.y, row.z * d.z));
+        w *= profile(abs(xi));
+    }
+    return w;
+#else
+    return profile(e);
+#endif
+}
+
+#if BENT
+float bent_value(float value, uint at, vec3 d) {
+    vec4 b = extras[at];
+    vec2 rest = extras[at + 1u].xy;
+    precise float along = fma(b.x, d.z, fma(b.y, d.x, b.z * d.y)), row = fma(b.w, d.x, 2.0 * rest.x * d.y);
+    precise float v = fma(rest.y * d.y, d.y, fma(d.x, row, fma(d.z, along, value)));
+    return v;
+}
+#endif
+
+#if COLORED
+float color_of(uint j, vec3 d, float e) {
+    vec4 c = extras[j * kExtras + kColorAt];
+    float v = fma(c.w, d.y, fma(c.y, d.z, c.x));
+    v = fma(extras[j * kExtras + kColorAt + 1u].x, e, fma(c.z, d.x, v));
+#if BENT
+    v = bent_value(v, j * kExtras + kColorBendAt, d);
+#endif
+    return v;
+}
+#endif
+
+#if SHADED
+// Of what a kernel stands for, in eye space.
+vec3 gradient_of(uint j, vec3 d) {
+    vec4 shape = shapes[j], rest = rests[j];
+    vec2 gradient = gradients[j], shear = shears[j];
+    float twice = 2.0 * shape.w, xy = 0.5 * shape.y;
+    precise vec3 g;
+    g.x = fma(twice, fma(shape.x, d.x, xy * d.y), gradient.x);
+    g.y = fma(twice, fma(xy, d.x, shape.z * d.y), gradient.y);
+    g.z = fma(twice * rest.y, d.z, rest.z);
+#if BENT
+    vec4 b = extras[j * kExtras + kBendAt];
+    vec2 more = extras[j * kExtras + kBendAt + 1u].xy;
+    g.x += fma(b.y, d.z, 2.0 * fma(b.w, d.x, more.x * d.y));
+    g.y += fma(b.z, d.z, 2.0 * fma(more.x, d.x, more.y * d.y));
+    g.z += fma(2.0 * b.x, d.z, fma(b.y, d.x, b.z * d.y));
+#endif
+    // Offsets are from the section's middle, which moves with the depth.
+    g.z = fma(-shear.x, g.x, fma(-shear.y, g.y, g.z));
+    return g;
+}
+#endif
+
+void add_kernel(uint j, uint met, int first_sheet) {
+    vec4 shape = shapes[j];
+    vec2 gradient = gradients[j];
+    for (int k = 0; k < kBatch; ++k) {
+        if ((met & (1u << k)) == 0u) continue;
+        vec4 at = cuts[j * kBatch + k];
+        precise vec2 d = fma(ray, vec2(across[k]), -at.xy);
+        precise float e = fma(d.x, fma(shape.x, d.x, shape.y * d.y), fma(shape.z * d.y, d.y, at.z));
+        precise float v = fma(shape.w, e, fma(gradient.x, d.x, fma(gradient.y, d.y, at.w)));
+#if GENERAL
+        precise vec3 offset = vec3(d, sheet_depth(first_sheet + k) - rests[j].x);
+#if BENT
+        v = bent_value(v, j * kExtras + kBendAt, offset);
+#endif
+#else
+        const vec3 offset = vec3(0.0);
+#endif
+        float w = weight_of(j, offset, e);
+        weights[k] += w;
+        values[k] = fma(w, v, values[k]);
+#if COLORED
+        colors[k] = fma(w, color_of(j, offset, e), colors[k]);
+#endif
+#if SHADED
+        gradient_sums[k] = fma(vec3(w), gradient_of(j, offset), gradient_sums[k]);
+#endif
+    }
+}
+
+// Sums the wanted sheets of a batch; pixels that are not awake are left as they come.
+void sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
+    for (int k = 0; k < kBatch; ++k) {
+        across[k] = across_at(first_sheet + k);
+        weights[k] = values[k] = 0.0;
+#if COLORED
+        colors[k] = 0.0;
+#endif
+#if SHADED
+        gradient_sums[k] = vec3(0.0);
+#endif
+    }
+    uint end = bin_offsets[bin + 1u];
+    for (uint first = bin_offsets[bin]; first < end; first += kChunk) {
+        uint count = min(end - first, kChunk);
+        stage(first, first + count, first_sheet, wanted_sheets);
+        for (uint j = 0u; awake && j < count; ++j) {
+            uint met = met_sheets[j * kBlocks + block];
+            if (met != 0u) add_kernel(j, met, first_sheet);
+        }
+    }
+}

@@ -1,0 +1,198 @@
+#include "gl_boundary.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "shader_boundary_frame_glsl.h"
+#include "shader_boundary_points_comp.h"
+#include "shader_boundary_raster_comp.h"
+#include "shader_boundary_resolve_comp.h"
+#include "shader_boundary_strips_comp.h"
+#include "shader_gl_groups_glsl.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::uint32_t kThreads = 256, kRasterGroups = 1024;
+constexpr std::size_t kEyePoint_bytes = 32, kBox_bytes = 16, kPair_bytes = 8, kWord_bytes = 4;
+constexpr GLuint kCameraBinding = 1;
+
+GlProgram make_program(const char* file, const char* source, const char* defines = "") {
+    return {file,
+            source,
+            defines,
+            {{"gl_groups.glsl", kShader_gl_groups_glsl}, {"boundary_frame.glsl", kShader_boundary_frame_glsl}}};
+}
+
+std::uint32_t groups_for(std::size_t items) {
+    return static_cast<std::uint32_t>((items + kThreads - 1) / kThreads);
+}
+
+}  // namespace
+
+/// shaders/boundary_frame.glsl has the same.
+struct alignas(32) GlBoundary::Camera {
+    std::array<double, 4> right{}, up{}, forward{}, scale{};
+    std::int32_t width = 0, height = 0, perspective = 0;
+    std::uint32_t points = 0, triangles = 0, most_hits = 0;
+
+    Camera(const View& view, double near, double middle)
+        : right(row(view, 0)),
+          up(row(view, 1)),
+          forward(row(view, 2)),
+          scale{view.pixel(), middle, near - middle, 0},
+          width(view.width()),
+          height(view.height()),
+          perspective(view.perspective()) {}
+
+    static std::array<double, 4> row(const View& view, int axis) {
+        const Vec3& a = view.axes()[static_cast<std::size_t>(axis)];
+        return {a.x, a.y, a.z, view.eye()[axis]};
+    }
+};
+
+GlBoundary::GlBoundary(bool on_device)
+    : on_device_(on_device),
+      points_program_(make_program("boundary_points.comp", kShader_boundary_points_comp)),
+      strips_program_(make_program("boundary_strips.comp", kShader_boundary_strips_comp)),
+      count_program_(make_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 0\n")),
+      fill_program_(make_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 1\n")),
+      resolve_program_(make_program("boundary_resolve.comp", kShader_boundary_resolve_comp)) {
+}
+
+void GlBoundary::upload_surface(const Surface& surface) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    points_ = surface.points.size();
+    triangles_ = surface.triangles.size();
+    std::vector<std::uint32_t> corners(3 * triangles_);
+    tbb::parallel_for(std::size_t{0}, triangles_, [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) corners[3 * i + k] = static_cast<std::uint32_t>(surface.triangles[i][k]);
+    });
+    positions_.grow(points_ * sizeof(Vec3));
+    positions_.upload(points_ * sizeof(Vec3), surface.points.data());
+    corners_.grow(corners.size() * kWord_bytes);
+    corners_.upload(corners.size() * kWord_bytes, corners.data());
+    eye_points_.grow(points_ * kEyePoint_bytes);
+    boxes_.grow(triangles_ * kBox_bytes);
+    strips_.grow((triangles_ + 1) * kWord_bytes);
+}
+
+void GlBoundary::find(const Surface& surface, const View& view, double near, double middle, GlStages& stages) {
+    pixels_ = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    ranges_.grow(pixels_ * kPair_bytes);
+    on_device_now_ = on_device_ && GlBuffer::fits(surface.points.size() * kEyePoint_bytes) &&
+                     GlBuffer::fits(surface.triangles.size() * kBox_bytes) && !needs_clipping(surface, view, near);
+    if (!on_device_now_) return upload_intervals(boundary_intervals(surface, view, near, middle));
+
+    stages.begin("boundary");
+    if (triangles_ == 0) upload_surface(surface);
+    Camera camera(view, near, middle);
+    camera.points = static_cast<std::uint32_t>(points_);
+    camera.triangles = static_cast<std::uint32_t>(triangles_);
+    const auto set_camera = [&] {
+        camera.most_hits = static_cast<std::uint32_t>(room_);
+        camera_.grow(sizeof camera);
+        camera_.upload(sizeof camera, &camera);
+        glBindBufferBase(GL_UNIFORM_BUFFER, kCameraBinding, camera_.id());
+    };
+    set_camera();
+    count_hits();
+    if (room_ == 0) {
+        (void)found_all();
+        set_camera();
+    }
+    fill();
+    stages.begin("");
+}
+
+void GlBoundary::count_hits() {
+    points_program_.use();
+    positions_.bind(0);
+    eye_points_.bind(1);
+    dispatch(groups_for(points_));
+    strips_program_.use();
+    corners_.bind(2);
+    boxes_.bind(3);
+    strips_.bind(4);
+    dispatch(groups_for(triangles_));
+    scan_.exclusive_scan(strips_, static_cast<std::uint32_t>(triangles_));
+
+    hit_offsets_.grow((pixels_ + 1) * kWord_bytes);
+    hit_offsets_.clear();
+    count_program_.use();
+    strips_.bind(0);
+    eye_points_.bind(1);
+    corners_.bind(2);
+    boxes_.bind(3);
+    hit_offsets_.bind(4);
+    dispatch(kRasterGroups);
+    scan_.exclusive_scan(hit_offsets_, static_cast<std::uint32_t>(pixels_));
+}
+
+void GlBoundary::fill() {
+    counts_.grow(pixels_ * kWord_bytes);
+    counts_.clear();
+    fill_program_.use();
+    strips_.bind(0);
+    eye_points_.bind(1);
+    corners_.bind(2);
+    boxes_.bind(3);
+    counts_.bind(4);
+    hit_offsets_.bind(5);
+    intervals_.bind(6);
+    dispatch(kRasterGroups);
+    resolve_program_.use();
+    hit_offsets_.bind(0);
+    intervals_.bind(1);
+    ranges_.bind(2);
+    dispatch(groups_for(pixels_));
+}
+
+bool GlBoundary::found_all() {
+    if (!on_device_now_) return true;
+    std::uint32_t total = 0;
+    hit_offsets_.read(sizeof total, &total, pixels_ * kWord_bytes);
+    hits_ = total;
+    if (hits_ <= room_ && room_ > 0) return true;
+    room_ = hits_ + hits_ / 8 + 1;
+    intervals_.grow(room_ * kPair_bytes);
+    return false;
+}
+
+void GlBoundary::upload_intervals(const PixelIntervals& found) {
+    std::vector<std::uint32_t> ranges(2 * pixels_);
+    tbb::parallel_for(std::size_t{0}, pixels_, [&](std::size_t i) {
+        ranges[2 * i] = found.offsets[i];
+        ranges[2 * i + 1] = found.offsets[i + 1];
+    });
+    ranges_.upload(ranges.size() * kWord_bytes, ranges.data());
+    intervals_.grow(found.depths.size() * sizeof(float));
+    intervals_.upload(found.depths.size() * sizeof(float), found.depths.data());
+    hits_ = found.hits;
+}
+
+void GlBoundary::bind(GLuint ranges, GLuint intervals) {
+    ranges_.bind(ranges);
+    intervals_.bind(intervals);
+}
+
+PixelIntervals GlBoundary::read(std::size_t pixels) const {
+    std::vector<std::uint32_t> ranges(2 * pixels);
+    ranges_.read(ranges.size() * kWord_bytes, ranges.data());
+    std::vector<float> depths(intervals_.bytes() / sizeof(float));
+    intervals_.read(intervals_.bytes(), depths.data());
+    PixelIntervals result;
+    result.hits = hits_;
+    result.offsets.push_back(0);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const std::size_t first = std::size_t{2} * ranges[2 * i], end = std::size_t{2} * ranges[2 * i + 1];
+        result.depths.insert(result.depths.end(), depths.begin() + static_cast<std::ptrdiff_t>(first),
+                             depths.begin() + static_cast<std::ptrdiff_t>(end));
+        result.offsets.push_back(static_cast<std::uint32_t>(result.depths.size() / 2));
+    }
+    return result;
+}
+
+}  // namespace subvol::detail

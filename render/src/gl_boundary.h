@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+
+#include "boundary_intervals.h"
+#include "gl_scan.h"
+#include "gl_stages.h"
+
+namespace subvol::detail {
+
+/// boundary_intervals() on the current context: the same pixels are covered, depths are the same but for rounding. Surfaces
+/// that have to be clipped go through the CPU.
+class GlBoundary {
+public:
+    /// on_device: false: the CPU finds all intervals
+    explicit GlBoundary(bool on_device);
+
+    /// Starts to find the intervals of a surface that is the same every time. Waits for the device the first time only.
+    void find(const Surface& surface, const View& view, double near, double middle, GlStages& stages);
+
+    /// Whether there was room for all hits; if not, they have to be found again. Waits for the device.
+    [[nodiscard]] bool found_all();
+
+    /// Of what was found last.
+    [[nodiscard]] std::size_t hits() const { return hits_; }
+
+    /// Of each pixel {first, end}, and the {enter, exit} of intervals.
+    void bind(GLuint ranges, GLuint intervals);
+
+    /// What shaders made, for tests.
+    [[nodiscard]] PixelIntervals read(std::size_t pixels) const;
+
+private:
+    struct Camera;
+    void upload_surface(const Surface& surface);
+    void upload_intervals(const PixelIntervals& intervals);
+    void count_hits();
+    void fill();
+
+    bool on_device_, on_device_now_ = false;
+    GlProgram points_program_, strips_program_, count_program_, fill_program_, resolve_program_;
+    GlScan scan_;
+    std::size_t points_ = 0, triangles_ = 0, pixels_ = 0, hits_ = 0, room_ = 0;
+    GlBuffer camera_, positions_, corners_, eye_points_, boxes_, strips_, hit_offsets_, counts_, intervals_, ranges_;
+};
+
+}  // namespace subvol::detail

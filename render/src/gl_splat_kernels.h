@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "splat_scene.h"
+
+namespace subvol::detail {
+
+/// Where a kernel's extras are, in vectors of four: those of shaders, before and after the way to eye space.
+struct GlExtras {
+    std::uint32_t bend = 0, color = 0, color_bend = 0, axes = 0;
+    std::uint32_t count = 0;
+
+    explicit GlExtras(const SplatScene& scene);
+};
+
+/// Defines for the splatter's shaders: the scene's features, the places of extras.
+[[nodiscard]] std::string gl_scene_defines(const SplatScene& scene);
+
+/// Kernels as shaders/splat_eye.comp reads them: what does not depend on the view.
+struct GlKernelData {
+    static constexpr std::size_t kFloats = 16;  // of a kernel, without extras
+    std::vector<float> kernels, extras;
+};
+
+/// ids: which kernels, ascending; without it, all
+[[nodiscard]] GlKernelData pack_kernels(const SplatScene& scene, std::optional<std::span<const std::uint32_t>> ids = {});
+
+}  // namespace subvol::detail

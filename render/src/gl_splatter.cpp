@@ -1,0 +1,288 @@
+#include "gl_splatter.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "gl_boundary.h"
+#include "gl_context.h"
+#include "gl_splat_bins.h"
+#include "kernel_axes.h"
+#include "shader_gl_groups_glsl.h"
+#include "shader_splat_classify_glsl.h"
+#include "shader_splat_draw_comp.h"
+#include "shader_splat_frame_glsl.h"
+#include "shader_splat_light_glsl.h"
+#include "shader_splat_sums_glsl.h"
+#include "shader_splat_walk_glsl.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kPixel_bytes = 16;  // of the picture
+constexpr std::size_t kState_bytes = 64;  // of a pixel, between passes
+constexpr int kStaged = 512;              // cuts of kernels in shared memory
+constexpr int kMostChunk = 64;            // kernels there
+
+std::string decimal(float value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::scientific).ptr;
+    return {text, end};
+}
+
+std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
+    const auto line = [](const char* name, const std::string& value) { return "#define " + (name + (" " + value)) + "\n"; };
+    return gl_scene_defines(scene) + line("kTile", std::to_string(tuning.tile_px)) +
+           line("kBatch", std::to_string(tuning.batch)) +
+           line("kChunk", std::to_string(std::min(kMostChunk, kStaged / tuning.batch))) +
+           line("kCells", std::to_string(PreintegratedTable::kCells)) + line("kLeastWeight", decimal(kLeastWeight)) +
+           line("kNearValues", decimal(kNearValues)) + line("kOpaque", decimal(kOpaque)) +
+           line("kFarCells", decimal(kFarCells));
+}
+
+template <class T>
+void upload(GlBuffer& buffer, const std::vector<T>& values) {
+    buffer.grow(values.size() * sizeof(T));
+    buffer.upload(values.size() * sizeof(T), values.data());
+}
+
+/// The kernels that may meet some batches, a sheet more on each side: rounding may not lose one.
+std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
+                                           int end_sheet) {
+    const double middle = view.to_eye(scene.middle).z, distance = static_cast<double>(sheets.distance);
+    const double front = static_cast<double>(sheets.depth(first_sheet)) - distance;
+    const double back = static_cast<double>(sheets.depth(end_sheet - 1)) + distance;
+    const double widening = scene.shape == KernelShape::Separable ? 3 : 1;
+    std::vector<char> wanted(scene.volume->size());
+    tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+        const Vec3& forward = view.axes()[2];
+        const double z = view.to_eye(scene.volume->centers[i]).z - middle;
+        const double szz = glm::dot(forward, frame_matrix(scene.volume->frames[i]) * forward);
+        const double reach = std::sqrt(std::max(0.0, widening * szz)) * (1 + 1e-5);
+        wanted[i] = z + reach >= front && z - reach <= back;
+    });
+    std::vector<std::uint32_t> ids;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i]) ids.push_back(static_cast<std::uint32_t>(i));
+    }
+    return ids;
+}
+
+}  // namespace
+
+class GlSplatter::State {
+public:
+    State(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning)
+        : context_(device),
+          scene_(scene),
+          tuning_(tuning),
+          bins_(common_defines(scene, tuning), GlExtras(scene).count),
+          boundary_(context_.hardware() || tuning.boundary_on_device),
+          draw_("splat_draw.comp", kShader_splat_draw_comp, common_defines(scene, tuning),
+                {{"gl_groups.glsl", kShader_gl_groups_glsl},
+                 {"splat_frame.glsl", kShader_splat_frame_glsl},
+                 {"splat_sums.glsl", kShader_splat_sums_glsl},
+                 {"splat_classify.glsl", kShader_splat_classify_glsl},
+                 {"splat_light.glsl", kShader_splat_light_glsl},
+                 {"splat_walk.glsl", kShader_splat_walk_glsl}}) {
+        GLint64 most = 0;
+        glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
+        const std::size_t bytes = std::min(tuning.most_buffer_bytes, static_cast<std::size_t>(std::max<GLint64>(most, 0)));
+        most_kernels_ = bytes / GlSplatBins::kernel_bytes(GlExtras(scene).count) - 1;
+        most_entries_ = std::min({tuning.most_entries, bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems}});
+        most_bins_ = std::min(bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems});
+        upload(kernel_table_, scene.kernel_table);
+        resident_ = scene.volume->size() <= most_kernels_;
+        if (resident_) bins_.upload(pack_kernels(scene));
+    }
+
+    Drawn draw(const View& view, const Classification& look, int sheets, Progress* progress);
+
+    GlContext context_;
+    GlSplatReport report_;
+
+private:
+    void prepare(const View& view, const Classification& look);
+    void find_intervals(const View& view);
+    [[nodiscard]] bool draw_at_once();
+    [[nodiscard]] bool fits_bins(int first, int end) const;
+    void draw_in_passes(const View& view, int first, int end, Progress* progress);
+    void split(const View& view, int first, int end, Progress* progress);
+    void set_pass(int first, int end);
+    void draw_pass();
+    [[nodiscard]] Drawn read(const View& view);
+
+    const SplatScene& scene_;
+    GlTuning tuning_;
+    std::size_t most_kernels_ = 0, most_entries_ = 0, most_bins_ = 0;
+    bool resident_ = false;  // all kernels are on the device
+    std::size_t room_ = 0;   // entries that there is room for
+    SheetStack sheets_;
+    GlSplatFrame frame_;
+    GlSplatBins bins_;
+    GlBoundary boundary_;
+    GlProgram draw_;
+    GlStages stages_;
+    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_;
+};
+
+void GlSplatter::State::prepare(const View& view, const Classification& look) {
+    stages_.clear();
+    frame_ = gl_splat_frame(scene_, view, look, sheets_, tuning_.tile_px, tuning_.batch);
+    upload(rows_, look.table.rows);
+    upload(visible_, look.table.visible);
+    upload(color_rows_, look.colors.rows);
+    const std::size_t pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    picture_.grow(pixels * 4 * sizeof(float));
+    depths_.grow(pixels * sizeof(float));
+    find_intervals(view);
+}
+
+void GlSplatter::State::find_intervals(const View& view) {
+    if (scene_.half_weight > 0) return;
+    const double middle = static_cast<double>(sheets_.middle), near = static_cast<double>(sheets_.near) + middle;
+    boundary_.find(scene_.volume->boundary, view, near, middle, stages_);
+}
+
+void GlSplatter::State::set_pass(int first, int end) {
+    frame_.first_batch = first;
+    frame_.end_batch = end;
+    frame_.kernels = bins_.kernels();
+    frame_.most_entries = static_cast<std::uint32_t>(room_);
+    frame_buffer_.grow(sizeof frame_);
+    frame_buffer_.upload(sizeof frame_, &frame_);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer_.id());
+}
+
+void GlSplatter::State::draw_pass() {
+    bins_.list(frame_, stages_);
+    stages_.begin("draw");
+    draw_.use();
+    bins_.bind();
+    boundary_.bind(5, 6);
+    rows_.bind(7);
+    visible_.bind(8);
+    color_rows_.bind(9);
+    kernel_table_.bind(10);
+    picture_.bind(11);
+    depths_.bind(12);
+    states_.bind(13);
+    dispatch(frame_.tiles());
+    stages_.begin("");
+    check_gl("splat");
+}
+
+Drawn GlSplatter::State::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
+    report_progress(progress, "splat", 0);
+    report_ = {};
+    sheets_ = make_sheets(scene_, view, sheets);
+    prepare(view, look);
+    if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
+    // Likewise for the boundary's hits.
+    if (scene_.half_weight == 0 && !boundary_.found_all()) {
+        report_ = {};
+        find_intervals(view);
+        draw_in_passes(view, 0, frame_.batches, progress);
+    }
+    report_.boundary_hits = scene_.half_weight == 0 ? boundary_.hits() : 0;
+    Drawn drawn = read(view);
+    report_.stages = stages_.times();
+    report_progress(progress, "splat", 1);
+    return drawn;
+}
+
+/// As much room as the last picture took is mostly enough: the device is asked only at the end. Returns whether it was.
+bool GlSplatter::State::draw_at_once() {
+    if (room_ == 0 || !resident_ || !fits_bins(0, frame_.batches)) return false;
+    set_pass(0, frame_.batches);
+    bins_.count(stages_);
+    draw_pass();
+    const std::size_t entries = bins_.entries();
+    if (entries > room_) return false;
+    report_.bin_entries = entries;
+    report_.passes = 1;
+    return true;
+}
+
+void GlSplatter::State::draw_in_passes(const View& view, int first, int end, Progress* progress) {
+    if (!fits_bins(first, end)) return split(view, first, end, progress);
+    if (!resident_) {
+        const auto ids =
+            kernels_between(scene_, view, sheets_, first * tuning_.batch, std::min(end * tuning_.batch, sheets_.count));
+        if (ids.size() > most_kernels_) return split(view, first, end, progress);
+        bins_.upload(pack_kernels(scene_, ids));
+    }
+    set_pass(first, end);
+    bins_.count(stages_);
+    const std::size_t entries = bins_.entries();
+    if (entries > most_entries_) return split(view, first, end, progress);
+    if (entries > room_ || room_ == 0) room_ = std::min(entries + entries / 8 + 1, most_entries_);
+    if (end - first < frame_.batches) states_.grow(picture_.bytes() / kPixel_bytes * kState_bytes);
+    set_pass(first, end);
+    draw_pass();
+    report_.bin_entries += entries;
+    ++report_.passes;
+    report_progress(progress, "splat", static_cast<double>(end) / frame_.batches);
+}
+
+void GlSplatter::State::split(const View& view, int first, int end, Progress* progress) {
+    if (end - first == 1) {
+        throw Error(ErrorCode::MissingCapability, "a few sheets meet more kernels than the GL device has room for", {},
+                    "more sheets, a smaller picture or the CPU backend");
+    }
+    const int middle = first + (end - first) / 2;
+    draw_in_passes(view, first, middle, progress);
+    draw_in_passes(view, middle, end, progress);
+}
+
+bool GlSplatter::State::fits_bins(int first, int end) const {
+    return static_cast<std::size_t>(frame_.tiles()) * static_cast<std::size_t>(end - first) <= most_bins_;
+}
+
+Drawn GlSplatter::State::read(const View& view) {
+    Drawn drawn{Image(view.width(), view.height()), {}};
+    picture_.read(drawn.image.rgba.size() * sizeof(float), drawn.image.rgba.data());
+    drawn.depth.resize(drawn.image.rgba.size() / 4);
+    depths_.read(drawn.depth.size() * sizeof(float), drawn.depth.data());
+    return drawn;
+}
+
+GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning)
+    : state_(std::make_unique<State>(scene, device, tuning)) {
+    state_->context_.release();
+}
+
+GlSplatter::~GlSplatter() {
+    if (!state_) return;
+    try {
+        const GlScope scope(state_->context_);  // what is on the device goes with it
+        state_.reset();
+    } catch (const Error&) {
+        (void)state_.release();  // a device that is in use elsewhere keeps it
+    }
+}
+
+GlSplatter::GlSplatter(GlSplatter&&) noexcept = default;
+GlSplatter& GlSplatter::operator=(GlSplatter&& other) noexcept {
+    state_.swap(other.state_);
+    return *this;
+}
+
+Drawn GlSplatter::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
+    const GlScope scope(state_->context_);
+    return state_->draw(view, look, sheets, progress);
+}
+
+const std::string& GlSplatter::renderer() const {
+    return state_->context_.renderer();
+}
+
+const GlSplatReport& GlSplatter::report() const {
+    return state_->report_;
+}
+
+}  // namespace subvol::detail

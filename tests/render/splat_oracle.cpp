@@ -1,0 +1,219 @@
+#include "splat_oracle.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+#include <limits>
+
+#include "boundary_intervals.h"
+
+namespace subvol::test {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLeastWeight = 0.02;  // below it a sheet knows no value
+
+Mat3 symmetric(const std::array<float, 6>& f) {
+    return {Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5])};
+}
+
+/// S^(−1/2) by the iteration of Denman and Beavers.
+Mat3 inverse_root(const Mat3& s) {
+    const double scale = (s[0][0] + s[1][1] + s[2][2]) / 3;
+    Mat3 root = s / scale, inverse(1.0);
+    for (int i = 0; i < 40; ++i) {
+        const Mat3 next = 0.5 * (root + glm::inverse(inverse));
+        inverse = 0.5 * (inverse + glm::inverse(root));
+        root = next;
+    }
+    return inverse / std::sqrt(scale);
+}
+
+/// What a ray sees on one sheet.
+struct SheetSample {
+    bool known = false;
+    double weight = 0, value = 0, color_value = 0;
+    double diffuse = 1, specular = 0;
+};
+
+class Oracle {
+public:
+    Oracle(const RbfVolume& volume, const View& view, const Optics& optics, const SplatOptions& options, Emission emission)
+        : volume_(volume), view_(view), optics_(optics), options_(options), emission_(emission) {
+        for (const auto& frame : volume.frames) {
+            inverses_.push_back(glm::inverse(symmetric(frame)));
+            roots_.push_back(support_radius(volume.kernel) * inverse_root(symmetric(frame)));
+        }
+        diagonal_ = box_of(volume).diagonal();
+        near_ = view.perspective() ? 1e-4 * diagonal_ : 0;
+        if (volume.boundary.triangles.empty()) set_half_weight();
+        place_sheets();
+    }
+
+    [[nodiscard]] SplatResult draw() const {
+        SplatResult result{Image(view_.width(), view_.height()), {}, {}};
+        result.depth.resize(result.image.rgba.size() / 4);
+        // Depths of entries and exits are floats: relative to the volume's middle they lose less.
+        const double middle = view_.to_eye(box_of(volume_).center()).z;
+        const auto inside = detail::boundary_intervals(volume_.boundary, view_, near_, middle);
+        tbb::parallel_for(0, view_.height(), [&](int y) {
+            for (int x = 0; x < view_.width(); ++x) {
+                std::vector<Vec2> intervals;
+                const auto pixel = static_cast<std::size_t>(y * view_.width() + x);
+                for (auto i = inside.offsets[pixel]; i < inside.offsets[pixel + 1]; ++i) {
+                    intervals.push_back(middle + Vec2(inside.depths[2 * i], inside.depths[2 * i + 1]));
+                }
+                if (half_weight_ > 0) intervals = {{near_, kInfinity}};
+                draw_pixel(view_.ray(x + .5, y + .5), intervals, result.image.pixel(x, y), result.depth[pixel]);
+            }
+        });
+        return result;
+    }
+
+private:
+    void set_half_weight() {
+        std::vector<double> weights;
+        for (const Vec3& center : volume_.centers) weights.push_back(sample(center, Vec3(0.0)).weight);
+        std::sort(weights.begin(), weights.end());
+        half_weight_ = 0.5 * weights[weights.size() / 2];
+    }
+
+    void place_sheets() {
+        z_first_ = kInfinity, z_last_ = -kInfinity;
+        const auto add = [&](const Vec3& p, double reach) {
+            z_first_ = std::min(z_first_, view_.to_eye(p).z - reach);
+            z_last_ = std::max(z_last_, view_.to_eye(p).z + reach);
+        };
+        for (const Vec3& p : volume_.boundary.points) add(p, 0);
+        for (std::size_t i = 0; half_weight_ > 0 && i < volume_.size(); ++i) {
+            const Vec3& forward = view_.axes()[2];
+            add(volume_.centers[i], std::sqrt(glm::dot(forward, symmetric(volume_.frames[i]) * forward)));
+        }
+        z_first_ = std::max(z_first_, near_);
+    }
+
+    [[nodiscard]] double depth(int sheet) const { return z_first_ + (z_last_ - z_first_) * sheet / (options_.sheets - 1); }
+
+    [[nodiscard]] double weight(std::size_t i, const Vec3& d, double e) const {
+        if (is_radial(volume_.kernel)) return radial_value(volume_.kernel, support_radius(volume_.kernel) * std::sqrt(e));
+        return kernel_value(volume_.kernel, roots_[i] * d);
+    }
+
+    /// A kernel's value at d from its centre, and that value's gradient.
+    [[nodiscard]] double value(const RbfChannel& channel, std::size_t i, const Vec3& d, Vec3& gradient) const {
+        const Vec3 g(channel.gradients[i][0], channel.gradients[i][1], channel.gradients[i][2]), q = inverses_[i] * d;
+        const Mat3 h = channel.hessians.empty() ? Mat3(0.0) : symmetric(channel.hessians[i]);
+        const auto moment = static_cast<double>(channel.moments[i]);
+        gradient = g + 2 * moment * q + h * d;
+        return static_cast<double>(channel.values[i]) + glm::dot(g, d) + moment * glm::dot(d, q) + 0.5 * glm::dot(d, h * d);
+    }
+
+    [[nodiscard]] SheetSample sample(const Vec3& x, const Vec3& direction) const {
+        SheetSample s;
+        Vec3 gradient(0.0), of_kernel;
+        for (std::size_t i = 0; i < volume_.size(); ++i) {
+            const Vec3 d = x - volume_.centers[i];
+            const double w = weight(i, d, glm::dot(d, inverses_[i] * d));
+            if (w == 0) continue;
+            s.weight += w;
+            if (options_.color_channel) {
+                s.color_value += w * value(volume_.channels[*options_.color_channel], i, d, of_kernel);
+            }
+            s.value += w * value(volume_.channels[options_.channel], i, d, of_kernel);
+            gradient += w * of_kernel;
+        }
+        s.known = !options_.normalized || s.weight > kLeastWeight;
+        if (options_.normalized && s.known) {
+            s.value /= s.weight;
+            s.color_value /= s.weight;
+            gradient /= s.weight;
+        }
+        if (options_.shading && s.known) light(s, gradient, -glm::normalize(direction));
+        return s;
+    }
+
+    /// Blinn and Phong's light, half of it from the eye and half from the key light.
+    void light(SheetSample& s, const Vec3& gradient, const Vec3& to_eye) const {
+        const Shading& shading = *options_.shading;
+        const auto& [right, up, forward] = view_.axes();
+        const Vec3 to_key = glm::normalize(shading.key.x * right + shading.key.y * up + shading.key.z * forward);
+        const Vec3 normal = gradient / std::max(glm::length(gradient), 1e-300);
+        const double head = std::abs(glm::dot(normal, to_eye)), side = std::abs(glm::dot(normal, to_key));
+        const double halfway = std::abs(glm::dot(normal, glm::normalize(to_key + to_eye)));
+        // Half of a surface is where the value changes by a quarter of the function's range over the volume's diagonal.
+        const double range = optics_.knots().back() - optics_.knots().front();
+        const double change = glm::length(gradient) * diagonal_ / (0.25 * range);
+        const double surface = change * change / (1 + change * change);
+        s.diffuse = 1 + surface * (shading.ambient + shading.diffuse * 0.5 * (head + side) - 1);
+        s.specular =
+            surface * shading.specular * 0.5 * (std::pow(head, shading.shininess) + std::pow(halfway, shading.shininess));
+    }
+
+    void draw_pixel(const Ray& ray, const std::vector<Vec2>& intervals, std::span<float, 4> pixel, float& depth_seen) const {
+        Segment seen;
+        double depths = 0;
+        SheetSample front, back;
+        for (int sheet = 0; sheet < options_.sheets && !intervals.empty(); ++sheet, front = back) {
+            const double z1 = depth(sheet);
+            back = sample(ray.origin + z1 * ray.direction, ray.direction);
+            if (sheet == 0) continue;
+            const double z0 = depth(sheet - 1);
+            for (const Vec2& interval : intervals) {
+                Vec2 part(std::max(interval[0], z0), std::min(interval[1], z1));
+                if (half_weight_ > 0) cut_at_half_weight(front.weight, back.weight, z0, z1, part);
+                if (!(part[0] < part[1]) || !(front.known || back.known)) continue;
+                const Segment stretch = classify(front.known ? front : back, back.known ? back : front, (part - z0) / (z1 - z0),
+                                                 (part[1] - part[0]) * glm::length(ray.direction));
+                depths += seen.transmittance * (1 - stretch.transmittance) * 0.5 * (part[0] + part[1]);
+                composite(seen, stretch);
+            }
+        }
+        const double opacity = 1 - seen.transmittance;
+        for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(seen.color[static_cast<int>(c)]);
+        pixel[3] = static_cast<float>(opacity);
+        depth_seen = static_cast<float>(opacity > 0 ? depths / opacity : kInfinity);
+    }
+
+    /// Without a boundary the volume ends where the weight, linear between sheets, is half of what it is inside.
+    void cut_at_half_weight(double w0, double w1, double z0, double z1, Vec2& part) const {
+        if (w0 <= half_weight_ && w1 <= half_weight_) part[1] = part[0];
+        const double crossing = z0 + (half_weight_ - w0) / (w1 - w0) * (z1 - z0);
+        if (w0 <= half_weight_ && w1 > half_weight_) part[0] = std::max(part[0], crossing);
+        if (w0 > half_weight_ && w1 <= half_weight_) part[1] = std::min(part[1], crossing);
+    }
+
+    /// A stretch from part[0] to part[1] of the way between two sheets.
+    [[nodiscard]] Segment classify(const SheetSample& front, const SheetSample& back, const Vec2& part, double length) const {
+        const double slope = back.value - front.value, v0 = front.value + part[0] * slope, v1 = front.value + part[1] * slope;
+        Segment s = optics_.integrate(v0, v1, length);
+        const double opacity = 1 - s.transmittance;
+        if (options_.color_channel) {
+            s.color = 0.5 * opacity * (optics_.color(front.color_value) + optics_.color(back.color_value));
+        } else if (emission_ == Emission::Preintegrated && opacity > 1e-6) {
+            const Segment thin = optics_.integrate(v0, v1, 1e-6 * length);  // its front hardly covers its back
+            s.color = opacity / (1 - thin.transmittance) * thin.color;
+        }
+        s.color = 0.5 * (front.diffuse + back.diffuse) * s.color + Vec3(0.5 * (front.specular + back.specular) * opacity);
+        return s;
+    }
+
+    const RbfVolume& volume_;
+    const View& view_;
+    const Optics& optics_;
+    const SplatOptions& options_;
+    Emission emission_;
+    std::vector<Mat3> inverses_, roots_;
+    double diagonal_ = 0, near_ = 0, half_weight_ = 0, z_first_ = 0, z_last_ = 0;
+};
+
+}  // namespace
+
+SplatResult draw_oracle(const RbfVolume& volume, const View& view, const Optics& optics, const SplatOptions& options,
+                        Emission emission) {
+    return Oracle(volume, view, optics, options, emission).draw();
+}
+
+}  // namespace subvol::test
