@@ -29,7 +29,9 @@ public:
             ->type_name("IMAGE")
             ->required();
         app()
-            .add_option("--method", method_, "splat (kernels, the default) or tets (rays through tetrahedra)")
+            .add_option("--method", method_,
+                        "splat (kernels, the default), sheets (the same by OpenGL sheet buffers) or\n"
+                        "tets (rays through tetrahedra)")
             ->type_name("NAME");
         picture_.add_to(app());
         app()
@@ -37,13 +39,17 @@ public:
             ->type_name("N")
             ->check(CLI::Range(1, 16));
         sample_.add_to(app());
-        refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; splat: omitted shows the limit)");
+        refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; else: omitted shows the limit)");
         splat_.add_to(app());
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "tets"}, {"sheets", "dense", "grid", "pt"});
+        check_choice("--method", method_, {"splat", "sheets", "tets"}, {"dense", "grid", "pt"});
         options_ = splat_.options();
+        if (method_ == "sheets") options_.method = SplatMethod::Sheets;
+        if (method_ == "sheets" && options_.backend == Backend::Cpu) {
+            throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
+        }
         if (method_ == "tets" && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
             throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU, without light and of one field",
                         "--backend gl, --shade, --color-field, --seconds");
@@ -79,7 +85,7 @@ private:
     }
 
     void draw_points(PictureOutput& output, Report& report) {
-        if (method_ != "splat") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        if (method_ == "tets") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         const std::vector<View> views = picture_.make_views(volume.bounds);
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);

@@ -46,34 +46,67 @@ std::string log_of(GLuint id, GetLength get_length, GetLog get_log) {
     return log;
 }
 
+/// A program until it is linked: what throws leaves none behind.
+class OwnedProgram {
+public:
+    OwnedProgram() : id_(glCreateProgram()) {}
+    ~OwnedProgram() {
+        if (id_ != 0) glDeleteProgram(id_);
+    }
+    OwnedProgram(const OwnedProgram&) = delete;
+    OwnedProgram& operator=(const OwnedProgram&) = delete;
+
+    void attach(GLenum stage, const ShaderText& source, const std::string& defines, const std::vector<ShaderText>& common) {
+        const std::string text = compose(source.text, defines, common);
+        const GLuint shader = glCreateShader(stage);
+        const char* pointer = text.c_str();
+        glShaderSource(shader, 1, &pointer, nullptr);
+        glCompileShader(shader);
+        GLint ok = 0;
+        glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+        if (!ok) {
+            const std::string log = with_files(log_of(shader, glGetShaderiv, glGetShaderInfoLog), files(source, common));
+            glDeleteShader(shader);
+            throw Error(ErrorCode::MissingCapability, "the GL driver refuses the shader: " + log, source.file);
+        }
+        glAttachShader(id_, shader);
+        glDeleteShader(shader);  // lives as long as the program
+    }
+
+    [[nodiscard]] GLuint link(const ShaderText& source, const std::vector<ShaderText>& common) {
+        glLinkProgram(id_);
+        GLint ok = 0;
+        glGetProgramiv(id_, GL_LINK_STATUS, &ok);
+        if (ok) return std::exchange(id_, 0);
+        const std::string log = with_files(log_of(id_, glGetProgramiv, glGetProgramInfoLog), files(source, common));
+        throw Error(ErrorCode::MissingCapability, "the GL driver cannot link the shader: " + log, source.file);
+    }
+
+private:
+    static std::vector<std::string> files(const ShaderText& source, const std::vector<ShaderText>& common) {
+        std::vector<std::string> result{source.file};
+        for (const ShaderText& piece : common) result.push_back(piece.file);
+        return result;
+    }
+
+    GLuint id_;
+};
+
 }  // namespace
 
 GlProgram::GlProgram(const std::string& file, const std::string& source, const std::string& defines,
                      const std::vector<ShaderText>& common) {
-    std::vector<std::string> files{file};
-    for (const ShaderText& piece : common) files.push_back(piece.file);
-    const std::string text = compose(source, defines, common);
-    const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
-    const char* pointer = text.c_str();
-    glShaderSource(shader, 1, &pointer, nullptr);
-    glCompileShader(shader);
-    GLint ok = 0;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
-    if (!ok) {
-        const std::string log = log_of(shader, glGetShaderiv, glGetShaderInfoLog);
-        glDeleteShader(shader);
-        throw Error(ErrorCode::MissingCapability, "the GL driver refuses the shader: " + with_files(log, files), file);
-    }
-    id_ = glCreateProgram();
-    glAttachShader(id_, shader);
-    glLinkProgram(id_);
-    glDeleteShader(shader);
-    glGetProgramiv(id_, GL_LINK_STATUS, &ok);
-    if (!ok) {
-        const std::string log = log_of(id_, glGetProgramiv, glGetProgramInfoLog);
-        glDeleteProgram(id_);
-        throw Error(ErrorCode::MissingCapability, "the GL driver cannot link the shader: " + with_files(log, files), file);
-    }
+    OwnedProgram program;
+    program.attach(GL_COMPUTE_SHADER, {file, source}, defines, common);
+    id_ = program.link({file, source}, common);
+}
+
+GlProgram::GlProgram(const ShaderText& vertex, const ShaderText& fragment, const std::string& defines,
+                     const std::vector<ShaderText>& common) {
+    OwnedProgram program;
+    program.attach(GL_VERTEX_SHADER, vertex, defines, common);
+    program.attach(GL_FRAGMENT_SHADER, fragment, defines, common);
+    id_ = program.link(fragment, common);
 }
 
 GlProgram::~GlProgram() {

@@ -14,13 +14,17 @@ struct ShaderText {
     std::string text;
 };
 
-/// A compute program of the current context. Messages of the compiler name file and line.
+/// A program of the current context. Messages of the compiler name file and line.
 class GlProgram {
 public:
     /// defines: text put after the version line, which the source begins with
     /// common:  pieces put between the defines and the source; they have no version line
     /// throws:  Error(MissingCapability) with the driver's message
     GlProgram(const std::string& file, const std::string& source, const std::string& defines,
+              const std::vector<ShaderText>& common = {});
+
+    /// Likewise, one that draws.
+    GlProgram(const ShaderText& vertex, const ShaderText& fragment, const std::string& defines,
               const std::vector<ShaderText>& common = {});
     ~GlProgram();
     GlProgram(GlProgram&& other) noexcept : id_(std::exchange(other.id_, 0)) {}

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "gl_context.h"
+#include "gl_sheets.h"
 #include "gl_splatter.h"
 #include "splat_backend.h"
 #include "subvol/error.h"
@@ -13,13 +15,49 @@ namespace {
 
 /// The GPU to draw with; nothing: the CPU does.
 std::optional<detail::GlSplatter> choose(const detail::SplatScene& scene, const SplatOptions& options) {
-    if (options.backend == Backend::Cpu) return std::nullopt;
+    if (options.backend == Backend::Cpu || options.method == SplatMethod::Sheets) return std::nullopt;
     // Software GL is slower than the CPU backend and draws the same: only when asked for.
     if (options.backend == Backend::Auto) {
         const auto device = find_gl_device(options.device);
         if (!device || !device->hardware) return std::nullopt;
     }
     return detail::GlSplatter(scene, options.device);
+}
+
+/// Draws sheets in a context of its own, which is current only while it is worked with.
+class SheetDrawer {
+public:
+    explicit SheetDrawer(std::optional<int> device) : context_(device) {
+        sheets_.emplace();
+        context_.release();
+    }
+    ~SheetDrawer() {
+        const detail::GlScope scope(context_);
+        sheets_.reset();
+    }
+    SheetDrawer(const SheetDrawer&) = delete;
+    SheetDrawer& operator=(const SheetDrawer&) = delete;
+
+    [[nodiscard]] detail::Drawn draw(const detail::SplatFrame& frame, Progress* progress) {
+        const detail::GlScope scope(context_);
+        return sheets_->draw(frame, progress);
+    }
+    [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
+
+private:
+    detail::GlContext context_;
+    std::optional<detail::GlSheets> sheets_;
+};
+
+/// Nothing if sheets are not what is asked for.
+std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
+    if (options.method != SplatMethod::Sheets) return nullptr;
+    if (options.backend == Backend::Cpu)
+        throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", {}, "the backends auto and gl");
+    if (!find_gl_device(options.device))
+        throw Error(ErrorCode::MissingCapability, "sheets need OpenGL 4.5, and none was found through EGL", {},
+                    "the method splat");
+    return std::make_unique<SheetDrawer>(options.device);
 }
 
 std::string cpu_threads() {
@@ -34,18 +72,22 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 struct Splatter::State {
     State(const RbfVolume& volume, const SplatOptions& wanted)
-        : options(wanted), scene(detail::make_scene(volume, wanted)), gpu(choose(scene, wanted)) {}
+        : options(wanted),
+          scene(detail::make_scene(volume, wanted)),
+          gpu(choose(scene, wanted)),
+          sheets(make_sheet_drawer(wanted)) {}
 
-    [[nodiscard]] detail::Drawn draw_on_cpu(const View& view, const detail::Classification& look, Progress* progress,
-                                            SplatReport& report) {
+    /// The CPU prepares what it or sheet buffers draw.
+    [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& look, Progress* progress,
+                                           SplatReport& report) {
         const auto start = std::chrono::steady_clock::now();
         detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
         report.seconds_prepare += seconds_since(start);
-        report.backend = "cpu";
-        report.device = cpu_threads();
+        report.backend = sheets ? "gl" : "cpu";
+        report.device = sheets ? sheets->renderer() : cpu_threads();
         report.bin_entries = frame.tile_splats.size();
         report.boundary_hits = frame.intervals.hits;
-        return detail::draw_splats_cpu(frame, progress);
+        return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
     }
 
     [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, Progress* progress,
@@ -62,6 +104,7 @@ struct Splatter::State {
     SplatOptions options;
     detail::SplatScene scene;
     std::optional<detail::GlSplatter> gpu;
+    std::unique_ptr<SheetDrawer> sheets;
     detail::SplatFrame frame{};  // its memory is used again
 };
 
@@ -80,7 +123,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     const auto start = std::chrono::steady_clock::now();
     const auto look = detail::classify(state.scene, optics);
     report.seconds_prepare = seconds_since(start);
-    auto drawn = state.gpu ? state.draw_on_gpu(view, look, progress, report) : state.draw_on_cpu(view, look, progress, report);
+    auto drawn = state.gpu ? state.draw_on_gpu(view, look, progress, report) : state.draw_frame(view, look, progress, report);
     report.seconds_draw = seconds_since(start) - report.seconds_prepare;
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);

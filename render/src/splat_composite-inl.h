@@ -142,7 +142,9 @@ private:
             green_ = hn::Add(green_, hn::MulAdd(lit, mean[2], gloss));
             blue_ = hn::Add(blue_, hn::MulAdd(lit, mean[3], gloss));
         }
-        depth_ = hn::MulAdd(light, hn::Mul(hn::Set(d, 0.5f), hn::Add(from, to)), depth_);
+        // Rays that are done have no middle: 0 times infinity.
+        const auto middle = hn::IfThenElseZero(visible, hn::Mul(hn::Set(d, 0.5f), hn::Add(from, to)));
+        depth_ = hn::MulAdd(light, middle, depth_);
         transmittance_ = hn::IfThenElse(visible, hn::Mul(transmittance_, passes), transmittance_);
     }
 

@@ -19,6 +19,10 @@ namespace subvol {
 
 enum class Backend { Auto, Gl, Cpu };
 
+/// How kernels become a picture; the pictures are the same. Kernels: tiles of the picture, batches of sheets. Sheets: one sheet
+/// buffer after the other, drawn and composited by OpenGL, software too: the way of the EuroVis 2007 paper, for comparison.
+enum class SplatMethod { Kernels, Sheets };
+
 /// Light on the surfaces of equal value: Blinn and Phong's, with one light at the eye and a key light, both from either side.
 /// Where the value hardly changes there is no surface, and colours stay what they are.
 ///
@@ -38,6 +42,7 @@ struct Shading {
 /// color_channel: takes the colours from another channel than the opacities; not pre-integrated
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
 struct SplatOptions {
+    SplatMethod method = SplatMethod::Kernels;
     Backend backend = Backend::Auto;
     std::optional<int> device{};
     int sheets = 200;
@@ -79,7 +84,8 @@ struct SplatResult {
 /// has to stay where it is. Pictures are bitwise the same for any number of threads. `Auto` takes a hardware GPU if there is
 /// one, else the CPU. One picture at a time.
 /// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
-///         Error(MissingCapability) if Backend::Gl finds no OpenGL 4.5
+///         Error(InvalidInput) for SplatMethod::Sheets on Backend::Cpu;
+///         Error(MissingCapability) if Backend::Gl or SplatMethod::Sheets finds no OpenGL 4.5
 /// source: SCIENCE §3, §3.1
 class Splatter {
 public:

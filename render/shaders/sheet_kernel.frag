@@ -1,0 +1,48 @@
+#version 450
+// What a kernel adds to the sums of a sheet.
+uniform vec2 middle_px;
+uniform float pixel, across;
+
+flat in uint splat;
+flat in vec4 place;
+flat in vec4 conic;
+flat in vec4 values;
+flat in vec3 depths;
+
+layout(location = 0) out vec2 sums;  // w, w·v
+#if SHADED || COLORED
+layout(location = 1) out vec4 more_sums;  // w·∇v, w times the colour's v
+#endif
+
+void main() {
+    vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel);
+    vec2 d = slope * across - place.xy;
+    float zs = place.z;
+    float e = d.x * (conic.x * d.x + 2.0 * conic.y * d.y) + (conic.z * d.y * d.y + place.w);
+    float w = kernel_weight(splat, d, zs, e);
+    float v = conic.w * e + (values.y * d.x + (values.z * d.y + values.x));
+#if BENT
+    v += bend_value(bends[splat], d, zs);
+#endif
+    sums = vec2(w, w * v);
+#if SHADED || COLORED
+    vec4 more = vec4(0.0);
+#if SHADED
+    float twice = 2.0 * conic.w;
+    more.xyz = vec3(twice * (conic.x * d.x + conic.y * d.y) + values.y, twice * (conic.y * d.x + conic.z * d.y) + values.z,
+                    twice * depths.z * zs + values.w);
+#if BENT
+    more.xyz += bend_gradient(bends[splat], d, zs);
+#endif
+    more.z -= dot(depths.xy, more.xy);  // offsets are from the section's middle, which moves with the depth
+#endif
+#if COLORED
+    EyeColor c = colors[splat];
+    more.w = c.moment * e + (c.gradient.x * d.x + (c.gradient.y * d.y + (c.value_slope * zs + c.value)));
+#if BENT
+    more.w += bend_value(color_bends[splat], d, zs);
+#endif
+#endif
+    more_sums = w * more;
+#endif
+}

@@ -1,0 +1,258 @@
+#include "gl_sheets.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "gl_context.h"
+#include "shader_sheet_composite_comp.h"
+#include "shader_sheet_frame_glsl.h"
+#include "shader_sheet_kernel_frag.h"
+#include "shader_sheet_kernel_vert.h"
+#include "shader_sheet_splats_glsl.h"
+#include "shader_sheet_walk_glsl.h"
+#include "shader_splat_classify_glsl.h"
+#include "shader_splat_light_glsl.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Sheets whose kernels are listed at a time: the lists take no more room than the kernels, which are 16 words each.
+constexpr int kListed = 16;
+constexpr GLuint kListBinding = 6;
+constexpr GLuint kTableBinding = 7;  // as shaders/splat_classify.glsl has it; then those of sheet_composite.comp
+
+std::string defines(const SplatFrame& frame) {
+    const SplatScene& scene = *frame.scene;
+    std::ostringstream text;
+    text << std::scientific;
+    text.precision(9);
+    const auto define = [&](const char* name, auto value) { text << "#define " << name << ' ' << value << '\n'; };
+    define("KERNEL_SHAPE", static_cast<int>(scene.shape));
+    define("KERNEL_STEPS", scene.kernel_table.empty() ? 1 : scene.kernel_table.size() - 1);
+    define("BENT", int{scene.bent});
+    define("SHADED", int{scene.shading.has_value()});
+    define("COLORED", int{scene.color_channel.has_value()});
+    define("NORMALIZED", int{scene.normalized});
+    define("BOUNDED", int{scene.half_weight == 0});
+    define("PERSPECTIVE", int{frame.view->perspective()});
+    define("kCells", PreintegratedTable::kCells);
+    define("kNearValues", kNearValues);
+    define("kLeastWeight", kLeastWeight);
+    define("kOpaque", kOpaque);
+    define("kFarCells", kFarCells);
+    return text.str();
+}
+
+/// Values of a program's uniforms, by name; what the compiler has dropped is left alone.
+class Uniforms {
+public:
+    explicit Uniforms(const GlProgram& program) : program_(program) {}
+
+    void set(const char* name, int v) const { glProgramUniform1i(program_.id(), at(name), v); }
+    void set(const char* name, float v) const { glProgramUniform1f(program_.id(), at(name), v); }
+    void set(const char* name, float x, float y) const { glProgramUniform2f(program_.id(), at(name), x, y); }
+    void set(const char* name, const std::array<float, 4>& v) const {
+        glProgramUniform4fv(program_.id(), at(name), 1, v.data());
+    }
+    void set_integers(const char* name, int x, int y) const { glProgramUniform2i(program_.id(), at(name), x, y); }
+    void set(const char* name, const PixelRect& r) const {
+        glProgramUniform4i(program_.id(), at(name), r.x0, r.y0, r.x1, r.y1);
+    }
+
+private:
+    [[nodiscard]] GLint at(const char* name) const { return program_.uniform(name); }
+
+    const GlProgram& program_;
+};
+
+/// What does not change from sheet to sheet.
+void set_frame(const SplatFrame& frame, const GlProgram& kernels, const GlProgram& composite) {
+    const SplatScene& scene = *frame.scene;
+    const View& view = *frame.view;
+    for (const GlProgram* program : {&kernels, &composite}) {
+        const Uniforms u(*program);
+        u.set("middle_px", 0.5f * static_cast<float>(view.width()), 0.5f * static_cast<float>(view.height()));
+        u.set("pixel", static_cast<float>(view.pixel()));
+    }
+    Uniforms(kernels).set("size_px", static_cast<float>(view.width()), static_cast<float>(view.height()));
+    const Uniforms u(composite);
+    u.set_integers("size_px", view.width(), view.height());
+    u.set("near", frame.sheets.near);
+    u.set("offsets", value_offset(scene, *frame.look), scene.color_channel ? color_offset(scene, *frame.look) : 0.0f);
+    u.set("unit", frame.look->table.unit);
+    u.set("half_weight", scene.half_weight);
+    u.set("least_gradient", kLeastChange * PreintegratedTable::kCells / static_cast<float>(scene.diagonal));
+    if (!scene.shading) return;
+    const Shading& s = *scene.shading;
+    u.set("material", std::array{static_cast<float>(s.ambient), static_cast<float>(s.diffuse), static_cast<float>(s.specular),
+                                 static_cast<float>(s.shininess)});
+    const Vec3 key = glm::normalize(s.key);
+    u.set("key", std::array{static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z), 0.0f});
+}
+
+template <class T>
+void fill(GlBuffer& buffer, GLuint binding, const std::vector<T>& values) {
+    const std::size_t bytes = values.size() * sizeof(T);
+    buffer.grow(bytes);
+    buffer.upload(bytes, values.data());
+    buffer.bind(binding);
+}
+
+/// A pixel on its way from front to back; as in shaders/sheet_composite.comp.
+struct Last {
+    float value, weight, depth;
+    std::uint32_t interval;
+};
+
+std::size_t pixels(const View& view) {
+    return static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+}
+
+std::size_t pixels_to_do(const SplatFrame& frame) {
+    const auto& offsets = frame.intervals.offsets;
+    if (frame.scene->half_weight > 0) return pixels(*frame.view);
+    std::size_t count = 0;
+    for (std::size_t id = 0; id + 1 < offsets.size(); ++id) count += offsets[id] != offsets[id + 1] ? 1 : 0;
+    return count;
+}
+
+}  // namespace
+
+GlSheets::GlSheets() {
+    glCreateVertexArrays(1, &vertices_);  // without any attribute: nothing is drawn without one
+    check_gl("sheet buffers");
+}
+
+GlSheets::~GlSheets() {
+    glDeleteVertexArrays(1, &vertices_);
+}
+
+Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
+    const SplatScene& scene = *frame.scene;
+    report_progress(progress, "splat", 0);
+    const Programs& used = programs(frame);
+    upload(frame);
+    start_beams(frame);
+    set_frame(frame, used.kernels, used.composite);
+    target_.begin(frame.view->width(), frame.view->height(), scene.shading || scene.color_channel);
+    glBindVertexArray(vertices_);
+
+    const PixelRect window = seen_pixels(frame);
+    const std::size_t to_do = pixels_to_do(frame);
+    PixelRect last;  // where the last sheet has kernels
+    for (int first = 0; first < frame.sheets.count && !window.empty(); first += kListed) {
+        const int end = std::min(first + kListed, frame.sheets.count);
+        const SheetLists lists = list_sheets(frame, window, first, end);
+        ids_.grow(lists.splats.size() * sizeof(std::uint32_t));
+        ids_.upload(lists.splats.size() * sizeof(std::uint32_t), lists.splats.data());
+        ids_.bind(kListBinding);
+        for (int sheet = first; sheet < end; ++sheet) {
+            const auto k = static_cast<std::size_t>(sheet - first);
+            // Where neither this sheet nor the last one has kernels no value is known, if a sum without any is none.
+            const PixelRect rect = scene.normalized ? lists.rects[k].with(last) : window;
+            last = lists.rects[k];
+            if (rect.empty()) continue;
+            target_.clear(rect);
+            draw_kernels(frame, used.kernels, sheet, lists.offsets[k], lists.offsets[k + 1] - lists.offsets[k]);
+            composite(frame, used.composite, sheet, rect);
+        }
+        report_progress(progress, "splat", static_cast<double>(end) / frame.sheets.count);
+        if (done_pixels() == to_do) break;
+    }
+    check_gl("splat");
+    return read(frame);
+}
+
+const GlSheets::Programs& GlSheets::programs(const SplatFrame& frame) {
+    const std::string features = defines(frame);
+    if (const auto found = programs_.find(features); found != programs_.end()) return found->second;
+    GlProgram kernels(ShaderText{"sheet_kernel.vert", kShader_sheet_kernel_vert},
+                      ShaderText{"sheet_kernel.frag", kShader_sheet_kernel_frag}, features,
+                      {{"sheet_splats.glsl", kShader_sheet_splats_glsl}});
+    GlProgram composite("sheet_composite.comp", kShader_sheet_composite_comp, features,
+                        {{"sheet_frame.glsl", kShader_sheet_frame_glsl},
+                         {"splat_classify.glsl", kShader_splat_classify_glsl},
+                         {"splat_light.glsl", kShader_splat_light_glsl},
+                         {"sheet_walk.glsl", kShader_sheet_walk_glsl}});
+    return programs_.emplace(features, Programs{std::move(kernels), std::move(composite)}).first->second;
+}
+
+void GlSheets::upload(const SplatFrame& frame) {
+    const EyeSplats& kernels = frame.kernels;
+    fill(splats_, 0, kernels.splats);
+    fill(bends_, 1, kernels.bends);
+    fill(colors_, 2, kernels.colors);
+    fill(color_bends_, 3, kernels.color_bends);
+    fill(axes_, 4, kernels.axes);
+    fill(kernel_table_, 5, frame.scene->kernel_table);
+    fill(table_, kTableBinding, frame.look->table.rows);
+    fill(visible_, kTableBinding + 1, frame.look->table.visible);
+    fill(color_table_, kTableBinding + 2, frame.look->colors.rows);
+    fill(interval_offsets_, kTableBinding + 3, frame.intervals.offsets);
+    fill(intervals_, kTableBinding + 4, frame.intervals.depths);
+}
+
+void GlSheets::start_beams(const SplatFrame& frame) {
+    const std::size_t count = pixels(*frame.view);
+    const bool bounded = frame.scene->half_weight == 0;
+    std::vector<Last> lasts(count);
+    for (std::size_t id = 0; bounded && id < count; ++id) lasts[id].interval = frame.intervals.offsets[id];
+    fill(beams_, kTableBinding + 5, std::vector<std::array<float, 4>>(count, {0, 0, 0, 1}));
+    fill(lasts_, kTableBinding + 6, lasts);
+    if (frame.scene->shading || frame.scene->color_channel) looks_.grow(count * 4 * sizeof(float));
+    looks_.bind(kTableBinding + 7);
+    fill(done_, kTableBinding + 8, std::vector<std::uint32_t>{0});
+}
+
+void GlSheets::draw_kernels(const SplatFrame& frame, const GlProgram& program, int sheet, std::size_t first,
+                            std::size_t count) {
+    if (count == 0) return;
+    const float z = frame.sheets.depth(sheet), across = frame.view->perspective() ? frame.sheets.middle + z : 1.0f;
+    const Uniforms u(program);
+    u.set("sheet_z", z);
+    u.set("across", across);
+    u.set("to_pixels", 1.0f / (across * static_cast<float>(frame.view->pixel())));
+    program.use();
+    // Triangles, not instances: hardware does not fill its units with four vertices; to software it is the same.
+    glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * first), static_cast<GLsizei>(6 * count));
+}
+
+void GlSheets::composite(const SplatFrame& frame, const GlProgram& program, int sheet, const PixelRect& rect) {
+    constexpr int kGroup = 8;
+    const auto groups = [](int from, int to) { return static_cast<GLuint>((to - from + kGroup - 1) / kGroup); };
+    const float back = frame.sheets.depth(sheet);
+    const Uniforms u(program);
+    u.set("rectangle", rect);
+    u.set("front_z", sheet > 0 ? frame.sheets.depth(sheet - 1) : back - frame.sheets.distance);
+    u.set("back_z", back);
+    u.set("first", int{sheet == 0});
+    program.use();
+    glDispatchCompute(groups(rect.x0, rect.x1), groups(rect.y0, rect.y1), 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+}
+
+std::uint32_t GlSheets::done_pixels() const {
+    std::uint32_t count = 0;
+    done_.read(sizeof count, &count);
+    return count;
+}
+
+Drawn GlSheets::read(const SplatFrame& frame) const {
+    const View& view = *frame.view;
+    Drawn drawn{Image(view.width(), view.height()), {}};
+    auto& rgba = drawn.image.rgba;
+    beams_.read(rgba.size() * sizeof(float), rgba.data());
+    std::vector<Last> lasts(pixels(view));
+    lasts_.read(lasts.size() * sizeof(Last), lasts.data());
+    drawn.depth.assign(lasts.size(), std::numeric_limits<float>::infinity());
+    for (std::size_t id = 0; id < lasts.size(); ++id) {
+        float& opacity = rgba[4 * id + 3];
+        opacity = 1 - opacity;  // it came as the transmittance
+        if (opacity > 0) drawn.depth[id] = frame.sheets.middle + lasts[id].depth / opacity;
+    }
+    return drawn;
+}
+
+}  // namespace subvol::detail
