@@ -8,12 +8,13 @@
 namespace subvol::detail {
 
 /// A kernel in eye space, ready to be cut by a plane of constant depth z: with z_s = z − depth, its section has the centre
-/// center + shear·z_s, and e = z_s²·inv_szz + Δᵀ·conic·Δ for an offset Δ from that centre; it stands for
-/// value + value_slope·z_s + gradient·Δ + moment·e, in cells of the table. Laid out as shaders have it.
+/// center + shear·z_s, and e = z_s²·inv_szz + (root_xx·Δx + root_xy·Δy)² + (root_yy·Δy)² for an offset Δ from that centre; it
+/// stands for value + value_slope·z_s + gradient·Δ + moment·e, in cells of the table. The root of the section's quadratic form
+/// keeps digits that the form itself loses where a kernel is flat. Laid out as shaders have it.
 struct EyeSplat {
     float center_x, center_y, depth, inv_szz;
-    float shear_x, shear_y, conic_xx, conic_xy;
-    float conic_yy, value, gradient_x, gradient_y;
+    float shear_x, shear_y, root_xx, root_xy;
+    float root_yy, value, gradient_x, gradient_y;
     float value_slope, moment, extent_x, extent_y;
 };
 static_assert(sizeof(EyeSplat) == 64);

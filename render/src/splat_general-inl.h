@@ -33,14 +33,16 @@ public:
             Offsets at{x, y, hn::Set(d, cuts.zs[k]), x};
             for (auto row = cuts.row0[k]; row <= cuts.row1[k]; ++row) {
                 at.y = hn::MulSub(hn::Load(d, tile.y + static_cast<std::size_t>(row) * kBlock), across, y);
-                const auto e_row = hn::MulAdd(hn::Mul(hn::Set(d, s.conic_yy), at.y), at.y, hn::Set(d, cuts.e[k]));
-                const auto e_slope = hn::Mul(hn::Set(d, 2 * s.conic_xy), at.y);
+                const auto across_row = hn::Mul(hn::Set(d, s.root_yy), at.y);
+                const auto e_row = hn::MulAdd(across_row, across_row, hn::Set(d, cuts.e[k]));
+                const auto e_slope = hn::Mul(hn::Set(d, s.root_xy), at.y);
                 float* to = sums + ((static_cast<std::size_t>(k) * kRows + static_cast<std::size_t>(row)) * kColumns +
                                     static_cast<std::size_t>(cuts.column0[k])) *
                                        (kSums * kBlock);
                 for (auto column = cuts.column0[k]; column <= cuts.column1[k]; ++column, to += kSums * kBlock) {
                     at.x = hn::MulSub(hn::Load(d, tile.x + static_cast<std::size_t>(column) * kBlock), across, x);
-                    at.e = hn::MulAdd(at.x, hn::MulAdd(hn::Set(d, s.conic_xx), at.x, e_slope), e_row);
+                    const auto along_row = hn::MulAdd(hn::Set(d, s.root_xx), at.x, e_slope);
+                    at.e = hn::MulAdd(along_row, along_row, e_row);
                     add_block(id, s, at, to);
                 }
             }
@@ -120,8 +122,10 @@ private:
         const auto set = [&](float v) HWY_ATTR { return hn::Set(d, v); };
         const float twice = 2 * s.moment;
         Vector g;
-        g.x = hn::MulAdd(set(twice), hn::MulAdd(set(s.conic_xx), at.x, hn::Mul(set(s.conic_xy), at.y)), set(s.gradient_x));
-        g.y = hn::MulAdd(set(twice), hn::MulAdd(set(s.conic_xy), at.x, hn::Mul(set(s.conic_yy), at.y)), set(s.gradient_y));
+        const auto along_row = hn::MulAdd(set(s.root_xx), at.x, hn::Mul(set(s.root_xy), at.y));
+        g.x = hn::MulAdd(set(twice * s.root_xx), along_row, set(s.gradient_x));
+        g.y = hn::MulAdd(set(twice * s.root_xy), along_row,
+                         hn::MulAdd(set(twice * s.root_yy * s.root_yy), at.y, set(s.gradient_y)));
         g.z = hn::MulAdd(set(twice * s.inv_szz), at.zs, set(s.value_slope));
         if (bend) {
             const auto two = set(2.0f);

@@ -89,22 +89,24 @@ HWY_ATTR inline void cut(const EyeSplat& s, const BatchView& batch, const TilePi
 HWY_ATTR inline void add_plain(const EyeSplat& s, const BatchView& batch, const TilePixels& tile, Cuts& cuts, float* sums) {
     const Lanes d;
     cut(s, batch, tile, cuts);
-    const auto cxx = hn::Set(d, s.conic_xx), gx = hn::Set(d, s.gradient_x), moment = hn::Set(d, s.moment);
+    const auto rxx = hn::Set(d, s.root_xx), gx = hn::Set(d, s.gradient_x), moment = hn::Set(d, s.moment);
     const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d);
     for (int k = batch.begin; k < batch.end; ++k) {
         const auto c0 = cuts.column0[k], c1 = cuts.column1[k];
         const auto across = hn::Set(d, batch.across[k]), x = hn::Set(d, cuts.x[k]), y = hn::Set(d, cuts.y[k]);
         for (auto row = cuts.row0[k]; row <= cuts.row1[k]; ++row) {
             const auto dy = hn::MulSub(hn::Load(d, tile.y + static_cast<std::size_t>(row) * kBlock), across, y);
-            const auto e_row = hn::MulAdd(hn::Mul(hn::Set(d, s.conic_yy), dy), dy, hn::Set(d, cuts.e[k]));
-            const auto e_slope = hn::Mul(hn::Set(d, 2 * s.conic_xy), dy);
+            const auto across_row = hn::Mul(hn::Set(d, s.root_yy), dy);
+            const auto e_row = hn::MulAdd(across_row, across_row, hn::Set(d, cuts.e[k]));
+            const auto e_slope = hn::Mul(hn::Set(d, s.root_xy), dy);
             const auto v_row = hn::MulAdd(hn::Set(d, s.gradient_y), dy, hn::Set(d, cuts.v[k]));
             float* to = sums + ((static_cast<std::size_t>(k) * kRows + static_cast<std::size_t>(row)) * kColumns +
                                 static_cast<std::size_t>(c0)) *
                                    (2 * kBlock);
             for (auto column = c0; column <= c1; ++column, to += 2 * kBlock) {
                 const auto dx = hn::MulSub(hn::Load(d, tile.x + static_cast<std::size_t>(column) * kBlock), across, x);
-                const auto e = hn::MulAdd(dx, hn::MulAdd(cxx, dx, e_slope), e_row);
+                const auto along_row = hn::MulAdd(rxx, dx, e_slope);
+                const auto e = hn::MulAdd(along_row, along_row, e_row);
                 const auto left = hn::Max(hn::Sub(one, e), zero);
                 const auto w = hn::Mul(hn::Mul(left, left), left);
                 const auto v = hn::MulAdd(moment, e, hn::MulAdd(gx, dx, v_row));

@@ -139,13 +139,15 @@ TEST(SplatInvariance, BatchesThatArePassedOverAreNotMissed) {
 }
 
 TEST(SplatInvariance, WhatLiesBetweenBatchesIsNotMissed) {
-    // Layers of kernels 1/16 apart that reach .09 to either side. Of the ten sheets, the first batch ends at depth 7/9, which
-    // only kernels with a value of .1 reach; at 8/9 the last two layers, with .9, raise the sum to .3: the peak lies between.
-    HexMesh mesh = test::box(16);
-    add_field(mesh, "f", [](const Vec3& p) { return p.y < .9 ? .1 : .9; });
+    // Layers of kernels 1/17 apart that reach .084 to either side, and ten sheets, of which the first batch has those up to a
+    // depth of 7/9 = .778. Kernels with a value of .9 end at .706 + .084, behind that sheet but far before the next one: there
+    // and further on there is nothing to be seen, but between the two there is.
+    HexMesh mesh = test::box(17);
+    add_field(mesh, "f", [](const Vec3& p) { return p.y < .73 ? .9 : .1; });
     const RbfVolume volume = sample_rbf_points(mesh, {.correction = Correction::None}).volume;
     const View along_y({.eye = {.5, -2, .5}, .target = {.5, 0, .5}, .up = {0, 0, 1}, .ortho_height = 1.2}, 40, 40);
-    Frame frame(volume, one_peak(.2), {.backend = Backend::Cpu, .sheets = 10}, along_y);
+    const Optics optics({.color = {{0, {1, 1, 1}}}, .opacity = {{0, 0}, {.102, 0}, {.106, .9}, {.12, 0}, {1, 0}}}, .001);
+    Frame frame(volume, optics, {.backend = Backend::Cpu, .sheets = 10}, along_y);
     const auto passed_over = frame.draw();
     frame.frame.kernels.ranges.clear();
     EXPECT_EQ(passed_over.image.rgba, frame.draw().image.rgba);
