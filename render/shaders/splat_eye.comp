@@ -80,8 +80,8 @@ Splat splat_of(Kernel k, Section c) {
     double det = c.cxx * c.cyy - c.cxy * c.cxy;
     Splat s;
     s.place = vec4(right.w + center.x, up.w + center.y, center.z, 1.0lf / c.szz);
-    s.shape = vec4(c.shear, c.cyy / det, -c.cxy / det);
-    s.slope = vec4(c.cxx / det, double(k.center.w) * cells.x + cells.y, g.xy);
+    s.shape = vec4(c.shear, sqrt(c.cyy / det), -c.cxy / sqrt(c.cyy * det));
+    s.slope = vec4(1.0lf / sqrt(c.cyy), double(k.center.w) * cells.x + cells.y, g.xy);
     s.rest = vec4(g.x * c.shear.x + g.y * c.shear.y + g.z, double(k.rest.y) * cells.x * kReach, sqrt(max(c.cxx, 0.0lf)),
                   sqrt(max(c.cyy, 0.0lf)));
     return s;

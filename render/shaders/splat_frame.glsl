@@ -20,8 +20,8 @@ const float kNever = 3e38;
 // Ellipsoids in eye space: src/eye_splats.h says what the numbers are.
 struct Splat {
     vec4 place;   // center x, y, depth, 1 / S_zz
-    vec4 shape;   // shear x, y, conic xx, xy
-    vec4 slope;   // conic yy, value, gradient x, y
+    vec4 shape;   // shear x, y, root xx, xy
+    vec4 slope;   // root yy, value, gradient x, y
     vec4 rest;    // value slope, moment, extent x, y
 };
 

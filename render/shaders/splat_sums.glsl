@@ -12,7 +12,7 @@ const uint kWords = kChunk / 32;
 const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBlocksY;
 
 shared vec4 cuts[kChunk * kBatch];  // of a kernel on a sheet: its middle x, y; e and value there
-shared vec4 shapes[kChunk];         // conic xx, 2 xy, yy; moment
+shared vec4 shapes[kChunk];         // root xx, xy, yy; moment
 shared vec2 gradients[kChunk];
 shared uint met_sheets[kChunk * kBlocks];  // a bit a sheet
 shared uint met_kernels[kWords * kBlocks];  // a bit a kernel
@@ -65,7 +65,7 @@ void cut(uint j, uint k, uint id, int sheet, bool wanted) {
         mark_blocks(j, k, px, s.rest.zw * (sqrt(left) * scale) + 0.55);
     }
     if (k == 0u) {
-        shapes[j] = vec4(s.shape.z, 2.0 * s.shape.w, s.slope.x, s.rest.y);
+        shapes[j] = vec4(s.shape.zw, s.slope.x, s.rest.y);
         gradients[j] = s.slope.zw;
 #if GENERAL
         rests[j] = vec4(s.place.z, s.place.w, s.rest.x, 0.0);
@@ -143,10 +143,11 @@ float color_of(uint j, vec3 d, float e) {
 vec3 gradient_of(uint j, vec3 d) {
     vec4 shape = shapes[j], rest = rests[j];
     vec2 gradient = gradients[j], shear = shears[j];
-    float twice = 2.0 * shape.w, xy = 0.5 * shape.y;
+    float twice = 2.0 * shape.w;
+    precise float along_row = fma(shape.x, d.x, shape.y * d.y);
     precise vec3 g;
-    g.x = fma(twice, fma(shape.x, d.x, xy * d.y), gradient.x);
-    g.y = fma(twice, fma(xy, d.x, shape.z * d.y), gradient.y);
+    g.x = fma(twice * shape.x, along_row, gradient.x);
+    g.y = fma(twice * shape.y, along_row, fma(twice * shape.z * shape.z, d.y, gradient.y));
     g.z = fma(twice * rest.y, d.z, rest.z);
 #if BENT
     vec4 b = extras[j * kExtras + kBendAt];
@@ -168,7 +169,8 @@ void add_kernel(uint j, uint met, int first_sheet) {
         if ((met & (1u << k)) == 0u) continue;
         vec4 at = cuts[j * kBatch + k];
         precise vec2 d = fma(ray, vec2(across[k]), -at.xy);
-        precise float e = fma(d.x, fma(shape.x, d.x, shape.y * d.y), fma(shape.z * d.y, d.y, at.z));
+        precise float across_row = shape.z * d.y, along_row = fma(shape.x, d.x, shape.y * d.y);
+        precise float e = fma(along_row, along_row, fma(across_row, across_row, at.z));
         precise float v = fma(shape.w, e, fma(gradient.x, d.x, fma(gradient.y, d.y, at.w)));
 #if GENERAL
         precise vec3 offset = vec3(d, sheet_depth(first_sheet + k) - rests[j].x);
