@@ -5,7 +5,7 @@ uniform float pixel, across;
 
 flat in uint splat;
 flat in vec4 place;
-flat in vec4 conic;
+flat in vec4 shape;
 flat in vec4 values;
 flat in vec3 depths;
 
@@ -18,9 +18,10 @@ void main() {
     vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel);
     vec2 d = slope * across - place.xy;
     float zs = place.z;
-    float e = d.x * (conic.x * d.x + 2.0 * conic.y * d.y) + (conic.z * d.y * d.y + place.w);
+    vec2 scaled = vec2(shape.x * d.x + shape.y * d.y, shape.z * d.y);
+    float e = dot(scaled, scaled) + place.w;
     float w = kernel_weight(splat, d, zs, e);
-    float v = conic.w * e + (values.y * d.x + (values.z * d.y + values.x));
+    float v = shape.w * e + (values.y * d.x + (values.z * d.y + values.x));
 #if BENT
     v += bend_value(bends[splat], d, zs);
 #endif
@@ -28,8 +29,8 @@ void main() {
 #if SHADED || COLORED
     vec4 more = vec4(0.0);
 #if SHADED
-    float twice = 2.0 * conic.w;
-    more.xyz = vec3(twice * (conic.x * d.x + conic.y * d.y) + values.y, twice * (conic.y * d.x + conic.z * d.y) + values.z,
+    float twice = 2.0 * shape.w;
+    more.xyz = vec3(twice * (shape.x * scaled.x) + values.y, twice * (shape.y * scaled.x + shape.z * scaled.y) + values.z,
                     twice * depths.z * zs + values.w);
 #if BENT
     more.xyz += bend_gradient(bends[splat], d, zs);

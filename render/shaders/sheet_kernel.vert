@@ -6,7 +6,7 @@ uniform float sheet_z, across, to_pixels;  // across: world length of a unit of 
 
 flat out uint splat;
 flat out vec4 place;   // middle of the section, z_s, the least e
-flat out vec4 conic;   // xx, xy, yy; the moment
+flat out vec4 shape;   // the root's xx, xy, yy; the moment
 flat out vec4 values;  // at the middle, and its gradient; its slope along the middle
 flat out vec3 depths;  // shear, 1 / S_zz
 
@@ -19,7 +19,7 @@ void main() {
     vec2 middle = s.center + s.shear * zs;
     splat = id;
     place = vec4(middle, zs, e);
-    conic = vec4(s.conic_xx, s.conic_xy, s.conic_yy, s.moment);
+    shape = vec4(s.root_xx, s.root_xy, s.root_yy, s.moment);
     values = vec4(s.value + zs * s.value_slope, s.gradient, s.value_slope);
     depths = vec3(s.shear, s.inv_szz);
 

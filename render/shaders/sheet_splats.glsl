@@ -4,7 +4,7 @@ struct EyeSplat {
     vec2 center;
     float depth, inv_szz;
     vec2 shear;
-    float conic_xx, conic_xy, conic_yy, value;
+    float root_xx, root_xy, root_yy, value;
     vec2 gradient;
     float value_slope, moment;
     vec2 extent;

@@ -30,16 +30,18 @@ void follow(inout Beam beam, Seen front, Seen back, float front_z, float back_z,
     cut_where_weights_end(front, back, front_z, back_z, from, to);
 #endif
     if (!(from < to) || !(front.known || back.known)) return;
-    float x_front = front.known ? front.value : back.value, x_back = back.known ? back.value : front.value;
-    float slope = (x_back - x_front) * (1.0 / (back_z - front_z));
-    float x0 = from == front_z ? x_front : slope * (from - front_z) + x_front;
-    float x1 = to == back_z ? x_back : slope * (to - front_z) + x_front;
+    // An end that knows nothing is like the other.
+    if (!front.known) front = back;
+    if (!back.known) back = front;
+    float slope = (back.value - front.value) * (1.0 / (back_z - front_z));
+    float x0 = from == front_z ? front.value : slope * (from - front_z) + front.value;
+    float x1 = to == back_z ? back.value : slope * (to - front_z) + front.value;
     if (transparent(x0, x1)) return;
     vec4 mean = means(place_of(x0), place_of(x1));
     if (!(mean.x > 0.0)) return;  // nothing is left of rounding where there is nothing to see
     mean.yzw = min(mean.yzw, mean.xxx);
 #if COLORED
-    mean.yzw = 0.5 * mean.x * (color_at(front.known ? front.color : back.color) + color_at(back.color));
+    mean.yzw = 0.5 * mean.x * (color_at(front.color) + color_at(back.color));
 #endif
     float opacity = 1.0 - exp_of(-(to - from) * ray_length * mean.x), light = beam.transmittance * opacity;
     float per_extinction = light / max(mean.x, 1e-37);
