@@ -1,7 +1,7 @@
-// Frames a second of the splatter: the models at two picture sizes, and the twisted block from 30 thousand to 4 million points.
-// The line that follows the sweep is the cost of an overlap: seconds against kernel–pixel–sheet triples.
+// Frames a second of the splatter: the models at two picture sizes, the twisted block from 30 thousand to 4 million points, and
+// the cost of an overlap: kernels are widened, so that nothing but the number of kernel–pixel–sheet triples changes.
 //
-//   render_speed [cpu|gl|sheets] [models|sweep]
+//   render_speed [cpu|gl|sheets] [models|sweep|overlaps]
 #include <ctime>
 
 #include <cmath>
@@ -20,7 +20,9 @@ namespace {
 
 using namespace subvol;
 
-constexpr int kSheets = 200, kFrames = 8;
+constexpr int kSheets = 200;
+
+int frames = 8;
 
 /// Pixels of all sections of all kernels by all sheets.
 double overlaps(const RbfVolume& volume, const View& view) {
@@ -46,7 +48,7 @@ struct Measured {
 /// The best of some frames, each from another side.
 Measured draw(Splatter& splatter, const Camera& camera, int size, const Vec3& center, const Optics& optics) {
     Measured best;
-    for (int i = 0; i < kFrames; ++i) {
+    for (int i = 0; i < frames; ++i) {
         Camera turned = camera;
         const double a = 0.02 * i;
         const Vec3 d = camera.eye - center;
@@ -83,18 +85,48 @@ void sweep(const SplatOptions& options) {
                          .opacity = {{-1, .30}, {-.3, .05}, {0, 0}, {.3, .05}, {1, .40}}},
                         0.1);
     const Camera camera{{2.6, -4.2, 2.0}, {-.55, 0, 0}, {0, 0, 1}, 40, 0};
-    std::vector<std::pair<double, double>> costs;  // overlaps, CPU seconds
     for (const int n : {30, 44, 60, 99, 158}) {
         const RbfVolume volume = sample_rbf_points(make_model("twist", n)).volume;
         Splatter splatter(volume, options);
         for (const int size : {512, 1024}) {
-            const Measured m = draw(splatter, camera, size, Vec3(-.55, 0, 0), optics);
-            print("twist" + std::to_string(n), size, volume, m);
-            costs.emplace_back(overlaps(volume, View(camera, size, size)), m.cpu);
-            std::printf("                %.0f M overlaps, %.2f ns each\n", costs.back().first * 1e-6,
-                        costs.back().second / costs.back().first * 1e9);
+            print("twist" + std::to_string(n), size, volume, draw(splatter, camera, size, Vec3(-.55, 0, 0), optics));
         }
     }
+}
+
+/// A line through the costs by least squares, and how much of their variance it leaves.
+void print_slope(const std::vector<std::pair<double, double>>& costs) {
+    double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    for (const auto& [overlap, cost] : costs) {
+        n += 1;
+        x += overlap;
+        y += cost;
+        xx += overlap * overlap;
+        xy += overlap * cost;
+        yy += cost * cost;
+    }
+    const double slope = (n * xy - x * y) / (n * xx - x * x), base = (y - slope * x) / n;
+    const double left = 1 - std::pow(n * xy - x * y, 2) / ((n * xx - x * x) * (n * yy - y * y));
+    std::printf("slope %.3f ns an overlap, %.3f s without any, variance left %.4f\n", slope * 1e9, base, left);
+}
+
+void cost_of_overlaps(const SplatOptions& options) {
+    const RbfVolume volume = sample_rbf_points(make_model("twist", 40)).volume;
+    const Camera camera{{2.6, -4.2, 2.0}, {-.55, 0, 0}, {0, 0, 1}, 40, 0};
+    const Optics optics({.color = {{-1, {.1, .2, .9}}, {1, {.9, .2, .1}}}, .opacity = {{-1, .02}, {1, .04}}}, 0.1);
+    std::vector<std::pair<double, double>> costs;
+    for (const double wider : {1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0}) {
+        RbfVolume wide = volume;
+        for (auto& frame : wide.frames) {
+            for (float& f : frame) f *= static_cast<float>(wider * wider);
+        }
+        Splatter splatter(wide, options);
+        const Measured m = draw(splatter, camera, 512, Vec3(-.55, 0, 0), optics);
+        costs.emplace_back(overlaps(wide, View(camera, 512, 512)), m.cpu);
+        std::printf("kernels %.2f times as wide: %6.0f M overlaps, %.3f CPU-s\n", wider, costs.back().first * 1e-6, m.cpu);
+        std::fflush(stdout);
+    }
+    print_slope(costs);
 }
 
 }  // namespace
@@ -102,10 +134,14 @@ void sweep(const SplatOptions& options) {
 int main(int argc, char** argv) {
     const std::string backend = argc > 1 ? argv[1] : "cpu", what = argc > 2 ? argv[2] : "";
     SplatOptions options{.backend = backend == "cpu" ? Backend::Cpu : Backend::Gl, .sheets = kSheets};
+    if (backend == "sheets") options.method = SplatMethod::Sheets;
     try {
-        std::printf("%s\n", backend.c_str());
-        if (what != "sweep") models(options);
-        if (what != "models") sweep(options);
+        const auto device = backend == "cpu" ? std::nullopt : find_gl_device();
+        if (device && !device->hardware) frames = 1;  // software takes seconds a frame
+        std::printf("%s %s\n", backend.c_str(), device ? device->renderer.c_str() : "");
+        if (what.empty() || what == "models") models(options);
+        if (what.empty() || what == "sweep") sweep(options);
+        if (what.empty() || what == "overlaps") cost_of_overlaps(options);
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 3;
