@@ -1,0 +1,115 @@
+"""Options of splatting: light, colours of a second field, sheets, devices, a time budget; depth in .exr files."""
+
+import unittest
+
+from command import InFolder, subvol
+
+SMALL = ["--size", "64x48", "--sheets", "40", "--quiet"]
+MESH = """MeshVersionFormatted 2
+Dimension 3
+Vertices
+8
+0 0 0 0
+1 0 0 0
+1 1 0 0
+0 1 0 0
+0 0 1 0
+1 0 1 0
+1 1 1 0
+0 1 1 0
+Hexahedra
+1
+1 2 3 4 5 6 7 8 0
+End
+"""
+
+
+TWO_FIELDS = """# vtk DataFile Version 3.0
+a cell with two fields
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 8 double
+0 0 0  1 0 0  1 1 0  0 1 0  0 0 1  1 0 1  1 1 1  0 1 1
+CELLS 1 9
+8 0 1 2 3 4 5 6 7
+CELL_TYPES 1
+12
+POINT_DATA 8
+SCALARS x double 1
+LOOKUP_TABLE default
+0 1 1 0 0 1 1 0
+SCALARS z double 1
+LOOKUP_TABLE default
+0 0 0 0 1 1 1 1
+"""
+
+
+class Splats(InFolder):
+    def render(self, name, *options, source="model:ball:4"):
+        return self.run_ok("render", source, "-o", name, *SMALL, *options)
+
+    def difference(self, a, b):
+        return self.run_ok("compare", a, b, "--json").json()["max"]
+
+    def has_gl(self):
+        return bool(self.run_ok("info", "--gl", "--json").json()["gl"])
+
+    def test_light_changes_colours_but_no_opacity(self):
+        self.render("plain.exr", "--backend", "cpu")
+        self.render("lit.exr", "--backend", "cpu", "--shade")
+        self.assertGreater(self.difference("plain.exr", "lit.exr"), 0.05)
+        self.render("alpha.exr", "--backend", "cpu", "--shade", "--opacity", "0%:0,100%:0")
+        self.render("nothing.exr", "--backend", "cpu", "--opacity", "0%:0,100%:0")
+        self.assertEqual(self.difference("alpha.exr", "nothing.exr"), 0)
+
+    def test_colours_of_a_second_field(self):
+        self.run_ok("points", "model:twist:6", "-o", "a.vtp")
+        self.render("same.exr", "--backend", "cpu", "--color-field", "density", source="a.vtp")
+        self.render("one.exr", "--backend", "cpu", source="a.vtp")
+        self.assertEqual(self.difference("same.exr", "one.exr"), 0)
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        for name, options in [("xx", ["--field", "x"]), ("xz", ["--field", "x", "--color-field", "z"]), ("zz", ["--field", "z"])]:
+            self.render(name + ".exr", "--backend", "cpu", "--view", "-y", *options, source="two.vtk")
+        self.assertGreater(self.difference("xx.exr", "xz.exr"), 0.05)
+        self.assertGreater(self.difference("xz.exr", "zz.exr"), 0.05)
+        done = subvol("render", "model:ball:4", "-o", "x.png", "--color-field", "nowhere", folder=self.folder)
+        self.assertEqual((done.code, "nowhere" in done.err), (2, True), done.err)
+        self.assertNotIn("x.png", self.files())
+
+    def test_sheets_and_kernels_make_the_same_picture(self):
+        if not self.has_gl():
+            self.skipTest("no OpenGL 4.5 through EGL")
+        self.render("cpu.exr", "--backend", "cpu")
+        self.render("gl.exr", "--backend", "gl")
+        done = self.run_ok("render", "model:ball:4", "-o", "sheets.exr", *SMALL, "--method", "sheets", "--json")
+        self.assertEqual((done.json()["method"], done.json()["backend"]), ("sheets", "gl"))
+        self.assertLess(self.difference("cpu.exr", "gl.exr"), 1e-4)
+        self.assertLess(self.difference("cpu.exr", "sheets.exr"), 1e-4)
+
+    def test_devices_that_are_not_there_are_refused(self):
+        done = subvol("render", "model:ball:4", "-o", "x.png", "--backend", "gl", "--device", "99", folder=self.folder)
+        self.assertEqual(done.code, 3, done.err)
+        done = subvol("render", "model:ball:4", "-o", "x.png", "--backend", "cpu", "--device", "0", folder=self.folder)
+        self.assertEqual((done.code, "--device" in done.err), (2, True), done.err)
+        done = subvol("render", "model:ball:4", "-o", "x.png", "--backend", "cpu", "--method", "sheets", folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertEqual(self.files(), [])
+
+    def test_a_time_is_kept_with_the_best_picture(self):
+        done = self.run_ok("render", "model:twist:6", "-o", "a.png", "--size", "64", "--backend", "cpu", "--seconds", "60",
+                           "--json").json()
+        self.assertEqual((done["picture_scale"], done["footprint_px"]), (1, 1))
+        self.assertGreater(done["points"], 343)
+        done = self.run_ok("render", "model:twist:6", "-o", "b.png", "--size", "64", "--backend", "cpu", "--seconds", "1e-6",
+                           "--json").json()
+        self.assertEqual((done["picture_scale"], done["steps"]), (4, 1))
+
+    def test_a_cell_alone_is_drawn(self):
+        (self.folder / "cell.mesh").write_text(MESH)
+        self.render("cell.exr", "--backend", "cpu", "--density", "x", "--shade", source="cell.mesh")
+        self.render("none.exr", "--backend", "cpu", "--density", "x", "--opacity", "0%:0,100%:0", source="cell.mesh")
+        self.assertGreater(self.difference("cell.exr", "none.exr"), 0.1)
+
+
+if __name__ == "__main__":
+    unittest.main()
