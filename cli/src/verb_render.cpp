@@ -67,6 +67,7 @@ public:
 private:
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
+        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the colours' field is the field itself
         const Box box = bounds(mesh);
         const std::vector<View> views = picture_.make_views(box);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
@@ -87,6 +88,7 @@ private:
     void draw_points(PictureOutput& output, Report& report) {
         if (method_ == "tets") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
+        if (volume.channels.size() == 1) options_.color_channel.reset();
         const std::vector<View> views = picture_.make_views(volume.bounds);
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
