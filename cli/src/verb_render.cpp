@@ -72,7 +72,6 @@ private:
         const std::vector<View> views = picture_.make_views(box);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
         const Optics optics = picture_.make_optics(box, range, colors);
-        picture_.write_legend(optics, colors, report);
         if (method_ == "tets") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
             output.write(
@@ -83,6 +82,7 @@ private:
         } else {
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
+        picture_.write_legend(optics, colors, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
@@ -92,8 +92,8 @@ private:
         const std::vector<View> views = picture_.make_views(volume.bounds);
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
-        picture_.write_legend(optics, colors, report);
         splat(volume, views, optics, output, report);
+        picture_.write_legend(optics, colors, report);
     }
 
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,

@@ -124,10 +124,10 @@ private:
             return true;
         }
         const auto id = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
-        const std::uint32_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
-        b.interval[lane] = first;
-        b.intervals_end[lane] = end;
-        for (std::uint32_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
+        const std::size_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
+        b.interval[lane] = static_cast<std::uint32_t>(first);
+        b.intervals_end[lane] = static_cast<std::uint32_t>(end);
+        for (std::size_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
         if (first == end) return false;
         b.enter[lane] = frame_.intervals.depths[2 * first];
         b.exit[lane] = frame_.intervals.depths[2 * first + 1];
