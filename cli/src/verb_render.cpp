@@ -98,7 +98,7 @@ private:
 
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                Report& report) const {
-        Splatter splatter(volume, splat_options(volume.channels.size()));
+        Splatter splatter(volume, options_);
         const auto draw = [&](const View& view, Progress* progress) {
             SplatResult drawn = splatter.draw(view, optics, progress);
             report["method"] = method_;
@@ -108,22 +108,12 @@ private:
         output.write(views, draw, report);
     }
 
-    /// The colours' field may be the one that is shown.
-    [[nodiscard]] SplatOptions splat_options(std::size_t fields) const {
-        SplatOptions options = options_;
-        if (fields < 2) options.color_channel.reset();
-        return options;
-    }
-
     void splat_in_time(const HexMesh& mesh, const View& view, const Optics& optics, PictureOutput& output,
                        Report& report) const {
         const auto draw = [&](const View&, Progress* progress) {
             const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
-            ProgressiveResult drawn = render_progressively(mesh, view, optics,
-                                                           {.seconds = *splat_.seconds,
-                                                            .sample = sample,
-                                                            .splat = splat_options(mesh.attributes.size()),
-                                                            .progress = progress});
+            ProgressiveResult drawn = render_progressively(
+                mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
             report["method"] = method_;
             report_splats(drawn.splat.report, splat_, report);
             report["points"] = drawn.splat.report.points;
