@@ -1,0 +1,141 @@
+#include "subvol/render_pt.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "render/hex_meshes.h"
+#include "subvol/error.h"
+#include "subvol/model.h"
+#include "subvol/render.h"
+
+namespace subvol {
+namespace {
+
+using test::evaluate;
+
+// Single precision on the device: places to 3e-8 of the diagonal, which is 1e-5 of the opacity unit below.
+constexpr double kGlTol = 1e-4;
+// Where light has one closed form and few segments.
+constexpr double kFewTol = 1e-5;
+
+class RenderPt : public testing::Test {
+protected:
+    void SetUp() override {
+        if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
+    }
+};
+
+Optics constant_optics() {
+    return {{{{0, {1, 1, 1}}}, {{0, 0.5}}}, 1.0};
+}
+
+// Colour and opacity change with the value in [0,1], with kinks and a part that cannot be seen.
+Optics ramp_optics(double unit = 1) {
+    return {{{{0, {1, 0, 0}}, {0.5, {0, 1, 0.2}}, {1, {0.1, 0.3, 1}}},
+             {{0, 0}, {0.3, 0.1}, {0.35, 0.6}, {0.6, 0}, {0.65, 0}, {1, 0.8}}},
+            unit};
+}
+
+View slanted_view(int size) {
+    return {{.eye = {2.1, 1.7, 2.9}, .target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .fovy_deg = 35}, size, size};
+}
+
+View orthographic_view(int width, int height) {
+    return {{.eye = {2.1, 1.7, 2.9}, .target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .ortho_height = 1.9}, width, height};
+}
+
+double largest_difference(const Image& a, const Image& b) {
+    EXPECT_EQ(a.rgba.size(), b.rgba.size());
+    double largest = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        const double difference = std::abs(double{a.rgba[i]} - double{b.rgba[i]});
+        if (!(difference <= largest)) largest = difference;  // NaN counts
+    }
+    return largest;
+}
+
+double waves(const Vec3& p) {
+    return 0.5 + 0.3 * std::sin(7 * p.x + 2 * p.y) + 0.2 * std::cos(9 * p.z - 3 * p.y);
+}
+
+/// The mesh drawn both ways.
+double difference_from_rays(const HexMesh& mesh, std::span<const double> values, const View& view, const Optics& optics,
+                            const PtOptions& options = {}) {
+    const auto rays = render_tets(mesh, values, view, optics);
+    return largest_difference(render_projected_tets(mesh, values, view, optics, options).image, rays.image);
+}
+
+TEST_F(RenderPt, CellsOneByOneAreLikeRays) {
+    // Six tetrahedra that fill the picture: silhouettes of three and four corners, thick segments over all of the knots.
+    HexMesh mesh = test::box(1);
+    for (const double height : {1.0, 0.3, 0.01, 1e-4}) {
+        for (std::size_t i = 0; i < 4; ++i) mesh.points[4 + i].z = height * (1 + 0.1 * static_cast<double>(i));
+        const auto values = evaluate(mesh, waves);
+        for (const View& view : {slanted_view(64), orthographic_view(61, 47)}) {
+            EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1)), kGlTol) << height;
+        }
+    }
+}
+
+TEST_F(RenderPt, ConstantBoxIsBeerLambert) {
+    const HexMesh mesh = test::jittered_box(6, 0.3, 11);
+    const View view({.eye = {0.5, 0.5, 5}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}, .ortho_height = 0.99}, 48, 48);
+    const auto result = render_projected_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    EXPECT_EQ(result.report.tets, 6u * 216);
+    for (std::size_t i = 0; i < result.image.rgba.size(); ++i) ASSERT_NEAR(result.image.rgba[i], 0.5f, kFewTol) << i;
+}
+
+TEST_F(RenderPt, LinearFieldIsLikeRays) {
+    const Vec3 gradient(0.5, 0.2, 0.3);
+    for (const HexMesh& mesh : {test::box(4), test::jittered_box(6, 0.3, 5)}) {
+        const auto values = evaluate(mesh, [&](const Vec3& p) { return dot(gradient, p); });
+        for (const View& view : {slanted_view(64), orthographic_view(61, 47)}) {
+            EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.2)), kGlTol);
+        }
+    }
+}
+
+TEST_F(RenderPt, BallIsLikeRays) {
+    const HexMesh mesh = test::ball(8);
+    const auto values = evaluate(mesh, waves);
+    const View view({.eye = {1.8, -2.9, 1.4}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 38}, 80, 64);
+    EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1)), kGlTol);
+}
+
+TEST_F(RenderPt, EyeInsideSeesWhatIsBeforeIt) {
+    const HexMesh mesh = test::jittered_box(4, 0.2, 3);
+    const auto values = evaluate(mesh, waves);
+    const View view({.eye = {0.43, 0.37, 0.52}, .target = {0.9, 0.8, 0.3}, .up = {0, 0, 1}, .fovy_deg = 80}, 48, 40);
+    EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1)), kGlTol);
+}
+
+TEST_F(RenderPt, FarFromTheOriginNothingChanges) {
+    HexMesh mesh = test::jittered_box(4, 0.2, 3);
+    const auto values = evaluate(mesh, waves);
+    for (Vec3& p : mesh.points) p = 1e-3 * p + Vec3(1000, -2000, 500);
+    const Vec3 center = Vec3(1000, -2000, 500) + Vec3(5e-4);
+    const View view({.eye = center + Vec3(1.6e-3, 1.2e-3, 2.4e-3), .target = center, .up = {0, 1, 0}, .fovy_deg = 35}, 64, 64);
+    EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(1e-4)), kGlTol);
+}
+
+TEST_F(RenderPt, IsTheSameEveryTime) {
+    const HexMesh mesh = test::ball(6);
+    const auto values = evaluate(mesh, waves);
+    const View view({.eye = {1.8, -2.9, 1.4}, .target = {0, 0, 0}, .up = {0, 0, 1}}, 50, 50);
+    const auto draw = [&] { return render_projected_tets(mesh, values, view, ramp_optics(0.1)).image.rgba; };
+    const auto first = draw();
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(draw(), first);
+}
+
+TEST_F(RenderPt, RefusesWrongInput) {
+    const HexMesh mesh = test::box(1);
+    EXPECT_THROW((void)render_projected_tets(mesh, std::vector<double>(7), slanted_view(4), constant_optics()), Error);
+    EXPECT_THROW(
+        (void)render_projected_tets(mesh, std::vector<double>(8, 1.0), slanted_view(4), constant_optics(), {.device = 99}),
+        Error);
+}
+
+}  // namespace
+}  // namespace subvol
