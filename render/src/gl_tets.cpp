@@ -1,11 +1,15 @@
 #include "gl_tets.h"
 
 #include <algorithm>
+#include <numeric>
 #include <sstream>
 
 #include "gl_context.h"
+#include "gl_dispatch.h"
+#include "list_parts.h"
 #include "shader_exp_log_glsl.h"
 #include "shader_pt_frame_glsl.h"
+#include "shader_pt_resolve_comp.h"
 #include "shader_pt_segment_glsl.h"
 #include "shader_pt_tet_frag.h"
 #include "shader_pt_tet_vert.h"
@@ -15,7 +19,11 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr GLuint kKnotsBinding = 10;            // as shaders/pt_segment.glsl has it
+// As the shaders have them.
+constexpr GLuint kCountsBinding = 3, kOffsetsBinding = 4, kLightsBinding = 5, kPlacesBinding = 6, kKnotsBinding = 10,
+                 kViolationsBinding = 11;
+constexpr std::size_t kLight_bytes = 16;        // of a fragment, and as many of its place
+constexpr double kCounting = 0.2;               // part of the work with lists, roughly
 constexpr std::size_t kDrawnAtOnce = 1U << 16;  // tetrahedra, between two looks at the progress
 
 template <class T>
@@ -131,6 +139,79 @@ Image GlTets::draw_in_order(Progress* progress) {
                       image.rgba.data());
     check_gl("reading the picture");
     return image;
+}
+
+GlTets::Lists GlTets::draw_in_lists(std::size_t most_fragments, Progress* progress) {
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    violations_ = GlBuffer(kViolationsBinding, sizeof(std::uint32_t), nullptr);
+    violations_.clear();
+    const auto counts = count_fragments(progress);
+    const auto parts = split_into_parts(counts, view_.width(), view_.height(), most_fragments);
+    Lists lists{Image(view_.width(), view_.height()), std::accumulate(counts.begin(), counts.end(), std::size_t{0}),
+                parts.size()};
+    const GlProgram keep = make_program("PT_KEEP");
+    const double share = (1 - kCounting) / static_cast<double>(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        draw_part(keep, parts[i], counts, lists.image, progress, kCounting + share * static_cast<double>(i), share);
+    }
+    std::uint32_t violations = 0;
+    violations_.read(sizeof violations, &violations);
+    lists.violations = violations;
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    return lists;
+}
+
+std::vector<std::uint32_t> GlTets::count_fragments(Progress* progress) {
+    std::vector<std::uint32_t> counts(static_cast<std::size_t>(view_.width()) * static_cast<std::size_t>(view_.height()));
+    const std::size_t bytes = counts.size() * sizeof(std::uint32_t);
+    counts_.grow(bytes);
+    counts_.clear();
+    counts_.bind(kCountsBinding);
+    draw_all(make_program("PT_COUNT"), {0, 0, view_.width(), view_.height()}, progress, 0, kCounting);
+    counts_.read(bytes, counts.data());
+    return counts;
+}
+
+void GlTets::draw_part(const GlProgram& keep, const PixelRect& part, const std::vector<std::uint32_t>& counts, Image& image,
+                       Progress* progress, double done, double share) {
+    std::vector<std::uint32_t> offsets{0};
+    for (int y = part.y0; y < part.y1; ++y) {
+        for (int x = part.x0; x < part.x1; ++x) {
+            const auto pixel =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
+            offsets.push_back(offsets.back() + counts[pixel]);
+        }
+    }
+    if (offsets.back() == 0) return;
+    counts_.clear();
+    counts_.bind(kCountsBinding);
+    fill(offsets_, kOffsetsBinding, offsets);
+    lights_.grow(offsets.back() * kLight_bytes);
+    lights_.bind(kLightsBinding);
+    places_.grow(offsets.back() * kLight_bytes);
+    places_.bind(kPlacesBinding);
+    draw_all(keep, part, progress, done, share);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    resolve_part(part, image);
+}
+
+void GlTets::resolve_part(const PixelRect& part, Image& image) {
+    constexpr std::uint32_t kGroup = 64;
+    const auto width = static_cast<std::size_t>(part.x1 - part.x0), height = static_cast<std::size_t>(part.y1 - part.y0);
+    const auto pixels = static_cast<std::uint32_t>(width * height);
+    const GlProgram resolve("pt_resolve.comp", kShader_pt_resolve_comp, {});
+    picture_.grow(pixels * kLight_bytes);
+    picture_.bind(kCountsBinding);
+    glProgramUniform1ui(resolve.id(), resolve.uniform("pixels"), pixels);
+    resolve.use();
+    dispatch((pixels + kGroup - 1) / kGroup);
+    std::vector<std::array<float, 4>> colors(pixels);
+    picture_.read(pixels * kLight_bytes, colors.data());
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const std::size_t x = static_cast<std::size_t>(part.x0) + i % width, y = static_cast<std::size_t>(part.y0) + i / width;
+        std::copy(colors[i].begin(), colors[i].end(),
+                  image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * (y * static_cast<std::size_t>(view_.width()) + x)));
+    }
 }
 
 }  // namespace subvol::detail

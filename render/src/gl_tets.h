@@ -45,16 +45,31 @@ public:
     /// Blended over each other in their order.
     [[nodiscard]] Image draw_in_order(Progress* progress);
 
+    struct Lists {
+        Image image;
+        std::size_t fragments = 0, parts = 0;
+        std::size_t violations = 0;  // pixels where the order is wrong
+    };
+    /// Kept in lists, one a pixel, which are sorted.
+    ///
+    /// most_fragments: that lists hold at a time; the picture is drawn in parts for it
+    [[nodiscard]] Lists draw_in_lists(std::size_t most_fragments, Progress* progress);
+
 private:
     [[nodiscard]] GlProgram make_program(const char* mode) const;
     void make_target();
     void set_frame(const GlProgram& program, const PixelRect& rect) const;
+    [[nodiscard]] std::vector<std::uint32_t> count_fragments(Progress* progress);
+    void draw_part(const GlProgram& keep, const PixelRect& part, const std::vector<std::uint32_t>& counts, Image& image,
+                   Progress* progress, double done, double share);
+    void resolve_part(const PixelRect& part, Image& image);
     void draw_all(const GlProgram& program, const PixelRect& rect, Progress* progress, double done, double part);
 
     const GlTetScene& scene_;
     const View& view_;
     GLuint vertices_ = 0, framebuffer_ = 0, texture_ = 0;
     GlBuffer points_, tets_, order_, knots_;
+    GlBuffer counts_, offsets_, lights_, places_, picture_, violations_;  // of lists
 };
 
 }  // namespace subvol::detail

@@ -10,6 +10,7 @@
 #include "gl_context.h"
 #include "gl_tets.h"
 #include "subvol/error.h"
+#include "subvol/gl_device.h"
 #include "tet_mesh.h"
 #include "tet_order.h"
 
@@ -38,6 +39,12 @@ void check_device(const std::optional<int>& device) {
     if (find_gl_device(device)) return;
     throw Error(ErrorCode::MissingCapability, "projected tetrahedra need OpenGL 4.5, and none was found through EGL", {},
                 "the method tets");
+}
+
+std::size_t most_fragments(const PtOptions& options, const GlDevice& device) {
+    constexpr std::size_t kFragment_bytes = 32, kHalf_bytes = 16;  // two buffers
+    constexpr std::size_t kMost = std::size_t{1} << 31;            // that 32 bits number, with room
+    return std::min({options.list_bytes / kFragment_bytes, device.max_ssbo_bytes / kHalf_bytes, kMost});
 }
 
 /// Of the values of the knots: they are counted in parts of it.
@@ -124,8 +131,19 @@ PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scal
     const KeepCurrent keep;
     const detail::GlContext context(options.device);
     report.device = context.renderer();
-    result.image = detail::GlTets(scene, view).draw_in_order(options.progress);
+    detail::GlTets drawer(scene, view);
+    if (options.order != PtOrder::Lists) result.image = drawer.draw_in_order(options.progress);
     report.seconds_draw = seconds_since(start);
+    if (options.order != PtOrder::Lists && !options.count_violations) return result;
+
+    auto lists = drawer.draw_in_lists(most_fragments(options, context.device()), options.progress);
+    report.fragments = lists.fragments;
+    report.parts = lists.parts;
+    report.violations = lists.violations;
+    if (options.order == PtOrder::Lists) {
+        result.image = std::move(lists.image);
+        report.seconds_draw = seconds_since(start);
+    }
     return result;
 }
 

@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "render/hex_meshes.h"
 #include "subvol/error.h"
-#include "subvol/model.h"
 #include "subvol/render.h"
 
 namespace subvol {
@@ -44,6 +42,10 @@ View slanted_view(int size) {
 
 View orthographic_view(int width, int height) {
     return {{.eye = {2.1, 1.7, 2.9}, .target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .ortho_height = 1.9}, width, height};
+}
+
+View ball_view(int width, int height) {
+    return {{.eye = {1.8, -2.9, 1.4}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 38}, width, height};
 }
 
 double largest_difference(const Image& a, const Image& b) {
@@ -100,8 +102,7 @@ TEST_F(RenderPt, LinearFieldIsLikeRays) {
 TEST_F(RenderPt, BallIsLikeRays) {
     const HexMesh mesh = test::ball(8);
     const auto values = evaluate(mesh, waves);
-    const View view({.eye = {1.8, -2.9, 1.4}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 38}, 80, 64);
-    EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1)), kGlTol);
+    EXPECT_LT(difference_from_rays(mesh, values, ball_view(80, 64), ramp_optics(0.1)), kGlTol);
 }
 
 TEST_F(RenderPt, EyeInsideSeesWhatIsBeforeIt) {
@@ -120,13 +121,82 @@ TEST_F(RenderPt, FarFromTheOriginNothingChanges) {
     EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(1e-4)), kGlTol);
 }
 
+TEST_F(RenderPt, ListsAreLikeRays) {
+    const Optics optics = ramp_optics(0.1);
+    const HexMesh ball = test::ball(8), corner = test::l_shape(6), cell = test::box(1);
+    EXPECT_LT(difference_from_rays(ball, evaluate(ball, waves), ball_view(80, 64), optics, {.order = PtOrder::Lists}), kGlTol);
+    EXPECT_LT(difference_from_rays(corner, evaluate(corner, waves), slanted_view(64), optics, {.order = PtOrder::Lists}),
+              kGlTol);
+    EXPECT_LT(difference_from_rays(cell, evaluate(cell, waves), orthographic_view(61, 47), optics, {.order = PtOrder::Lists}),
+              kGlTol);
+}
+
+TEST_F(RenderPt, TopologicalOrderIsThatOfLists) {
+    // Convex meshes without a cycle: the same segments in the same order, but composited from the other end.
+    for (const HexMesh& mesh : {test::jittered_box(6, 0.3, 5), test::ball(6)}) {
+        const auto values = evaluate(mesh, waves);
+        const View view = ball_view(70, 60);
+        const auto topological = render_projected_tets(mesh, values, view, ramp_optics(0.1), {.count_violations = true});
+        const auto lists = render_projected_tets(mesh, values, view, ramp_optics(0.1), {.order = PtOrder::Lists});
+        EXPECT_EQ(topological.report.cycles, 0u);
+        EXPECT_EQ(topological.report.violations, 0u);
+        EXPECT_EQ(topological.report.fragments, lists.report.fragments);
+        EXPECT_LT(largest_difference(topological.image, lists.image), kFewTol);
+    }
+}
+
+TEST_F(RenderPt, CentroidsAreWrongWhereTheyAreCounted) {
+    // Flat cells, seen slantwise: centroids are not in the order of the cells.
+    HexMesh mesh = test::box(4);
+    for (Vec3& p : mesh.points) p.z *= 0.1;
+    const auto values = evaluate(mesh, waves);
+    const View view({.eye = {2.5, 2.1, 0.9}, .target = {0.5, 0.5, 0}, .up = {0, 0, 1}, .fovy_deg = 30}, 64, 48);
+    const Optics optics = ramp_optics(0.05);
+    const auto right = render_projected_tets(mesh, values, view, optics, {.count_violations = true});
+    const auto wrong =
+        render_projected_tets(mesh, values, view, optics, {.order = PtOrder::Centroid, .count_violations = true});
+    const auto lists = render_projected_tets(mesh, values, view, optics, {.order = PtOrder::Lists});
+    EXPECT_EQ(right.report.violations, 0u);
+    ASSERT_GT(wrong.report.violations, 0u);
+    EXPECT_EQ(lists.report.violations, wrong.report.violations);
+    std::size_t changed = 0;
+    for (int y = 0; y < view.height(); ++y) {
+        for (int x = 0; x < view.width(); ++x) {
+            const auto a = wrong.image.pixel(x, y), b = lists.image.pixel(x, y);
+            changed += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) > 1e-4f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(changed, 0u);
+    EXPECT_LE(changed, *wrong.report.violations);
+}
+
+TEST_F(RenderPt, ListsInPartsAreTheSame) {
+    const HexMesh mesh = test::ball(5);
+    const auto values = evaluate(mesh, waves);
+    const View view = ball_view(50, 40);
+    const auto draw = [&](std::size_t bytes) {
+        return render_projected_tets(mesh, values, view, ramp_optics(0.1), {.order = PtOrder::Lists, .list_bytes = bytes});
+    };
+    const auto whole = draw(1 << 28), rows = draw(32 * 2000), pixels = draw(32 * 150);
+    EXPECT_EQ(whole.report.parts, 1u);
+    EXPECT_GT(rows.report.parts, 2u);
+    EXPECT_GT(pixels.report.parts, 40u) << "rows are divided";
+    EXPECT_EQ(rows.image.rgba, whole.image.rgba);
+    EXPECT_EQ(pixels.image.rgba, whole.image.rgba);
+    EXPECT_EQ(pixels.report.violations, whole.report.violations);
+    EXPECT_THROW((void)draw(32), Error);
+}
+
 TEST_F(RenderPt, IsTheSameEveryTime) {
     const HexMesh mesh = test::ball(6);
     const auto values = evaluate(mesh, waves);
-    const View view({.eye = {1.8, -2.9, 1.4}, .target = {0, 0, 0}, .up = {0, 0, 1}}, 50, 50);
-    const auto draw = [&] { return render_projected_tets(mesh, values, view, ramp_optics(0.1)).image.rgba; };
-    const auto first = draw();
-    for (int i = 0; i < 2; ++i) EXPECT_EQ(draw(), first);
+    for (const PtOrder order : {PtOrder::Centroid, PtOrder::Topological, PtOrder::Lists}) {
+        const auto draw = [&] {
+            return render_projected_tets(mesh, values, ball_view(50, 50), ramp_optics(0.1), {.order = order}).image.rgba;
+        };
+        const auto first = draw();
+        for (int i = 0; i < 2; ++i) EXPECT_EQ(draw(), first);
+    }
 }
 
 TEST_F(RenderPt, RefusesWrongInput) {
