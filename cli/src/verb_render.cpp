@@ -67,11 +67,11 @@ public:
 private:
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
+        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the colours' field is the field itself
         const Box box = bounds(mesh);
         const std::vector<View> views = picture_.make_views(box);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
         const Optics optics = picture_.make_optics(box, range, colors);
-        picture_.write_legend(optics, colors, report);
         if (method_ == "tets") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
             output.write(
@@ -82,21 +82,23 @@ private:
         } else {
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
+        picture_.write_legend(optics, colors, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
         if (method_ == "tets") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
+        if (volume.channels.size() == 1) options_.color_channel.reset();
         const std::vector<View> views = picture_.make_views(volume.bounds);
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
-        picture_.write_legend(optics, colors, report);
         splat(volume, views, optics, output, report);
+        picture_.write_legend(optics, colors, report);
     }
 
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                Report& report) const {
-        Splatter splatter(volume, splat_options(volume.channels.size()));
+        Splatter splatter(volume, options_);
         const auto draw = [&](const View& view, Progress* progress) {
             SplatResult drawn = splatter.draw(view, optics, progress);
             report["method"] = method_;
@@ -106,22 +108,12 @@ private:
         output.write(views, draw, report);
     }
 
-    /// The colours' field may be the one that is shown.
-    [[nodiscard]] SplatOptions splat_options(std::size_t fields) const {
-        SplatOptions options = options_;
-        if (fields < 2) options.color_channel.reset();
-        return options;
-    }
-
     void splat_in_time(const HexMesh& mesh, const View& view, const Optics& optics, PictureOutput& output,
                        Report& report) const {
         const auto draw = [&](const View&, Progress* progress) {
             const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
-            ProgressiveResult drawn = render_progressively(mesh, view, optics,
-                                                           {.seconds = *splat_.seconds,
-                                                            .sample = sample,
-                                                            .splat = splat_options(mesh.attributes.size()),
-                                                            .progress = progress});
+            ProgressiveResult drawn = render_progressively(
+                mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
             report["method"] = method_;
             report_splats(drawn.splat.report, splat_, report);
             report["points"] = drawn.splat.report.points;

@@ -5,28 +5,9 @@ import subprocess
 import time
 import unittest
 
-from command import COMMAND, SANITIZED, InFolder, Run, subvol
+from command import COMMAND, CUBE, SANITIZED, InFolder, Run, subvol
 
 VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "compare", "demo"]
-
-# One mesh of one cell: MEDIT, counted from 1.
-CUBE = """MeshVersionFormatted 2
-Dimension 3
-Vertices
-8
-0 0 0 0
-1 0 0 0
-1 1 0 0
-0 1 0 0
-0 0 1 0
-1 0 1 0
-1 1 1 0
-0 1 1 0
-Hexahedra
-1
-1 2 3 4 5 6 7 {last} 0
-End
-"""
 
 
 class Help(unittest.TestCase):

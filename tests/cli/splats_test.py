@@ -2,28 +2,9 @@
 
 import unittest
 
-from command import InFolder, subvol
+from command import CUBE, InFolder, subvol
 
 SMALL = ["--size", "64x48", "--sheets", "40", "--quiet"]
-MESH = """MeshVersionFormatted 2
-Dimension 3
-Vertices
-8
-0 0 0 0
-1 0 0 0
-1 1 0 0
-0 1 0 0
-0 0 1 0
-1 0 1 0
-1 1 1 0
-0 1 1 0
-Hexahedra
-1
-1 2 3 4 5 6 7 8 0
-End
-"""
-
-
 TWO_FIELDS = """# vtk DataFile Version 3.0
 a cell with two fields
 ASCII
@@ -105,7 +86,7 @@ class Splats(InFolder):
         self.assertEqual((done["picture_scale"], done["steps"]), (4, 1))
 
     def test_a_cell_alone_is_drawn(self):
-        (self.folder / "cell.mesh").write_text(MESH)
+        (self.folder / "cell.mesh").write_text(CUBE.format(last=8))
         self.render("cell.exr", "--backend", "cpu", "--density", "x", "--shade", source="cell.mesh")
         self.render("none.exr", "--backend", "cpu", "--density", "x", "--opacity", "0%:0,100%:0", source="cell.mesh")
         self.assertGreater(self.difference("cell.exr", "none.exr"), 0.1)
