@@ -10,6 +10,7 @@ flat out uint rank;                                // its place in the order, fr
 
 const float kMargin_px = 0.0625;    // rasterisers round places to 1/256 px
 const float kSharp = 0.005;         // 1 + cos between normals: corners that are sharper would reach 20 margins out
+const float kSmall_px = 0.25;       // twice the area: what is smaller need not be cut to shape
 const float kFar_px = 16384.0;      // from the middle: single precision still knows 1/256 px
 const float kNearest = 1e-6;        // depth of what is projected
 
@@ -81,7 +82,10 @@ vec2 place_corner(vec3 p[4], int at) {
     if (!hull) return rectangle_corner(p, at);
     ivec4 ring;
     int count = find_silhouette(q, ring);
-    float turn = doubled_area(q[ring.x], q[ring.y], q[ring.z]) > 0.0 ? 1.0 : -1.0;
+    float area = doubled_area(q[ring.x], q[ring.y], q[ring.z]);
+    if (count == 4) area += doubled_area(q[ring.x], q[ring.z], q[ring.w]);
+    if (abs(area) < kSmall_px) return rectangle_corner(p, at);
+    float turn = area > 0.0 ? 1.0 : -1.0;
     const int corners[4] = int[4](0, 1, 3, 2);  // strip to ring
     vec2 result = vec2(0.0);
     for (int i = 0; i < count; ++i) {
