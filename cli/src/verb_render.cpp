@@ -7,6 +7,7 @@
 #include "subvol/error.h"
 #include "subvol/progressive.h"
 #include "subvol/render.h"
+#include "subvol/render_pt.h"
 #include "text.h"
 #include "verb.h"
 
@@ -30,21 +31,27 @@ public:
             ->required();
         app()
             .add_option("--method", method_,
-                        "splat (kernels, the default), sheets (the same by OpenGL sheet buffers) or\n"
-                        "tets (rays through tetrahedra)")
+                        "splat (kernels, the default), sheets (the same by OpenGL sheet buffers),\n"
+                        "tets (rays through tetrahedra) or pt (the same tetrahedra projected by OpenGL)")
             ->type_name("NAME");
         picture_.add_to(app());
         app()
             .add_option("--samples", samples_, "tets: n x n rays a pixel (default 1)")
             ->type_name("N")
             ->check(CLI::Range(1, 16));
+        app()
+            .add_option("--order", order_,
+                        "pt: what sorts the tetrahedra: topological (shared faces, the default), centroid, or\n"
+                        "lists (every pixel its own)")
+            ->type_name("NAME");
         sample_.add_to(app());
-        refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; else: omitted shows the limit)");
+        refine_.add_to(app(), "show the refined mesh of this level (tets, pt: default 1; else: omitted shows the limit)");
         splat_.add_to(app());
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "sheets", "tets"}, {"dense", "grid", "pt"});
+        check_choice("--method", method_, {"splat", "sheets", "tets", "pt"}, {"dense", "grid"});
+        check_choice("--order", order_, {"topological", "centroid", "lists"});
         options_ = splat_.options();
         if (method_ == "sheets") options_.method = SplatMethod::Sheets;
         if (method_ == "sheets" && options_.backend == Backend::Cpu) {
@@ -53,6 +60,10 @@ public:
         if (method_ == "tets" && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
             throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU, without light and of one field",
                         "--backend gl, --shade, --color-field, --seconds");
+        }
+        if (method_ == "pt" && (options_.backend == Backend::Cpu || splat_.shade || splat_.color_field || splat_.seconds)) {
+            throw Error(ErrorCode::InvalidInput, "tetrahedra are projected by OpenGL, without light and of one field",
+                        "--backend cpu, --shade, --color-field, --seconds");
         }
         picture_.check_legend();
         PictureOutput output(output_, picture_.turntable_frames, picture_);
@@ -72,11 +83,13 @@ private:
         const std::vector<View> views = picture_.make_views(box);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
         const Optics optics = picture_.make_optics(box, range, colors);
-        if (method_ == "tets") {
+        if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-            output.write(
-                views, [&](const View& view, Progress* progress) { return tets(fine, view, optics, progress, report); },
-                report);
+            const auto draw = [&](const View& view, Progress* progress) {
+                return method_ == "pt" ? projected_tets(fine, view, optics, progress, report)
+                                       : tets(fine, view, optics, progress, report);
+            };
+            output.write(views, draw, report);
         } else if (splat_.seconds) {
             splat_in_time(mesh, views.front(), optics, output, report);
         } else {
@@ -86,7 +99,8 @@ private:
     }
 
     void draw_points(PictureOutput& output, Report& report) {
-        if (method_ == "tets") throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        if (method_ == "tets" || method_ == "pt")
+            throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         if (volume.channels.size() == 1) options_.color_channel.reset();
         const std::vector<View> views = picture_.make_views(volume.bounds);
@@ -142,9 +156,35 @@ private:
         return Picture{std::move(drawn.image)};
     }
 
+    [[nodiscard]] Picture projected_tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
+                                         Report& report) const {
+        const PtOrder order = order_ == "lists"      ? PtOrder::Lists
+                              : order_ == "centroid" ? PtOrder::Centroid
+                                                     : PtOrder::Topological;
+        PtResult drawn = render_projected_tets(mesh, mesh.attributes.front().values, view, optics,
+                                               {.order = order, .device = splat_.device, .progress = progress});
+        const PtReport& pt = drawn.report;
+        report.add_seconds("prepare", pt.seconds_build);
+        report.add_seconds("sort", pt.seconds_sort);
+        report.add_seconds("draw", pt.seconds_draw);
+        report["method"] = method_;
+        report["backend"] = "gl";
+        report["device"] = pt.device;
+        report["order"] = order_;
+        report["tets"] = pt.tets;
+        report["degenerate_tets"] = pt.degenerate_tets;
+        report["inverted_tets"] = pt.inverted_tets;
+        if (order == PtOrder::Topological) report["cycles"] = pt.cycles;
+        if (order == PtOrder::Lists) report["fragments"] = pt.fragments;
+        if (pt.violations) report["order_violations"] = *pt.violations;
+        if (pt.cycles > 0) report.warn(text("the order of the tetrahedra has cycles, broken ", pt.cycles, " times"));
+        return Picture{std::move(drawn.image)};
+    }
+
     std::string input_;
     std::string output_;
     std::string method_ = "splat";
+    std::string order_ = "topological";
     int samples_ = 1;
     PictureArguments picture_;
     SampleArguments sample_;

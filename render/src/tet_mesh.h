@@ -36,6 +36,9 @@ struct TetMesh {
     }
 };
 
+/// throws: Error(InvalidInput) if there is not one finite value for every point of a cell, or the mesh is not valid
+void check_tet_input(const HexMesh& mesh, std::span<const double> scalar);
+
 /// Splits every cell into 6 and finds the neighbours by sorting the faces. A face of more than two tetrahedra is a boundary
 /// of each of them.
 ///

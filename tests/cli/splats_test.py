@@ -67,6 +67,20 @@ class Splats(InFolder):
         self.assertLess(self.difference("cpu.exr", "gl.exr"), 1e-4)
         self.assertLess(self.difference("cpu.exr", "sheets.exr"), 1e-4)
 
+    def test_projected_tetrahedra_are_like_rays(self):
+        if not self.has_gl():
+            self.skipTest("no OpenGL 4.5 through EGL")
+        self.render("tets.exr", "--method", "tets")
+        for order in ("topological", "centroid", "lists"):
+            done = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--order", order, "--json")
+            report = done.json()
+            self.assertEqual((report["method"], report["backend"], report["order"]), ("pt", "gl", order))
+            if order != "centroid":
+                self.assertLess(self.difference("tets.exr", "pt.exr"), 1e-4)
+        for refused in (["--backend", "cpu"], ["--shade"], ["--order", "random"]):
+            done = subvol("render", "model:ball:4", "-o", "x.png", "--method", "pt", *refused, folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+
     def test_devices_that_are_not_there_are_refused(self):
         done = subvol("render", "model:ball:4", "-o", "x.png", "--backend", "gl", "--device", "99", folder=self.folder)
         self.assertEqual(done.code, 3, done.err)
