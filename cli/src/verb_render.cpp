@@ -74,8 +74,10 @@ private:
         picture_.write_legend(optics, colors, report);
         if (method_ == "tets") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
+            const TetsRenderer renderer(fine, fine.attributes.front().values);
+            report.add_seconds("prepare", renderer.seconds_build());
             output.write(
-                views, [&](const View& view, Progress* progress) { return tets(fine, view, optics, progress, report); },
+                views, [&](const View& view, Progress* progress) { return tets(renderer, view, optics, progress, report); },
                 report);
         } else if (splat_.seconds) {
             splat_in_time(mesh, views.front(), optics, output, report);
@@ -133,11 +135,9 @@ private:
         output.write({view}, draw, report);
     }
 
-    [[nodiscard]] Picture tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
+    [[nodiscard]] Picture tets(const TetsRenderer& renderer, const View& view, const Optics& optics, Progress* progress,
                                Report& report) const {
-        TetsResult drawn =
-            render_tets(mesh, mesh.attributes.front().values, view, optics, {.samples = samples_, .progress = progress});
-        report.add_seconds("prepare", drawn.report.seconds_build);
+        TetsResult drawn = renderer.draw(view, optics, {.samples = samples_, .progress = progress});
         report.add_seconds("draw", drawn.report.seconds_draw);
         report["method"] = method_;
         report["backend"] = "cpu";
