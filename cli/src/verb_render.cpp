@@ -1,3 +1,4 @@
+#include "grid_input.h"
 #include "input.h"
 #include "picture_arguments.h"
 #include "picture_output.h"
@@ -7,6 +8,7 @@
 #include "subvol/error.h"
 #include "subvol/progressive.h"
 #include "subvol/render.h"
+#include "subvol/render_grid.h"
 #include "subvol/render_pt.h"
 #include "text.h"
 #include "verb.h"
@@ -23,8 +25,9 @@ public:
                "  subvol render model:ball -o ball.png\n"
                "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
                "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
-               "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2") {
-        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
+               "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2\n"
+               "  subvol render smoke.vdb -o smoke.png --method grid") {
+        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb); grid: a .vdb grid"))->required();
         app()
             .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")
             ->type_name("IMAGE")
@@ -32,11 +35,12 @@ public:
         app()
             .add_option("--method", method_,
                         "splat (kernels, the default), sheets (the same by OpenGL sheet buffers),\n"
-                        "tets (rays through tetrahedra) or pt (the same tetrahedra projected by OpenGL)")
+                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL)\n"
+                        "or grid (rays through a .vdb file's voxels)")
             ->type_name("NAME");
         picture_.add_to(app());
         app()
-            .add_option("--samples", samples_, "tets: n x n rays a pixel (default 1)")
+            .add_option("--samples", samples_, "tets, grid: n x n rays a pixel (default 1)")
             ->type_name("N")
             ->check(CLI::Range(1, 16));
         app()
@@ -50,15 +54,17 @@ public:
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "sheets", "tets", "pt"}, {"dense", "grid"});
+        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "grid"}, {"dense"});
         check_choice("--order", order_, {"topological", "centroid", "lists"});
         options_ = splat_.options();
         if (method_ == "sheets") options_.method = SplatMethod::Sheets;
         if (method_ == "sheets" && options_.backend == Backend::Cpu) {
             throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
         }
-        if (method_ == "tets" && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
-            throw Error(ErrorCode::InvalidInput, "tets are drawn by the CPU, without light and of one field",
+        const bool rays = method_ == "tets" || method_ == "grid";
+        if (rays && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
+            throw Error(ErrorCode::InvalidInput,
+                        method_ + (method_ == "tets" ? " are" : " is") + " drawn by the CPU, without light and of one field",
                         "--backend gl, --shade, --color-field, --seconds");
         }
         if (method_ == "pt" && (options_.backend == Backend::Cpu || splat_.shade || splat_.color_field || splat_.seconds)) {
@@ -67,7 +73,9 @@ public:
         }
         picture_.check_legend();
         PictureOutput output(output_, picture_.turntable_frames, picture_);
-        if (holds_points(input_)) {
+        if (method_ == "grid") {
+            draw_grid(output, report);
+        } else if (holds_points(input_)) {
             draw_points(output, report);
         } else {
             draw_mesh(output, report);
@@ -85,9 +93,11 @@ private:
         const Optics optics = picture_.make_optics(box, range, colors);
         if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
+            const TetsRenderer renderer(fine, fine.attributes.front().values);
+            report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
                 return method_ == "pt" ? projected_tets(fine, view, optics, progress, report)
-                                       : tets(fine, view, optics, progress, report);
+                                       : tets(renderer, view, optics, progress, report);
             };
             output.write(views, draw, report);
         } else if (splat_.seconds) {
@@ -96,6 +106,26 @@ private:
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
         picture_.write_legend(optics, colors, report);
+    }
+
+    void draw_grid(PictureOutput& output, Report& report) {
+        const VdbGrid grid = load_grid(input_, common(), report);
+        const Box box = box_of(grid.report());
+        const Range range{grid.report().min, grid.report().max};
+        const Optics optics = picture_.make_optics(box, range, range);
+        const auto voxels = grid.voxels();
+        const auto draw = [&](const View& view, Progress* progress) {
+            GridResult drawn = render_grid(*voxels, view, optics, {.samples = samples_, .progress = progress});
+            report.add_seconds("draw", drawn.report.seconds_draw);
+            report["method"] = method_;
+            report["backend"] = "cpu";
+            report["rays"] = drawn.report.rays;
+            report["cells"] = drawn.report.cells;
+            report["blocks"] = drawn.report.blocks;
+            return Picture{std::move(drawn.image)};
+        };
+        output.write(picture_.make_views(box), draw, report);
+        picture_.write_legend(optics, range, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
@@ -139,11 +169,9 @@ private:
         output.write({view}, draw, report);
     }
 
-    [[nodiscard]] Picture tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
+    [[nodiscard]] Picture tets(const TetsRenderer& renderer, const View& view, const Optics& optics, Progress* progress,
                                Report& report) const {
-        TetsResult drawn =
-            render_tets(mesh, mesh.attributes.front().values, view, optics, {.samples = samples_, .progress = progress});
-        report.add_seconds("prepare", drawn.report.seconds_build);
+        TetsResult drawn = renderer.draw(view, optics, {.samples = samples_, .progress = progress});
         report.add_seconds("draw", drawn.report.seconds_draw);
         report["method"] = method_;
         report["backend"] = "cpu";

@@ -38,28 +38,47 @@ private:
 
 }  // namespace
 
-TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
-                       const TetsOptions& options) {
-    check_samples(options.samples);
+struct TetsRenderer::State {
+    TetMesh tets;
+    std::optional<BoundaryScene> scene;
+    TetsReport built;
+};
+
+TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, Progress* progress)
+    : state_(std::make_unique<State>()) {
     check_tet_input(mesh, scalar);
-    TetsResult result;
+    const auto start = Clock::now();
+    report_progress(progress, "build", 0);
+    TetMesh& tets = state_->tets;
+    tets = build_tet_mesh(mesh, scalar);
+    report_progress(progress, "build", 0.8);
+    state_->scene.emplace(tets, bounds(mesh));
+    report_progress(progress, "build", 1);
+    TetsReport& built = state_->built;
+    built.tets = tets.tets.size();
+    built.degenerate_tets = tets.degenerate_tets;
+    built.inverted_tets = tets.inverted_tets;
+    built.bytes = tets.tets.size() * sizeof(TetMesh::Tet) + tets.points.size() * sizeof(TetMesh::Point) +
+                  tets.boundary.size() * sizeof(TetFace);
+    built.seconds_build = seconds_since(start);
+}
+
+TetsRenderer::~TetsRenderer() = default;
+TetsRenderer::TetsRenderer(TetsRenderer&&) noexcept = default;
+TetsRenderer& TetsRenderer::operator=(TetsRenderer&&) noexcept = default;
+
+double TetsRenderer::seconds_build() const {
+    return state_->built.seconds_build;
+}
+
+TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const TetsOptions& options) const {
+    check_samples(options.samples);
+    TetsResult result{{}, state_->built};
     TetsReport& report = result.report;
-
-    auto start = Clock::now();
-    report_progress(options.progress, "build", 0);
-    const TetMesh tets = build_tet_mesh(mesh, scalar);
-    report_progress(options.progress, "build", 0.8);
-    const BoundaryScene scene(tets, bounds(mesh));
-    report_progress(options.progress, "build", 1);
-    report.seconds_build = seconds_since(start);
-    report.tets = tets.tets.size();
-    report.degenerate_tets = tets.degenerate_tets;
-    report.inverted_tets = tets.inverted_tets;
-
-    start = Clock::now();
+    const auto start = Clock::now();
     tbb::combinable<TraceCounts> sums;
     result.image = draw_in_tiles(view, options.samples, options.progress,
-                                 [&] { return CountedTracer(TetTracer(tets, scene, optics), sums); });
+                                 [&] { return CountedTracer(TetTracer(state_->tets, *state_->scene, optics), sums); });
     sums.combine_each([&](const TraceCounts& sum) {
         report.rays += sum.rays;
         report.segments += sum.segments;
@@ -67,6 +86,12 @@ TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, cons
     });
     report.seconds_draw = seconds_since(start);
     return result;
+}
+
+TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+                       const TetsOptions& options) {
+    check_samples(options.samples);
+    return TetsRenderer(mesh, scalar, options.progress).draw(view, optics, options);
 }
 
 }  // namespace subvol

@@ -1,6 +1,7 @@
 #include "tet_tracer.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace subvol {
 
@@ -55,19 +56,24 @@ void TetTracer::mark_walked(const RayPlane& plane, TetFace start, TetFace end) {
     if (const auto found = find(end); found != ends_.end()) found->walked = true;
 }
 
-TetTracer::Outcome TetTracer::walk_from(const RayPlane& plane, TetFace start, double speed, State& state, TetFace& last) {
+TetTracer::Outcome TetTracer::walk_from(const RayPlane& plane, TetFace start, double speed, double limit, State& state,
+                                        End& last) {
     const auto face = cross_face(mesh_, plane, start);
     if (!face) return Outcome::Lost;
     const Crossing first = face->crossing();
     Crossing previous = first;
+    state.t = std::max(state.t, first.t);
+    double reached = first.t;
     std::size_t steps = 0;
     const auto visit = [&](const Crossing& next) {
-        const double from = std::max(previous.t, state.t);
-        if (next.t > from) {
+        const double from = std::max(previous.t, state.t), to = std::min(next.t, limit);
+        if (to > from) {
             const double slope = (next.value - previous.value) / (next.t - previous.t);
-            const double value = from == previous.t ? previous.value : previous.value + (from - previous.t) * slope;
-            composite(state.light, optics_.integrate(value, next.value, (next.t - from) * speed));
-            state.t = next.t;
+            const double front = from == previous.t ? previous.value : previous.value + (from - previous.t) * slope;
+            const double back = to == next.t ? next.value : previous.value + (to - previous.t) * slope;
+            composite(state.light, optics_.integrate(front, back, (to - from) * speed));
+            state.t = to;
+            reached = to;
         }
         previous = next;
         return ++steps <= mesh_.tets.size() && state.light.transmittance >= kOpaque;
@@ -75,8 +81,28 @@ TetTracer::Outcome TetTracer::walk_from(const RayPlane& plane, TetFace start, do
     const auto end = walk(mesh_, plane, start, *face, visit);
     counts_.segments += steps;
     if (!end) return steps > mesh_.tets.size() ? Outcome::Lost : Outcome::Opaque;
-    last = *end;
-    return previous.t < first.t ? Outcome::Backwards : Outcome::Through;
+    last = {*end, previous.t, true};
+    if (last.t < first.t) return Outcome::Backwards;
+    return reached > last.t ? Outcome::Beyond : Outcome::Through;
+}
+
+TetTracer::Outcome TetTracer::walk_between(const RayPlane& plane, TetFace start, double speed, State& state, TetFace& other) {
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    const State before = state;
+    End last{start, 0, false};
+    Outcome outcome = walk_from(plane, start, speed, kNoLimit, state, last);
+    other = last.face;
+    TetFace entry = start;
+    if (outcome == Outcome::Backwards) {
+        entry = other;
+        state = before;
+        outcome = walk_from(plane, entry, speed, kNoLimit, state, last);
+    }
+    if (outcome == Outcome::Beyond) {  // inverted cells lie outside the boundary: the volume ends where the boundary is
+        state = before;
+        outcome = walk_from(plane, entry, speed, last.t, state, last);
+    }
+    return outcome;
 }
 
 Segment TetTracer::trace(const Ray& ray) {
@@ -88,15 +114,8 @@ Segment TetTracer::trace(const Ray& ray) {
     State state;
     while (const End* next = first_unwalked()) {
         const TetFace start = next->face;
-        TetFace last = start;
-        State walked = state;
-        Outcome outcome = walk_from(plane, start, speed, walked, last);
-        const TetFace other = last;
-        if (outcome == Outcome::Backwards) {  // the entry is at the other end
-            walked = state;
-            outcome = walk_from(plane, other, speed, walked, last);
-        }
-        state = walked;
+        TetFace other = start;
+        const Outcome outcome = walk_between(plane, start, speed, state, other);
         if (outcome == Outcome::Lost) ++counts_.lost_rays;
         if (outcome == Outcome::Lost || outcome == Outcome::Opaque) break;
         mark_walked(plane, start, other);

@@ -43,8 +43,12 @@ private:
     [[nodiscard]] End* first_unwalked();
     void mark_walked(const RayPlane& plane, TetFace start, TetFace end);
 
-    enum class Outcome { Through, Backwards, Opaque, Lost };
-    Outcome walk_from(const RayPlane& plane, TetFace start, double speed, State& state, TetFace& last);
+    enum class Outcome { Through, Backwards, Beyond, Opaque, Lost };
+    /// limit: depth beyond which nothing is integrated
+    /// last:  the face at the end, and its depth
+    Outcome walk_from(const RayPlane& plane, TetFace start, double speed, double limit, State& state, End& last);
+    /// From one end to the other, from whichever is the entry.
+    Outcome walk_between(const RayPlane& plane, TetFace start, double speed, State& state, TetFace& other);
 
     const TetMesh& mesh_;
     const BoundaryScene& scene_;

@@ -9,6 +9,7 @@
 
 #include "subvol/hex_mesh.h"
 #include "subvol/progress.h"
+#include "subvol/voxels.h"
 
 namespace subvol {
 
@@ -45,6 +46,11 @@ public:
     /// Trilinear between the eight voxels about x; nothing where the voxel that holds x is inactive. Inactive neighbours do not
     /// count: the weights of the active ones are normalised.
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
+
+    /// The voxels, for a renderer; shares the grid's memory, may outlive it.
+    ///
+    /// throws: Error(InvalidInput) if the transform is not linear
+    [[nodiscard]] std::unique_ptr<Voxels> voxels() const;
 
     [[nodiscard]] const Data& data() const { return *data_; }
 

@@ -1,0 +1,95 @@
+#include <openvdb/openvdb.h>
+
+#include "subvol/error.h"
+#include "vdb_data.h"
+
+namespace subvol {
+
+namespace {
+
+using Tree = openvdb::FloatTree;
+
+openvdb::Coord coord_of(const Voxel& voxel) {
+    return {voxel[0], voxel[1], voxel[2]};
+}
+Voxel voxel_of(const openvdb::Coord& c) {
+    return {c[0], c[1], c[2]};
+}
+Vec3 vec_of(const openvdb::Vec3d& v) {
+    return {v[0], v[1], v[2]};
+}
+
+class Cursor : public VoxelCursor {
+public:
+    explicit Cursor(const Tree& tree) : accessor_(tree) {}
+
+    VoxelBlock block(const Voxel& voxel) override {
+        const openvdb::Coord c = coord_of(voxel);
+        if (const auto* leaf = accessor_.probeConstLeaf(c)) {
+            const auto kind = leaf->isValueMaskOff() ? VoxelBlock::Kind::Nothing : VoxelBlock::Kind::Mixed;
+            return {kind, voxel_of(leaf->origin()), static_cast<std::int32_t>(Tree::LeafNodeType::DIM), 0};
+        }
+        float value = 0;
+        const bool active = accessor_.probeValue(c, value);
+        const std::int32_t size = tile_size(accessor_.getValueDepth(c));
+        return {active ? VoxelBlock::Kind::Constant : VoxelBlock::Kind::Nothing,
+                {c[0] & ~(size - 1), c[1] & ~(size - 1), c[2] & ~(size - 1)},
+                size,
+                static_cast<double>(value)};
+    }
+
+    VoxelCorners corners(const Voxel& lower) override {
+        VoxelCorners corners;
+        for (unsigned k = 0; k < 8; ++k) {
+            const openvdb::Coord c = coord_of(lower).offsetBy(k & 1, k >> 1 & 1, k >> 2);
+            float value = 0;
+            if (accessor_.probeValue(c, value)) corners.active |= 1u << k;
+            corners.values[k] = static_cast<double>(value);
+        }
+        return corners;
+    }
+
+private:
+    /// depth: 2: the parents of leaves; 1: their parents; 0: the root; -1: not even there
+    static std::int32_t tile_size(int depth) {
+        using Upper = Tree::RootNodeType::ChildNodeType;
+        using Lower = Upper::ChildNodeType;
+        constexpr std::int32_t kLeaf = Tree::LeafNodeType::DIM, kLower = Lower::DIM, kUpper = Upper::DIM;
+        return depth == 2 ? kLeaf : depth == 1 ? kLower : kUpper;
+    }
+
+    // Not registered with the tree, hence cheap to make and safe in many threads, while nobody changes the tree.
+    openvdb::FloatGrid::ConstUnsafeAccessor accessor_;
+};
+
+class GridVoxels : public Voxels {
+public:
+    explicit GridVoxels(openvdb::FloatGrid::ConstPtr grid) : grid_(std::move(grid)) {
+        const openvdb::CoordBBox box = grid_->evalActiveVoxelBoundingBox();
+        range_ = {voxel_of(box.min()), voxel_of(box.max())};
+    }
+    Mat3 to_world() const override { return {column({1, 0, 0}), column({0, 1, 0}), column({0, 0, 1})}; }
+    Vec3 origin() const override { return vec_of(grid_->indexToWorld(openvdb::Vec3d(0.0))); }
+    std::array<Voxel, 2> range() const override { return range_; }
+    std::unique_ptr<VoxelCursor> cursor() const override { return std::make_unique<Cursor>(grid_->constTree()); }
+
+private:
+    Vec3 column(const openvdb::Vec3d& axis) const {
+        return vec_of(grid_->transform().baseMap()->applyJacobian(axis));  // of a map that is linear: without its translation
+    }
+
+    openvdb::FloatGrid::ConstPtr grid_;
+    std::array<Voxel, 2> range_;
+};
+
+}  // namespace
+
+std::unique_ptr<Voxels> VdbGrid::voxels() const {
+    if (!data_->grid->transform().isLinear()) {
+        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid \"" + data_->grid->getName() + "\"",
+                    "a linear transform, not a frustum");
+    }
+    return std::make_unique<GridVoxels>(data_->grid);
+}
+
+}  // namespace subvol
