@@ -4,8 +4,10 @@
 
 #include <cmath>
 
+#include "lib/test_meshes.h"
 #include "render/hex_meshes.h"
 #include "subvol/error.h"
+#include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "subvol/render.h"
 
@@ -204,6 +206,55 @@ TEST_F(RenderPt, IsTheSameEveryTime) {
         };
         const auto first = draw();
         for (int i = 0; i < 2; ++i) EXPECT_EQ(draw(), first);
+    }
+}
+
+TEST_F(RenderPt, RealMeshesAreLikeRays) {
+    const auto data = test::data_folder();
+    if (!data) GTEST_SKIP() << "SUBVOL_DATA does not name the folder of real meshes";
+    // None of them is convex. Where cells fold over, both count, which rays do not do: there are no such meshes here.
+    for (const char* name : {"ansys_td28_fig14.vtk", "vtkdata_post_tet.vtk", "hexdom_igea_improve.vtk"}) {
+        const HexMesh mesh = read_mesh(*data / name).mesh;
+        const Box box = bounds(mesh);
+        const double diagonal = glm::length(box.upper - box.lower);
+        std::vector<double> values;
+        for (const Vec3& p : mesh.points) values.push_back(waves((p - box.lower) / diagonal));
+        const View view(fit_camera(box, {-1, 1, -1}), 128, 128);
+        EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1 * diagonal), {.order = PtOrder::Lists}), kGlTol)
+            << name;
+    }
+}
+
+class Stopper : public Progress {
+public:
+    void report(std::string_view, double fraction) override {
+        EXPECT_GE(fraction, 0);
+        EXPECT_LE(fraction, 1 + 1e-9);
+        last = fraction;
+    }
+    [[nodiscard]] bool cancelled() const override { return stop && last > 0; }
+    double last = -1;
+    bool stop = false;
+};
+
+TEST_F(RenderPt, ReportsProgressAndStops) {
+    const HexMesh mesh = test::box(3);
+    const std::vector<double> ones(mesh.points.size(), 1.0);
+    for (const PtOrder order : {PtOrder::Topological, PtOrder::Lists}) {
+        Stopper progress;
+        const auto draw = [&] {
+            return render_projected_tets(mesh, ones, slanted_view(40), constant_optics(),
+                                         {.order = order, .progress = &progress});
+        };
+        (void)draw();
+        EXPECT_NEAR(progress.last, 1.0, 1e-9);
+        progress.stop = true;
+        try {
+            (void)draw();
+            FAIL() << "not stopped";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::Cancelled);
+        }
     }
 }
 
