@@ -1,48 +1,65 @@
 #version 450
-// Sorts the list of each pixel from front to back and composites it. Lists come nearly sorted: insertion is quick.
+// Sorts the list of each pixel from front to back, integrates and composites it. Lists come nearly sorted: insertion is quick.
 layout(local_size_x = 64) in;
-layout(std430, binding = 3) buffer Pictures { vec4 picture[]; };
+layout(std430, binding = 3) writeonly buffer Pictures { vec4 picture[]; };
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
-layout(std430, binding = 5) buffer Lights { vec4 lights[]; };
-layout(std430, binding = 6) buffer Places { uvec4 places[]; };
+layout(std430, binding = 5) buffer Segments { vec4 segments[]; };  // depths of both ends, values there
+layout(std430, binding = 6) buffer Ranks { uint ranks[]; };
 layout(std430, binding = 11) buffer Violations { uint violations; };
-uniform uint pixels;
+uniform ivec4 rectangle;
 
-// Two segments of which one has to be the first. Tetrahedra touch: what overlaps by less is rounding.
+// Of two segments that are thinner nothing can be told.
 const float kTouch = 1e-5;
+const float kOpaque = 1e-6;
 
-bool before(uvec4 a, uvec4 b) {
-    float za = uintBitsToFloat(a.x) + uintBitsToFloat(a.y), zb = uintBitsToFloat(b.x) + uintBitsToFloat(b.y);
-    return za < zb || (za == zb && a.z > b.z);
+// Neighbours have the same depth on the face between them, to the last bit.
+void sort_list(uint first, uint end) {
+    for (uint i = first + 1u; i < end; ++i) {
+        vec4 segment = segments[i];
+        uint rank = ranks[i], k = i;
+        for (; k > first; --k) {
+            vec4 other = segments[k - 1u];
+            if (other.x < segment.x || (other.x == segment.x && ranks[k - 1u] > rank)) break;
+            segments[k] = other;
+            ranks[k] = ranks[k - 1u];
+        }
+        segments[k] = segment;
+        ranks[k] = rank;
+    }
+}
+
+// Tetrahedra were given from back to front: what is nearer has the higher rank.
+bool in_order(uint first, uint end) {
+    bool known = false;
+    uint last = 0u;
+    for (uint i = first; i < end; ++i) {
+        if (!(segments[i].y - segments[i].x > kTouch)) continue;
+        if (known && ranks[i] > last) return false;
+        last = ranks[i];
+        known = true;
+    }
+    return true;
 }
 
 void main() {
     uint id = gl_WorkGroupID.y * gl_NumWorkGroups.x * 64u + gl_GlobalInvocationID.x;
-    if (id >= pixels) return;
+    uint width = uint(rectangle.z - rectangle.x);
+    if (id >= width * uint(rectangle.w - rectangle.y)) return;
     uint first = offsets[id], end = offsets[id + 1u];
-    for (uint i = first + 1u; i < end; ++i) {
-        uvec4 place = places[i];
-        vec4 light = lights[i];
-        uint k = i;
-        for (; k > first && before(place, places[k - 1u]); --k) {
-            places[k] = places[k - 1u];
-            lights[k] = lights[k - 1u];
-        }
-        places[k] = place;
-        lights[k] = light;
-    }
+    sort_list(first, end);
+    if (!in_order(first, end)) atomicAdd(violations, 1u);
+
+    vec2 slope = (vec2(rectangle.xy) + vec2(id % width, id / width) + 0.5 - middle_px) * vec2(pixel, -pixel);
+    float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     vec4 sum = vec4(0.0);
-    bool wrong = false, known = false;
-    uint last_rank = 0u;  // of the last that is thick enough to tell
-    for (uint i = first; i < end; ++i) {
-        sum += (1.0 - sum.a) * lights[i];
-        uvec4 place = places[i];
-        if (!(uintBitsToFloat(place.y) - uintBitsToFloat(place.x) > kTouch)) continue;
-        // Drawn from back to front: what is nearer has the higher rank.
-        wrong = wrong || (known && place.z > last_rank);
-        last_rank = place.z;
-        known = true;
+    float done = -middle_depth;  // every depth counts once, where cells fold over too
+    for (uint i = first; i < end && 1.0 - sum.a > kOpaque; ++i) {
+        vec4 segment = segments[i];
+        float from = max(done, segment.x);
+        if (!(from < segment.y)) continue;
+        float value = mix(segment.z, segment.w, (from - segment.x) / (segment.y - segment.x));
+        sum += (1.0 - sum.a) * segment_light(value, segment.w, (segment.y - from) * ray_length);
+        done = segment.y;
     }
     picture[id] = sum;
-    if (wrong) atomicAdd(violations, 1u);
 }

@@ -13,8 +13,8 @@ layout(std430, binding = 3) buffer Counts { uint counts[]; };
 #endif
 #if PT_MODE == PT_KEEP
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
-layout(std430, binding = 5) writeonly buffer Lights { vec4 lights[]; };
-layout(std430, binding = 6) writeonly buffer Places { uvec4 places[]; };  // bits of the depths of both ends, rank
+layout(std430, binding = 5) writeonly buffer Segments { vec4 segments[]; };  // depths of both ends, values there
+layout(std430, binding = 6) writeonly buffer Ranks { uint ranks[]; };
 #endif
 uniform ivec4 rectangle;  // whose pixels are counted or kept
 
@@ -74,14 +74,11 @@ void main() {
     int id = place.y * (rectangle.z - rectangle.x) + place.x;
     uint before = atomicAdd(counts[id], 1u);
 #endif
-#if PT_MODE != PT_COUNT
-    float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
-    vec4 light = segment_light(front.y, back.y, (back.x - front.x) * ray_length);
 #if PT_MODE == PT_COMPOSITE
-    color = light;
-#else
-    lights[offsets[id] + before] = light;
-    places[offsets[id] + before] = uvec4(floatBitsToUint(vec2(front.x, back.x)), rank, 0u);
-#endif
+    float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
+    color = segment_light(front.y, back.y, (back.x - front.x) * ray_length);
+#elif PT_MODE == PT_KEEP
+    segments[offsets[id] + before] = vec4(front.x, back.x, front.y, back.y);
+    ranks[offsets[id] + before] = rank;
 #endif
 }

@@ -20,9 +20,9 @@ namespace subvol::detail {
 namespace {
 
 // As the shaders have them.
-constexpr GLuint kCountsBinding = 3, kOffsetsBinding = 4, kLightsBinding = 5, kPlacesBinding = 6, kKnotsBinding = 10,
+constexpr GLuint kCountsBinding = 3, kOffsetsBinding = 4, kSegmentsBinding = 5, kRanksBinding = 6, kKnotsBinding = 10,
                  kViolationsBinding = 11;
-constexpr std::size_t kLight_bytes = 16;        // of a fragment, and as many of its place
+constexpr std::size_t kSegment_bytes = 16, kPixel_bytes = 16;
 constexpr double kCounting = 0.2;               // part of the work with lists, roughly
 constexpr std::size_t kDrawnAtOnce = 1U << 16;  // tetrahedra, between two looks at the progress
 
@@ -46,6 +46,12 @@ void check_size(const View& view) {
         ErrorCode::MissingCapability,
         "the GL device draws up to " + std::to_string(most) + " pixels in a row or column, not " + std::to_string(longest), {},
         "a smaller picture, or the method tets");
+}
+
+std::vector<ShaderText> common_texts() {
+    return {{"pt_frame.glsl", kShader_pt_frame_glsl},
+            {"exp_log.glsl", kShader_exp_log_glsl},
+            {"pt_segment.glsl", kShader_pt_segment_glsl}};
 }
 
 }  // namespace
@@ -87,7 +93,7 @@ void GlTets::make_target() {
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 }
 
-GlProgram GlTets::make_program(const char* mode) const {
+std::string GlTets::defines(const char* mode) const {
     std::ostringstream text;
     const auto define = [&](const char* name, const auto& value) { text << "#define " << name << ' ' << value << '\n'; };
     define("PERSPECTIVE", int{view_.perspective()});
@@ -96,12 +102,12 @@ GlProgram GlTets::make_program(const char* mode) const {
     define("PT_KEEP", 2);
     define("PT_MODE", mode);
     define("kKnots", scene_.knots.size());
-    return {ShaderText{"pt_tet.vert", kShader_pt_tet_vert},
-            ShaderText{"pt_tet.frag", kShader_pt_tet_frag},
-            text.str(),
-            {{"pt_frame.glsl", kShader_pt_frame_glsl},
-             {"exp_log.glsl", kShader_exp_log_glsl},
-             {"pt_segment.glsl", kShader_pt_segment_glsl}}};
+    return text.str();
+}
+
+GlProgram GlTets::make_program(const char* mode) const {
+    return {ShaderText{"pt_tet.vert", kShader_pt_tet_vert}, ShaderText{"pt_tet.frag", kShader_pt_tet_frag}, defines(mode),
+            common_texts()};
 }
 
 void GlTets::set_frame(const GlProgram& program, const PixelRect& rect) const {
@@ -150,9 +156,10 @@ GlTets::Lists GlTets::draw_in_lists(std::size_t most_fragments, Progress* progre
     Lists lists{Image(view_.width(), view_.height()), std::accumulate(counts.begin(), counts.end(), std::size_t{0}),
                 parts.size()};
     const GlProgram keep = make_program("PT_KEEP");
+    const GlProgram resolve("pt_resolve.comp", kShader_pt_resolve_comp, defines("PT_KEEP"), common_texts());
     const double share = (1 - kCounting) / static_cast<double>(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        draw_part(keep, parts[i], counts, lists.image, progress, kCounting + share * static_cast<double>(i), share);
+        draw_part(keep, resolve, parts[i], counts, lists.image, progress, kCounting + share * static_cast<double>(i), share);
     }
     std::uint32_t violations = 0;
     violations_.read(sizeof violations, &violations);
@@ -172,8 +179,8 @@ std::vector<std::uint32_t> GlTets::count_fragments(Progress* progress) {
     return counts;
 }
 
-void GlTets::draw_part(const GlProgram& keep, const PixelRect& part, const std::vector<std::uint32_t>& counts, Image& image,
-                       Progress* progress, double done, double share) {
+void GlTets::draw_part(const GlProgram& keep, const GlProgram& resolve, const PixelRect& part,
+                       const std::vector<std::uint32_t>& counts, Image& image, Progress* progress, double done, double share) {
     std::vector<std::uint32_t> offsets{0};
     for (int y = part.y0; y < part.y1; ++y) {
         for (int x = part.x0; x < part.x1; ++x) {
@@ -186,27 +193,26 @@ void GlTets::draw_part(const GlProgram& keep, const PixelRect& part, const std::
     counts_.clear();
     counts_.bind(kCountsBinding);
     fill(offsets_, kOffsetsBinding, offsets);
-    lights_.grow(offsets.back() * kLight_bytes);
-    lights_.bind(kLightsBinding);
-    places_.grow(offsets.back() * kLight_bytes);
-    places_.bind(kPlacesBinding);
+    segments_.grow(offsets.back() * kSegment_bytes);
+    segments_.bind(kSegmentsBinding);
+    ranks_.grow(offsets.back() * sizeof(std::uint32_t));
+    ranks_.bind(kRanksBinding);
     draw_all(keep, part, progress, done, share);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    resolve_part(part, image);
+    resolve_part(resolve, part, image);
 }
 
-void GlTets::resolve_part(const PixelRect& part, Image& image) {
+void GlTets::resolve_part(const GlProgram& resolve, const PixelRect& part, Image& image) {
     constexpr std::uint32_t kGroup = 64;
     const auto width = static_cast<std::size_t>(part.x1 - part.x0), height = static_cast<std::size_t>(part.y1 - part.y0);
     const auto pixels = static_cast<std::uint32_t>(width * height);
-    const GlProgram resolve("pt_resolve.comp", kShader_pt_resolve_comp, {});
-    picture_.grow(pixels * kLight_bytes);
+    picture_.grow(pixels * kPixel_bytes);
     picture_.bind(kCountsBinding);
-    glProgramUniform1ui(resolve.id(), resolve.uniform("pixels"), pixels);
+    set_frame(resolve, part);
     resolve.use();
     dispatch((pixels + kGroup - 1) / kGroup);
     std::vector<std::array<float, 4>> colors(pixels);
-    picture_.read(pixels * kLight_bytes, colors.data());
+    picture_.read(pixels * kPixel_bytes, colors.data());
     for (std::size_t i = 0; i < pixels; ++i) {
         const std::size_t x = static_cast<std::size_t>(part.x0) + i % width, y = static_cast<std::size_t>(part.y0) + i / width;
         std::copy(colors[i].begin(), colors[i].end(),

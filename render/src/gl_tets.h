@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "gl_buffer.h"
@@ -56,20 +57,21 @@ public:
     [[nodiscard]] Lists draw_in_lists(std::size_t most_fragments, Progress* progress);
 
 private:
+    [[nodiscard]] std::string defines(const char* mode) const;
     [[nodiscard]] GlProgram make_program(const char* mode) const;
     void make_target();
     void set_frame(const GlProgram& program, const PixelRect& rect) const;
     [[nodiscard]] std::vector<std::uint32_t> count_fragments(Progress* progress);
-    void draw_part(const GlProgram& keep, const PixelRect& part, const std::vector<std::uint32_t>& counts, Image& image,
-                   Progress* progress, double done, double share);
-    void resolve_part(const PixelRect& part, Image& image);
+    void draw_part(const GlProgram& keep, const GlProgram& resolve, const PixelRect& part,
+                   const std::vector<std::uint32_t>& counts, Image& image, Progress* progress, double done, double share);
+    void resolve_part(const GlProgram& resolve, const PixelRect& part, Image& image);
     void draw_all(const GlProgram& program, const PixelRect& rect, Progress* progress, double done, double part);
 
     const GlTetScene& scene_;
     const View& view_;
     GLuint vertices_ = 0, framebuffer_ = 0, texture_ = 0;
     GlBuffer points_, tets_, order_, knots_;
-    GlBuffer counts_, offsets_, lights_, places_, picture_, violations_;  // of lists
+    GlBuffer counts_, offsets_, segments_, ranks_, picture_, violations_;  // of lists
 };
 
 }  // namespace subvol::detail

@@ -42,9 +42,9 @@ void check_device(const std::optional<int>& device) {
 }
 
 std::size_t most_fragments(const PtOptions& options, const GlDevice& device) {
-    constexpr std::size_t kFragment_bytes = 32, kHalf_bytes = 16;  // two buffers
-    constexpr std::size_t kMost = std::size_t{1} << 31;            // that 32 bits number, with room
-    return std::min({options.list_bytes / kFragment_bytes, device.max_ssbo_bytes / kHalf_bytes, kMost});
+    constexpr std::size_t kFragment_bytes = 20, kSegment_bytes = 16;  // of two buffers
+    constexpr std::size_t kMost = std::size_t{1} << 31;               // that 32 bits number, with room
+    return std::min({options.list_bytes / kFragment_bytes, device.max_ssbo_bytes / kSegment_bytes, kMost});
 }
 
 /// Of the values of the knots: they are counted in parts of it.

@@ -111,7 +111,7 @@ TEST(ListParts, HoldEveryPixelOnceAndNoMoreThanTheyMay) {
     std::vector<std::uint32_t> counts(kWidth * kHeight);
     for (std::size_t i = 0; i < counts.size(); ++i) counts[i] = static_cast<std::uint32_t>(i * i % 17);
     counts[60] = 40;
-    for (const std::size_t most : {40, 41, 100, 150, 400, 100000}) {
+    for (const std::size_t most : {40U, 41U, 100U, 150U, 400U, 100000U}) {
         std::vector<int> seen(counts.size());
         for (const auto& part : detail::split_into_parts(counts, kWidth, kHeight, most)) {
             std::size_t sum = 0;

@@ -33,7 +33,7 @@ struct PtReport {
     std::string device;
     std::size_t tets = 0;
     std::size_t degenerate_tets = 0;  // of zero volume: not drawn
-    std::size_t inverted_tets = 0;    // drawn as if they were not: where they lie over others both count
+    std::size_t inverted_tets = 0;    // where they lie over others both count; lists count every depth once
     std::size_t cycles = 0;           // times that a topological order did not go on and the farthest centroid was taken
     std::size_t fragments = 0;        // pairs of a pixel and a tetrahedron, where there were lists
     std::size_t parts = 0;            // of the picture, that lists were made for one after the other
@@ -53,7 +53,7 @@ struct PtResult {
 /// scalar: one value a point of the mesh
 /// throws: Error(InvalidInput) if scalar.size() != mesh.points.size(), or values and extinctions are beyond 32-bit floats;
 ///         Error(MissingCapability) if there is no OpenGL 4.5, or it has no room
-/// cost:   16 bytes a point and 20 a tetrahedron on the device; lists: 32 bytes a fragment, up to list_bytes
+/// cost:   16 bytes a point and 20 a tetrahedron on the device; lists: 20 bytes a fragment, up to list_bytes
 /// source: SCIENCE §4 (ST90; max1990 for the topological order)
 [[nodiscard]] PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view,
                                              const Optics& optics, const PtOptions& options = {});
