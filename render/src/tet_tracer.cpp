@@ -4,12 +4,6 @@
 
 namespace subvol {
 
-namespace {
-
-constexpr double kOpaque = 1e-6;  // what lies behind less transmittance than this is not followed
-
-}  // namespace
-
 void TetTracer::add_end(const RayPlane& plane, TetFace face) {
     if (std::any_of(ends_.begin(), ends_.end(), [&](const End& end) { return end.face == face; })) return;
     if (const auto crossed = cross_face(mesh_, plane, face)) ends_.push_back({face, crossed->crossing().t, false});
@@ -55,50 +49,29 @@ void TetTracer::mark_walked(const RayPlane& plane, TetFace start, TetFace end) {
     if (const auto found = find(end); found != ends_.end()) found->walked = true;
 }
 
-TetTracer::Outcome TetTracer::walk_from(const RayPlane& plane, TetFace start, double speed, State& state, TetFace& last) {
-    const auto face = cross_face(mesh_, plane, start);
-    if (!face) return Outcome::Lost;
-    const Crossing first = face->crossing();
-    Crossing previous = first;
-    std::size_t steps = 0;
-    const auto visit = [&](const Crossing& next) {
-        const double from = std::max(previous.t, state.t);
-        if (next.t > from) {
-            const double slope = (next.value - previous.value) / (next.t - previous.t);
-            const double value = from == previous.t ? previous.value : previous.value + (from - previous.t) * slope;
-            composite(state.light, optics_.integrate(value, next.value, (next.t - from) * speed));
-            state.t = next.t;
-        }
-        previous = next;
-        return ++steps <= mesh_.tets.size() && state.light.transmittance >= kOpaque;
-    };
-    const auto end = walk(mesh_, plane, start, *face, visit);
-    counts_.segments += steps;
-    if (!end) return steps > mesh_.tets.size() ? Outcome::Lost : Outcome::Opaque;
-    last = *end;
-    return previous.t < first.t ? Outcome::Backwards : Outcome::Through;
-}
-
 Segment TetTracer::trace(const Ray& ray) {
     const RayPlane plane(ray);
     find_ends(plane, ray);
     if (ends_.empty()) return {};
     ++counts_.rays;
     const double speed = glm::length(ray.direction);
-    State state;
+    const auto follow = [&](TetFace start, LitDepth& state, TetFace& last) {
+        return integrate_walk(mesh_, plane, start, speed, optics_, state, last, counts_.segments);
+    };
+    LitDepth state;
     while (const End* next = first_unwalked()) {
         const TetFace start = next->face;
         TetFace last = start;
-        State walked = state;
-        Outcome outcome = walk_from(plane, start, speed, walked, last);
+        LitDepth walked = state;
+        WalkOutcome outcome = follow(start, walked, last);
         const TetFace other = last;
-        if (outcome == Outcome::Backwards) {  // the entry is at the other end
+        if (outcome == WalkOutcome::Backwards) {  // the entry is at the other end
             walked = state;
-            outcome = walk_from(plane, other, speed, walked, last);
+            outcome = follow(other, walked, last);
         }
         state = walked;
-        if (outcome == Outcome::Lost) ++counts_.lost_rays;
-        if (outcome == Outcome::Lost || outcome == Outcome::Opaque) break;
+        if (outcome == WalkOutcome::Lost) ++counts_.lost_rays;
+        if (outcome == WalkOutcome::Lost || outcome == WalkOutcome::Opaque) break;
         mark_walked(plane, start, other);
     }
     return state.light;
