@@ -30,8 +30,8 @@ void print(const char* name, const std::string& method, const std::vector<Image>
         if (last >= 0) jerk = std::max(jerk, std::abs(change.rmse - last));
         last = change.rmse;
     }
-    std::printf("%-6s %-6s rmse from frame to frame: mean %.5f  most %.5f  its largest jump %.5f  a pixel's largest %.3f\n", name,
-                method.c_str(), mean_rmse, most_rmse, jerk, most);
+    std::printf("%-6s %-6s rmse from frame to frame: mean %.5f  most %.5f  its largest jump %.5f  a pixel's largest %.3f\n",
+                name, method.c_str(), mean_rmse, most_rmse, jerk, most);
     std::fflush(stdout);
 }
 

@@ -109,5 +109,7 @@ int main(int argc, char** argv) {
         return complain("not enough memory for this; try a lower resolution or fewer levels", kEnvironment);
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(error.what(), kBadInput);
+    } catch (const std::exception& error) {  // of a library, where nobody expected it
+        return complain(error.what(), kEnvironment);
     }
 }

@@ -8,6 +8,7 @@
 #include "subvol/progressive.h"
 #include "subvol/render.h"
 #include "subvol/render_dense.h"
+#include "subvol/render_pt.h"
 #include "text.h"
 #include "verb.h"
 
@@ -32,7 +33,8 @@ public:
         app()
             .add_option("--method", method_,
                         "splat (kernels, the default), sheets (the same by OpenGL sheet buffers),\n"
-                        "tets (rays through tetrahedra) or dense (rays through the dense grids of the limit)")
+                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL) or\n"
+                        "dense (rays through the dense grids of the limit)")
             ->type_name("NAME");
         picture_.add_to(app());
         app()
@@ -44,13 +46,19 @@ public:
                         "dense, without --levels: raise the level until the RMS of the picture's change is less (default 1e-3)")
             ->type_name("RMS")
             ->check(CLI::PositiveNumber);
+        app()
+            .add_option("--order", order_,
+                        "pt: what sorts the tetrahedra: topological (shared faces, the default), centroid, or\n"
+                        "lists (every pixel its own)")
+            ->type_name("NAME");
         sample_.add_to(app());
-        refine_.add_to(app(), "show the refined mesh of this level (tets: default 1; else: omitted shows the limit)");
+        refine_.add_to(app(), "show the refined mesh of this level (tets, pt: default 1; else: omitted shows the limit)");
         splat_.add_to(app());
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "sheets", "tets", "dense"}, {"grid", "pt"});
+        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense"}, {"grid"});
+        check_choice("--order", order_, {"topological", "centroid", "lists"});
         options_ = splat_.options();
         if (method_ == "sheets") options_.method = SplatMethod::Sheets;
         if (method_ == "sheets" && options_.backend == Backend::Cpu) {
@@ -60,6 +68,10 @@ public:
         if (by_rays && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
             throw Error(ErrorCode::InvalidInput, method_ + ": drawn by the CPU, without light and of one field",
                         "--backend gl, --shade, --color-field, --seconds");
+        }
+        if (method_ == "pt" && (options_.backend == Backend::Cpu || splat_.shade || splat_.color_field || splat_.seconds)) {
+            throw Error(ErrorCode::InvalidInput, "tetrahedra are projected by OpenGL, without light and of one field",
+                        "--backend cpu, --shade, --color-field, --seconds");
         }
         picture_.check_legend();
         PictureOutput output(output_, picture_.turntable_frames, picture_);
@@ -74,16 +86,18 @@ public:
 private:
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
+        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the colours' field is the field itself
         const Box box = bounds(mesh);
         const std::vector<View> views = picture_.make_views(box);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
         const Optics optics = picture_.make_optics(box, range, colors);
-        picture_.write_legend(optics, colors, report);
-        if (method_ == "tets") {
+        if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-            output.write(
-                views, [&](const View& view, Progress* progress) { return tets(fine, view, optics, progress, report); },
-                report);
+            const auto draw = [&](const View& view, Progress* progress) {
+                return method_ == "pt" ? projected_tets(fine, view, optics, progress, report)
+                                       : tets(fine, view, optics, progress, report);
+            };
+            output.write(views, draw, report);
         } else if (method_ == "dense") {
             const RefineOptions refine = refine_.options(0, report);
             const auto draw = [&](const View& view, Progress* progress) {
@@ -95,22 +109,24 @@ private:
         } else {
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
+        picture_.write_legend(optics, colors, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
-        if (method_ == "tets" || method_ == "dense")
+        if (method_ == "tets" || method_ == "pt" || method_ == "dense")
             throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
+        if (volume.channels.size() == 1) options_.color_channel.reset();
         const std::vector<View> views = picture_.make_views(volume.bounds);
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
-        picture_.write_legend(optics, colors, report);
         splat(volume, views, optics, output, report);
+        picture_.write_legend(optics, colors, report);
     }
 
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                Report& report) const {
-        Splatter splatter(volume, splat_options(volume.channels.size()));
+        Splatter splatter(volume, options_);
         const auto draw = [&](const View& view, Progress* progress) {
             SplatResult drawn = splatter.draw(view, optics, progress);
             report["method"] = method_;
@@ -120,22 +136,12 @@ private:
         output.write(views, draw, report);
     }
 
-    /// The colours' field may be the one that is shown.
-    [[nodiscard]] SplatOptions splat_options(std::size_t fields) const {
-        SplatOptions options = options_;
-        if (fields < 2) options.color_channel.reset();
-        return options;
-    }
-
     void splat_in_time(const HexMesh& mesh, const View& view, const Optics& optics, PictureOutput& output,
                        Report& report) const {
         const auto draw = [&](const View&, Progress* progress) {
             const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
-            ProgressiveResult drawn = render_progressively(mesh, view, optics,
-                                                           {.seconds = *splat_.seconds,
-                                                            .sample = sample,
-                                                            .splat = splat_options(mesh.attributes.size()),
-                                                            .progress = progress});
+            ProgressiveResult drawn = render_progressively(
+                mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
             report["method"] = method_;
             report_splats(drawn.splat.report, splat_, report);
             report["points"] = drawn.splat.report.points;
@@ -193,9 +199,35 @@ private:
         return Picture{std::move(drawn.image)};
     }
 
+    [[nodiscard]] Picture projected_tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
+                                         Report& report) const {
+        const PtOrder order = order_ == "lists"      ? PtOrder::Lists
+                              : order_ == "centroid" ? PtOrder::Centroid
+                                                     : PtOrder::Topological;
+        PtResult drawn = render_projected_tets(mesh, mesh.attributes.front().values, view, optics,
+                                               {.order = order, .device = splat_.device, .progress = progress});
+        const PtReport& pt = drawn.report;
+        report.add_seconds("prepare", pt.seconds_build);
+        report.add_seconds("sort", pt.seconds_sort);
+        report.add_seconds("draw", pt.seconds_draw);
+        report["method"] = method_;
+        report["backend"] = "gl";
+        report["device"] = pt.device;
+        report["order"] = order_;
+        report["tets"] = pt.tets;
+        report["degenerate_tets"] = pt.degenerate_tets;
+        report["inverted_tets"] = pt.inverted_tets;
+        if (order == PtOrder::Topological) report["cycles"] = pt.cycles;
+        if (order == PtOrder::Lists) report["fragments"] = pt.fragments;
+        if (pt.violations) report["order_violations"] = *pt.violations;
+        if (pt.cycles > 0) report.warn(text("the order of the tetrahedra has cycles, broken ", pt.cycles, " times"));
+        return Picture{std::move(drawn.image)};
+    }
+
     std::string input_;
     std::string output_;
     std::string method_ = "splat";
+    std::string order_ = "topological";
     int samples_ = 1;
     double image_tolerance_ = 1e-3;
     PictureArguments picture_;

@@ -1,12 +1,15 @@
 #include "subvol/image_io.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -44,13 +47,24 @@ std::uint8_t encoded_byte(double linear) {
     return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::min(linear, 1.0))));
 }
 
+[[noreturn]] void fail(const fs::path& path, const std::string& why) {
+    throw Error(ErrorCode::Io, "cannot be written: " + why, path.string());
+}
+
 void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void* pixels) {
     AtomicFile file(path);
-    const auto output = OIIO::ImageOutput::create(file.path().string());
+    // OpenImageIO does not tell of a disk that is full when it writes .png: the stream does.
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.path().c_str(), "wb"), &std::fclose);
+    if (!stream) fail(path, std::generic_category().message(errno));
+    OIIO::Filesystem::IOFile proxy(stream.get(), OIIO::Filesystem::IOProxy::Write);
+    const auto output = OIIO::ImageOutput::create(file.path().string(), &proxy);
     if (!output) throw Error(ErrorCode::MissingCapability, OIIO::geterror(), path.string());
     const bool written =
         output->open(file.path().string(), spec) && output->write_image(spec.format, pixels) && output->close();
-    if (!written) throw Error(ErrorCode::Io, "cannot be written: " + output->geterror(), path.string());
+    if (!written) fail(path, output->geterror());
+    const bool failed = std::ferror(stream.get()) != 0;
+    if (std::fclose(stream.release()) != 0) fail(path, std::generic_category().message(errno));
+    if (failed) fail(path, "the disk is full, or the file too large");
     file.commit();
 }
 

@@ -1,9 +1,11 @@
 #include "subvol/camera.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <ios>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
@@ -16,6 +18,7 @@ namespace subvol {
 namespace {
 
 constexpr int kMaxSize = 65536;
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GB as float RGBA
 
 std::optional<Vec3> view_direction(std::string_view name) {
     if (name == "+x") return Vec3(-1, 0, 0);
@@ -71,6 +74,8 @@ nlohmann::json read_json_object(const std::string& file) {
         json = nlohmann::json::parse(stream);
     } catch (const nlohmann::json::exception& e) {
         throw Error(ErrorCode::InvalidInput, e.what(), file);
+    } catch (const std::ios_base::failure&) {  // a folder, for one
+        throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }
     if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not a JSON object", file);
     return json;
@@ -117,6 +122,7 @@ View::View(const Camera& camera, int width, int height)
       axes_() {
     require(width >= 1 && width <= kMaxSize && height >= 1 && height <= kMaxSize, "the picture's size is out of range",
             "1..65536 pixels a side");
+    require(std::int64_t{width} * height <= kMaxPixels, "the picture has too many pixels", "at most 2^28");
     validate(camera);
     pixel_ = (perspective_ ? 2 * half_fov_tangent(camera.fovy_deg) : camera.ortho_height) / height;
     axes_ = camera_axes(camera.target - camera.eye, camera.up);

@@ -1,4 +1,5 @@
 #include <fstream>
+#include <ios>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -43,6 +44,8 @@ json read_color_map(const std::string& file, const std::string& name) {
         document = json::parse(stream);
     } catch (const json::exception& e) {
         refuse(file, e.what());
+    } catch (const std::ios_base::failure&) {  // a folder, for one
+        throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }
     // ParaView writes an array of colour maps; a bare one is as clear.
     if (document.is_object()) document = json::array({std::move(document)});

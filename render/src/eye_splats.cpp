@@ -72,19 +72,11 @@ public:
                 to_float(std::sqrt(std::max(cyy_, 0.0)))};
     }
 
-    /// |g·d| ≤ √(gᵀSg) where e ≤ 1; a Hessian's part is at most half its norm times the trace of S.
     [[nodiscard]] EyeRange range(const RbfChannel& channel, const Cells& cells) const {
-        const auto& g = channel.gradients[i_];
-        const Mat3 s = reach_ * frame_matrix(scene_.volume->frames[i_]);
-        const Vec3 gradient(g[0], g[1], g[2]);
-        double spread = std::sqrt(std::max(0.0, glm::dot(gradient, s * gradient)));
-        if (!channel.hessians.empty()) {
-            const Mat3 h = frame_matrix(channel.hessians[i_]);
-            const double norm = std::sqrt(glm::dot(h[0], h[0]) + glm::dot(h[1], h[1]) + glm::dot(h[2], h[2]));
-            spread += 0.5 * norm * (s[0][0] + s[1][1] + s[2][2]);
-        }
         const double middle = static_cast<double>(value(channel, cells)), bow = static_cast<double>(moment(channel, cells));
-        spread = spread * cells.scale * 1.001 + 1e-5 * (std::abs(middle) + std::abs(bow)) + 0.01;
+        const double spread =
+            value_spread(channel, i_, reach_ * frame_matrix(scene_.volume->frames[i_])) * cells.scale * 1.001 +
+            1e-5 * (std::abs(middle) + std::abs(bow)) + 0.01;
         return {to_float(middle - spread + std::min(bow, 0.0)), to_float(middle + spread + std::max(bow, 0.0))};
     }
 

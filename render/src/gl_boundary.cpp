@@ -65,9 +65,9 @@ GlBoundary::GlBoundary(bool on_device)
 void GlBoundary::upload_surface(const Surface& surface) {
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
     points_ = surface.points.size();
-    triangles_ = surface.triangles.size();
-    std::vector<std::uint32_t> corners(3 * triangles_);
-    tbb::parallel_for(std::size_t{0}, triangles_, [&](std::size_t i) {
+    const std::size_t triangles = surface.triangles.size();
+    std::vector<std::uint32_t> corners(3 * triangles);
+    tbb::parallel_for(std::size_t{0}, triangles, [&](std::size_t i) {
         for (std::size_t k = 0; k < 3; ++k) corners[3 * i + k] = static_cast<std::uint32_t>(surface.triangles[i][k]);
     });
     positions_.grow(points_ * sizeof(Vec3));
@@ -75,8 +75,9 @@ void GlBoundary::upload_surface(const Surface& surface) {
     corners_.grow(corners.size() * kWord_bytes);
     corners_.upload(corners.size() * kWord_bytes, corners.data());
     eye_points_.grow(points_ * kEyePoint_bytes);
-    boxes_.grow(triangles_ * kBox_bytes);
-    strips_.grow((triangles_ + 1) * kWord_bytes);
+    boxes_.grow(triangles * kBox_bytes);
+    strips_.grow((triangles + 1) * kWord_bytes);
+    triangles_ = triangles;  // now they are there: what throws is done again
 }
 
 void GlBoundary::find(const Surface& surface, const View& view, double near, double middle, GlStages& stages) {
@@ -87,6 +88,7 @@ void GlBoundary::find(const Surface& surface, const View& view, double near, dou
     if (!on_device_now_) return upload_intervals(boundary_intervals(surface, view, near, middle));
 
     stages.begin("boundary");
+    room_ = std::min(room_, intervals_.bytes() / kPair_bytes);  // less where the device has refused to give more
     if (triangles_ == 0) upload_surface(surface);
     Camera camera(view, near, middle);
     camera.points = static_cast<std::uint32_t>(points_);

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "gl_context.h"
+#include "shader_exp_log_glsl.h"
 #include "shader_sheet_composite_comp.h"
 #include "shader_sheet_frame_glsl.h"
 #include "shader_sheet_kernel_frag.h"
@@ -173,6 +174,7 @@ const GlSheets::Programs& GlSheets::programs(const SplatFrame& frame) {
                       {{"sheet_splats.glsl", kShader_sheet_splats_glsl}});
     GlProgram composite("sheet_composite.comp", kShader_sheet_composite_comp, features,
                         {{"sheet_frame.glsl", kShader_sheet_frame_glsl},
+                         {"exp_log.glsl", kShader_exp_log_glsl},
                          {"splat_classify.glsl", kShader_splat_classify_glsl},
                          {"splat_light.glsl", kShader_splat_light_glsl},
                          {"sheet_walk.glsl", kShader_sheet_walk_glsl}});

@@ -14,20 +14,6 @@ float to_float(double v) {
     return static_cast<float>(v);
 }
 
-/// How far a value goes from its middle over the kernel's support, but for its moment: |g·d| ≤ √(gᵀSg), and a Hessian's part is
-/// at most half its norm times the trace of S.
-double spread_of(const RbfChannel& channel, std::size_t i, const Mat3& frame) {
-    const auto& g = channel.gradients[i];
-    const Vec3 gradient(g[0], g[1], g[2]);
-    double spread = std::sqrt(std::max(0.0, glm::dot(gradient, frame * gradient)));
-    if (!channel.hessians.empty()) {
-        const Mat3 h = frame_matrix(channel.hessians[i]);
-        const double norm = std::sqrt(glm::dot(h[0], h[0]) + glm::dot(h[1], h[1]) + glm::dot(h[2], h[2]));
-        spread += 0.5 * norm * (frame[0][0] + frame[1][1] + frame[2][2]);
-    }
-    return spread;
-}
-
 void pack_kernel(const SplatScene& scene, std::size_t i, float* to) {
     const RbfVolume& volume = *scene.volume;
     const RbfChannel& channel = scene.opacity_values();
@@ -49,7 +35,7 @@ void pack_kernel(const SplatScene& scene, std::size_t i, float* to) {
                                                  g[1],
                                                  g[2],
                                                  channel.moments[i],
-                                                 to_float(spread_of(channel, i, reach * frame_matrix(f))),
+                                                 to_float(value_spread(channel, i, reach * frame_matrix(f))),
                                                  0};
     std::copy(std::begin(packed), std::end(packed), to);
 }

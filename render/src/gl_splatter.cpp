@@ -11,6 +11,7 @@
 #include "gl_context.h"
 #include "gl_splat_bins.h"
 #include "kernel_axes.h"
+#include "shader_exp_log_glsl.h"
 #include "shader_gl_groups_glsl.h"
 #include "shader_splat_classify_glsl.h"
 #include "shader_splat_draw_comp.h"
@@ -90,6 +91,7 @@ public:
                 {{"gl_groups.glsl", kShader_gl_groups_glsl},
                  {"splat_frame.glsl", kShader_splat_frame_glsl},
                  {"splat_sums.glsl", kShader_splat_sums_glsl},
+                 {"exp_log.glsl", kShader_exp_log_glsl},
                  {"splat_classify.glsl", kShader_splat_classify_glsl},
                  {"splat_light.glsl", kShader_splat_light_glsl},
                  {"splat_walk.glsl", kShader_splat_walk_glsl}}) {

@@ -1,7 +1,6 @@
 #include <tbb/combinable.h>
 
 #include <chrono>
-#include <cmath>
 
 #include "boundary_scene.h"
 #include "pixel_tiles.h"
@@ -17,20 +16,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-void check(const HexMesh& mesh, std::span<const double> scalar) {
-    if (scalar.size() != mesh.points.size()) {
-        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
-                    std::to_string(mesh.points.size()) + ", one a point");
-    }
-    validate(mesh);
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        for (const Index p : mesh.cells[c]) {
-            if (std::isfinite(scalar[p])) continue;
-            throw Error(ErrorCode::InvalidInput, "the scalar is not finite", "point " + std::to_string(p));
-        }
-    }
 }
 
 // Traces, and hands its counts on when its tile is done.
@@ -56,7 +41,7 @@ private:
 TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
                        const TetsOptions& options) {
     check_samples(options.samples);
-    check(mesh, scalar);
+    check_tet_input(mesh, scalar);
     TetsResult result;
     TetsReport& report = result.report;
 

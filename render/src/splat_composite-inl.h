@@ -185,7 +185,7 @@ private:
         const auto& depths = frame_.intervals.depths;
         for (std::size_t i = 0; i < kBlock; ++i) {
             if (done[i] == 0) continue;
-            const std::uint32_t next = ++state_.interval[i];
+            const std::size_t next = ++state_.interval[i];
             const bool more = next < state_.intervals_end[i];
             state_.enter[i] = more ? depths[2 * next] : kNever;
             state_.exit[i] = more ? depths[2 * next + 1] : kNever;

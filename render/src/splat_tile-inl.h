@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <new>
 #include <vector>
 
 #include "splat_composite-inl.h"
@@ -60,13 +61,15 @@ private:
         std::vector<float> sums_storage;
         float* sums = nullptr;
         hwy::AlignedFreeUniquePtr<BlockState[]> blocks;
-        std::vector<std::uint32_t> offsets, splats;
+        std::vector<std::size_t> offsets;
+        std::vector<std::uint32_t> splats;
         std::vector<char> wanted;
 
         void resize() {
             if (blocks) return;
-            blocks = hwy::AllocateAligned<BlockState>(kBlocks);
             sums_storage.resize(kBatch * kBlocks * kSums * kBlock + 64);
+            blocks = hwy::AllocateAligned<BlockState>(kBlocks);
+            if (!blocks) throw std::bad_alloc();
             const auto address = reinterpret_cast<std::uintptr_t>(sums_storage.data());
             sums = sums_storage.data() + ((64 - address % 64) % 64) / sizeof(float);
         }
@@ -121,10 +124,10 @@ private:
             return true;
         }
         const auto id = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
-        const std::uint32_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
-        b.interval[lane] = first;
-        b.intervals_end[lane] = end;
-        for (std::uint32_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
+        const std::size_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
+        b.interval[lane] = static_cast<std::uint32_t>(first);
+        b.intervals_end[lane] = static_cast<std::uint32_t>(end);
+        for (std::size_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
         if (first == end) return false;
         b.enter[lane] = frame_.intervals.depths[2 * first];
         b.exit[lane] = frame_.intervals.depths[2 * first + 1];
@@ -198,7 +201,7 @@ private:
         EyeRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
         const auto& [storage, sums, blocks, offsets, splats, wanted] = scratch();
         const auto b = static_cast<std::size_t>(batch);
-        for (std::uint32_t i = offsets[b > 0 ? b - 1 : b]; i < offsets[b + 1]; ++i) {
+        for (std::size_t i = offsets[b > 0 ? b - 1 : b]; i < offsets[b + 1]; ++i) {
             range.low = std::min(range.low, ranges[splats[i]].low);
             range.high = std::max(range.high, ranges[splats[i]].high);
         }
@@ -229,8 +232,7 @@ private:
         float* sums = scratch().sums;
         std::fill(sums + static_cast<std::size_t>(begin) * kSheet, sums + static_cast<std::size_t>(end) * kSheet, 0.0f);
         const auto& offsets = scratch().offsets;
-        for (std::uint32_t i = offsets[static_cast<std::size_t>(batch)]; i < offsets[static_cast<std::size_t>(batch) + 1];
-             ++i) {
+        for (std::size_t i = offsets[static_cast<std::size_t>(batch)]; i < offsets[static_cast<std::size_t>(batch) + 1]; ++i) {
             const std::uint32_t id = scratch().splats[i];
             if constexpr (kPlain) {
                 add_plain(frame_.kernels.splats[id], batch_, tile_, cuts_, sums);

@@ -95,6 +95,20 @@ void count_shapes(TetMesh& mesh) {
 
 }  // namespace
 
+void check_tet_input(const HexMesh& mesh, std::span<const double> scalar) {
+    if (scalar.size() != mesh.points.size()) {
+        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
+                    std::to_string(mesh.points.size()) + ", one a point");
+    }
+    validate(mesh);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        for (const Index p : mesh.cells[c]) {
+            if (std::isfinite(scalar[p])) continue;
+            throw Error(ErrorCode::InvalidInput, "the scalar is not finite", "point " + std::to_string(p));
+        }
+    }
+}
+
 TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> scalar) {
     if (hexes.cells.size() > kMaxCells) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.cells.size()) + " cells", {},

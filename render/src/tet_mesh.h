@@ -42,6 +42,9 @@ struct TetMesh {
     [[nodiscard]] const Point& point(Index id) const { return points[id]; }
 };
 
+/// throws: Error(InvalidInput) if there is not one finite value for every point of a cell, or the mesh is not valid
+void check_tet_input(const HexMesh& mesh, std::span<const double> scalar);
+
 /// Splits every cell into 6 and finds the neighbours by sorting the faces. A face of more than two tetrahedra is a boundary
 /// of each of them.
 ///

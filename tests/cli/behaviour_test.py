@@ -5,28 +5,9 @@ import subprocess
 import time
 import unittest
 
-from command import COMMAND, SANITIZED, InFolder, Run, subvol
+from command import COMMAND, CUBE, SANITIZED, InFolder, Run, subvol
 
 VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "compare", "demo"]
-
-# One mesh of one cell: MEDIT, counted from 1.
-CUBE = """MeshVersionFormatted 2
-Dimension 3
-Vertices
-8
-0 0 0 0
-1 0 0 0
-1 1 0 0
-0 1 0 0
-0 0 1 0
-1 0 1 0
-1 1 1 0
-0 1 1 0
-Hexahedra
-1
-1 2 3 4 5 6 7 {last} 0
-End
-"""
 
 
 class Help(unittest.TestCase):
@@ -66,7 +47,7 @@ class Mistakes(InFolder):
         self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--levels", "-1", naming="--levels")
         self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--scheme", "loop", naming="mcq, cc, bsxw, linear")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--size", "12y12", naming="--size")
-        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--method", "grid", naming="tets, dense")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--method", "grid", naming="tets, pt, dense")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--view", "up", naming="up")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--opacity", "0%:0,50%:2", naming="50%:2")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--legend", "a.png", naming=".svg")

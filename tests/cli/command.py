@@ -14,6 +14,25 @@ COMMAND = os.environ["SUBVOL_COMMAND"]
 # A sanitized program is slow and reserves terabytes of addresses: bounds on time and memory say nothing about it.
 SANITIZED = "-fsanitize" in os.environ.get("SUBVOL_FLAGS", "")
 
+# One mesh of one cell: MEDIT, counted from 1.
+CUBE = """MeshVersionFormatted 2
+Dimension 3
+Vertices
+8
+0 0 0 0
+1 0 0 0
+1 1 0 0
+0 1 0 0
+0 0 1 0
+1 0 1 0
+1 1 1 0
+0 1 1 0
+Hexahedra
+1
+1 2 3 4 5 6 7 {last} 0
+End
+"""
+
 
 @dataclass
 class Run:

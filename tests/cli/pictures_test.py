@@ -113,6 +113,18 @@ class Cameras(Pictures):
         columns, rows = {i % 48 for i in lit}, {i // 48 for i in lit}
         return len(lit), min(columns, default=0), max(columns, default=0), min(rows, default=0), max(rows, default=0)
 
+    def test_a_folder_is_no_camera_and_no_map(self):
+        for option in ("--camera", "--tf"):
+            done = self.render("-o", "a.png", option, self.folder)
+            self.assertEqual(done.code, 2)
+            self.assertRegex(done.err, r"^subvol: [^\n]+ cannot be read[^\n]*\n$", "one sentence")
+
+    def test_colours_of_the_field_itself_are_those_without_a_second_field(self):
+        self.assertEqual(self.render("-o", "one.png", *CAMERA).code, 0)
+        done = self.render("-o", "both.png", "--color-field", "density", *CAMERA)
+        self.assertEqual(done.code, 0, done.err)
+        self.assertEqual(self.bytes_of("both.png"), self.bytes_of("one.png"))
+
     def test_fit_brings_the_whole_box_in(self):
         far = ["--camera", "300,-400,200,0,0,0,0,0,1,35", "--tf", "constant"]
         near = ["--camera", "0.3,-0.4,0.2,0,0,0,0,0,1,35", "--tf", "constant"]

@@ -167,6 +167,8 @@ class PointsFiles(InFolder):
         for arguments in (["render", "a.ply", "-o", "a.png", "--levels", "1"],
                           ["render", "a.ply", "-o", "a.png", "--per-edge", "2"],
                           ["render", "a.ply", "-o", "a.png", "--density", "x"],
+                          ["render", "a.ply", "-o", "a.png", "--reduce", "0.1"],
+                          ["render", "a.ply", "-o", "a.png", "--seconds", "1"],
                           ["render", "a.ply", "-o", "a.png", "--method", "tets"],
                           ["render", "a.ply", "-o", "a.png", "--field", "none"],
                           ["info", "a.ply", "--at", "0,0,0"],

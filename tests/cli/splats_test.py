@@ -2,28 +2,9 @@
 
 import unittest
 
-from command import InFolder, subvol
+from command import CUBE, InFolder, subvol
 
 SMALL = ["--size", "64x48", "--sheets", "40", "--quiet"]
-MESH = """MeshVersionFormatted 2
-Dimension 3
-Vertices
-8
-0 0 0 0
-1 0 0 0
-1 1 0 0
-0 1 0 0
-0 0 1 0
-1 0 1 0
-1 1 1 0
-0 1 1 0
-Hexahedra
-1
-1 2 3 4 5 6 7 8 0
-End
-"""
-
-
 TWO_FIELDS = """# vtk DataFile Version 3.0
 a cell with two fields
 ASCII
@@ -86,6 +67,20 @@ class Splats(InFolder):
         self.assertLess(self.difference("cpu.exr", "gl.exr"), 1e-4)
         self.assertLess(self.difference("cpu.exr", "sheets.exr"), 1e-4)
 
+    def test_projected_tetrahedra_are_like_rays(self):
+        if not self.has_gl():
+            self.skipTest("no OpenGL 4.5 through EGL")
+        self.render("tets.exr", "--method", "tets")
+        for order in ("topological", "centroid", "lists"):
+            done = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--order", order, "--json")
+            report = done.json()
+            self.assertEqual((report["method"], report["backend"], report["order"]), ("pt", "gl", order))
+            if order != "centroid":
+                self.assertLess(self.difference("tets.exr", "pt.exr"), 1e-4)
+        for refused in (["--backend", "cpu"], ["--shade"], ["--order", "random"]):
+            done = subvol("render", "model:ball:4", "-o", "x.png", "--method", "pt", *refused, folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+
     def test_devices_that_are_not_there_are_refused(self):
         done = subvol("render", "model:ball:4", "-o", "x.png", "--backend", "gl", "--device", "99", folder=self.folder)
         self.assertEqual(done.code, 3, done.err)
@@ -105,7 +100,7 @@ class Splats(InFolder):
         self.assertEqual((done["picture_scale"], done["steps"]), (4, 1))
 
     def test_a_cell_alone_is_drawn(self):
-        (self.folder / "cell.mesh").write_text(MESH)
+        (self.folder / "cell.mesh").write_text(CUBE.format(last=8))
         self.render("cell.exr", "--backend", "cpu", "--density", "x", "--shade", source="cell.mesh")
         self.render("none.exr", "--backend", "cpu", "--density", "x", "--opacity", "0%:0,100%:0", source="cell.mesh")
         self.assertGreater(self.difference("cell.exr", "none.exr"), 0.1)

@@ -2,9 +2,11 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -206,6 +208,37 @@ TEST_F(ImageIo, RefusesWithoutLeavingAFile) {
     torn.rgba.pop_back();
     EXPECT_EQ(code_of([&] { write_image(folder_ / "a.png", torn); }), ErrorCode::InvalidInput);
     EXPECT_TRUE(folder_is_empty());
+}
+
+/// While there is one, files end after so many bytes, as they do on a disk that is full.
+class SmallDisk {
+public:
+    explicit SmallDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+        ::getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit small{bytes, before_.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~SmallDisk() {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, signal_);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+
+private:
+    rlimit before_{};
+    void (*signal_)(int);
+};
+
+TEST_F(ImageIo, AFullDiskIsAnErrorAndLeavesNothing) {
+    const Image image = random_image(64, 64);  // noise: at least 12 KB in either format
+    for (const rlim_t room : {rlim_t{0}, rlim_t{100}, rlim_t{8192}}) {
+        for (const char* name : {"a.png", "a.exr"}) {
+            const SmallDisk disk(room);
+            EXPECT_EQ(code_of([&] { write_image(folder_ / name, image); }), ErrorCode::Io) << name << " in " << room;
+            EXPECT_TRUE(folder_is_empty()) << name << " in " << room;
+        }
+    }
 }
 
 TEST_F(ImageIo, RefusesWhatIsNoImage) {

@@ -87,6 +87,8 @@ TEST(View, RefusesCamerasThatSeeNothing) {
     expect_error(invalid, "fovy_deg", with([](Camera& c) { c.fovy_deg = NAN; }));
     expect_error(invalid, "ortho_height", with([](Camera& c) { c.ortho_height = -1; }));
     for (const int size : {0, -1, 65537}) expect_error(invalid, "1..65536", [=] { View(kBenchmark, 64, size); });
+    expect_error(invalid, "2^28", [] { View(kBenchmark, 65536, 4097); });
+    EXPECT_NO_THROW(View(kBenchmark, 65536, 4096));
 }
 
 TEST(FitCamera, SeesTheWholeBoxWithFivePercentToSpare) {
@@ -252,6 +254,7 @@ TEST_F(CameraFile, NamesTheKeyThatIsWrong) {
     refused("'fovy_deg' is not a number", R"({"eye": [1, 2, 3], "target": [0, 0, 0], "fovy_deg": "wide"})");
     refused("not a JSON object", "[1, 2]");
     refused("camera.json", R"({"eye": )");
+    expect_error(ErrorCode::Io, "cannot be read", [this] { (void)parse_camera(path(".").string(), {}); });
 }
 
 }  // namespace

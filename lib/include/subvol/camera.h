@@ -30,7 +30,7 @@ struct Ray {
 class View {
 public:
     /// throws: Error(InvalidInput) if eye and target coincide, up is parallel to the view, the field of view is out of range or
-    ///         the size is not in 1..65536
+    ///         the size is not in 1..65536, or of more than 2^28 pixels
     View(const Camera& camera, int width, int height);
 
     [[nodiscard]] const Camera& camera() const { return camera_; }

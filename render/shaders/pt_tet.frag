@@ -1,0 +1,87 @@
+#version 450
+// A tetrahedron at a pixel. Which faces the ray crosses, and where, follows from the edges alone, and an edge is the same to every
+// tetrahedron that has it: so nothing is lost or counted twice between neighbours (src/ray_plane.h, in single precision). What
+// becomes of the segment: PT_COMPOSITE blends it over what was drawn before; PT_COUNT counts it; PT_KEEP
+// stores it in the pixel's list.
+flat in vec4 corner0, corner1, corner2, corner3;
+flat in uint rank;
+
+#if PT_MODE == PT_COMPOSITE
+layout(location = 0) out vec4 color;
+#else
+layout(std430, binding = 3) buffer Counts { uint counts[]; };
+#endif
+#if PT_MODE == PT_KEEP
+layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = 5) writeonly buffer Lights { vec4 lights[]; };
+layout(std430, binding = 6) writeonly buffer Places { uvec4 places[]; };  // bits of the depths of both ends, rank
+#endif
+uniform ivec4 rectangle;  // whose pixels are counted or kept
+
+// Off the ray, in the plane across the view.
+vec2 off_ray(vec2 slope, vec4 corner) {
+    precise vec2 q = corner.xy - (perspective ? slope * (middle_depth + corner.z) : slope);
+    return q;
+}
+
+// Twice the area of (ray, a, b), and whether that is to the left; never neither: SeenPoint's side_of. Rounding of the products
+// may make them equal but does not exchange them.
+float doubled_area(vec2 a, vec2 b, out bool left) {
+    precise float one = a.x * b.y, other = b.x * a.y;
+    left = one > other;
+    if (one == other) {
+        double exact_one = double(a.x) * double(b.y), exact_other = double(b.x) * double(a.y);
+        left = exact_one != exact_other ? exact_one > exact_other : a.y != b.y ? a.y > b.y : b.x >= a.x;
+    }
+    return abs(one - other);
+}
+
+// Depth and value where the ray crosses a face; the areas are the barycentric weights.
+vec2 crossing(vec2 a, vec2 b, vec2 c, float wa, float wb, float wc) {
+    precise float sum = wa + wb + wc;
+    if (!(sum > 0.0)) return (a + b + c) / 3.0;  // seen edge on, to the last bit
+    precise vec2 result = (wa * a + wb * b + wc * c) / sum;
+    return result;
+}
+
+// The ends of the segment; false if the ray does not meet the tetrahedron.
+bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
+    vec2 q0 = off_ray(slope, corner0), q1 = off_ray(slope, corner1), q2 = off_ray(slope, corner2), q3 = off_ray(slope, corner3);
+    bool s01, s02, s03, s12, s13, s23;
+    float a01 = doubled_area(q0, q1, s01), a02 = doubled_area(q0, q2, s02), a03 = doubled_area(q0, q3, s03);
+    float a12 = doubled_area(q1, q2, s12), a13 = doubled_area(q1, q3, s13), a23 = doubled_area(q2, q3, s23);
+    // A face is crossed if its edges go round the ray. That is so for two faces or none.
+    bool c123 = s12 == s23 && s12 != s13, c023 = s02 == s23 && s02 != s03;
+    bool c013 = s01 == s13 && s01 != s03, c012 = s01 == s12 && s01 != s02;
+    if (int(c123) + int(c023) + int(c013) + int(c012) != 2) return false;
+    vec2 f123 = crossing(corner1.zw, corner2.zw, corner3.zw, a23, a13, a12);
+    vec2 f023 = crossing(corner0.zw, corner2.zw, corner3.zw, a23, a03, a02);
+    vec2 f013 = crossing(corner0.zw, corner1.zw, corner3.zw, a13, a03, a01);
+    vec2 f012 = crossing(corner0.zw, corner1.zw, corner2.zw, a12, a02, a01);
+    vec2 one = c123 ? f123 : c023 ? f023 : f013, other = c012 ? f012 : c013 ? f013 : f023;
+    front = one.x < other.x ? one : other;
+    back = one.x < other.x ? other : one;
+    float eye = -middle_depth;  // nothing is seen behind it
+    if (front.x < eye && back.x > eye) front = vec2(eye, mix(front.y, back.y, (eye - front.x) / (back.x - front.x)));
+    return front.x >= eye && front.x < back.x;
+}
+
+void main() {
+    vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel), front, back;
+    if (!find_segment(slope, front, back)) discard;
+#if PT_MODE != PT_COMPOSITE
+    ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
+    int id = place.y * (rectangle.z - rectangle.x) + place.x;
+    uint before = atomicAdd(counts[id], 1u);
+#endif
+#if PT_MODE != PT_COUNT
+    float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
+    vec4 light = segment_light(front.y, back.y, (back.x - front.x) * ray_length);
+#if PT_MODE == PT_COMPOSITE
+    color = light;
+#else
+    lights[offsets[id] + before] = light;
+    places[offsets[id] + before] = uvec4(floatBitsToUint(vec2(front.x, back.x)), rank, 0u);
+#endif
+#endif
+}
