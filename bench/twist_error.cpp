@@ -1,5 +1,5 @@
-// Error and cost on the twisted block, whose exact picture is known: splats (per interval count and correction) and the
-// tetrahedra reference against the exact picture, with the smooth and the sharp transfer function.
+// Error and cost on the twisted block, whose exact picture is known: splats (per interval count and correction), the
+// tetrahedra reference and the dense grids against the exact picture, with the smooth and the sharp transfer function.
 //
 //   twist_error [N = 40] [size = 512] [folder for the pictures]
 #include <ctime>
@@ -15,6 +15,7 @@
 #include "subvol/model.h"
 #include "subvol/refine.h"
 #include "subvol/render.h"
+#include "subvol/render_dense.h"
 #include "subvol/render_field.h"
 #include "subvol/sample.h"
 
@@ -79,6 +80,13 @@ int main(int argc, char** argv) {
             print("tets", "level " + std::to_string(levels), sharp, tets.image, exact, cpu_seconds() - start,
                   tets.report.seconds_build + tets.report.seconds_draw);
             keep("tets_" + std::to_string(levels), tets.image);
+        }
+        for (const int levels : {1, 2}) {
+            const double start = cpu_seconds();
+            const auto dense = render_dense(mesh, mesh.attributes[0].values, view, optics, {.levels = levels});
+            print("dense", "level " + std::to_string(levels), sharp, dense.image, exact, cpu_seconds() - start,
+                  dense.report.seconds_build + dense.report.seconds_draw);
+            keep("dense_" + std::to_string(levels), dense.image);
         }
         for (const int per_edge : {1, 2}) {
             for (const Correction correction : {Correction::None, Correction::Gradient, Correction::Second, Correction::Full}) {

@@ -8,6 +8,7 @@
 #include "subvol/error.h"
 #include "subvol/progressive.h"
 #include "subvol/render.h"
+#include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
 #include "subvol/render_pt.h"
 #include "text.h"
@@ -35,14 +36,20 @@ public:
         app()
             .add_option("--method", method_,
                         "splat (kernels, the default), sheets (the same by OpenGL sheet buffers),\n"
-                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL)\n"
-                        "or grid (rays through a .vdb file's voxels)")
+                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL),\n"
+                        "dense (rays through the dense grids of the limit) or\n"
+                        "grid (rays through a .vdb file's voxels)")
             ->type_name("NAME");
         picture_.add_to(app());
         app()
-            .add_option("--samples", samples_, "tets, grid: n x n rays a pixel (default 1)")
+            .add_option("--samples", samples_, "tets, dense, grid: n x n rays a pixel (default 1)")
             ->type_name("N")
             ->check(CLI::Range(1, 16));
+        app()
+            .add_option("--tolerance-image", image_tolerance_,
+                        "dense, without --levels: raise the level until the RMS of the picture's change is less (default 1e-3)")
+            ->type_name("RMS")
+            ->check(CLI::PositiveNumber);
         app()
             .add_option("--order", order_,
                         "pt: what sorts the tetrahedra: topological (shared faces, the default), centroid, or\n"
@@ -54,17 +61,16 @@ public:
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "grid"}, {"dense"});
+        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
         check_choice("--order", order_, {"topological", "centroid", "lists"});
         options_ = splat_.options();
         if (method_ == "sheets") options_.method = SplatMethod::Sheets;
         if (method_ == "sheets" && options_.backend == Backend::Cpu) {
             throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
         }
-        const bool rays = method_ == "tets" || method_ == "grid";
-        if (rays && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
-            throw Error(ErrorCode::InvalidInput,
-                        method_ + (method_ == "tets" ? " are" : " is") + " drawn by the CPU, without light and of one field",
+        const bool by_rays = method_ == "tets" || method_ == "dense" || method_ == "grid";
+        if (by_rays && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
+            throw Error(ErrorCode::InvalidInput, method_ + ": drawn by the CPU, without light and of one field",
                         "--backend gl, --shade, --color-field, --seconds");
         }
         if (method_ == "pt" && (options_.backend == Backend::Cpu || splat_.shade || splat_.color_field || splat_.seconds)) {
@@ -100,6 +106,12 @@ private:
                                        : tets(renderer, view, optics, progress, report);
             };
             output.write(views, draw, report);
+        } else if (method_ == "dense") {
+            const RefineOptions refine = refine_.options(0, report);
+            const auto draw = [&](const View& view, Progress* progress) {
+                return dense(mesh, refine, view, optics, progress, report);
+            };
+            output.write(views, draw, report);
         } else if (splat_.seconds) {
             splat_in_time(mesh, views.front(), optics, output, report);
         } else {
@@ -129,7 +141,7 @@ private:
     }
 
     void draw_points(PictureOutput& output, Report& report) {
-        if (method_ == "tets" || method_ == "pt")
+        if (method_ == "tets" || method_ == "pt" || method_ == "dense")
             throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         if (volume.channels.size() == 1) options_.color_channel.reset();
@@ -184,6 +196,35 @@ private:
         return Picture{std::move(drawn.image)};
     }
 
+    [[nodiscard]] Picture dense(const HexMesh& mesh, const RefineOptions& refine, const View& view, const Optics& optics,
+                                Progress* progress, Report& report) const {
+        DenseResult drawn = render_dense(mesh, mesh.attributes.front().values, view, optics,
+                                         {.refine = refine,
+                                          .levels = refine_.levels,
+                                          .image_tolerance = image_tolerance_,
+                                          .samples = samples_,
+                                          .progress = progress});
+        report.add_seconds("prepare", drawn.report.seconds_build);
+        report.add_seconds("draw", drawn.report.seconds_draw);
+        report["method"] = method_;
+        report["backend"] = "cpu";
+        report["levels"] = drawn.report.levels;
+        if (drawn.report.image_change) report["image_change"] = *drawn.report.image_change;
+        report["blocks"] = drawn.report.blocks;
+        report["skipped_blocks"] = drawn.report.skipped_blocks;
+        report["micro_cells"] = drawn.report.micro_cells;
+        report["passes"] = drawn.report.passes;
+        report["bytes"] = drawn.report.bytes;
+        report["rays"] = drawn.report.rays;
+        report["lost_rays"] = drawn.report.lost_rays;
+        if (!refine_.levels && !drawn.report.converged) {
+            report.warn(text("the picture still changes by ", drawn.report.image_change.value_or(0), " at level ",
+                             drawn.report.levels, ": --levels draws a finer one"));
+        }
+        if (drawn.report.lost_rays > 0) report.warn(text(drawn.report.lost_rays, " rays were lost inside the mesh"));
+        return Picture{std::move(drawn.image)};
+    }
+
     [[nodiscard]] Picture projected_tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
                                          Report& report) const {
         const PtOrder order = order_ == "lists"      ? PtOrder::Lists
@@ -214,6 +255,7 @@ private:
     std::string method_ = "splat";
     std::string order_ = "topological";
     int samples_ = 1;
+    double image_tolerance_ = 1e-3;
     PictureArguments picture_;
     SampleArguments sample_;
     SplatArguments splat_;

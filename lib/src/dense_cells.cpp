@@ -10,6 +10,7 @@
 #include "dense_block.h"
 #include "patch.h"
 #include "subvol/error.h"
+#include "subvol/limit.h"
 
 namespace subvol {
 
@@ -18,6 +19,12 @@ namespace {
 /// So many cells at once that their descendants are some hundred thousand: fewer pay for their surroundings, more for memory.
 std::size_t batch_size(int levels) {
     return std::size_t{1} << std::max(0, 18 - 3 * levels);
+}
+
+std::vector<Index> all_cells(const HexMesh& mesh) {
+    std::vector<Index> cells(mesh.cells.size());
+    std::iota(cells.begin(), cells.end(), Index{0});
+    return cells;
 }
 
 /// Gathers the grid of one control cell from a refined patch.
@@ -52,6 +59,11 @@ private:
 
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options,
                          const std::function<void(const DenseCell&)>& visit) {
+    for_each_dense_cell(mesh, options, {}, visit);
+}
+
+void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
+                         const std::function<void(const DenseCell&)>& visit) {
     const int levels = options.levels;
     if (levels < 0 || levels > 10) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {}, "0 to 10");
@@ -63,15 +75,24 @@ void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options,
     const detail::DenseBlock block(levels);
     RefineOptions quiet = options;
     quiet.progress = nullptr;
-    const std::size_t batch = batch_size(levels), batches = (control.cells.size() + batch - 1) / batch;
+    const std::vector<Index> wanted = selection.cells ? *selection.cells : all_cells(control);
+    for (const Index c : wanted) {
+        if (c < control.cells.size()) continue;
+        throw Error(ErrorCode::InvalidInput, "there is no cell " + std::to_string(c), {},
+                    "the mesh has " + std::to_string(control.cells.size()) + " cells");
+    }
+    const bool move = selection.on_limit && !interpolates(options.scheme);
+    const int last_layers = move ? 1 : 0;  // a vertex's limit asks for the cells around it
+    const std::size_t batch = batch_size(levels), batches = (wanted.size() + batch - 1) / batch;
     tbb::enumerable_thread_specific<Gather> gathers;
     const auto refine_batch = [&](std::size_t b) {
-        std::vector<Index> cells(std::min(batch, control.cells.size() - b * batch));
-        std::iota(cells.begin(), cells.end(), static_cast<Index>(b * batch));
-        detail::Patch patch = source.cut(cells, std::min(levels, 2));
+        const auto first = wanted.begin() + static_cast<std::ptrdiff_t>(b * batch);
+        const std::vector<Index> cells(first, first + static_cast<std::ptrdiff_t>(std::min(batch, wanted.size() - b * batch)));
+        detail::Patch patch = source.cut(cells, std::min(levels + last_layers, 2));
         for (int level = 1; level <= levels; ++level) {
-            patch = detail::refine_patch(patch, quiet, std::min(levels - level, 2));
+            patch = detail::refine_patch(patch, quiet, std::min(levels - level + last_layers, 2));
         }
+        if (move) patch.mesh = on_limit(std::move(patch.mesh), options.scheme);
         Gather& gather = gathers.local();
         for (std::size_t i = 0; i < cells.size(); ++i) {
             DenseCell cell{.cell = cells[i], .side = 0, .points = {}, .values = {}};

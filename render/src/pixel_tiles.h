@@ -37,21 +37,27 @@ Segment trace_pixel(const View& view, int x, int y, int samples, Trace& trace) {
     return {sum.color / rays, sum.transmittance / rays};
 }
 
-/// Draws a picture in tiles, on all threads. Every pixel depends on its own rays only, so threads change nothing.
+/// Pixels [x0, x1) × [y0, y1).
+struct PixelRect {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// Draws a part of a picture in tiles, on all threads. Every pixel depends on its own rays only, so threads change nothing.
 ///
 /// make_tracer: makes what turns a Ray into a Segment; called once a tile, so that a tracer may keep scratch memory and count
 template <class MakeTracer>
-Image draw_in_tiles(const View& view, int samples, Progress* progress, const MakeTracer& make_tracer) {
+void draw_in_tiles(const View& view, int samples, const PixelRect& part, Image& image, Progress* progress,
+                   const MakeTracer& make_tracer) {
     constexpr int kTile = 16;
-    const int columns = (view.width() + kTile - 1) / kTile;
-    const int rows = (view.height() + kTile - 1) / kTile;
-    Image image(view.width(), view.height());
+    const int columns = (part.x1 - part.x0 + kTile - 1) / kTile;
+    const int rows = (part.y1 - part.y0 + kTile - 1) / kTile;
     std::mutex reporting;
     int tiles_done = 0;
     const auto draw_tile = [&](int column, int row) {
         auto trace = make_tracer();
-        for (int y = row * kTile; y < std::min((row + 1) * kTile, view.height()); ++y) {
-            for (int x = column * kTile; x < std::min((column + 1) * kTile, view.width()); ++x) {
+        const int left = part.x0 + column * kTile, top = part.y0 + row * kTile;
+        for (int y = top; y < std::min(top + kTile, part.y1); ++y) {
+            for (int x = left; x < std::min(left + kTile, part.x1); ++x) {
                 const Segment mean = trace_pixel(view, x, y, samples, trace);
                 const auto pixel = image.pixel(x, y);
                 for (int c = 0; c < 3; ++c) pixel[static_cast<std::size_t>(c)] = static_cast<float>(mean.color[c]);
@@ -67,6 +73,13 @@ Image draw_in_tiles(const View& view, int samples, Progress* progress, const Mak
             for (int column = range.cols().begin(); column < range.cols().end(); ++column) draw_tile(column, row);
         }
     });
+}
+
+/// Draws a whole picture.
+template <class MakeTracer>
+Image draw_in_tiles(const View& view, int samples, Progress* progress, const MakeTracer& make_tracer) {
+    Image image(view.width(), view.height());
+    draw_in_tiles(view, samples, {0, 0, view.width(), view.height()}, image, progress, make_tracer);
     return image;
 }
 

@@ -43,6 +43,16 @@ public:
         return {id, p[x_] - slope_x_ * p[z_], p[y_] - slope_y_ * p[z_], p[z_] * per_depth_, value};
     }
 
+    /// False if the line certainly misses a box, with `margin` about it.
+    [[nodiscard]] bool may_meet(const Vec3& center, const Vec3& half, double margin) const {
+        const Vec3 p = center - origin_;
+        const double x = p[x_] - slope_x_ * p[z_], y = p[y_] - slope_y_ * p[z_];
+        const double size_x = std::abs(slope_x_), size_y = std::abs(slope_y_);
+        return std::abs(x) <= half[x_] + size_x * half[z_] + margin && std::abs(y) <= half[y_] + size_y * half[z_] + margin &&
+               std::abs(x * slope_y_ - y * slope_x_) <= half[x_] * size_y + half[y_] * size_x + margin;
+    }
+    [[nodiscard]] const Vec3& origin() const { return origin_; }
+
 private:
     Vec3 origin_;
     int x_, y_, z_;

@@ -34,6 +34,12 @@ struct TetMesh {
         const std::size_t k = face % 4;
         return {corner[k == 0 ? 1 : 0], corner[k <= 1 ? 2 : 1], corner[k <= 2 ? 3 : 2]};
     }
+
+    // What a walk asks of any mesh.
+    [[nodiscard]] std::size_t tet_count() const { return tets.size(); }
+    [[nodiscard]] const std::array<Index, 4>& corners_of_tet(Index tet) const { return tets[tet].corner; }
+    [[nodiscard]] Index neighbor(Index tet, Index k) const { return tets[tet].neighbor[k]; }
+    [[nodiscard]] const Point& point(Index id) const { return points[id]; }
 };
 
 /// throws: Error(InvalidInput) if there is not one finite value for every point of a cell, or the mesh is not valid

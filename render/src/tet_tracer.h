@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "boundary_scene.h"
+#include "integrate_walk.h"
 #include "subvol/optics.h"
-#include "tet_walk.h"
 
 namespace subvol {
 
@@ -31,24 +31,12 @@ private:
         double t;
         bool walked;
     };
-    /// What has been integrated, up to depth t: every depth counts once, even where a mesh folds over itself.
-    struct State {
-        Segment light;
-        double t = 0;
-    };
 
     void find_ends(const RayPlane& plane, const Ray& ray);
     void add_end(const RayPlane& plane, TetFace face);
     void add_ends_near(const RayPlane& plane, TetFace face);
     [[nodiscard]] End* first_unwalked();
     void mark_walked(const RayPlane& plane, TetFace start, TetFace end);
-
-    enum class Outcome { Through, Backwards, Beyond, Opaque, Lost };
-    /// limit: depth beyond which nothing is integrated
-    /// last:  the face at the end, and its depth
-    Outcome walk_from(const RayPlane& plane, TetFace start, double speed, double limit, State& state, End& last);
-    /// From one end to the other, from whichever is the entry.
-    Outcome walk_between(const RayPlane& plane, TetFace start, double speed, State& state, TetFace& other);
 
     const TetMesh& mesh_;
     const BoundaryScene& scene_;

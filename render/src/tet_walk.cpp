@@ -2,12 +2,9 @@
 
 namespace subvol {
 
-std::optional<CrossedFace> cross_face(const TetMesh& mesh, const RayPlane& plane, TetFace face) {
+std::optional<CrossedFace> cross_triangle(const std::array<SeenPoint, 3>& corners) {
     CrossedFace crossed;
-    const auto ids = mesh.corners(face);
-    for (std::size_t k = 0; k < 3; ++k) {
-        crossed.corner[k] = plane.see(ids[k], mesh.points[ids[k]].position, mesh.points[ids[k]].value);
-    }
+    crossed.corner = corners;
     auto& [a, b, c] = crossed.corner;
     auto& [ab, bc, ca] = crossed.side;
     ab = side_of(a, b);

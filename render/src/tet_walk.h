@@ -30,8 +30,20 @@ struct CrossedFace {
     }
 };
 
-/// The face as the ray crosses it; nothing if it does not.
-[[nodiscard]] std::optional<CrossedFace> cross_face(const TetMesh& mesh, const RayPlane& plane, TetFace face);
+/// The triangle as the ray crosses it; nothing if it does not.
+[[nodiscard]] std::optional<CrossedFace> cross_triangle(const std::array<SeenPoint, 3>& corners);
+
+template <class Mesh>
+[[nodiscard]] SeenPoint see(const Mesh& mesh, const RayPlane& plane, Index id) {
+    const auto& point = mesh.point(id);
+    return plane.see(id, point.position, point.value);
+}
+
+template <class Mesh>
+[[nodiscard]] std::optional<CrossedFace> cross_face(const Mesh& mesh, const RayPlane& plane, TetFace face) {
+    const auto [a, b, c] = mesh.corners(face);
+    return cross_triangle({see(mesh, plane, a), see(mesh, plane, b), see(mesh, plane, c)});
+}
 
 /// Follows a ray from a boundary face through the mesh to another boundary face. Because the signs of edges fit together, a
 /// tetrahedron that is entered has exactly one other face that the ray crosses: the walk cannot fail or turn in circles, in
@@ -39,14 +51,14 @@ struct CrossedFace {
 ///
 /// visit: bool(Crossing): called at every face crossed after the first; false ends the walk
 /// returns: the boundary face at the end; nothing if visit ended the walk
-template <class Visit>
-std::optional<TetFace> walk(const TetMesh& mesh, const RayPlane& plane, TetFace start, CrossedFace face, const Visit& visit) {
+template <class Mesh, class Visit>
+std::optional<TetFace> walk(const Mesh& mesh, const RayPlane& plane, TetFace start, CrossedFace face, const Visit& visit) {
     Index tet = start / 4;
     for (;;) {
         auto& [a, b, c] = face.corner;
-        const auto& corner = mesh.tets[tet].corner;
+        const auto& corner = mesh.corners_of_tet(tet);
         const Index apex = corner[0] ^ corner[1] ^ corner[2] ^ corner[3] ^ a.id ^ b.id ^ c.id;
-        const SeenPoint d = plane.see(apex, mesh.points[apex].position, mesh.points[apex].value);
+        const SeenPoint d = see(mesh, plane, apex);
         const Side ad = side_of(a, d);
         Index dropped;
         if (!ad.left) {
@@ -74,7 +86,7 @@ std::optional<TetFace> walk(const TetMesh& mesh, const RayPlane& plane, TetFace 
         }
         if (!visit(face.crossing())) return std::nullopt;
         const auto k = static_cast<Index>(std::find(corner.begin(), corner.end() - 1, dropped) - corner.begin());
-        const Index next = mesh.tets[tet].neighbor[k];
+        const Index next = mesh.neighbor(tet, k);
         if (next == kNone) return 4 * tet + k;
         tet = next;
     }

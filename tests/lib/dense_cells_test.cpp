@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "lib/test_meshes.h"
+#include "subvol/error.h"
+#include "subvol/limit.h"
 
 namespace subvol {
 namespace {
@@ -54,6 +57,41 @@ TEST(DenseCells, AreTheVerticesOfTheRefinedMesh) {
             differing += grids.points[c][node(1, 2, 4)] != fine.points[fine.cells[512 * c + 0431][0]];
         }
         EXPECT_EQ(differing, 0u);
+    }
+}
+
+TEST(DenseCells, OfASelectionAreThoseOfAll) {
+    const HexMesh mesh = irregular();
+    const RefineOptions options{.levels = 2};
+    const Grids all = dense(mesh, options);
+    const std::vector<Index> cells{5, 0, static_cast<Index>(mesh.cells.size() - 1)};
+    std::vector<std::vector<Vec3>> points(mesh.cells.size());
+    for_each_dense_cell(mesh, options, {.cells = cells},
+                        [&](const DenseCell& cell) { points[cell.cell].assign(cell.points.begin(), cell.points.end()); });
+    for (std::size_t c = 0; c < points.size(); ++c) {
+        const bool named = std::find(cells.begin(), cells.end(), c) != cells.end();
+        EXPECT_TRUE(named ? points[c] == all.points[c] : points[c].empty()) << c;
+    }
+    const DenseSelection none{.cells = std::vector<Index>{static_cast<Index>(mesh.cells.size())}};
+    EXPECT_THROW(for_each_dense_cell(mesh, options, none, [](const DenseCell&) {}), Error);
+}
+
+TEST(DenseCells, OnTheLimitAreTheRefinedMeshOnTheLimit) {
+    const HexMesh mesh = irregular();
+    for (const int levels : {0, 1, 3}) {
+        const RefineOptions options{.scheme = Scheme::CatmullClark, .levels = levels};
+        const HexMesh fine = on_limit(refine(mesh, options), options.scheme);
+        const std::size_t side = (std::size_t{1} << levels) + 1, children = std::size_t{1} << (3 * levels);
+        const std::size_t last = 6 * (children - 1) / 7;  // octal 666: the highest descendant
+        std::vector<int> equal(mesh.cells.size(), 0);
+        for_each_dense_cell(mesh, options, {.on_limit = true}, [&](const DenseCell& cell) {
+            const auto& low = fine.cells[children * cell.cell];
+            const auto& high = fine.cells[children * cell.cell + last];
+            equal[cell.cell] = cell.points[0] == fine.points[low[0]] && cell.points[side] == fine.points[low[3]] &&
+                               cell.points.back() == fine.points[high[6]] &&
+                               cell.values[0].back() == fine.attributes[0].values[high[6]];
+        });
+        EXPECT_EQ(std::count(equal.begin(), equal.end(), 1), std::ssize(equal)) << levels;
     }
 }
 

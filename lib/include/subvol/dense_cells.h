@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,5 +26,18 @@ struct DenseCell {
 /// throws: Error(InvalidInput) as `refine`
 /// cost:   parallel; memory: the mesh, and a thread some 50 MB, or what one cell takes: 300 bytes a vertex
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const std::function<void(const DenseCell&)>& visit);
+
+/// cells:    of the control mesh, without repetition; none: all
+/// on_limit: points and attributes are moved to the limit, as `on_limit` moves those of `refine`
+struct DenseSelection {
+    std::optional<std::vector<Index>> cells{};
+    bool on_limit = false;
+};
+
+/// The same for some of the cells, or for the limit of their vertices.
+///
+/// throws: Error(InvalidInput) if a cell does not exist
+void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
+                         const std::function<void(const DenseCell&)>& visit);
 
 }  // namespace subvol
