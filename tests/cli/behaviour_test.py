@@ -47,7 +47,7 @@ class Mistakes(InFolder):
         self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--levels", "-1", naming="--levels")
         self.assert_refused("subdivide", "model:ball:2", "-o", "a.mesh", "--scheme", "loop", naming="mcq, cc, bsxw, linear")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--size", "12y12", naming="--size")
-        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--method", "grid", naming="tets, pt, dense")
+        self.assert_refused("render", "model:ball:2", "-o", "a.png", "--method", "nothing", naming="tets, pt, dense")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--view", "up", naming="up")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--opacity", "0%:0,50%:2", naming="50%:2")
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--legend", "a.png", naming=".svg")
