@@ -1,8 +1,6 @@
 #version 450
-// A tetrahedron at a pixel. Which faces the ray crosses, and where, follows from the edges alone, and an edge is the same to every
-// tetrahedron that has it: so nothing is lost or counted twice between neighbours (src/ray_plane.h, in single precision). What
-// becomes of the segment: PT_COMPOSITE blends it over what was drawn before; PT_COUNT counts it; PT_KEEP
-// stores it in the pixel's list.
+// A tetrahedron at a pixel. What becomes of the segment: PT_COMPOSITE blends it over what was drawn before; PT_COUNT counts it;
+// PT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2, corner3;
 flat in uint rank;
 
@@ -17,32 +15,6 @@ layout(std430, binding = 5) writeonly buffer Segments { vec4 segments[]; };  // 
 layout(std430, binding = 6) writeonly buffer Ranks { uint ranks[]; };
 #endif
 uniform ivec4 rectangle;  // whose pixels are counted or kept
-
-// Off the ray, in the plane across the view.
-vec2 off_ray(vec2 slope, vec4 corner) {
-    precise vec2 q = corner.xy - (perspective ? slope * (middle_depth + corner.z) : slope);
-    return q;
-}
-
-// Twice the area of (ray, a, b), and whether that is to the left; never neither: SeenPoint's side_of. Rounding of the products
-// may make them equal but does not exchange them.
-float doubled_area(vec2 a, vec2 b, out bool left) {
-    precise float one = a.x * b.y, other = b.x * a.y;
-    left = one > other;
-    if (one == other) {
-        double exact_one = double(a.x) * double(b.y), exact_other = double(b.x) * double(a.y);
-        left = exact_one != exact_other ? exact_one > exact_other : a.y != b.y ? a.y > b.y : b.x >= a.x;
-    }
-    return abs(one - other);
-}
-
-// Depth and value where the ray crosses a face; the areas are the barycentric weights.
-vec2 crossing(vec2 a, vec2 b, vec2 c, float wa, float wb, float wc) {
-    precise float sum = wa + wb + wc;
-    if (!(sum > 0.0)) return (a + b + c) / 3.0;  // seen edge on, to the last bit
-    precise vec2 result = (wa * a + wb * b + wc * c) / sum;
-    return result;
-}
 
 // The ends of the segment; false if the ray does not meet the tetrahedron.
 bool find_segment(vec2 slope, out vec2 front, out vec2 back) {

@@ -1,16 +1,16 @@
 #include "subvol/render_pt.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
 #include "gl_context.h"
+#include "gl_tet_lists.h"
 #include "gl_tets.h"
+#include "pixel_tiles.h"
+#include "pt_frame.h"
 #include "subvol/error.h"
-#include "subvol/gl_device.h"
+#include "tet_faces.h"
 #include "tet_mesh.h"
 #include "tet_order.h"
 
@@ -19,11 +19,12 @@ namespace subvol {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using detail::DrawStage;
+using detail::GlTets;
 
-constexpr std::size_t kMostTets = std::size_t{0x7fffffff} / 6;  // OpenGL numbers vertices by signed integers
-
-constexpr double kMostUnits = 1e30;  // that a float holds, with room
-constexpr double kFarValue = 1e12;   // values further out look like this one
+// OpenGL numbers vertices by signed integers; tetrahedra have 6, faces 3; a face's rank leaves 3 bits.
+constexpr std::size_t kMostTets = std::size_t{0x7fffffff} / 6, kMostFaces = std::size_t{1} << 29;
+constexpr int kMostEntries = 65536;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -35,116 +36,188 @@ struct KeepCurrent {
     ~KeepCurrent() { (void)before.make_current(); }
 };
 
-void check_device(const std::optional<int>& device) {
-    if (find_gl_device(device)) return;
+const std::optional<int>& checked_device(const std::optional<int>& device) {
+    if (find_gl_device(device)) return device;
     throw Error(ErrorCode::MissingCapability, "projected tetrahedra need OpenGL 4.5, and none was found through EGL", {},
                 "the method tets");
 }
 
-std::size_t most_fragments(const PtOptions& options, const GlDevice& device) {
-    constexpr std::size_t kFragment_bytes = 20, kSegment_bytes = 16;  // of two buffers
-    constexpr std::size_t kMost = std::size_t{1} << 31;               // that 32 bits number, with room
-    return std::min({options.list_bytes / kFragment_bytes, device.max_ssbo_bytes / kSegment_bytes, kMost});
+void check_count(const char* what, std::size_t count, std::size_t most) {
+    if (count <= most) return;
+    throw Error(ErrorCode::MissingCapability, std::to_string(count) + " " + what + " are too many for OpenGL", {},
+                "at most " + std::to_string(most) + ", or the method tets");
 }
 
-/// Of the values of the knots: they are counted in parts of it.
-struct Values {
-    double first, range;
-};
-
-Values set_knots(detail::GlTetScene& scene, const Optics& optics) {
-    const auto knots = optics.knots();
-    const double range = knots.back() - knots.front();
-    const Values values{knots.front(), range > 0 ? range : 1};
-    scene.opacity_units = scene.scale / optics.opacity_unit();
-    if (!(scene.opacity_units < kMostUnits)) {
-        throw Error(ErrorCode::InvalidInput, "the opacity unit is " + std::to_string(optics.opacity_unit()), {},
-                    "more than 1e-30 of the volume");
+void check_options(const PtOptions& options) {
+    check_samples(options.samples);
+    if (options.kbuffer < 1 || options.kbuffer > kMostEntries) {
+        throw Error(ErrorCode::InvalidInput, "the k-buffer has " + std::to_string(options.kbuffer) + " entries", {},
+                    "1.." + std::to_string(kMostEntries));
     }
-    for (const double knot : knots) {
-        const Vec3 color = optics.color(knot);
-        const double opacity = -std::expm1(-optics.extinction(knot) * optics.opacity_unit());
-        const auto to_float = [](double v) { return static_cast<float>(v); };
-        scene.knots.push_back({{to_float(color.x), to_float(color.y), to_float(color.z), to_float(opacity)},
-                               {to_float((knot - values.first) / values.range), 0, 0, 0}});
+    if (!(options.lod >= 0 && options.lod <= 1)) {
+        throw Error(ErrorCode::InvalidInput, "the fraction of the faces is " + std::to_string(options.lod), {}, "0..1");
     }
-    return values;
+    if (options.lod != 1 && options.order != PtOrder::Havs)
+        throw Error(ErrorCode::InvalidInput, "only faces can be left out", {}, "the order havs");
 }
 
-void set_points(detail::GlTetScene& scene, const TetMesh& mesh, const View& view, double middle_depth, const Values& values) {
-    scene.points.resize(mesh.points.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.points.size(), 4096), [&](const auto& range) {
-        for (std::size_t p = range.begin(); p < range.end(); ++p) {
-            const Vec3 eye = (view.to_eye(mesh.points[p].position) - Vec3(0, 0, middle_depth)) / scene.scale;
-            const double value = std::clamp((mesh.points[p].value - values.first) / values.range, -kFarValue, kFarValue);
-            scene.points[p] = {static_cast<float>(eye.x), static_cast<float>(eye.y), static_cast<float>(eye.z),
-                               static_cast<float>(value)};
-        }
-    });
-}
-
-detail::GlTetScene make_scene(const TetMesh& mesh, const Box& box, const View& view, const Optics& optics) {
-    detail::GlTetScene scene;
-    const double diagonal = glm::length(box.upper - box.lower);
-    if (diagonal > 0) scene.scale = diagonal;
-    const double middle_depth = view.to_eye(0.5 * (box.lower + box.upper)).z;
-    scene.middle_depth = middle_depth / scene.scale;
-    set_points(scene, mesh, view, middle_depth, set_knots(scene, optics));
-    scene.tets.reserve(mesh.tets.size());
-    for (const auto& tet : mesh.tets) {
-        scene.tets.push_back(tet.corner);
-        std::sort(scene.tets.back().begin(), scene.tets.back().end());
-    }
-    return scene;
+std::size_t most_fragments(std::size_t list_bytes, const GlDevice& device, GlTets::Items items) {
+    const bool tets = items == GlTets::Items::Tets;
+    const std::size_t fragment_bytes = tets ? 20 : 12, entry_bytes = tets ? 16 : 8;  // of two buffers, of the larger one
+    constexpr std::size_t kMost = std::size_t{1} << 31;                              // that 32 bits number, with room
+    return std::min({list_bytes / fragment_bytes, device.max_ssbo_bytes / entry_bytes, kMost});
 }
 
 }  // namespace
 
-PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
-                               const PtOptions& options) {
+struct PtRenderer::State {
+    State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device, Progress* progress);
+    ~State() {
+        const detail::GlScope scope(context);
+        lists.reset();
+        drawer.reset();
+    }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    void upload(GlTets::Items items);
+    void order(detail::GlTetFrame& frame, const View& view, const PtOptions& options, PtReport& report);
+    [[nodiscard]] Image draw_sample(const PtOptions& options, PtReport& report, const DrawStage& stage);
+    [[nodiscard]] Image draw_lists(const PtOptions& options, PtReport& report, const DrawStage& stage);
+    [[nodiscard]] Image draw_samples(const PtOptions& options, PtReport& report);
+
+    Clock::time_point start = Clock::now();
+    TetMesh tets;
+    std::optional<TetFaces> faces;  // once they are drawn
+    Box box;
+    PtReport built;
+    detail::GlContext context;
+    std::optional<GlTets> drawer;
+    std::optional<detail::GlTetLists> lists;
+};
+
+PtRenderer::State::State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device,
+                         Progress* progress)
+    : context(checked_device(device)) {
+    report_progress(progress, "build", 0);
+    tets = build_tet_mesh(mesh, scalar);
+    check_count("tetrahedra", tets.tets.size(), kMostTets);
+    box = bounds(mesh);
+    drawer.emplace();
+    lists.emplace(*drawer);
+    context.release();
+    built.device = context.renderer();
+    built.tets = tets.tets.size();
+    built.degenerate_tets = tets.degenerate_tets;
+    built.inverted_tets = tets.inverted_tets;
+    report_progress(progress, "build", 1);
+    built.seconds_build = seconds_since(start);
+}
+
+void PtRenderer::State::upload(GlTets::Items items) {
+    if (items == GlTets::Items::Faces && !faces) {
+        faces = find_faces(tets);
+        check_count("faces", faces->faces.size(), kMostFaces);
+    }
+    if (drawer->has(items)) return;
+    if (items == GlTets::Items::Faces) return drawer->set_faces(faces->faces);
+    std::vector<std::array<std::uint32_t, 4>> corners;
+    corners.reserve(tets.tets.size());
+    for (const auto& tet : tets.tets) {
+        corners.push_back(tet.corner);
+        std::sort(corners.back().begin(), corners.back().end());
+    }
+    drawer->set_tets(corners);
+}
+
+void PtRenderer::State::order(detail::GlTetFrame& frame, const View& view, const PtOptions& options, PtReport& report) {
+    if (options.order == PtOrder::Havs) {
+        report.faces = faces->faces.size();
+        report.faces_drawn = faces->count(options.lod);
+        frame.order = order_faces(tets, *faces, report.faces_drawn, view);
+        return;
+    }
+    TetOrder found = options.order == PtOrder::Topological ? order_topologically(tets, view) : order_by_centroid(tets, view);
+    frame.order = std::move(found.tets);
+    report.cycles = found.cycles;
+}
+
+Image PtRenderer::State::draw_lists(const PtOptions& options, PtReport& report, const DrawStage& stage) {
+    const auto items = options.order == PtOrder::Havs ? GlTets::Items::Faces : GlTets::Items::Tets;
+    const std::size_t most = most_fragments(options.list_bytes, context.device(), items);
+    auto drawn = items == GlTets::Items::Faces ? lists->draw_faces(static_cast<std::size_t>(options.kbuffer), most, stage)
+                                               : lists->draw_tets(most, stage);
+    report.fragments += drawn.fragments;
+    report.parts += drawn.parts;
+    report.late_faces += drawn.late_faces;
+    report.violations = report.violations.value_or(0) + drawn.wrong_pixels;
+    return std::move(drawn.image);
+}
+
+Image PtRenderer::State::draw_sample(const PtOptions& options, PtReport& report, const DrawStage& stage) {
+    const bool in_order = options.order == PtOrder::Centroid || options.order == PtOrder::Topological;
+    return in_order ? drawer->draw_in_order(stage) : draw_lists(options, report, stage);
+}
+
+/// The grid of rays of trace_pixel, one picture for each of its places.
+Image PtRenderer::State::draw_samples(const PtOptions& options, PtReport& report) {
+    const int n = options.samples;
+    const DrawStage whole{options.progress};
+    if (n == 1) return draw_sample(options, report, whole);
+    const double pictures = static_cast<double>(n) * n;
+    std::vector<double> sums;
+    Image image;
+    for (int k = 0; k < n * n; ++k) {
+        drawer->set_offset({(k % n + 0.5) / n - 0.5, (k / n + 0.5) / n - 0.5});
+        image = draw_sample(options, report, whole.part(k / pictures, 1 / pictures));
+        sums.resize(image.rgba.size());
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += double{image.rgba[i]};
+    }
+    drawer->set_offset(Vec2(0.0));
+    for (std::size_t i = 0; i < sums.size(); ++i) image.rgba[i] = static_cast<float>(sums[i] / pictures);
+    return image;
+}
+
+PtRenderer::PtRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device, Progress* progress) {
     check_tet_input(mesh, scalar);
-    check_device(options.device);
-    PtResult result;
+    const KeepCurrent keep;
+    state_ = std::make_unique<State>(mesh, scalar, device, progress);
+}
+
+PtRenderer::~PtRenderer() = default;
+PtRenderer::PtRenderer(PtRenderer&&) noexcept = default;
+PtRenderer& PtRenderer::operator=(PtRenderer&&) noexcept = default;
+
+PtResult PtRenderer::draw(const View& view, const Optics& optics, const PtOptions& options) {
+    check_options(options);
+    State& state = *state_;
+    const detail::GlScope scope(state.context);
+    PtResult result{{}, state.built};
     PtReport& report = result.report;
+    const bool faces = options.order == PtOrder::Havs;
 
     auto start = Clock::now();
-    report_progress(options.progress, "build", 0);
-    const TetMesh tets = build_tet_mesh(mesh, scalar);
-    if (tets.tets.size() > kMostTets) {
-        throw Error(ErrorCode::MissingCapability, std::to_string(tets.tets.size()) + " tetrahedra are too many for OpenGL", {},
-                    "at most " + std::to_string(kMostTets) + ", or the method tets");
-    }
-    detail::GlTetScene scene = make_scene(tets, bounds(mesh), view, optics);
-    report.tets = tets.tets.size();
-    report.degenerate_tets = tets.degenerate_tets;
-    report.inverted_tets = tets.inverted_tets;
-    report_progress(options.progress, "build", 1);
-    report.seconds_build = seconds_since(start);
+    state.upload(faces ? GlTets::Items::Faces : GlTets::Items::Tets);
+    detail::GlTetFrame frame = detail::make_tet_frame(state.tets, state.box, view, optics, faces);
+    report.seconds_prepare = seconds_since(start);
 
     start = Clock::now();
-    TetOrder order = options.order == PtOrder::Topological ? order_topologically(tets, view) : order_by_centroid(tets, view);
-    scene.order = std::move(order.tets);
-    report.cycles = order.cycles;
+    state.order(frame, view, options, report);
     report.seconds_sort = seconds_since(start);
 
     start = Clock::now();
-    const KeepCurrent keep;
-    const detail::GlContext context(options.device);
-    report.device = context.renderer();
-    detail::GlTets drawer(scene, view);
-    if (options.order != PtOrder::Lists) result.image = drawer.draw_in_order(options.progress);
+    state.drawer->set_frame(frame, view);
+    result.image = state.draw_samples(options, report);
     report.seconds_draw = seconds_since(start);
-    if (options.order != PtOrder::Lists && !options.count_violations) return result;
-
-    auto lists = drawer.draw_in_lists(most_fragments(options, context.device()), options.progress);
-    report.fragments = lists.fragments;
-    report.parts = lists.parts;
-    report.violations = lists.violations;
-    if (options.order == PtOrder::Lists) {
-        result.image = std::move(lists.image);
-        report.seconds_draw = seconds_since(start);
-    }
+    if (options.count_violations && !report.violations) (void)state.draw_lists(options, report, {options.progress});
     return result;
+}
+
+PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+                               const PtOptions& options) {
+    check_tet_input(mesh, scalar);
+    check_options(options);
+    return PtRenderer(mesh, scalar, options.device, options.progress).draw(view, optics, options);
 }
 
 }  // namespace subvol

@@ -2,75 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "lib/test_meshes.h"
-#include "render/hex_meshes.h"
+#include "render/pt_scenes.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
-#include "subvol/render.h"
 
 namespace subvol {
 namespace {
 
-using test::evaluate;
+using namespace test;
 
-// Single precision on the device: places to 3e-8 of the diagonal, which is 1e-5 of the opacity unit below.
-constexpr double kGlTol = 1e-4;
-// Where light has one closed form and few segments.
-constexpr double kFewTol = 1e-5;
-
-class RenderPt : public testing::Test {
-protected:
-    void SetUp() override {
-        if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
-    }
-};
-
-Optics constant_optics() {
-    return {{{{0, {1, 1, 1}}}, {{0, 0.5}}}, 1.0};
-}
-
-// Colour and opacity change with the value in [0,1], with kinks and a part that cannot be seen.
-Optics ramp_optics(double unit = 1) {
-    return {{{{0, {1, 0, 0}}, {0.5, {0, 1, 0.2}}, {1, {0.1, 0.3, 1}}},
-             {{0, 0}, {0.3, 0.1}, {0.35, 0.6}, {0.6, 0}, {0.65, 0}, {1, 0.8}}},
-            unit};
-}
-
-View slanted_view(int size) {
-    return {{.eye = {2.1, 1.7, 2.9}, .target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .fovy_deg = 35}, size, size};
-}
-
-View orthographic_view(int width, int height) {
-    return {{.eye = {2.1, 1.7, 2.9}, .target = {0.5, 0.5, 0.5}, .up = {0, 1, 0}, .ortho_height = 1.9}, width, height};
-}
-
-View ball_view(int width, int height) {
-    return {{.eye = {1.8, -2.9, 1.4}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 38}, width, height};
-}
-
-double largest_difference(const Image& a, const Image& b) {
-    EXPECT_EQ(a.rgba.size(), b.rgba.size());
-    double largest = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        const double difference = std::abs(double{a.rgba[i]} - double{b.rgba[i]});
-        if (!(difference <= largest)) largest = difference;  // NaN counts
-    }
-    return largest;
-}
-
-double waves(const Vec3& p) {
-    return 0.5 + 0.3 * std::sin(7 * p.x + 2 * p.y) + 0.2 * std::cos(9 * p.z - 3 * p.y);
-}
-
-/// The mesh drawn both ways.
-double difference_from_rays(const HexMesh& mesh, std::span<const double> values, const View& view, const Optics& optics,
-                            const PtOptions& options = {}) {
-    const auto rays = render_tets(mesh, values, view, optics);
-    return largest_difference(render_projected_tets(mesh, values, view, optics, options).image, rays.image);
-}
+using RenderPt = PtTest;
 
 TEST_F(RenderPt, CellsOneByOneAreLikeRays) {
     // Six tetrahedra that fill the picture: silhouettes of three and four corners, thick segments over all of the knots.
@@ -212,12 +155,44 @@ TEST_F(RenderPt, ListsInPartsAreTheSame) {
 TEST_F(RenderPt, IsTheSameEveryTime) {
     const HexMesh mesh = test::ball(6);
     const auto values = evaluate(mesh, waves);
-    for (const PtOrder order : {PtOrder::Centroid, PtOrder::Topological, PtOrder::Lists}) {
+    for (const PtOrder order : {PtOrder::Centroid, PtOrder::Topological, PtOrder::Lists, PtOrder::Havs}) {
         const auto draw = [&] {
             return render_projected_tets(mesh, values, ball_view(50, 50), ramp_optics(0.1), {.order = order}).image.rgba;
         };
         const auto first = draw();
         for (int i = 0; i < 2; ++i) EXPECT_EQ(draw(), first);
+    }
+}
+
+TEST_F(RenderPt, RendererKeepsNothingOfThePictureBefore) {
+    const HexMesh mesh = test::ball(6);
+    const auto values = evaluate(mesh, waves);
+    PtRenderer renderer(mesh, values);
+    // Another size, projection, number of knots and order each time.
+    const std::vector<View> views{ball_view(50, 40), orthographic_view(31, 60), ball_view(64, 64)};
+    for (const PtOrder order : {PtOrder::Havs, PtOrder::Topological, PtOrder::Lists, PtOrder::Centroid, PtOrder::Havs}) {
+        for (const View& view : views) {
+            for (const Optics& optics : {ramp_optics(0.1), constant_optics()}) {
+                const auto kept = renderer.draw(view, optics, {.order = order});
+                const auto fresh = render_projected_tets(mesh, values, view, optics, {.order = order});
+                EXPECT_EQ(kept.image.rgba, fresh.image.rgba);
+                EXPECT_EQ(kept.report.fragments, fresh.report.fragments);
+                EXPECT_EQ(kept.report.violations, fresh.report.violations);
+            }
+        }
+    }
+}
+
+TEST_F(RenderPt, SamplesAreThoseOfRays) {
+    const HexMesh mesh = test::ball(4);
+    const auto values = evaluate(mesh, waves);
+    const View view = ball_view(40, 31);
+    const auto rays = render_tets(mesh, values, view, ramp_optics(0.1), {.samples = 3});
+    const auto once = render_tets(mesh, values, view, ramp_optics(0.1));
+    EXPECT_GT(largest_difference(rays.image, once.image), 0.05) << "samples matter";
+    for (const PtOrder order : {PtOrder::Topological, PtOrder::Lists, PtOrder::Havs}) {
+        const auto drawn = render_projected_tets(mesh, values, view, ramp_optics(0.1), {.order = order, .samples = 3});
+        EXPECT_LT(largest_difference(drawn.image, rays.image), kGlTol);
     }
 }
 
@@ -252,7 +227,7 @@ public:
 TEST_F(RenderPt, ReportsProgressAndStops) {
     const HexMesh mesh = test::box(3);
     const std::vector<double> ones(mesh.points.size(), 1.0);
-    for (const PtOrder order : {PtOrder::Topological, PtOrder::Lists}) {
+    for (const PtOrder order : {PtOrder::Topological, PtOrder::Lists, PtOrder::Havs}) {
         Stopper progress;
         const auto draw = [&] {
             return render_projected_tets(mesh, ones, slanted_view(40), constant_optics(),

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
 #include "subvol/camera.h"
+#include "subvol/gl_device.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
@@ -14,16 +16,24 @@ namespace subvol {
 
 /// How tetrahedra come into their order. Centroid: by eye depth, which is not always right. Topological: what is behind a
 /// shared face comes first, and the farther centroid where no face decides; right for every convex mesh without a cycle. Lists:
-/// every pixel sorts its own segments, which is always right, and takes memory.
-enum class PtOrder { Centroid, Topological, Lists };
+/// every pixel sorts its own segments, which is always right, and takes memory. Havs: faces by the depth of their centroids,
+/// and what each pixel meets of them once more in a k-buffer; right where no face is late by more than its entries. What is
+/// between the parts of a volume that is not convex stays empty in every order.
+enum class PtOrder { Centroid, Topological, Lists, Havs };
 
-/// device:           of OpenGL, its number in gl_devices(); none: the first hardware, else software
+/// device:           of OpenGL, its number in gl_devices(); none: the first hardware, else software. A PtRenderer keeps its own
+/// kbuffer:          Havs: entries of the k-buffer, 1..65536
+/// lod:              Havs: the fraction of the faces inside that is drawn, 0..1; the boundary's always are
+/// samples:          n × n pictures, moved by parts of a pixel, of which the mean is taken, 1..16
 /// count_violations: draws a second time with lists, to find where the order is wrong. Lists are compared with the order by
-///                   centroids
-/// list_bytes:       the most memory of lists; what needs more is drawn in parts of the picture
+///                   centroids; Havs counts without it
+/// list_bytes:       the most memory of lists, those of Havs too; what needs more is drawn in parts of the picture
 struct PtOptions {
     PtOrder order = PtOrder::Topological;
     std::optional<int> device{};
+    int kbuffer = 6;
+    double lod = 1;
+    int samples = 1;
     bool count_violations = false;
     std::size_t list_bytes = std::size_t{1} << 28;
     Progress* progress = nullptr;
@@ -33,12 +43,16 @@ struct PtReport {
     std::string device;
     std::size_t tets = 0;
     std::size_t degenerate_tets = 0;  // of zero volume: not drawn
-    std::size_t inverted_tets = 0;    // where they lie over others both count; lists count every depth once
+    std::size_t inverted_tets = 0;    // where they lie over others both count; lists and Havs count every depth once
     std::size_t cycles = 0;           // times that a topological order did not go on and the farthest centroid was taken
-    std::size_t fragments = 0;        // pairs of a pixel and a tetrahedron, where there were lists
-    std::size_t parts = 0;            // of the picture, that lists were made for one after the other
-    std::optional<std::size_t> violations{};  // pixels with a segment drawn before one that is behind it
-    double seconds_build = 0, seconds_sort = 0, seconds_draw = 0;
+    std::size_t faces = 0;            // shared ones once, where there was Havs
+    std::size_t faces_drawn = 0;
+    std::size_t fragments = 0;                // pairs of a pixel and a tetrahedron, or a face, where there were lists
+    std::size_t parts = 0;                    // of the picture, that lists were made for one after the other
+    std::size_t late_faces = 0;               // fragments of Havs that came when the k-buffer had let go what is behind them
+    std::optional<std::size_t> violations{};  // pixels (of all samples) with a segment drawn before one that is behind it
+    double seconds_build = 0;                 // of the renderer, the same in all its pictures
+    double seconds_prepare = 0, seconds_sort = 0, seconds_draw = 0;
 };
 
 struct PtResult {
@@ -48,13 +62,33 @@ struct PtResult {
 
 /// Projected tetrahedra: the same 6 tetrahedra a cell as render_tets, their silhouettes drawn by OpenGL over each other, from
 /// back to front. Each pixel cuts its ray with the planes of the faces and integrates the segment exactly, with the value
-/// linear in the tetrahedron. Pictures are bitwise the same every time.
+/// linear in the tetrahedron. With Havs the faces are drawn instead, and segments are between neighbours of a pixel's faces.
 ///
-/// scalar: one value a point of the mesh
-/// throws: Error(InvalidInput) if scalar.size() != mesh.points.size(), or values and extinctions are beyond 32-bit floats;
-///         Error(MissingCapability) if there is no OpenGL 4.5, or it has no room
-/// cost:   16 bytes a point and 20 a tetrahedron on the device; lists: 20 bytes a fragment, up to list_bytes
-/// source: SCIENCE §4 (ST90; max1990 for the topological order)
+/// Keeps the tetrahedra, on the device too, from picture to picture; mesh and scalar need not stay. Pictures are bitwise the
+/// same every time. One picture at a time.
+/// cost:   16 bytes a point and 20 a tetrahedron on the device, Havs: 40; lists: 20 bytes a fragment, Havs: 12, up to
+/// list_bytes source: SCIENCE §4 (ST90; max1990 for the topological order; callahan2005 for Havs, lod2005 for its faces left
+/// out)
+class PtRenderer {
+public:
+    /// scalar: one value a point of the mesh
+    /// throws: Error(InvalidInput) if scalar.size() != mesh.points.size();
+    ///         Error(MissingCapability) if there is no OpenGL 4.5, or it has no room
+    PtRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device = {},
+               Progress* progress = nullptr);
+    ~PtRenderer();
+    PtRenderer(PtRenderer&&) noexcept;
+    PtRenderer& operator=(PtRenderer&&) noexcept;
+
+    /// throws: Error(InvalidInput) if an option is out of range, or values and extinctions are beyond 32-bit floats
+    [[nodiscard]] PtResult draw(const View& view, const Optics& optics, const PtOptions& options = {});
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// One picture of a PtRenderer.
 [[nodiscard]] PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view,
                                              const Optics& optics, const PtOptions& options = {});
 

@@ -1,0 +1,31 @@
+#version 450
+// Where the ray of a pixel crosses a face. PT_COUNT counts that, PT_KEEP stores it in the pixel's list.
+flat in vec4 corner0, corner1, corner2;
+flat in uint rank;
+flat in uint cover;  // 2 + tetrahedra on the side of the face's normal − those on the other
+
+layout(std430, binding = 3) buffer Counts { uint counts[]; };
+#if PT_MODE == PT_KEEP
+layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
+layout(std430, binding = 5) writeonly buffer Crossings { vec2 crossings[]; };  // depth, value
+layout(std430, binding = 6) writeonly buffer Marks { uint marks[]; };  // 8 · rank + 2 + tetrahedra behind the face − before it
+#endif
+uniform ivec4 rectangle;  // whose pixels are counted or kept
+
+void main() {
+    vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel);
+    vec2 q0 = off_ray(slope, corner0), q1 = off_ray(slope, corner1), q2 = off_ray(slope, corner2);
+    bool s01, s02, s12;
+    float a01 = doubled_area(q0, q1, s01), a02 = doubled_area(q0, q2, s02), a12 = doubled_area(q1, q2, s12);
+    if (s01 != s12 || s01 == s02) discard;
+    vec2 here = crossing(corner0.zw, corner1.zw, corner2.zw, a12, a02, a01);
+    if (perspective && here.x < -middle_depth) discard;  // behind the eye
+    ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
+    int id = place.y * (rectangle.z - rectangle.x) + place.x;
+    uint before = atomicAdd(counts[id], 1u);
+#if PT_MODE == PT_KEEP
+    uint behind = s01 ? 4u - cover : cover;  // to the left: the normal points towards the eye
+    crossings[offsets[id] + before] = here;
+    marks[offsets[id] + before] = 8u * rank + behind;
+#endif
+}

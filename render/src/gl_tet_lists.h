@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gl_buffer.h"
+#include "gl_tets.h"
+
+namespace subvol::detail {
+
+/// Keeps what GlTets draws in lists, one a pixel, and makes the picture of them. Keeps memory from picture to picture.
+class GlTetLists {
+public:
+    struct Drawn {
+        Image image;
+        std::size_t fragments = 0, parts = 0;
+        std::size_t wrong_pixels = 0;  // the order of tetrahedra is wrong, or a face too late
+        std::size_t late_faces = 0;
+    };
+    explicit GlTetLists(GlTets& tets) : tets_(tets) {}
+
+    /// Segments of tetrahedra, sorted.
+    ///
+    /// most_fragments: that lists hold at a time; the picture is drawn in parts for it
+    /// throws:         Error(MissingCapability) if the device has no room
+    [[nodiscard]] Drawn draw_tets(std::size_t most_fragments, const DrawStage& stage);
+
+    /// Faces, which go through a k-buffer.
+    [[nodiscard]] Drawn draw_faces(std::size_t kbuffer, std::size_t most_fragments, const DrawStage& stage);
+
+private:
+    using Items = GlTets::Items;
+
+    [[nodiscard]] Drawn draw(Items items, std::size_t most_fragments, const DrawStage& stage);
+    [[nodiscard]] std::vector<std::uint32_t> count_fragments(Items items, const DrawStage& stage);
+    void draw_part(Items items, const PixelRect& part, const std::vector<std::uint32_t>& counts, Image& image,
+                   const DrawStage& stage);
+    void resolve_part(Items items, const PixelRect& part, Image& image);
+
+    GlTets& tets_;
+    std::uint32_t kbuffer_ = 1;
+    GlBuffer counts_, offsets_, entries_, ranks_, picture_, misses_;
+};
+
+}  // namespace subvol::detail

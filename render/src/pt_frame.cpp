@@ -1,0 +1,76 @@
+#include "pt_frame.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kMostUnits = 1e30;  // that a float holds, with room
+constexpr double kFarValue = 1e12;   // values further out look like this one
+
+/// Of the values of the knots: they are counted in parts of it.
+struct Values {
+    double first, range;
+
+    [[nodiscard]] float parts(double value) const {
+        return static_cast<float>(std::clamp((value - first) / range, -kFarValue, kFarValue));
+    }
+};
+
+Values set_knots(GlTetFrame& frame, const Optics& optics) {
+    const auto knots = optics.knots();
+    const double range = knots.back() - knots.front();
+    const Values values{knots.front(), range > 0 ? range : 1};
+    frame.opacity_units = frame.scale / optics.opacity_unit();
+    if (!(frame.opacity_units < kMostUnits)) {
+        throw Error(ErrorCode::InvalidInput, "the opacity unit is " + std::to_string(optics.opacity_unit()), {},
+                    "more than 1e-30 of the volume");
+    }
+    for (const double knot : knots) {
+        const Vec3 color = optics.color(knot);
+        const double opacity = -std::expm1(-optics.extinction(knot) * optics.opacity_unit());
+        const auto to_float = [](double v) { return static_cast<float>(v); };
+        frame.knots.push_back({{to_float(color.x), to_float(color.y), to_float(color.z), to_float(opacity)},
+                               {to_float((knot - values.first) / values.range), 0, 0, 0}});
+    }
+    return values;
+}
+
+void set_points(GlTetFrame& frame, const TetMesh& mesh, const View& view, double middle_depth, const Values& values) {
+    frame.points.resize(mesh.points.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.points.size(), 4096), [&](const auto& range) {
+        for (std::size_t p = range.begin(); p < range.end(); ++p) {
+            const Vec3 eye = (view.to_eye(mesh.points[p].position) - Vec3(0, 0, middle_depth)) / frame.scale;
+            frame.points[p] = {static_cast<float>(eye.x), static_cast<float>(eye.y), static_cast<float>(eye.z),
+                               values.parts(mesh.points[p].value)};
+        }
+    });
+}
+
+bool contains(const Box& box, const Vec3& p) {
+    return glm::all(glm::lessThanEqual(box.lower, p)) && glm::all(glm::lessThanEqual(p, box.upper));
+}
+
+}  // namespace
+
+GlTetFrame make_tet_frame(const TetMesh& mesh, const Box& box, const View& view, const Optics& optics, bool eye_value) {
+    GlTetFrame frame;
+    const double diagonal = glm::length(box.upper - box.lower);
+    if (diagonal > 0) frame.scale = diagonal;
+    const double middle_depth = view.to_eye(0.5 * (box.lower + box.upper)).z;
+    frame.middle_depth = middle_depth / frame.scale;
+    const Values values = set_knots(frame, optics);
+    set_points(frame, mesh, view, middle_depth, values);
+    if (eye_value && view.perspective() && contains(box, view.eye()))
+        frame.eye_value = values.parts(value_at(mesh, view.eye()));
+    return frame;
+}
+
+}  // namespace subvol::detail
