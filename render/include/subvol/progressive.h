@@ -1,6 +1,7 @@
 #pragma once
 
 #include "subvol/render.h"
+#include "subvol/render_pt.h"
 #include "subvol/sample.h"
 
 namespace subvol {
@@ -34,5 +35,35 @@ struct ProgressiveResult {
 /// throws: as sample_rbf_points and Splatter; Error(InvalidInput) if seconds or a footprint is not positive
 [[nodiscard]] ProgressiveResult render_progressively(const HexMesh& mesh, const View& view, const Optics& optics,
                                                      const ProgressiveOptions& options = {});
+
+/// seconds:  how long the work may take; the first picture is always finished
+/// lod:      fractions of the inner faces that are drawn on the way, ascending, 0..1
+/// pt:       how pictures are drawn; order, fraction and listener are the work's own, and samples are for the last picture
+/// progress: its `picture` gets every picture as soon as it is there; a wish to stop ends the work as usual
+struct PtProgressiveOptions {
+    double seconds = 1;
+    std::vector<double> lod{0.03, 0.1, 0.3};
+    PtOptions pt{};
+    Progress* progress = nullptr;
+};
+
+/// The last picture, and how it came about.
+struct PtProgressiveResult {
+    PtResult pt;
+    int steps = 0;          // pictures made
+    double lod = 0;         // of the last
+    bool finished = false;  // the last picture is exact
+    double seconds = 0;
+};
+
+/// Draws tetrahedra within a time: first the faces of the boundary alone, then with rising fractions of those inside up to all
+/// of them (PtOrder::Havs). The picture after that is by lists if the k-buffer missed a face, so the last is exact. What is not
+/// finished in time is given up. Each picture is drawn anew: with the default fractions, all that come before the whole one
+/// take half its time.
+///
+/// throws: as PtRenderer::draw; Error(InvalidInput) if seconds is not positive or a fraction is out of range
+/// source: cbps2006, whose pictures go on from one another
+[[nodiscard]] PtProgressiveResult render_progressively(PtRenderer& renderer, const View& view, const Optics& optics,
+                                                       const PtProgressiveOptions& options = {});
 
 }  // namespace subvol
