@@ -54,7 +54,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
         }
         check_reference();
-        picture_.check_legend();
+        picture_.check();
         PictureOutput output(output_, picture_.turntable_frames, picture_);
         if (method_ == "grid") {
             draw_voxels(output, report);
