@@ -54,7 +54,7 @@ class Mistakes(InFolder):
         self.assert_refused("compare", "a.png", "b.png", "--fail-under", "psnr", naming="--fail-under")
 
     def test_what_needs_no_mesh_is_refused_before_one_is_read(self):
-        for wrong in ("--size", "3y"), ("--camera", "1,2"), ("--tf", "missing.json"):
+        for wrong in ("--size", "3y"), ("--camera", "nix"), ("--tf", "missing.json"):
             self.assert_refused("render", "missing.mesh", "-o", "a.png", *wrong, naming=wrong[1])
 
     def test_a_full_standard_output(self):
