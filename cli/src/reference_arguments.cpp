@@ -1,27 +1,40 @@
 #include "reference_arguments.h"
 
+#include "subvol/error.h"
 #include "text.h"
 
 namespace subvol::cli {
 
 void ReferenceArguments::add_to(CLI::App& app) {
-    app.add_option("--samples", samples, "tets, dense, grid: n x n rays a pixel (default 1)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 16));
+    app.add_option("--samples", samples, "n x n rays a pixel (default 1)")->type_name("N")->check(CLI::Range(1, 16));
     app.add_option("--tolerance-image", image_tolerance,
                    "dense, without --levels: raise the level until the RMS of the picture's change is less (default 1e-3)")
         ->type_name("RMS")
         ->check(CLI::PositiveNumber);
     app.add_option("--order", order,
-                   "pt: what sorts the tetrahedra: topological (shared faces, the default), centroid, or\n"
-                   "lists (every pixel its own)")
+                   "pt: what sorts the tetrahedra: topological (shared faces, the default), centroid,\n"
+                   "lists (every pixel its own) or havs (faces by centroid, then a k-buffer a pixel)")
         ->type_name("NAME");
+    app.add_option("--kbuffer", kbuffer, "havs: entries of the k-buffer (default 6)")
+        ->type_name("K")
+        ->check(CLI::Range(1, 65536));
+    app.add_option("--lod", lod, "havs: the fraction of the faces inside that is drawn (default 1)")
+        ->type_name("F")
+        ->check(CLI::Range(0.0, 1.0));
 }
 
 PtOrder ReferenceArguments::pt_order() const {
-    check_choice("--order", order, {"topological", "centroid", "lists"});
+    check_choice("--order", order, {"topological", "centroid", "lists", "havs"});
     if (order == "lists") return PtOrder::Lists;
+    if (order == "havs") return PtOrder::Havs;
     return order == "centroid" ? PtOrder::Centroid : PtOrder::Topological;
+}
+
+PtOptions ReferenceArguments::pt_options() const {
+    const PtOptions options{.order = pt_order(), .kbuffer = kbuffer, .lod = lod, .samples = samples};
+    if (lod < 1 && options.order != PtOrder::Havs)
+        throw Error(ErrorCode::InvalidInput, "only --order havs leaves faces out", "--lod");
+    return options;
 }
 
 }  // namespace subvol::cli

@@ -12,11 +12,16 @@ struct ReferenceArguments {
     int samples = 1;
     double image_tolerance = 1e-3;
     std::string order = "topological";
+    int kbuffer = 6;
+    double lod = 1;
 
     void add_to(CLI::App& app);
 
     /// throws: Error(InvalidInput) if the order is unknown
     [[nodiscard]] PtOrder pt_order() const;
+
+    /// throws: Error(InvalidInput) if the order is unknown, or has no faces to leave out
+    [[nodiscard]] PtOptions pt_options() const;
 };
 
 }  // namespace subvol::cli

@@ -1,8 +1,8 @@
 #include "reference_pictures.h"
 
+#include "subvol/progressive.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
-#include "subvol/render_pt.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -19,6 +19,43 @@ void report_rays(std::size_t rays, std::size_t lost, Report& report) {
     if (lost > 0) report.warn(text(lost, " rays were lost inside the mesh"));
 }
 
+const char* name_of(PtOrder order) {
+    switch (order) {
+        case PtOrder::Centroid:
+            return "centroid";
+        case PtOrder::Topological:
+            return "topological";
+        case PtOrder::Lists:
+            return "lists";
+        case PtOrder::Havs:
+            return "havs";
+    }
+    return "";
+}
+
+void report_tets(const PtReport& pt, PtOrder order, Report& report) {
+    report.add_seconds("prepare", pt.seconds_prepare);
+    report.add_seconds("sort", pt.seconds_sort);
+    report.add_seconds("draw", pt.seconds_draw);
+    report["device"] = pt.device;
+    report["order"] = name_of(order);
+    report["tets"] = pt.tets;
+    report["degenerate_tets"] = pt.degenerate_tets;
+    report["inverted_tets"] = pt.inverted_tets;
+    if (order == PtOrder::Topological) report["cycles"] = pt.cycles;
+    if (order == PtOrder::Lists || order == PtOrder::Havs) report["fragments"] = pt.fragments;
+    if (order == PtOrder::Havs) {
+        report["faces"] = pt.faces;
+        report["faces_drawn"] = pt.faces_drawn;
+        report["late_faces"] = pt.late_faces;
+    }
+    if (pt.violations) report["order_violations"] = *pt.violations;
+    if (pt.cycles > 0) report.warn(text("the order of the tetrahedra has cycles, broken ", pt.cycles, " times"));
+    if (pt.late_faces > 0)
+        report.warn(
+            text(pt.late_faces, " faces were too late for the k-buffer: --kbuffer with more entries, or --order lists"));
+}
+
 }  // namespace
 
 Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& optics, const ReferenceArguments& arguments,
@@ -33,25 +70,22 @@ Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& 
     return Picture{std::move(drawn.image)};
 }
 
-Picture draw_projected_tets(const HexMesh& mesh, const View& view, const Optics& optics, const ReferenceArguments& arguments,
-                            std::optional<int> device, Progress* progress, Report& report) {
-    const PtOrder order = arguments.pt_order();
-    PtResult drawn = render_projected_tets(mesh, mesh.attributes.front().values, view, optics,
-                                           {.order = order, .device = device, .progress = progress});
-    const PtReport& pt = drawn.report;
+Picture draw_projected_tets(PtRenderer& renderer, const View& view, const Optics& optics, const ReferenceArguments& arguments,
+                            std::optional<double> seconds, Progress* progress, Report& report) {
+    PtOptions options = arguments.pt_options();
+    PtResult drawn;
+    if (seconds) {
+        auto best = render_progressively(renderer, view, optics, {.seconds = *seconds, .pt = options, .progress = progress});
+        options.order = best.order;
+        drawn = std::move(best.pt);
+        report["steps"] = best.steps;
+        report["finished"] = best.finished;
+    } else {
+        options.progress = progress;
+        drawn = renderer.draw(view, optics, options);
+    }
     report_method("pt", "gl", report);
-    report.add_seconds("prepare", pt.seconds_build);
-    report.add_seconds("sort", pt.seconds_sort);
-    report.add_seconds("draw", pt.seconds_draw);
-    report["device"] = pt.device;
-    report["order"] = arguments.order;
-    report["tets"] = pt.tets;
-    report["degenerate_tets"] = pt.degenerate_tets;
-    report["inverted_tets"] = pt.inverted_tets;
-    if (order == PtOrder::Topological) report["cycles"] = pt.cycles;
-    if (order == PtOrder::Lists) report["fragments"] = pt.fragments;
-    if (pt.violations) report["order_violations"] = *pt.violations;
-    if (pt.cycles > 0) report.warn(text("the order of the tetrahedra has cycles, broken ", pt.cycles, " times"));
+    report_tets(drawn.report, options.order, report);
     return Picture{std::move(drawn.image)};
 }
 

@@ -7,6 +7,7 @@
 #include "report.h"
 #include "subvol/refine.h"
 #include "subvol/render.h"
+#include "subvol/render_pt.h"
 #include "subvol/vdb.h"
 
 namespace subvol::cli {
@@ -15,11 +16,10 @@ namespace subvol::cli {
 [[nodiscard]] Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& optics,
                                 const ReferenceArguments& arguments, Progress* progress, Report& report);
 
-/// mesh:   refined already; its first attribute is drawn
-/// device: as `PtOptions::device`
-[[nodiscard]] Picture draw_projected_tets(const HexMesh& mesh, const View& view, const Optics& optics,
-                                          const ReferenceArguments& arguments, std::optional<int> device, Progress* progress,
-                                          Report& report);
+/// seconds: the best picture within this time, if there is one
+[[nodiscard]] Picture draw_projected_tets(PtRenderer& renderer, const View& view, const Optics& optics,
+                                          const ReferenceArguments& arguments, std::optional<double> seconds,
+                                          Progress* progress, Report& report);
 
 /// levels: of the dense grids; none: raised until the picture stays the same
 [[nodiscard]] Picture draw_dense(const HexMesh& mesh, const RefineOptions& refine, std::optional<int> levels, const View& view,

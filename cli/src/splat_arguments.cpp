@@ -18,7 +18,8 @@ void SplatArguments::add_to(CLI::App& app) {
         ->type_name("NAME");
     app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
     app.add_option("--seconds", seconds,
-                   "splat: the best picture within this time: coarse first, then with the mesh sampled for the view")
+                   "the best picture within this time: splat: coarse first, then with the mesh sampled for the view;\n"
+                   "pt: the boundary's faces first, then rising fractions of those inside")
         ->type_name("S")
         ->check(CLI::PositiveNumber)
         ->excludes("--turntable")

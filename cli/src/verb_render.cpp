@@ -49,6 +49,7 @@ public:
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
         options_ = splat_.options();
+        options_.samples = reference_.samples;
         if (method_ == "sheets") options_.method = SplatMethod::Sheets;
         if (method_ == "sheets" && options_.backend == Backend::Cpu) {
             throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
@@ -71,13 +72,17 @@ private:
 
     /// The reference methods know nothing of what is the splats' own.
     void check_reference() const {
-        (void)reference_.pt_order();
+        (void)reference_.pt_options();
         if (drawn_by_splats()) return;
-        if (splat_.shade || splat_.color_field || splat_.seconds) {
+        if (splat_.shade || splat_.color_field) {
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
-                        "--shade, --color-field, --seconds", "use --method splat or sheets");
+                        "--shade, --color-field", "use --method splat or sheets");
         }
         const bool on_gpu = method_ == "pt";
+        if (splat_.seconds && !on_gpu) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " takes the time that it takes", "--seconds",
+                        "use --method splat, sheets or pt");
+        }
         if (options_.backend == (on_gpu ? Backend::Cpu : Backend::Gl)) {
             throw Error(ErrorCode::InvalidInput,
                         text("method ", method_, " is drawn by ", on_gpu ? "OpenGL" : "the CPU", " only"),
@@ -94,13 +99,7 @@ private:
         const Optics optics = picture_.make_optics(box, range, colors);
         if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-            const TetsRenderer renderer(fine, fine.attributes.front().values);
-            report.add_seconds("prepare", renderer.seconds_build());
-            const auto draw = [&](const View& view, Progress* progress) {
-                return method_ == "pt" ? draw_projected_tets(fine, view, optics, reference_, splat_.device, progress, report)
-                                       : draw_tets(renderer, view, optics, reference_, progress, report);
-            };
-            output.write(views, draw, report);
+            draw_tetrahedra(fine, views, optics, output, report);
         } else if (method_ == "dense") {
             const RefineOptions refine = refine_.options(0, report);
             const auto draw = [&](const View& view, Progress* progress) {
@@ -113,6 +112,26 @@ private:
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
         picture_.write_legend(optics, colors, report);
+    }
+
+    void draw_tetrahedra(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+                         Report& report) const {
+        const auto& values = mesh.attributes.front().values;
+        if (method_ == "pt") {
+            PtRenderer renderer(mesh, values, splat_.device);
+            report.add_seconds("prepare", renderer.seconds_build());
+            const auto draw = [&](const View& view, Progress* progress) {
+                return draw_projected_tets(renderer, view, optics, reference_, splat_.seconds, progress, report);
+            };
+            output.write(views, draw, report);
+        } else {
+            const TetsRenderer renderer(mesh, values);
+            report.add_seconds("prepare", renderer.seconds_build());
+            const auto draw = [&](const View& view, Progress* progress) {
+                return draw_tets(renderer, view, optics, reference_, progress, report);
+            };
+            output.write(views, draw, report);
+        }
     }
 
     void draw_voxels(PictureOutput& output, Report& report) {

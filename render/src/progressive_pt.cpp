@@ -48,6 +48,7 @@ private:
         options.samples = samples;
         options.progress = &deadline_;
         result_.pt = renderer_.draw(view_, optics_, options);
+        result_.order = order;
         result_.lod = lod;
         ++result_.steps;
         deadline_.picture(result_.pt.image);

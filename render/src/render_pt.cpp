@@ -188,6 +188,10 @@ PtRenderer::~PtRenderer() = default;
 PtRenderer::PtRenderer(PtRenderer&&) noexcept = default;
 PtRenderer& PtRenderer::operator=(PtRenderer&&) noexcept = default;
 
+double PtRenderer::seconds_build() const {
+    return state_->built.seconds_build;
+}
+
 PtResult PtRenderer::draw(const View& view, const Optics& optics, const PtOptions& options) {
     check_options(options);
     State& state = *state_;

@@ -5,7 +5,9 @@
 #include "gl_context.h"
 #include "gl_sheets.h"
 #include "gl_splatter.h"
+#include "pixel_tiles.h"
 #include "splat_backend.h"
+#include "splat_means.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
 
@@ -108,7 +110,9 @@ struct Splatter::State {
     detail::SplatFrame frame{};  // its memory is used again
 };
 
-Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) : state_(std::make_unique<State>(volume, options)) {
+Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) {
+    check_samples(options.samples);
+    state_ = std::make_unique<State>(volume, options);
 }
 
 Splatter::~Splatter() = default;
@@ -123,10 +127,13 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     const auto start = std::chrono::steady_clock::now();
     const auto look = detail::classify(state.scene, optics);
     report.seconds_prepare = seconds_since(start);
-    auto drawn = state.gpu ? state.draw_on_gpu(view, look, progress, report) : state.draw_frame(view, look, progress, report);
-    report.seconds_draw = seconds_since(start) - report.seconds_prepare;
+    const int n = state.options.samples;
+    const View fine(view.camera(), n * view.width(), n * view.height());  // its pixels' centres are the samples
+    auto drawn = state.gpu ? state.draw_on_gpu(fine, look, progress, report) : state.draw_frame(fine, look, progress, report);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
+    detail::take_means(result, n);
+    report.seconds_draw = seconds_since(start) - report.seconds_prepare;
     report.points = state.scene.volume->size();
     return result;
 }

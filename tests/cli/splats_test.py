@@ -71,15 +71,55 @@ class Splats(InFolder):
         if not self.has_gl():
             self.skipTest("no OpenGL 4.5 through EGL")
         self.render("tets.exr", "--method", "tets")
-        for order in ("topological", "centroid", "lists"):
+        for order in ("topological", "centroid", "lists", "havs"):
             done = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--order", order, "--json")
             report = done.json()
             self.assertEqual((report["method"], report["backend"], report["order"]), ("pt", "gl", order))
             if order != "centroid":
                 self.assertLess(self.difference("tets.exr", "pt.exr"), 1e-4)
-        for refused in (["--backend", "cpu"], ["--shade"], ["--order", "random"]):
+        samples = ["--samples", "2"]
+        self.render("tets.exr", "--method", "tets", *samples)
+        for order in ("topological", "havs"):
+            self.render("pt.exr", "--method", "pt", "--order", order, *samples)
+            self.assertLess(self.difference("tets.exr", "pt.exr"), 1e-4)
+        for refused in (["--backend", "cpu"], ["--shade"], ["--order", "random"], ["--lod", "0.5"],
+                        ["--order", "havs", "--kbuffer", "0"], ["--order", "havs", "--lod", "2"]):
             done = subvol("render", "model:ball:4", "-o", "x.png", "--method", "pt", *refused, folder=self.folder)
             self.assertEqual(done.code, 2, done.err)
+
+    def test_faces_are_left_out_and_counted(self):
+        if not self.has_gl():
+            self.skipTest("no OpenGL 4.5 through EGL")
+        self.render("tets.exr", "--method", "tets")
+        last = 1
+        for lod in 0, 0.1, 0.5, 1:
+            report = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--order", "havs",
+                                 "--kbuffer", "8", "--lod", lod, "--json").json()
+            rmse = self.run_ok("compare", "tets.exr", "pt.exr", "--json").json()["rmse"]
+            self.assertLess(rmse, last)
+            self.assertEqual(report["faces_drawn"] == report["faces"], lod == 1)
+            self.assertEqual(report["late_faces"], 0)
+            last = rmse
+
+    def test_tetrahedra_keep_a_time_too(self):
+        if not self.has_gl():
+            self.skipTest("no OpenGL 4.5 through EGL")
+        self.render("tets.exr", "--method", "tets", "--samples", "2")
+        done = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--samples", "2",
+                           "--seconds", "60", "--json").json()
+        self.assertTrue(done["finished"])
+        self.assertLess(self.difference("tets.exr", "pt.exr"), 1e-4)
+        done = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--seconds", "1e-6",
+                           "--json").json()
+        self.assertEqual((done["finished"], done["steps"]), (False, 1))
+
+    def test_samples_smooth_the_rim(self):
+        self.render("rays.exr", "--method", "tets", "--samples", "4")
+        errors = []
+        for samples in 1, 4:
+            self.render("splats.exr", "--backend", "cpu", "--samples", samples)
+            errors.append(self.run_ok("compare", "rays.exr", "splats.exr", "--json").json()["rmse"])
+        self.assertLess(errors[1], errors[0])
 
     def test_devices_that_are_not_there_are_refused(self):
         done = subvol("render", "model:ball:4", "-o", "x.png", "--backend", "gl", "--device", "99", folder=self.folder)

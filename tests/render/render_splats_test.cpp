@@ -230,6 +230,41 @@ TEST(RenderSplats, RefusesNumbersBeyondFloats) {
     EXPECT_THROW((void)draw(2e11, 2e11 + 1, 1), Error);  // floats there are 16384 apart
 }
 
+TEST(RenderSplats, SamplesAreTheMeanOfAFinerPicture) {
+    HexMesh ball = make_ball(3);
+    test::add_field(ball, "f", [](const Vec3& p) { return p.x; });
+    const RbfVolume volume = sample(ball);
+    const Camera camera = orthographic(2.4, {0.1, -10, 0.2});
+    const auto optics = constant_optics(.5, 1);
+    for (const Backend backend : backends()) {
+        const auto fine = render_splats(volume, View(camera, 60, 45), optics, {.backend = backend});
+        const auto drawn = render_splats(volume, View(camera, 20, 15), optics, {.backend = backend, .samples = 3});
+        ASSERT_EQ(drawn.image.width, 20);
+        ASSERT_EQ(drawn.depth.size(), 20u * 15);
+        int rim = 0;
+        for (int y = 0; y < 15; ++y) {
+            for (int x = 0; x < 20; ++x) {
+                double alpha = 0, depth = 0;
+                for (int k = 0; k < 9; ++k) {
+                    const int i = 3 * x + k % 3, j = 3 * y + k / 3;
+                    const double one = fine.image.pixel(i, j)[3];
+                    const float at = fine.depth[static_cast<std::size_t>(60 * j + i)];
+                    if (std::isfinite(at)) depth += one * at;
+                    alpha += one;
+                }
+                const float got = drawn.depth[static_cast<std::size_t>(20 * y + x)];
+                EXPECT_NEAR(drawn.image.pixel(x, y)[3], alpha / 9, 1e-7);  // rounding to float
+                EXPECT_EQ(std::isfinite(got), alpha > 0);
+                if (alpha > 0) {
+                    EXPECT_NEAR(got, depth / alpha, 1e-5);
+                }
+                rim += alpha > 0 && fine.image.pixel(3 * x, 3 * y)[3] == 0 ? 1 : 0;
+            }
+        }
+        EXPECT_GT(rim, 5) << "some pixels are seen in part";
+    }
+}
+
 TEST(RenderSplats, RefusesWhatItCannotDraw) {
     HexMesh box = test::make_box(2, 2, 2);
     test::add_field(box, "f", [](const Vec3&) { return 1.0; });
@@ -237,6 +272,7 @@ TEST(RenderSplats, RefusesWhatItCannotDraw) {
     const View view(orthographic(4), 8, 8);
     const auto optics = constant_optics(.5, 1);
     EXPECT_THROW((void)render_splats(volume, view, optics, {.sheets = 1}), Error);
+    EXPECT_THROW((void)render_splats(volume, view, optics, {.samples = 17}), Error);
     EXPECT_THROW((void)render_splats(volume, view, optics, {.channel = 1}), Error);
     volume.kernel = TableKernel{.radius = 1, .count = 2, .values = {1, .5, .5, .5, .5, .5, .5, 0}};
     EXPECT_THROW((void)render_splats(volume, view, optics, {.backend = Backend::Cpu}), Error);

@@ -50,16 +50,16 @@ struct PtProgressiveOptions {
 /// The last picture, and how it came about.
 struct PtProgressiveResult {
     PtResult pt;
-    int steps = 0;          // pictures made
-    double lod = 0;         // of the last
-    bool finished = false;  // the last picture is exact
+    int steps = 0;                  // pictures made
+    PtOrder order = PtOrder::Havs;  // of the last
+    double lod = 0;                 // of the last
+    bool finished = false;          // the last picture is exact
     double seconds = 0;
 };
 
 /// Draws tetrahedra within a time: first the faces of the boundary alone, then with rising fractions of those inside up to all
 /// of them (PtOrder::Havs). The picture after that is by lists if the k-buffer missed a face, so the last is exact. What is not
-/// finished in time is given up. Each picture is drawn anew: with the default fractions, all that come before the whole one
-/// take half its time.
+/// finished in time is given up. Each picture is drawn anew: those before the whole one take together about as long as it.
 ///
 /// throws: as PtRenderer::draw; Error(InvalidInput) if seconds is not positive or a fraction is out of range
 /// source: cbps2006, whose pictures go on from one another

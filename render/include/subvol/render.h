@@ -36,6 +36,7 @@ struct Shading {
     Vec3 key{-0.5, 0.7, -0.5};
 };
 
+/// samples:       n × n places a pixel on a regular grid, of which the mean is taken, 1..16
 /// sheets:        planes of constant eye depth over the volume's depth range, 2..65536
 /// channel:       which channel of the volume is shown
 /// device:        of OpenGL, its number in gl_devices(); none: the first hardware, else software
@@ -45,6 +46,7 @@ struct SplatOptions {
     SplatMethod method = SplatMethod::Kernels;
     Backend backend = Backend::Auto;
     std::optional<int> device{};
+    int samples = 1;
     int sheets = 200;
     std::size_t channel = 0;
     std::optional<std::size_t> color_channel{};

@@ -66,9 +66,9 @@ struct PtResult {
 ///
 /// Keeps the tetrahedra, on the device too, from picture to picture; mesh and scalar need not stay. Pictures are bitwise the
 /// same every time. One picture at a time.
-/// cost:   16 bytes a point and 20 a tetrahedron on the device, Havs: 40; lists: 20 bytes a fragment, Havs: 12, up to
-/// list_bytes source: SCIENCE §4 (ST90; max1990 for the topological order; callahan2005 for Havs, lod2005 for its faces left
-/// out)
+/// cost:   16 bytes a point and 20 a tetrahedron on the device, Havs: 20 a face; lists: 20 bytes a fragment, Havs: 12, up to
+///         list_bytes
+/// source: SCIENCE §4 (ST90; mhc1990 for the topological order; cics2005 for Havs, ccss2005 for its faces left out)
 class PtRenderer {
 public:
     /// scalar: one value a point of the mesh
@@ -82,6 +82,7 @@ public:
 
     /// throws: Error(InvalidInput) if an option is out of range, or values and extinctions are beyond 32-bit floats
     [[nodiscard]] PtResult draw(const View& view, const Optics& optics, const PtOptions& options = {});
+    [[nodiscard]] double seconds_build() const;
 
 private:
     struct State;
