@@ -10,8 +10,8 @@ namespace subvol {
 
 /// The faces of tetrahedra, shared ones once.
 ///
-/// faces: first those that a ray enters or leaves by, or where cells fold over; then those inside, in an order that is like a
-///        random one and always the same: the first n of them lie about the mesh evenly, and are among the first n + 1
+/// faces: first those that a ray enters or leaves by, or where cells fold over; then those inside, as if drawn at random, large
+///        ones sooner, but always the same: the first n of them lie about the mesh evenly, and are among the first n + 1
 struct TetFaces {
     struct Face {
         std::array<Index, 3> corner;  // ascending
