@@ -88,21 +88,17 @@ void measure_all(int n, const std::string& exact_file, int size) {
             return [&, renderer] { return renderer->draw(view, optics).image; };
         });
         if (gl_devices().empty()) continue;
-        measure("subvol projected tets" + of_level, exact, [&] {
-            return [&] { return render_projected_tets(fine, fine.attributes[0].values, view, optics).image; };
-        });
+        measure("subvol projected tets" + of_level, exact,
+                [&] { return [&] { return render_projected_tets(fine, fine.attributes[0].values, view, optics).image; }; });
     }
     for (const int level : {1, 2}) {
-        measure("subvol dense, level " + std::to_string(level), exact, [&] {
-            return [&, level] { return render_dense(mesh, values, view, optics, {.levels = level}).image; };
-        });
+        measure("subvol dense, level " + std::to_string(level), exact,
+                [&] { return [&, level] { return render_dense(mesh, values, view, optics, {.levels = level}).image; }; });
     }
 #ifdef SUBVOL_PEERS_VDB
     const std::vector<std::string> fields{mesh.attributes[0].name};
     const auto voxels = rasterize(refine(mesh, {.levels = 1}), fields, {.resolution = 200}).front().voxels();
-    measure("subvol grid by ray, 200 voxels", exact, [&] {
-        return [&] { return render_grid(*voxels, view, optics).image; };
-    });
+    measure("subvol grid by ray, 200 voxels", exact, [&] { return [&] { return render_grid(*voxels, view, optics).image; }; });
 #endif
 }
 

@@ -132,7 +132,8 @@ TEST(Optics, SplittingAStretchChangesNothingForAnyFunction) {
         double from = 0;
         for (int k = 0; k < 4; ++k) {  // I(a,b), then I(b,c), and so on
             const double to = k == 3 ? 1 : from + part(random) * (1 - from);
-            composite(parts, optics.integrate(front + from * (back - front), front + to * (back - front), (to - from) * length));
+            composite(parts,
+                      optics.integrate(front + from * (back - front), front + to * (back - front), (to - from) * length));
             from = to;
         }
         // 1e-9: what each piece's colour is exact to.

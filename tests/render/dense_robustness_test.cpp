@@ -18,7 +18,7 @@ namespace subvol {
 namespace {
 
 constexpr double kLengthTol = 1e-4;  // of the diagonal: what is asked for; pictures are floats, 2e-7 of it
-constexpr int kSize = 15;            // odd: there is a ray in the middle
+constexpr int kSize = 9;             // odd: there is a ray in the middle
 constexpr int kLevel = 1;
 
 void expect_robust(const HexMesh& mesh, const std::string& name) {
@@ -33,7 +33,9 @@ void expect_robust(const HexMesh& mesh, const std::string& name) {
     double worst = 0;
     for (const Vec3& d : test::directions()) {
         const Vec3 through = fine.points[any(random)];
-        const View view({.eye = through - 2 * diagonal * normalize(d), .target = through, .up = {0.1, 0.2, 1},
+        const View view({.eye = through - 2 * diagonal * normalize(d),
+                         .target = through,
+                         .up = {0.1, 0.2, 1},
                          .ortho_height = 1.5 * diagonal},
                         kSize, kSize);
         const auto result = render_dense(mesh, ones, view, optics, {.levels = kLevel});

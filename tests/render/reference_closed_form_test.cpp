@@ -40,6 +40,10 @@ Optics constant_optics() {
     return {{.color = {{0, kFront}}, .opacity = {{0, 0.5}}}, 1.0};
 }
 
+Segment constant_light(double length) {
+    return {-std::expm1(-length * std::numbers::ln2) * kFront, std::pow(0.5, length)};
+}
+
 /// ∫₀ˣ exp(t²) dt, by its series.
 double exp_square_integral(double x) {
     double sum = 0, power = x;
@@ -70,22 +74,19 @@ Segment linear_stretch(double front, double back, const Vec3& front_color, const
     return {front_color * (1 - psi) + back_color * (psi - zeta), zeta};
 }
 
-/// The largest difference of a picture from what each pixel's ray should show.
+/// What each pixel's ray should show.
 template <class Expected>
-double largest_error(const Image& image, const View& view, const Expected& expected) {
-    double largest = 0;
+Image picture(const View& view, const Expected& expected) {
+    Image image(view.width(), view.height());
     for (int y = 0; y < view.height(); ++y) {
         for (int x = 0; x < view.width(); ++x) {
             const Segment light = expected(view.ray(x + 0.5, y + 0.5));
-            const auto pixel = image.pixel(x, y);
-            largest = std::max(largest, std::abs(double{pixel[3]} - (1 - light.transmittance)));
-            for (int c = 0; c < 3; ++c) {
-                const double error = std::abs(double{pixel[static_cast<std::size_t>(c)]} - light.color[c]);
-                if (!(error <= largest)) largest = error;  // NaN counts
-            }
+            const Vec3 c = light.color;
+            const double rgba[]{c.r, c.g, c.b, 1 - light.transmittance};
+            for (std::size_t k = 0; k < 4; ++k) image.pixel(x, y)[k] = static_cast<float>(rgba[k]);
         }
     }
-    return largest;
+    return image;
 }
 
 class ClosedForm : public testing::TestWithParam<Reference> {
@@ -93,10 +94,20 @@ protected:
     void SetUp() override {
         if (test::needs_gl(GetParam()) && gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
     }
+    template <class Expected>
+    void expect_light(const Image& image, const View& view, const Expected& expected) {
+        const double error = test::largest_difference(image, picture(view, expected));
+        largest_ = std::max(largest_, error);
+        RecordProperty("largest_1e9", std::to_string(1e9 * largest_));
+        EXPECT_LT(error, kTol);
+    }
     [[nodiscard]] static Image draw(const Box& box, int cells, const std::function<double(const Vec3&)>& field,
                                     const View& view, const Optics& optics, double jitter = 0.25, int levels = 1) {
         return test::draw(GetParam(), box, cells, jitter, field, view, optics, levels);
     }
+
+private:
+    double largest_ = 0;
 };
 
 // So wide that no ray of these views leaves it through a side.
@@ -110,16 +121,28 @@ std::vector<View> slab_views() {
             {{.eye = {1, 1, 4}, .target = {-0.1, 0.3, 0}, .up = {0, 1, 0}, .ortho_height = 1.5}, 32, 32}};
 }
 
+Segment slab_light(const Ray& ray) {
+    return constant_light(glm::length(ray.direction) / std::abs(ray.direction.z));
+}
+
+/// The value is z, but for a rim either side in which it stays.
+Segment ramp_light(const Ray& ray, double most, double rim) {
+    const double slant = glm::length(ray.direction) / std::abs(ray.direction.z);
+    const double front = ray.direction.z > 0 ? rim : 1 - rim, back = 1 - front;
+    const auto stretch = [&](double a, double b, double length) {
+        return linear_stretch(most * a, most * b, glm::mix(kFront, kBack, a), glm::mix(kFront, kBack, b), length * slant);
+    };
+    Segment light = stretch(front, front, rim);
+    composite(light, stretch(front, back, 1 - 2 * rim));
+    composite(light, stretch(back, back, rim));
+    return light;
+}
+
 TEST_P(ClosedForm, SlabHasTheLengthOfItsSlant) {
     for (const View& view : slab_views()) {
-        const Image image = draw(slab(), kSlabCells, [](const Vec3&) { return 1.0; }, view, constant_optics());
-        EXPECT_LT(largest_error(image, view,
-                                [&](const Ray& ray) {
-                                    const double cosine = std::abs(ray.direction.z) / glm::length(ray.direction);
-                                    const double passes = std::pow(0.5, 1 / cosine);
-                                    return Segment{(1 - passes) * kFront, passes};
-                                }),
-                  kTol);
+        const Image image = draw(
+            slab(), kSlabCells, [](const Vec3&) { return 1.0; }, view, constant_optics());
+        expect_light(image, view, slab_light);
     }
 }
 
@@ -129,21 +152,9 @@ TEST_P(ClosedForm, RampIsPsi) {
     // Beyond the centres of the outermost voxels nothing is known: there the value stays.
     const double rim = GetParam() == Reference::Voxels ? 0.5 / kSlabCells : 0;
     for (const View& view : slab_views()) {
-        const Image image = draw(slab(), kSlabCells, [](const Vec3& p) { return p.z; }, view, optics);
-        EXPECT_LT(largest_error(image, view,
-                                [&](const Ray& ray) {
-                                    const double slant = glm::length(ray.direction) / std::abs(ray.direction.z);
-                                    const double front = ray.direction.z > 0 ? rim : 1 - rim, back = 1 - front;
-                                    const auto color = [](double value) { return glm::mix(kFront, kBack, value); };
-                                    const auto stretch = [&](double a, double b, double length) {
-                                        return linear_stretch(kMost * a, kMost * b, color(a), color(b), length * slant);
-                                    };
-                                    Segment light = stretch(front, front, rim);
-                                    composite(light, stretch(front, back, 1 - 2 * rim));
-                                    composite(light, stretch(back, back, rim));
-                                    return light;
-                                }),
-                  kTol);
+        const Image image = draw(
+            slab(), kSlabCells, [](const Vec3& p) { return p.z; }, view, optics);
+        expect_light(image, view, [&](const Ray& ray) { return ramp_light(ray, kMost, rim); });
     }
 }
 
@@ -179,33 +190,29 @@ TEST_P(ClosedForm, GaussianAlongLatticeLinesIsTheTrapezoidalRule) {
     const bool voxels = GetParam() == Reference::Voxels;  // whose centres are the lattice
     const Box box{Vec3(voxels ? -1 - 1.0 / kCells : -1), Vec3(voxels ? 1 + 1.0 / kCells : 1)};
     const Image image = draw(box, voxels ? kCells + 1 : kCells, gaussian(kSigma), view, optics, 0);
-    EXPECT_LT(largest_error(image, view, [&](const Ray& ray) { return gaussian_light(ray, kSigma); }), kTol);
+    expect_light(image, view, [&](const Ray& ray) { return gaussian_light(ray, kSigma); });
 }
 
-TEST_P(ClosedForm, Gaussian) {
-    const Box box{Vec3(-1), Vec3(1)};
-    const Optics optics = white_linear_extinction();
+TEST_P(ClosedForm, GaussianIsOfSecondOrderAndExtrapolatesToTheClosedForm) {
+    // Beyond the outermost centres voxels know nothing: there theirs has fallen to e⁻⁹.
+    const bool voxels = GetParam() == Reference::Voxels;
+    const double sigma = voxels ? 0.25 : 1;
+    const int coarsest = voxels ? 32 : 10;
     const View view({.eye = {2.1, 1.7, 2.9}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 25}, 48, 48);
-    for (double sigma : {0.4, 0.6}) {
-    std::vector<Image> images;
-    for (int n = 8; n <= 64; n *= 2) {
-        const Image image = draw(box, n, gaussian(sigma), view, optics, 0, 1);
-        images.push_back(image);
-        double sum = 0, rich = 0, rmax = 0;
-        for (int y = 0; y < view.height(); ++y) {
-            for (int x = 0; x < view.width(); ++x) {
-                const double e = 1 - gaussian_light(view.ray(x + .5, y + .5), sigma).transmittance;
-                sum += std::pow(image.pixel(x, y)[3] - e, 2);
-                if (images.size() > 1) {
-                    const double r = (4 * double(image.pixel(x, y)[3]) - double(images[images.size() - 2].pixel(x, y)[3])) / 3;
-                    rich += std::pow(r - e, 2);
-                    rmax = std::max(rmax, std::abs(r - e));
-                }
-            }
-        }
-        printf("%d: rms %.3e  rich %.3e max %.3e\n", n, std::sqrt(sum / (48 * 48)), std::sqrt(rich / (48 * 48)), rmax);
+    const auto drawn = [&](int cells) {
+        return draw({Vec3(-1), Vec3(1)}, cells, gaussian(sigma), view, white_linear_extinction(), 0);
+    };
+    const Image coarse = drawn(coarsest), middle = drawn(2 * coarsest), fine = drawn(4 * coarsest);
+    const Image exact = picture(view, [&](const Ray& ray) { return gaussian_light(ray, sigma); });
+    Image extrapolated = fine;
+    for (std::size_t i = 0; i < extrapolated.rgba.size(); ++i) {
+        extrapolated.rgba[i] += (fine.rgba[i] - middle.rgba[i]) / 3;
     }
-    }
+    RecordProperty("rms_coarse_1e9", std::to_string(1e9 * test::rms(coarse, exact)));
+    RecordProperty("rms_fine_1e9", std::to_string(1e9 * test::rms(fine, exact)));
+    RecordProperty("rms_extrapolated_1e9", std::to_string(1e9 * test::rms(extrapolated, exact)));
+    EXPECT_NEAR(std::log2(test::rms(coarse, exact) / test::rms(fine, exact)) / 2, 2, 0.2);
+    EXPECT_LT(test::rms(extrapolated, exact), kTol);
 }
 
 constexpr int kBallLevel = 1;  // of dense grids
@@ -242,10 +249,6 @@ View ball_view() {
     return {{.eye = {0.3, 1.1, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 26}, 48, 48};
 }
 
-Segment constant_light(double length) {
-    return {-std::expm1(-length * std::numbers::ln2) * kFront, std::pow(0.5, length)};
-}
-
 TEST_P(ClosedForm, BallHasTheChordsOfItsOwnFaces) {
     constexpr int kCells = 8;
     const Image image = draw_ball(GetParam(), kCells, ball_view(), constant_optics());
@@ -261,7 +264,7 @@ TEST_P(ClosedForm, BallHasTheChordsOfItsOwnFaces) {
             return test::length_inside(tets, ray);
         };
     }
-    EXPECT_LT(largest_error(image, ball_view(), [&](const Ray& ray) { return constant_light(length(ray)); }), kTol);
+    expect_light(image, ball_view(), [&](const Ray& ray) { return constant_light(length(ray)); });
 }
 
 /// RMS of the opacity's error where rays pass the centre by less than .9: silhouettes are of lower order.
@@ -284,12 +287,11 @@ double ball_error(Reference reference, int n) {
 }
 
 TEST_P(ClosedForm, BallIsReachedWithItsOrder) {
-    double last = 0;
-    for (int n = 4; n <= 32; n *= 2) {
-        double e = ball_error(GetParam(), n);
-        printf("ball %d %.3e order %.2f\n", n, e, std::log2(last / e));
-        last = e;
-    }
+    const double coarse = ball_error(GetParam(), 8), fine = ball_error(GetParam(), 32);
+    RecordProperty("rms_8_32", std::to_string(coarse) + " " + std::to_string(fine));
+    // Facets miss the sphere by the square of their size; voxels are stairs, and those that a ray meets are a matter of chance.
+    const bool voxels = GetParam() == Reference::Voxels;
+    EXPECT_NEAR(std::log2(coarse / fine) / 2, voxels ? 1 : 2, voxels ? 0.3 : 0.15);
 }
 
 INSTANTIATE_TEST_SUITE_P(References, ClosedForm, testing::ValuesIn(test::kReferences),

@@ -37,9 +37,7 @@ public:
     [[nodiscard]] int count() const { return n_; }
 
 private:
-    static Voxel floor_of(const Vec3& x) {
-        return {int(std::floor(x.x)), int(std::floor(x.y)), int(std::floor(x.z))};
-    }
+    static Voxel floor_of(const Vec3& x) { return {int(std::floor(x.x)), int(std::floor(x.y)), int(std::floor(x.z))}; }
     class Cursor : public VoxelCursor {
     public:
         explicit Cursor(const VoxelBox& grid) : grid_(grid) {}
