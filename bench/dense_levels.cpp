@@ -1,7 +1,9 @@
 // Dense grids level by level: seconds, what is crossed, and how the picture of one level differs from that of the finest; and
 // the tetrahedra of the refined mesh, which come to the same. The order is the logarithm of the quotient of two differences.
 //
-//   dense_levels [model = twist] [resolution = 8] [finest = 6] [size = 256]
+// Each level takes eight times the last, or more where grids do not fit into memory at once: half a minute for 64 cells.
+//
+//   dense_levels [model = twist] [resolution = 4] [finest = 6] [size = 256]
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -79,7 +81,7 @@ void measure(const std::string& name, int resolution, int finest, int size) {
 
 int main(int argc, char** argv) try {
     const auto number = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
-    measure(argc > 1 ? argv[1] : "twist", number(2, 8), number(3, 6), number(4, 256));
+    measure(argc > 1 ? argv[1] : "twist", number(2, 4), number(3, 6), number(4, 256));
 } catch (const subvol::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

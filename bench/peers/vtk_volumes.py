@@ -105,10 +105,12 @@ def main(mesh, exact_file):
     size = round((exact.size / 3) ** .5)
     exact = exact.reshape(size, size, 3)
     tets = tetrahedra(mesh)
+    windows = []  # kept: when its last window goes, the X server of xvfb-run does too
     for name, make in MAPPERS:
         mapper = make()
         mapper.SetInputData(tets)
         window, camera = window_of(mapper, size)
+        windows.append(window)
         first, later = cpu_seconds_of_frame(window), 1e30
         for _ in range(1, FRAMES):
             camera.Azimuth(1e-6)  # else nothing is drawn again
