@@ -13,7 +13,7 @@ import numpy
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-FRAMES = 4
+FRAMES = 3
 
 
 def ray_caster(integrator):
