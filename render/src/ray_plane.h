@@ -66,7 +66,9 @@ private:
 }
 
 [[nodiscard]] inline Side side_of(const SeenPoint& a, const SeenPoint& b) {
-    constexpr double kErrorBound = 3.4e-16;  // (3 + 16ε)ε of Shewchuk's 2-D orientation test
+    // The sign is right from 3.4e-16 on ((3 + 16ε)ε of Shewchuk's 2-D orientation test). As weights of a crossing areas have to
+    // be right to some digits too: else it lies beside the ray, by up to the whole face where that is seen almost edge on.
+    constexpr double kErrorBound = 1e-7;
     const double left = a.x * b.y, right = b.x * a.y;
     const double area = left - right;
     if (std::abs(area) > kErrorBound * (std::abs(left) + std::abs(right))) return {area, area > 0};

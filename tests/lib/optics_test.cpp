@@ -103,6 +103,45 @@ TEST(Optics, SplittingAStretchChangesNothing) {
     }
 }
 
+/// Up to eight knots of each kind, some as near to one another as 1e-4, with transparent stretches.
+TransferFunction random_function(std::mt19937& random) {
+    std::uniform_real_distribution<double> part(0, 1);
+    std::uniform_int_distribution<int> count(1, 8);
+    TransferFunction function;
+    double value = -0.1;
+    for (int i = count(random); i > 0; --i) {
+        value += std::pow(10, -4 + 4 * part(random)) / 4;
+        function.color.push_back({value, {part(random), part(random), part(random)}});
+    }
+    value = -0.1;
+    for (int i = count(random); i > 0; --i) {
+        value += std::pow(10, -4 + 4 * part(random)) / 4;
+        function.opacity.push_back({value, std::max(0.0, 1.5 * part(random) - 0.5)});
+    }
+    return function;
+}
+
+TEST(Optics, SplittingAStretchChangesNothingForAnyFunction) {
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> value(-0.3, 1.3), part(0, 1), log_length(-4, 3), log_unit(-2, 1);
+    for (int i = 0; i < 2000; ++i) {
+        const Optics optics(random_function(random), std::pow(10, log_unit(random)));
+        const double front = value(random), back = value(random), length = std::pow(10, log_length(random));
+        const Segment whole = optics.integrate(front, back, length);
+        Segment parts;
+        double from = 0;
+        for (int k = 0; k < 4; ++k) {  // I(a,b), then I(b,c), and so on
+            const double to = k == 3 ? 1 : from + part(random) * (1 - from);
+            composite(parts,
+                      optics.integrate(front + from * (back - front), front + to * (back - front), (to - from) * length));
+            from = to;
+        }
+        // 1e-9: what each piece's colour is exact to.
+        expect_near(parts, whole, 1e-9);
+        if (HasFailure()) FAIL() << "function " << i << ": " << front << ' ' << back << ' ' << length;
+    }
+}
+
 TEST(Optics, ColorStaysWithinOpacity) {
     const Optics optics(sharp(), 0.01);
     std::mt19937 random(3);

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
+#include <tuple>
 #include <vector>
 
 #include "subvol/hex_mesh.h"
@@ -63,6 +66,26 @@ inline HexMesh ball(Index n) {
         p = radius > 0 ? q * (cube / radius) : q;
     }
     return mesh;
+}
+
+/// The mesh with its points numbered by position, as dense grids number theirs: then both split cells alike.
+inline HexMesh numbered_by_position(const HexMesh& mesh) {
+    std::vector<Index> order(mesh.points.size()), rank(mesh.points.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    const auto key = [&](Index p) { return std::tuple(mesh.points[p].x, mesh.points[p].y, mesh.points[p].z, p); };
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = static_cast<Index>(r);
+    HexMesh sorted = mesh;
+    for (std::size_t p = 0; p < rank.size(); ++p) {
+        sorted.points[rank[p]] = mesh.points[p];
+        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+            sorted.attributes[a].values[rank[p]] = mesh.attributes[a].values[p];
+        }
+    }
+    for (auto& cell : sorted.cells) {
+        for (Index& p : cell) p = rank[p];
+    }
+    return sorted;
 }
 
 inline std::vector<double> evaluate(const HexMesh& mesh, const std::function<double(const Vec3&)>& field) {

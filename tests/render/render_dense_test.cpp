@@ -5,8 +5,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <numeric>
-#include <tuple>
 
 #include "render/hex_meshes.h"
 #include "subvol/error.h"
@@ -72,29 +70,9 @@ double largest_difference(const Image& a, const Image& b) {
     return largest;
 }
 
-/// The mesh with its points numbered by position, as dense grids number theirs: then both split cells alike.
-HexMesh numbered_by_position(const HexMesh& mesh) {
-    std::vector<Index> order(mesh.points.size()), rank(mesh.points.size());
-    std::iota(order.begin(), order.end(), Index{0});
-    const auto key = [&](Index p) { return std::tuple(mesh.points[p].x, mesh.points[p].y, mesh.points[p].z, p); };
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
-    for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = static_cast<Index>(r);
-    HexMesh sorted = mesh;
-    for (std::size_t p = 0; p < rank.size(); ++p) {
-        sorted.points[rank[p]] = mesh.points[p];
-        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
-            sorted.attributes[a].values[rank[p]] = mesh.attributes[a].values[p];
-        }
-    }
-    for (auto& cell : sorted.cells) {
-        for (Index& p : cell) p = rank[p];
-    }
-    return sorted;
-}
-
 /// The same volume by `refine` and the walk through the whole mesh of tetrahedra.
 Image by_tets(const HexMesh& mesh, const RefineOptions& options, const View& view, const Optics& optics) {
-    const HexMesh fine = numbered_by_position(on_limit(refine(mesh, options), options.scheme));
+    const HexMesh fine = test::numbered_by_position(on_limit(refine(mesh, options), options.scheme));
     return render_tets(fine, fine.attributes[0].values, view, optics).image;
 }
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <random>
 
+#include "boundary_length.h"
 #include "boundary_scene.h"
 #include "render/hex_meshes.h"
 #include "subvol/mesh_io.h"
@@ -19,63 +20,11 @@ namespace subvol {
 namespace {
 
 constexpr double kLengthTol = 1e-4;  // of the diagonal: what is asked for; offsets of 10⁶ diagonals round by 1e-10 of it
-constexpr double kShift = 1e-6;      // of the diagonal: how far beside the ray the boundary is crossed
-constexpr double kThin = 1e-14;      // of distance², a triangle's area as seen by the ray: its sides are rounding
 constexpr std::size_t kRays = 3;     // of each kind and direction
 
 std::size_t sweep() {
     const char* text = std::getenv("SUBVOL_SWEEP");
     return text ? std::max<std::size_t>(1, std::strtoul(text, nullptr, 10)) : 1;
-}
-
-std::vector<Vec3> directions() {
-    std::vector<Vec3> all;
-    for (int k = 0; k < 27; ++k) {
-        if (k != 13) all.emplace_back(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-    }
-    return all;
-}
-
-/// Whether the corners of a whole cell are numbered the other way about.
-bool left_handed(const TetMesh& mesh, std::size_t cell) {
-    double volume = 0;
-    for (std::size_t t = 6 * cell; t < 6 * cell + 6; ++t) {
-        const auto p = [&](std::size_t k) { return mesh.points[mesh.tets[t].corner[k]].position; };
-        volume += dot(cross(p(1) - p(0), p(2) - p(0)), p(3) - p(0));
-    }
-    return volume < 0;
-}
-
-struct Cut {
-    double t;
-    int sign;
-};
-
-/// Length of the line where the boundary winds about it, by all triangles.
-double length_inside(const TetMesh& mesh, const Ray& ray) {
-    const RayPlane plane(ray);
-    std::vector<Cut> cuts;
-    for (const TetFace face : mesh.boundary) {
-        const auto ids = mesh.corners(face);
-        std::array<Vec3, 3> p;
-        for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.points[ids[k]].position - ray.origin;
-        const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-        const double a = dot(ray.direction, cross(p[0], p[1])), b = dot(ray.direction, cross(p[1], p[2])),
-                     c = dot(ray.direction, cross(p[2], p[0]));
-        if ((a > 0) != (b > 0) || (b > 0) != (c > 0)) continue;
-        if (std::abs(a + b + c) < kThin * glm::length(ray.direction) * dot(p[0], p[0])) continue;
-        // Which side is inside is said by the numbers, not the shape, of a tetrahedron: so that folds cancel.
-        const int parity = (face % 4 % 2 == 0 ? 1 : -1) * (left_handed(mesh, face / 24) ? -1 : 1);
-        cuts.push_back({dot(p[0], normal) / dot(ray.direction, normal), (a > 0 ? 1 : -1) * parity});
-    }
-    std::sort(cuts.begin(), cuts.end(), [](const Cut& x, const Cut& y) { return x.t < y.t; });
-    double length = 0;
-    int winding = 0;
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-        winding += cuts[i].sign;
-        if (winding != 0) length += std::max(0.0, cuts[i + 1].t) - std::max(0.0, cuts[i].t);
-    }
-    return length * glm::length(ray.direction);
 }
 
 class Swept {
@@ -89,13 +38,17 @@ public:
           tracer_(tets_, scene_, optics_) {}
 
     void all_directions() {
-        for (const Vec3& d : directions()) {
+        for (const Vec3& d : test::directions()) {
             for (std::size_t i = 0; i < kRays * sweep(); ++i) {
                 follow(point(), d);
                 follow(0.5 * (corner(0) + corner(1)), d);
                 follow(box_.lower + Vec3(part(), part(), part()) * box_.size(), d);
             }
         }
+        testing::Test::RecordProperty(name_ + ": rays", std::to_string(tracer_.counts().rays));
+        testing::Test::RecordProperty(name_ + ": lost", std::to_string(tracer_.counts().lost_rays));
+        testing::Test::RecordProperty(name_ + ": off", std::to_string(missed_));
+        testing::Test::RecordProperty(name_ + ": worst length, 1e-9 diagonals", std::to_string(1e9 * worst_));
         EXPECT_EQ(tracer_.counts().lost_rays, 0u) << name_ << ": of " << tracer_.counts().rays;
         // Where a crushed mesh folds over itself, two walks may share a stretch that the boundary counts as none.
         EXPECT_LE(missed_, traced_ / 1000) << name_ << ": lengths off, of " << traced_ << " rays, by up to " << worst_
@@ -116,31 +69,10 @@ private:
         const Segment seen = tracer_.trace(ray);
         ASSERT_TRUE(std::isfinite(seen.transmittance) && std::isfinite(seen.color.x)) << name_;
         const double length = -std::log2(seen.transmittance);  // in diagonals, as is the opacity's unit
-        double error = error_against(ray, length, 1);
-        if (error > kLengthTol) error = error_against(ray, length, 8);
+        const double error = test::length_error(tets_, ray, length, box_.diagonal(), kLengthTol);
         ++traced_;
-        if (error > kLengthTol) {
-            ++missed_;
-            worst_ = std::max(worst_, error);
-        }
-    }
-
-    /// A ray along the boundary is inside or outside, or by turns: it lies between those beside it, of which so many are asked.
-    double error_against(const Ray& ray, double length, int count) const {
-        double least = 1e30, most = 0;
-        for (int k = 0; k < count; ++k) {
-            const double inside = length_inside(tets_, beside(ray, k)) / box_.diagonal();
-            least = std::min(least, inside);
-            most = std::max(most, inside);
-        }
-        return std::max({0.0, least - length, length - most});
-    }
-
-    Ray beside(const Ray& ray, int k) const {
-        const double angle = 0.3 + k * 0.7853981633974483;
-        const Vec3 right = normalize(cross(ray.direction, Vec3(0.3, 0.5, 0.8))), up = normalize(cross(right, ray.direction));
-        const Vec3 aside = kShift * box_.diagonal() * (std::cos(angle) * right + std::sin(angle) * up);
-        return {ray.origin + aside, ray.direction};
+        worst_ = std::max(worst_, error);
+        if (error > kLengthTol) ++missed_;
     }
 
     std::string name_;
