@@ -6,6 +6,7 @@
 #include <new>
 
 #include "subvol/error.h"
+#include "subvol/version.h"
 #include "text.h"
 #include "verb.h"
 
