@@ -17,7 +17,7 @@ function(subvol_find_openvdb)
   find_package(OpenVDB 10 MODULE REQUIRED)
   set_target_properties(OpenVDB::openvdb PROPERTIES IMPORTED_GLOBAL TRUE)
 endfunction()
-if(SUBVOL_VDB)
+if(SUBVOL_VDB AND NOT TARGET OpenVDB::openvdb) # found once for all folders of a project
   subvol_find_openvdb()
 endif()
 

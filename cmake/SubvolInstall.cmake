@@ -1,8 +1,14 @@
 include(CMakePackageConfigHelpers)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/subvol)
+get_property(SUBVOL_COMPONENTS GLOBAL PROPERTY SUBVOL_COMPONENTS)
 configure_package_config_file(cmake/subvolConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/subvolConfig.cmake
-  INSTALL_DESTINATION ${config_dir})
+  INSTALL_DESTINATION ${config_dir} NO_SET_AND_CHECK_MACRO)
+# Until 1.0 a new minor version may break programs that were written for the one before.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/subvolConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(EXPORT subvolTargets NAMESPACE subvol:: DESTINATION ${config_dir})
+foreach(component IN LISTS SUBVOL_COMPONENTS) # a file each: who takes one need not have what the others link to
+  install(EXPORT subvolTargets-${component} NAMESPACE subvol:: DESTINATION ${config_dir} COMPONENT development)
+endforeach()
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/subvolConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/subvolConfigVersion.cmake
-  cmake/SubvolDependencies.cmake DESTINATION ${config_dir})
+  cmake/SubvolDependencies.cmake DESTINATION ${config_dir} COMPONENT development)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT command)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libsubvol-dev RENAME copyright COMPONENT development)

@@ -5,7 +5,9 @@
 #include <iostream>
 #include <new>
 
+#include "manual.h"
 #include "subvol/error.h"
+#include "subvol/version.h"
 #include "text.h"
 #include "verb.h"
 
@@ -71,6 +73,15 @@ int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
 
 int run(CLI::App& program, int argc, char** argv) {
     program.set_version_flag("--version", SUBVOL_VERSION);
+    const auto generate = [&program](const std::string& kind) {
+        subvol::cli::write_manual(std::cout, kind, program);
+        if (!std::cout.flush()) throw Error(ErrorCode::Io, "could not be written", "standard output");
+        throw CLI::Success();
+    };
+    program.add_option_function<std::string>("--generate", generate, "the manual page or a shell's completion")
+        ->group("")  // for the build: no help shows it
+        ->check(CLI::IsMember(subvol::cli::kManuals))
+        ->trigger_on_parse();
     program.require_subcommand(1);
     program.footer(kFooter);
     program.get_formatter()->column_width(36);

@@ -14,6 +14,7 @@
 #include "subvol/render.h"
 #include "subvol/sample.h"
 #include "subvol/vdb.h"
+#include "subvol/version.h"
 #include "text.h"
 #include "verb.h"
 

@@ -1,5 +1,6 @@
 #include "gl_display.h"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -37,10 +38,17 @@ std::string card_file(EGLDeviceEXT device, const char* extensions) {
     return file ? file : "";
 }
 
+/// Epoxy ends the program where it opens a library that is not installed: ask first.
+bool opengl_installed() {
+    static const bool installed =
+        epoxy_has_egl() && (dlopen("libOpenGL.so.0", RTLD_LAZY) != nullptr || dlopen("libGL.so.1", RTLD_LAZY) != nullptr);
+    return installed;
+}
+
 /// Hardware, then Mesa's software by its own platform, then by that of devices: the former may turn out to be hardware.
 std::vector<Candidate> find_candidates() {
     std::vector<Candidate> hardware, software;
-    if (!epoxy_has_egl()) return {};
+    if (!opengl_installed()) return {};
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     if (!has_extension(client, "EGL_EXT_platform_base")) return {};
     if (has_extension(client, "EGL_MESA_platform_surfaceless"))
@@ -125,12 +133,14 @@ GlDevice describe() {
 }  // namespace
 
 EglContext EglContext::current() {
+    if (!opengl_installed()) return {};
     eglBindAPI(EGL_OPENGL_API);
     return {eglGetCurrentDisplay(), eglGetCurrentContext()};
 }
 
 bool EglContext::make_current() const {
-    eglBindAPI(EGL_OPENGL_API);  // a thread begins with another one
+    if (!opengl_installed()) return !context;  // none was made, so none is current
+    eglBindAPI(EGL_OPENGL_API);                // a thread begins with another one
     if (context) return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
     const EglContext old = current();
     return !old.context || eglMakeCurrent(old.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) == EGL_TRUE;

@@ -4,6 +4,9 @@
 #include <subvol/refine.h>
 #include <subvol/render.h>
 #include <subvol/vdb.h>
+#include <subvol/version.h>
+
+static_assert(SUBVOL_VERSION_MAJOR == 0 && SUBVOL_VERSION_MINOR == 1);
 
 int main() {
     const subvol::HexMesh mesh = subvol::make_model("ball", 2);

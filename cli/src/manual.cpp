@@ -1,0 +1,203 @@
+#include "manual.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <map>
+#include <ostream>
+#include <sstream>
+
+#include "subvol/version.h"
+
+namespace subvol::cli {
+namespace {
+
+std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : options) names.push_back(option->get_name());
+    std::ranges::sort(names);
+    return names;
+}
+
+std::string in_one_line(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+Argument argument_of(const CLI::Option& option) {
+    Argument argument;
+    argument.description = in_one_line(option.get_description());
+    argument.positional = option.get_positional();
+    argument.required = option.get_required();
+    argument.repeatable = option.get_expected_max() > 1;
+    argument.value_optional = option.get_expected_min() == 0;
+    argument.excludes = names_of(option.get_excludes());
+    argument.needs = names_of(option.get_needs());
+    if (argument.positional) {
+        argument.names = {option.get_name(true)};
+    } else {
+        for (const std::string& name : option.get_snames()) argument.names.push_back("-" + name);
+        for (const std::string& name : option.get_lnames()) argument.names.push_back("--" + name);
+    }
+    if (option.get_items_expected_max() == 0) return argument;
+    std::string type = option.get_type_name();  // "N:INT in [1 - 64]", "WHEN:{auto,on,off}", "POSITIVE"
+    if (const std::size_t colon = type.find(':'); colon != std::string::npos && !type.starts_with("V:A")) {
+        argument.range = type.substr(colon + 1);
+        type.resize(colon);
+    }
+    argument.value = argument.positional ? argument.names.front() : type;
+    if (argument.value.starts_with('[')) argument.value = argument.value.substr(1, argument.value.size() - 2);
+    if (argument.range.starts_with('{')) {
+        std::istringstream list(argument.range.substr(1, argument.range.size() - 2));
+        for (std::string choice; std::getline(list, choice, ',');) argument.choices.push_back(choice);
+    }
+    return argument;
+}
+
+/// A character of more than one byte as roff's "\[u2026]"; i goes to its last byte.
+std::string roff_unicode(const std::string& text, std::size_t& i) {
+    const auto first = static_cast<unsigned char>(text[i]);
+    const int more = first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : 1;
+    unsigned code = first & (0x3fU >> more);
+    for (int byte = 0; byte < more && i + 1 < text.size(); ++byte)
+        code = code << 6 | (static_cast<unsigned char>(text[++i]) & 0x3fU);
+    std::array<char, 16> escape{};
+    std::snprintf(escape.data(), escape.size(), "\\[u%04X]", code);
+    return escape.data();
+}
+
+/// Text with roff's own characters escaped; a hyphen that is to be typed is a minus.
+std::string roff(const std::string& text) {
+    static const std::map<char, std::string> kEscapes{{'\\', "\\e"},  {'-', "\\-"},   {'\'', "\\(aq"},
+                                                      {'`', "\\(ga"}, {'^', "\\(ha"}, {'~', "\\(ti"}};
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        const auto escape = kEscapes.find(c);
+        if (c == '.' && (out.empty() || out.back() == '\n')) out += "\\&";
+        if ((c & 0x80) != 0) {
+            out += roff_unicode(text, i);
+        } else {
+            out += escape == kEscapes.end() ? std::string(1, c) : escape->second;
+        }
+    }
+    return out;
+}
+
+std::string today() {
+    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+    const std::time_t now = epoch ? std::strtoll(epoch, nullptr, 10) : std::time(nullptr);
+    char text[16];
+    std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
+    return text;
+}
+
+std::string sentence(const char* words, const std::vector<std::string>& names) {
+    std::string out;
+    for (const std::string& name : names) out += (out.empty() ? std::string(words) : ",") + " " + name;
+    return out.empty() ? out : "; " + out;
+}
+
+void write_argument(std::ostream& out, const Argument& argument) {
+    out << ".TP\n";
+    if (argument.positional) {
+        out << "\\fI" << roff(argument.value) << "\\fR";
+    } else {
+        for (std::size_t i = 0; i < argument.names.size(); ++i)
+            out << (i ? ", " : "") << "\\fB" << roff(argument.names[i]) << "\\fR";
+        if (!argument.value.empty()) {
+            const bool optional = argument.value_optional;
+            out << ' ' << (optional ? "[" : "") << "\\fI" << roff(argument.value) << "\\fR" << (optional ? "]" : "");
+        }
+    }
+    out << '\n'
+        << roff(argument.description) << roff(argument.range.empty() ? "" : "; " + argument.range)
+        << roff(sentence("not with", argument.excludes)) << roff(sentence("with", argument.needs))
+        << (argument.required ? "; required" : "") << '\n';
+}
+
+/// "Examples:\n  lines" as a heading and lines to type, "Exit codes: words" as a heading and words.
+void write_paragraph(std::ostream& out, const std::string& paragraph, const char* heading) {
+    const std::size_t colon = paragraph.find(':');
+    std::string title = paragraph.substr(0, colon), rest = paragraph.substr(colon + 1);
+    const bool section = std::string(heading) == ".SH";
+    if (section) std::ranges::transform(title, title.begin(), [](unsigned char c) { return std::toupper(c); });
+    out << heading << (section ? " " : "\n") << roff(title) << (section ? "\n" : ":\n");
+    if (rest.starts_with('\n')) {
+        out << (section ? "" : ".PP\n") << ".EX\n" << roff(rest.substr(1)) << "\n.EE\n";
+    } else {
+        out << roff(rest.substr(rest.find_first_not_of(' '))) << '\n';
+    }
+}
+
+void write_footer(std::ostream& out, const CLI::App& app, const char* heading) {
+    std::string rest = app.get_footer();
+    while (!rest.empty()) {
+        const std::size_t end = rest.find("\n\n");
+        write_paragraph(out, rest.substr(0, end), heading);
+        rest = end == std::string::npos ? "" : rest.substr(end + 2);
+    }
+}
+
+void write_verb(std::ostream& out, const CLI::App& verb) {
+    out << ".SS subvol " << roff(verb.get_name());
+    std::vector<Argument> arguments = arguments_of(verb, "Positionals");
+    for (const Argument& argument : arguments)
+        out << (argument.required ? " " : " [") << roff(argument.value) << (argument.required ? "" : "]");
+    out << " [options]\n" << roff(verb.get_description()) << '\n';
+    for (const Argument& option : arguments_of(verb, "Options")) arguments.push_back(option);
+    for (const Argument& argument : arguments) write_argument(out, argument);
+    write_footer(out, verb, ".PP");
+}
+
+const char* const kCommon = "Common options";
+
+}  // namespace
+
+std::vector<const CLI::App*> verbs_of(const CLI::App& program) {
+    return program.get_subcommands([](const CLI::App* verb) { return !verb->get_group().empty(); });
+}
+
+std::vector<Argument> arguments_of(const CLI::App& verb, const std::string& group) {
+    std::vector<Argument> arguments;
+    for (const CLI::Option* option : verb.get_options()) {
+        const std::string its_group = option->get_positional() ? "Positionals" : option->get_group();
+        if (!option->get_group().empty() && its_group == group) arguments.push_back(argument_of(*option));
+    }
+    return arguments;
+}
+
+std::vector<Argument> arguments_of(const CLI::App& verb) {
+    std::vector<Argument> arguments;
+    for (const char* group : {"Positionals", "Options", kCommon}) {
+        for (const Argument& argument : arguments_of(verb, group)) arguments.push_back(argument);
+    }
+    return arguments;
+}
+
+void write_man_page(std::ostream& out, const CLI::App& program) {
+    const auto verbs = verbs_of(program);
+    std::string summary = program.get_description();
+    out << ".\\\" Made by the build: subvol --generate man\n"
+        << ".TH SUBVOL 1 " << today() << " \"subvol " << SUBVOL_VERSION << "\" \"User Commands\"\n"
+        << ".SH NAME\nsubvol \\- " << roff(summary.substr(0, summary.find(':'))) << '\n'
+        << ".SH SYNOPSIS\n.B subvol\n.I verb\n.RI [ arguments ]\n.br\n.B subvol\n.BR \\-\\-help | \\-\\-version\n"
+        << ".SH DESCRIPTION\n"
+        << roff(summary) << '\n';
+    for (const Argument& argument : arguments_of(program)) write_argument(out, argument);
+    out << ".SH VERBS\n";
+    for (const CLI::App* verb : verbs) write_verb(out, *verb);
+    out << ".SH COMMON OPTIONS\nThese can be given to every verb.\n";
+    for (const Argument& argument : arguments_of(*verbs.front(), kCommon)) write_argument(out, argument);
+    write_footer(out, program, ".SH");
+}
+
+void write_manual(std::ostream& out, const std::string& kind, const CLI::App& program) {
+    if (kind == "man") return write_man_page(out, program);
+    if (kind == "bash") return write_bash_completion(out, program);
+    write_zsh_completion(out, program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace subvol::cli {
+
+/// What `subvol --generate` can write from the argument table.
+inline const std::vector<std::string> kManuals{"man", "bash", "zsh"};
+
+/// The manual page subvol(1), in man's macros. It bears the day of SOURCE_DATE_EPOCH, else today's.
+void write_man_page(std::ostream& out, const CLI::App& program);
+
+/// Completion of verbs, options and values for bash.
+void write_bash_completion(std::ostream& out, const CLI::App& program);
+
+/// The same for zsh.
+void write_zsh_completion(std::ostream& out, const CLI::App& program);
+
+/// One of `kManuals`.
+void write_manual(std::ostream& out, const std::string& kind, const CLI::App& program);
+
+/// An option as the manuals see it.
+struct Argument {
+    std::vector<std::string> names;  ///< "-o", "--output"; of a positional argument its name
+    std::string value;               ///< what is given, as "FILE"; empty for a flag
+    std::string range;               ///< what it may be, as "INT in [1 - 64]"; empty for anything
+    std::vector<std::string> choices;
+    std::string description;
+    bool positional = false, required = false, repeatable = false, value_optional = false;
+    std::vector<std::string> excludes, needs;
+};
+
+/// The visible arguments of a verb in one of the help's groups ("Options", "Positionals"), in its order.
+[[nodiscard]] std::vector<Argument> arguments_of(const CLI::App& verb, const std::string& group);
+
+/// Those of all groups.
+[[nodiscard]] std::vector<Argument> arguments_of(const CLI::App& verb);
+
+[[nodiscard]] std::vector<const CLI::App*> verbs_of(const CLI::App& program);
+
+}  // namespace subvol::cli

@@ -1,0 +1,39 @@
+# `cpack` in the build folder: subvol (the command) and libsubvol-dev (headers, static libraries, CMake's files) for Debian.
+# scripts/test-package installs both in a bare Debian.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME subvol)
+set(CPACK_PACKAGE_CONTACT "The OpenSubVol maintainers")
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL command development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+
+set(CPACK_COMPONENT_COMMAND_DESCRIPTION "subdivision volumes: the command
+Refines hexahedral meshes, draws them as splats, turns them into OpenVDB
+grids, and measures how good the result is.")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME subvol)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
+# OpenGL is opened when it is asked for; ffmpeg makes the videos of --turntable.
+set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg")
+
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "subdivision volumes: the library
+Headers, static libraries and CMake package of subvol::lib, subvol::vdb,
+subvol::render and subvol::compare.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsubvol-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libtbb-dev, libglm-dev, nlohmann-json3-dev, libpugixml-dev, libceres-dev, \
+zlib1g-dev, liblzma-dev, liblz4-dev, libmuparser-dev, pkg-config")
+if(SUBVOL_VDB)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenvdb-dev, libboost-iostreams-dev")
+endif()
+if(SUBVOL_RENDER)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libembree-dev, libhwy-dev, libepoxy-dev")
+endif()
+if(SUBVOL_COMPARE)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenimageio-dev, openimageio-tools")
+endif()
+include(CPack)
