@@ -59,7 +59,7 @@ Segment TetTracer::trace(const Ray& ray) {
     while (const End* next = first_unwalked()) {
         const TetFace start = next->face;
         TetFace other = start;
-        const WalkOutcome outcome = walk_between(mesh_, plane, start, speed, optics_, state, other, counts_.segments);
+        const WalkOutcome outcome = walk_between(mesh_, plane, start, speed, compositor_, state, other, counts_.segments);
         if (outcome == WalkOutcome::Lost) ++counts_.lost_rays;
         if (outcome == WalkOutcome::Lost || outcome == WalkOutcome::Opaque) break;
         mark_walked(plane, start, other);

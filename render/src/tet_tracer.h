@@ -4,7 +4,7 @@
 
 #include "boundary_scene.h"
 #include "integrate_walk.h"
-#include "subvol/optics.h"
+#include "subvol/compositor.h"
 
 namespace subvol {
 
@@ -18,7 +18,7 @@ struct TraceCounts {
 class TetTracer {
 public:
     TetTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics)
-        : mesh_(mesh), scene_(scene), optics_(optics) {}
+        : mesh_(mesh), scene_(scene), compositor_(optics, kOpaque) {}
 
     /// The part of the ray in front of its origin.
     [[nodiscard]] Segment trace(const Ray& ray);
@@ -40,7 +40,7 @@ private:
 
     const TetMesh& mesh_;
     const BoundaryScene& scene_;
-    const Optics& optics_;
+    Compositor compositor_;
     TraceCounts counts_;
     std::vector<TetFace> hits_;
     std::vector<End> ends_;
