@@ -47,7 +47,7 @@ Segment DenseTracer::trace(const Ray& ray) {
         end.walked = true;
         const DenseGrid& grid = scene_.grids()[end.grid];
         TetFace other = end.face;
-        const WalkOutcome outcome = walk_between(grid, plane, end.face, speed, optics_, state, other, counts_.segments);
+        const WalkOutcome outcome = walk_between(grid, plane, end.face, speed, compositor_, state, other, counts_.segments);
         if (outcome == WalkOutcome::Opaque) break;
         if (outcome == WalkOutcome::Lost || !mark_walked(end.grid, other)) {
             ++counts_.lost_rays;

@@ -16,7 +16,7 @@ struct DenseCounts {
 /// Integrates rays through dense grids. Keeps scratch memory: one for each thread or tile.
 class DenseTracer {
 public:
-    DenseTracer(const DenseScene& scene, const Optics& optics) : scene_(scene), optics_(optics) {}
+    DenseTracer(const DenseScene& scene, const Optics& optics) : scene_(scene), compositor_(optics, kOpaque) {}
 
     /// The part of the ray in front of its origin.
     [[nodiscard]] Segment trace(const Ray& ray);
@@ -35,7 +35,7 @@ private:
     [[nodiscard]] bool mark_walked(std::uint32_t grid, TetFace face);
 
     const DenseScene& scene_;
-    const Optics& optics_;
+    Compositor compositor_;
     DenseCounts counts_;
     std::vector<std::uint32_t> met_;
     std::vector<TetFace> faces_;

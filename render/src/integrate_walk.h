@@ -2,10 +2,13 @@
 
 #include <limits>
 
-#include "subvol/optics.h"
+#include "subvol/compositor.h"
 #include "tet_walk.h"
 
 namespace subvol {
+
+/// What lies behind less transmittance than this is not followed.
+inline constexpr double kOpaque = 1e-6;
 
 /// What has been integrated, up to depth t: every depth counts once, even where a mesh folds over itself.
 struct LitDepth {
@@ -29,8 +32,7 @@ struct WalkEnd {
 /// segments: grows by the tetrahedra crossed
 template <class Mesh>
 WalkOutcome integrate_walk(const Mesh& mesh, const RayPlane& plane, TetFace start, double speed, double limit,
-                           const Optics& optics, LitDepth& state, WalkEnd& last, std::size_t& segments) {
-    constexpr double kOpaque = 1e-6;  // what lies behind less transmittance than this is not followed
+                           Compositor& compositor, LitDepth& state, WalkEnd& last, std::size_t& segments) {
     const auto face = cross_face(mesh, plane, start);
     if (!face) return WalkOutcome::Lost;
     const Crossing first = face->crossing();
@@ -44,14 +46,16 @@ WalkOutcome integrate_walk(const Mesh& mesh, const RayPlane& plane, TetFace star
             const double slope = (next.value - previous.value) / (next.t - previous.t);
             const double front = from == previous.t ? previous.value : previous.value + (from - previous.t) * slope;
             const double back = to == next.t ? next.value : previous.value + (to - previous.t) * slope;
-            composite(state.light, optics.integrate(front, back, (to - from) * speed));
+            compositor.add(front, back, (to - from) * speed);
             state.t = to;
             reached = to;
         }
         previous = next;
-        return ++steps <= mesh.tet_count() && state.light.transmittance >= kOpaque;
+        return ++steps <= mesh.tet_count() && !compositor.opaque();
     };
+    compositor.start(state.light);
     const auto end = walk(mesh, plane, start, *face, visit);
+    state.light = compositor.finish();
     segments += steps;
     if (!end) return steps > mesh.tet_count() ? WalkOutcome::Lost : WalkOutcome::Opaque;
     last = {*end, previous.t};
@@ -61,14 +65,14 @@ WalkOutcome integrate_walk(const Mesh& mesh, const RayPlane& plane, TetFace star
 
 /// Walks between two boundary faces, from whichever is the entry; other: the one that is not `start`.
 template <class Mesh>
-WalkOutcome walk_between(const Mesh& mesh, const RayPlane& plane, TetFace start, double speed, const Optics& optics,
+WalkOutcome walk_between(const Mesh& mesh, const RayPlane& plane, TetFace start, double speed, Compositor& compositor,
                          LitDepth& state, TetFace& other, std::size_t& segments) {
     const LitDepth before = state;
     WalkEnd last{start, 0};
     TetFace entry = start;
     const auto follow = [&](double limit) {
         state = before;
-        return integrate_walk(mesh, plane, entry, speed, limit, optics, state, last, segments);
+        return integrate_walk(mesh, plane, entry, speed, limit, compositor, state, last, segments);
     };
     WalkOutcome outcome = follow(std::numeric_limits<double>::infinity());
     other = last.face;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "subvol/camera.h"
@@ -53,6 +54,12 @@ public:
     }
     [[nodiscard]] const Vec3& origin() const { return origin_; }
 
+    /// The axes that are seen as x, y and depth, and how they are sheared.
+    [[nodiscard]] std::array<int, 3> axes() const { return {x_, y_, z_}; }
+    [[nodiscard]] double slope_x() const { return slope_x_; }
+    [[nodiscard]] double slope_y() const { return slope_y_; }
+    [[nodiscard]] double per_depth() const { return per_depth_; }
+
 private:
     Vec3 origin_;
     int x_, y_, z_;
@@ -65,13 +72,15 @@ private:
     return std::fma(a, d, -bc) + std::fma(-b, c, bc);
 }
 
+/// Above this share of its terms an area is taken as rounded. Its sign would be right from 3.4e-16 on ((3 + 16ε)ε of Shewchuk's
+/// 2-D orientation test). But areas are the weights of a crossing too: without right digits it lies beside the ray, by up to the
+/// whole face where that is seen almost edge on.
+inline constexpr double kSideError = 1e-7;
+
 [[nodiscard]] inline Side side_of(const SeenPoint& a, const SeenPoint& b) {
-    // The sign is right from 3.4e-16 on ((3 + 16ε)ε of Shewchuk's 2-D orientation test). As weights of a crossing areas have to
-    // be right to some digits too: else it lies beside the ray, by up to the whole face where that is seen almost edge on.
-    constexpr double kErrorBound = 1e-7;
     const double left = a.x * b.y, right = b.x * a.y;
     const double area = left - right;
-    if (std::abs(area) > kErrorBound * (std::abs(left) + std::abs(right))) return {area, area > 0};
+    if (std::abs(area) > kSideError * (std::abs(left) + std::abs(right))) return {area, area > 0};
     const double exact = exact_difference(a.x, b.y, b.x, a.y);
     if (exact != 0) return {exact, exact > 0};
     if (a.y != b.y) return {0, a.y > b.y};

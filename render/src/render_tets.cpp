@@ -6,7 +6,7 @@
 #include "pixel_tiles.h"
 #include "subvol/render.h"
 #include "tet_mesh.h"
-#include "tet_tracer.h"
+#include "tet_packet_tracer.h"
 
 namespace subvol {
 
@@ -18,23 +18,35 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// Traces, and hands its counts on when its tile is done.
-class CountedTracer {
-public:
-    CountedTracer(TetTracer tracer, tbb::combinable<TraceCounts>& sums) : tracer_(std::move(tracer)), sums_(&sums) {}
-    CountedTracer(CountedTracer&&) = delete;
-    ~CountedTracer() {
-        TraceCounts& sum = sums_->local();
-        sum.rays += tracer_.counts().rays;
-        sum.segments += tracer_.counts().segments;
-        sum.lost_rays += tracer_.counts().lost_rays;
+/// Draws a tile: as `trace_pixel` for each of its pixels, but all pixels at once.
+void draw_tile(const View& view, int samples, const PixelRect& tile, TetPacketTracer& tracer, Image& image) {
+    std::vector<Ray> rays;
+    std::vector<Segment> seen, sums;
+    const auto for_each_pixel = [&](const auto& body) {
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            for (int x = tile.x0; x < tile.x1; ++x) body(x, y);
+        }
+    };
+    for (int j = 0; j < samples; ++j) {
+        for (int i = 0; i < samples; ++i) {
+            rays.clear();
+            for_each_pixel([&](int x, int y) { rays.push_back(view.ray(x + (i + 0.5) / samples, y + (j + 0.5) / samples)); });
+            seen.resize(rays.size());
+            sums.resize(rays.size(), {.color = Vec3(0.0), .transmittance = 0});
+            tracer.trace(rays, seen);
+            for (std::size_t k = 0; k < seen.size(); ++k) {
+                sums[k].color += seen[k].color;
+                sums[k].transmittance += seen[k].transmittance;
+            }
+        }
     }
-    Segment operator()(const Ray& ray) { return tracer_.trace(ray); }
-
-private:
-    TetTracer tracer_;
-    tbb::combinable<TraceCounts>* sums_;
-};
+    const double count = static_cast<double>(samples) * samples;
+    auto sum = sums.begin();
+    for_each_pixel([&](int x, int y) {
+        write_pixel(image, x, y, {sum->color / count, sum->transmittance / count});
+        ++sum;
+    });
+}
 
 }  // namespace
 
@@ -58,8 +70,8 @@ TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, 
     built.tets = tets.tets.size();
     built.degenerate_tets = tets.degenerate_tets;
     built.inverted_tets = tets.inverted_tets;
-    built.bytes = tets.tets.size() * sizeof(TetMesh::Tet) + tets.points.size() * sizeof(TetMesh::Point) +
-                  tets.boundary.size() * sizeof(TetFace);
+    built.bytes = tets.tets.size() * (sizeof(TetMesh::Tet) + sizeof(tets.links[0])) +
+                  tets.points.size() * sizeof(TetMesh::Point) + tets.boundary.size() * sizeof(TetFace);
     built.seconds_build = seconds_since(start);
 }
 
@@ -77,8 +89,15 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
     TetsReport& report = result.report;
     const auto start = Clock::now();
     tbb::combinable<TraceCounts> sums;
-    result.image = draw_in_tiles(view, options.samples, options.progress,
-                                 [&] { return CountedTracer(TetTracer(state_->tets, *state_->scene, optics), sums); });
+    result.image = Image(view.width(), view.height());
+    for_each_tile({0, 0, view.width(), view.height()}, options.progress, [&](const PixelRect& tile) {
+        TetPacketTracer tracer(state_->tets, *state_->scene, optics);
+        draw_tile(view, options.samples, tile, tracer, result.image);
+        TraceCounts& sum = sums.local();
+        sum.rays += tracer.counts().rays;
+        sum.segments += tracer.counts().segments;
+        sum.lost_rays += tracer.counts().lost_rays;
+    });
     sums.combine_each([&](const TraceCounts& sum) {
         report.rays += sum.rays;
         report.segments += sum.segments;

@@ -44,7 +44,12 @@ void for_each_index(std::size_t count, const Body& body) {
     });
 }
 
+TetLink& link_of(TetMesh& mesh, TetFace face) {
+    return mesh.links[face / 4][mesh.rank(face / 4, face % 4)];
+}
+
 void connect(TetMesh& mesh) {
+    mesh.links.resize(mesh.tets.size());
     std::vector<FaceRecord> faces(4 * mesh.tets.size());
     for_each_index(faces.size(), [&](std::size_t i) { faces[i] = record_of(mesh, static_cast<TetFace>(i)); });
     tbb::parallel_sort(faces.begin(), faces.end());
@@ -52,8 +57,8 @@ void connect(TetMesh& mesh) {
         for (end = i + 1; end < faces.size() && faces[end].ids == faces[i].ids;) ++end;
         if (end - i == 2) {
             const TetFace one = faces[i].face, other = faces[i + 1].face;
-            mesh.tets[one / 4].neighbor[one % 4] = other / 4;
-            mesh.tets[other / 4].neighbor[other % 4] = one / 4;
+            link_of(mesh, one) = {other / 4, mesh.tets[other / 4].corner[other % 4]};
+            link_of(mesh, other) = {one / 4, mesh.tets[one / 4].corner[one % 4]};
         } else {
             for (std::size_t k = i; k < end; ++k) mesh.boundary.push_back(faces[k].face);
         }
@@ -114,15 +119,17 @@ TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> scalar) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.cells.size()) + " cells", {},
                     "at most " + std::to_string(kMaxCells));
     }
+    if (hexes.points.size() > TetLink::kBoundary) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.points.size()) + " points", {},
+                    "at most " + std::to_string(TetLink::kBoundary));
+    }
     TetMesh mesh;
     mesh.points.resize(hexes.points.size());
     for_each_index(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], scalar[p]}; });
     mesh.tets.resize(kTetsPerCell * hexes.cells.size());
     for_each_index(hexes.cells.size(), [&](std::size_t c) {
         const auto split = split_cell(hexes.cells[c]);
-        for (std::size_t k = 0; k < kTetsPerCell; ++k) {
-            mesh.tets[kTetsPerCell * c + k] = {split[k], {kNone, kNone, kNone, kNone}};
-        }
+        for (std::size_t k = 0; k < kTetsPerCell; ++k) mesh.tets[kTetsPerCell * c + k] = {split[k]};
     });
     count_shapes(mesh);
     connect(mesh);

@@ -65,11 +65,11 @@ std::vector<std::uint8_t> find_nearer(const TetMesh& mesh, const View& view) {
     for_each_index(nearer.size(), [&](std::size_t i) {
         const auto t = static_cast<std::uint32_t>(i);
         for (std::uint32_t k = 0; k < 4; ++k) {
-            const Index other = mesh.tets[t].neighbor[k];
+            const Index other = mesh.neighbor(t, k);
             if (other == kNone) continue;
             const bool mine = volumes[t] != volumes[other] ? volumes[t] > volumes[other] : t < other;
-            const auto& back = mesh.tets[other].neighbor;
-            const auto there = static_cast<std::uint32_t>(std::find(back.begin(), back.end(), t) - back.begin());
+            std::uint32_t there = 0;
+            while (mesh.neighbor(other, there) != t) ++there;
             bool edge_on = false;
             const bool outside = mine ? faces_eye(mesh, view, t, k, edge_on) : !faces_eye(mesh, view, other, there, edge_on);
             if (outside && !edge_on) nearer[t] = static_cast<std::uint8_t>(nearer[t] | (1U << k));
@@ -100,7 +100,7 @@ TetOrder order_topologically(const TetMesh& mesh, const View& view) {
     std::vector<std::uint8_t> waits_for(count);
     const auto for_each_nearer = [&](std::uint32_t tet, const auto& body) {
         for (std::uint32_t k = 0; k < 4; ++k) {
-            if ((nearer[tet] >> k) & 1U) body(mesh.tets[tet].neighbor[k]);
+            if ((nearer[tet] >> k) & 1U) body(mesh.neighbor(tet, k));
         }
     };
     for (std::uint32_t t = 0; t < count; ++t) for_each_nearer(t, [&](Index other) { ++waits_for[other]; });

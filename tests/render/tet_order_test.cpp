@@ -48,7 +48,7 @@ std::size_t wrong_faces(const TetMesh& mesh, const TetOrder& order, const View& 
     std::size_t wrong = 0;
     for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
         for (std::uint32_t k = 0; k < 4; ++k) {
-            const Index other = mesh.tets[t].neighbor[k];
+            const Index other = mesh.neighbor(t, k);
             if (other == kNone) continue;
             const Vec3& p = mesh.points[mesh.corners(4 * t + k)[0]].position;
             const Vec3 eye = view.perspective() ? view.eye() - p : -view.axes()[2];

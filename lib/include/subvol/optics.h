@@ -40,7 +40,6 @@ public:
     /// source: SCIENCE §4; α, not τ, is linear between knots, so the erfcx/Dawson forms do not apply (docs/adr/0003)
     [[nodiscard]] Segment integrate(double front, double back, double length) const;
 
-private:
     /// Between neighbouring knots colour and opacity are linear in (value − begin) · inverse_width; beyond the ends constant.
     struct Span {
         double begin = 0, inverse_width = 0;
@@ -49,6 +48,10 @@ private:
         double integral = 0;  // of the extinction, from the first knot to begin
         bool transparent = false;
     };
+    /// One more than knots: span i has the values from knot i − 1 on that are less than knot i.
+    [[nodiscard]] std::span<const Span> spans() const { return spans_; }
+
+private:
     [[nodiscard]] const Span& span_at(double value) const;
     [[nodiscard]] Segment integrate_piece(const Span& span, double front, double back, double length) const;
 
