@@ -50,7 +50,7 @@ int side_of_face(bool positive, std::uint32_t k, bool turned) {
 /// Likewise for the tetrahedron across a face. Two of them may share more than one.
 int side_of_same_face(const TetMesh& mesh, Index tet, Index from, const std::array<Index, 3>& sorted, bool positive) {
     for (std::uint32_t k = 0; k < 4; ++k) {
-        if (mesh.tets[tet].neighbor[k] != from) continue;
+        if (mesh.neighbor(tet, k) != from) continue;
         auto corner = mesh.corners(4 * tet + k);
         const bool turned = sort_corners(corner);
         if (corner == sorted) return side_of_face(positive, k, turned);
@@ -103,7 +103,7 @@ TetFaces find_faces(const TetMesh& mesh) {
     std::vector<TetFaces::Face> inner;
     for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
         for (std::uint32_t k = 0; k < 4; ++k) {
-            const Index other = mesh.tets[t].neighbor[k];
+            const Index other = mesh.neighbor(t, k);
             if (other < t) continue;  // kNone is above all
             auto corner = mesh.corners(4 * t + k);
             int cover = side_of_face(positive[t] != 0, k, sort_corners(corner));
