@@ -54,7 +54,7 @@ struct PtResult {
 /// throws: Error(InvalidInput) if scalar.size() != mesh.points.size(), or values and extinctions are beyond 32-bit floats;
 ///         Error(MissingCapability) if there is no OpenGL 4.5, or it has no room
 /// cost:   16 bytes a point and 20 a tetrahedron on the device; lists: 20 bytes a fragment, up to list_bytes
-/// source: SCIENCE §4 (ST90; max1990 for the topological order)
+/// source: docs/science.md (ST90; max1990 for the topological order)
 [[nodiscard]] PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view,
                                              const Optics& optics, const PtOptions& options = {});
 
