@@ -66,6 +66,7 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
     out << "# Made by the build: subvol --generate bash\n"
            "_subvol() {\n"
            "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} words=\n"
+           "    COMPREPLY=() # what is not known is left to bash: files\n"
            "    local models='"
         << model_names()
         << "'\n"
@@ -81,9 +82,10 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
     for (const CLI::App* verb : verbs_of(program)) {
         for (const Argument& argument : arguments_of(*verb)) {
             if (argument.positional || argument.value.empty()) continue;
+            const std::string choices = with_spaces(argument.choices);
+            const std::string action = choices.empty() ? "return" : "words='" + choices + "'";
             for (const std::string& name : argument.names)
-                out << "            '" << verb->get_name() << ' ' << name << "') words='" << with_spaces(argument.choices)
-                    << "'; [ -n \"$words\" ] || return ;;\n";
+                out << "            '" << verb->get_name() << ' ' << name << "') " << action << " ;;\n";
         }
     }
     out << "            *)\n"
@@ -99,7 +101,7 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
            "                case \"${COMP_WORDS[1]} $word\" in\n"
            "                    *' -'*) ;;\n"
            "                    'model '*) words=$models ;;\n"
-           "                    *) return ;; # files, as if nothing were known\n"
+           "                    *) return ;;\n"
            "                esac\n"
            "                ;;\n"
            "        esac\n"

@@ -37,7 +37,7 @@ public:
     /// The stretch of `length` world units on which the value goes linearly from `front` to `back`: split at the knots, each
     /// piece exact (optical depth in closed form, emission to 1e-9 relative).
     ///
-    /// source: SCIENCE §4; α, not τ, is linear between knots, so the erfcx/Dawson forms do not apply (docs/adr/0003)
+    /// source: docs/science.md; α, not τ, is linear between knots, so the erfcx/Dawson forms do not apply (docs/adr/0003)
     [[nodiscard]] Segment integrate(double front, double back, double length) const;
 
     /// Between neighbouring knots colour and opacity are linear in (value − begin) · inverse_width; beyond the ends constant.

@@ -29,7 +29,7 @@ struct FieldJet {
 /// throws: Error(InvalidInput) as `validate`, if there is no such channel, or the kernel is not radial
 /// cost:   about 100 bytes and 0.3 µs a kernel to build, 1 µs of one core a point where 12 kernels overlap; thread-safe; sums
 ///         run in the order of the tree, hence results are bitwise the same for any number of threads
-/// source: SCIENCE §3.1
+/// source: docs/science.md
 class RbfField {
 public:
     explicit RbfField(const RbfVolume& volume, const RbfFieldOptions& options = {});

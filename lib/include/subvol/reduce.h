@@ -116,7 +116,7 @@ struct RbfRefineResult {
 ///          worse on the samples than before
 /// throws:  Error(InvalidInput) for options out of range, no channel, or samples that do not fit together
 /// cost:    O(samples · kernels over a point) an iteration; bitwise the same for any number of threads
-/// source:  SCIENCE §5 (Weiler 05, Jang 06); analytic derivatives
+/// source:  the idea of Weiler 05 and Jang 06; analytic derivatives
 [[nodiscard]] RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples,
                                          const RbfRefineOptions& options = {});
 

@@ -66,8 +66,10 @@ struct SampleResult {
 ///
 /// A face takes, along each direction, the larger count of its two opposite edges, a cell the largest of its four. Geometry and
 /// values come from the scheme itself: exact if all edges have the same power of two of intervals, or where the sample is a
-/// vertex of the second refinement (moved to the limit), else interpolated in-cell by quartics through those vertices. throws:
-/// Error(InvalidInput) for options out of range, and as `refine` source: SCIENCE §3.1, §6
+/// vertex of the second refinement (moved to the limit), else interpolated in-cell by quartics through those vertices.
+///
+/// throws: Error(InvalidInput) for options out of range, and as `refine`
+/// source: docs/science.md
 [[nodiscard]] SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options = {});
 
 }  // namespace subvol

@@ -88,7 +88,7 @@ struct SplatResult {
 /// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
 ///         Error(InvalidInput) for SplatMethod::Sheets on Backend::Cpu;
 ///         Error(MissingCapability) if Backend::Gl or SplatMethod::Sheets finds no OpenGL 4.5
-/// source: SCIENCE §3, §3.1
+/// source: docs/science.md
 class Splatter {
 public:
     explicit Splatter(const RbfVolume& volume, const SplatOptions& options = {});
@@ -136,7 +136,7 @@ struct TetsResult {
 ///
 /// Keeps the tetrahedra and Embree's tree from picture to picture; mesh and scalar need not stay. Pictures are bitwise the same
 /// for any number of threads.
-/// source: SCIENCE §4
+/// source: docs/science.md
 class TetsRenderer {
 public:
     /// scalar: one value a point of the mesh

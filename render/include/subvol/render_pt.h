@@ -68,7 +68,7 @@ struct PtResult {
 /// same every time. One picture at a time.
 /// cost:   16 bytes a point and 20 a tetrahedron on the device, Havs: 20 a face; lists: 20 bytes a fragment, Havs: 12, up to
 ///         list_bytes
-/// source: SCIENCE §4 (ST90; mhc1990 for the topological order; cics2005 for Havs, ccss2005 for its faces left out)
+/// source: docs/science.md (st1990; mhc1990 for the topological order; cics2005 for Havs, ccss2005 for its faces left out)
 class PtRenderer {
 public:
     /// scalar: one value a point of the mesh
