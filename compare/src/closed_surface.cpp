@@ -1,0 +1,59 @@
+#include "closed_surface.h"
+
+#include <utility>
+
+namespace subvol::detail {
+
+namespace {
+
+double twice_area(const Vec3& a, const Vec3& b, const Vec3& p) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+}  // namespace
+
+std::vector<Box> triangle_boxes(const Surface& surface) {
+    std::vector<Box> boxes(surface.triangles.size());
+    for (std::size_t t = 0; t < boxes.size(); ++t) {
+        for (const Index corner : surface.triangles[t]) boxes[t].add(surface.points[corner]);
+    }
+    return boxes;
+}
+
+ClosedSurface::ClosedSurface(Surface surface) : surface_(std::move(surface)), tree_(triangle_boxes(surface_)) {
+}
+
+int ClosedSurface::crossing(Index triangle, const Vec3& x) const {
+    const auto& corners = surface_.triangles[triangle];
+    int left = 0;
+    std::array<double, 3> areas;
+    for (std::size_t k = 0; k < 3; ++k) {
+        // The edge from its smaller point number, as its other triangle sees it too; a point on it counts as left of that.
+        const Index from = corners[k], to = corners[(k + 1) % 3];
+        const bool turned = from > to;
+        const double area = twice_area(surface_.points[turned ? to : from], surface_.points[turned ? from : to], x);
+        left += (area >= 0) != turned ? 1 : 0;
+        areas[k] = turned ? -area : area;
+    }
+    if (left != 0 && left != 3) return 0;
+    const double sum = areas[0] + areas[1] + areas[2];
+    if (sum == 0) return 0;
+    const auto z = [&](std::size_t k) { return surface_.points[corners[k]].z; };
+    const double height = (areas[1] * z(0) + areas[2] * z(1) + areas[0] * z(2)) / sum;
+    if (height < x.z) return 0;
+    return left == 3 ? 1 : -1;  // counter-clockwise from above: it faces up, the ray leaves
+}
+
+bool ClosedSurface::holds(const Vec3& x) const {
+    const auto above = [&](const Box& box) {
+        return box.lower.x <= x.x && x.x <= box.upper.x && box.lower.y <= x.y && x.y <= box.upper.y && x.z <= box.upper.z;
+    };
+    int left = 0;
+    tree_.visit(above, [&](Index triangle) {
+        left += crossing(triangle, x);
+        return false;
+    });
+    return left > 0;
+}
+
+}  // namespace subvol::detail
