@@ -10,6 +10,13 @@ double twice_area(const Vec3& a, const Vec3& b, const Vec3& p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
+// Whether p is left of the line from a to b, seen from above. On the line it counts as if it lay a little further along x,
+// and far less along y: never on a line, so that around a corner it is in one triangle alone.
+bool is_left(double area, const Vec3& a, const Vec3& b) {
+    if (area != 0) return area > 0;
+    return b.y != a.y ? b.y < a.y : b.x > a.x;
+}
+
 }  // namespace
 
 std::vector<Box> triangle_boxes(const Surface& surface) {
@@ -28,11 +35,12 @@ int ClosedSurface::crossing(Index triangle, const Vec3& x) const {
     int left = 0;
     std::array<double, 3> areas;
     for (std::size_t k = 0; k < 3; ++k) {
-        // The edge from its smaller point number, as its other triangle sees it too; a point on it counts as left of that.
-        const Index from = corners[k], to = corners[(k + 1) % 3];
-        const bool turned = from > to;
-        const double area = twice_area(surface_.points[turned ? to : from], surface_.points[turned ? from : to], x);
-        left += (area >= 0) != turned ? 1 : 0;
+        // The edge from its smaller point number, as its other triangle sees it too: rounding is the same for both.
+        const bool turned = corners[k] > corners[(k + 1) % 3];
+        const Vec3& from = surface_.points[corners[turned ? (k + 1) % 3 : k]];
+        const Vec3& to = surface_.points[corners[turned ? k : (k + 1) % 3]];
+        const double area = twice_area(from, to, x);
+        left += is_left(area, from, to) != turned ? 1 : 0;
         areas[k] = turned ? -area : area;
     }
     if (left != 0 && left != 3) return 0;

@@ -133,13 +133,14 @@ private:
         const auto i = static_cast<double>(point % static_cast<std::uint64_t>(nx + 1));
         const auto j = static_cast<double>(row % static_cast<std::uint64_t>(ny + 1));
         const auto k = static_cast<double>(row / static_cast<std::uint64_t>(ny + 1));
-        const Vec3 from = grid_.place(i, j, k), along = grid_.cell * corner(static_cast<unsigned>(edge % 8));
-        const auto off = [&](double t) { return field_.value(from + t * along).value_or(iso_) - iso_; };
+        const Vec3 d = corner(static_cast<unsigned>(edge % 8));
+        const auto place = [&](double t) { return grid_.place(i + t * d.x, j + t * d.y, k + t * d.z); };
+        const auto off = [&](double t) { return field_.value(place(t)).value_or(iso_) - iso_; };
         double a = 0, b = 1, at_a = off(a), at_b = off(b);
         double t = a;
         for (int step = 0; step < kMostSteps && at_a != at_b; ++step) {
             const double next = a + (b - a) * at_a / (at_a - at_b);
-            if (std::abs(next - t) < kEnough) return from + next * along;
+            if (std::abs(next - t) < kEnough) return place(next);
             t = next;
             const double value = off(t);
             if (value == 0) break;
@@ -154,7 +155,7 @@ private:
                 at_b = value;
             }
         }
-        return from + t * along;
+        return place(t);
     }
 
     static constexpr int kMostSteps = 40;
