@@ -75,13 +75,14 @@ ImageRegions silhouette_regions(const Image& reference, int band_px, const Vec3&
 OpticalDepth optical_depth(const Image& image) {
     check_finite(image, image);
     constexpr double kLeast = 0x1p-24;  // half the step of floats below 1
+    constexpr double kFew = 1e-4;
     OpticalDepth depth;
     const auto row = static_cast<std::size_t>(image.width) * 4;
     for (std::size_t first = 0; first < image.rgba.size(); first += row) {
         double sum = 0;
         for (std::size_t i = first + 3; i < first + row; i += 4) {
             const double through = 1 - static_cast<double>(image.rgba[i]);
-            if (through < kLeast) ++depth.saturated;
+            if (through < kFew) ++depth.saturated;
             sum -= std::log(std::max(through, kLeast));
         }
         depth.sum += sum;

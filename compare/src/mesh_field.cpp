@@ -1,5 +1,7 @@
 #include "subvol/mesh_field.h"
 
+#include <utility>
+
 #include "box_tree.h"
 #include "subvol/cell_locator.h"
 #include "subvol/error.h"
@@ -8,13 +10,14 @@ namespace subvol {
 
 namespace {
 
-HexMesh with_only(const HexMesh& mesh, std::string_view name) {
+HexMesh with_only(HexMesh mesh, std::string_view name) {
     validate(mesh);
     const Attribute* field = mesh.find_attribute(name);
     if (field == nullptr || field->channels != 1) {
         throw Error(ErrorCode::InvalidInput, "the mesh has no field '" + std::string(name) + "' of one channel");
     }
-    return {mesh.points, mesh.cells, {*field}, {}, {}};
+    mesh.attributes = {Attribute(*field)};
+    return mesh;
 }
 
 std::vector<Box> cell_boxes(const HexMesh& mesh) {
@@ -31,7 +34,7 @@ struct MeshField::Cells {
     HexMesh mesh;
     detail::BoxTree tree;
 
-    Cells(const HexMesh& all, std::string_view attribute) : mesh(with_only(all, attribute)), tree(cell_boxes(mesh)) {}
+    Cells(HexMesh all, std::string_view attribute) : mesh(with_only(std::move(all), attribute)), tree(cell_boxes(mesh)) {}
 
     /// Calls use(locator, tetrahedron, values at the corners) for the first cell found to hold x.
     template <class Use>
@@ -51,7 +54,8 @@ struct MeshField::Cells {
     }
 };
 
-MeshField::MeshField(const HexMesh& mesh, std::string_view attribute) : cells_(std::make_unique<const Cells>(mesh, attribute)) {
+MeshField::MeshField(HexMesh mesh, std::string_view attribute)
+    : cells_(std::make_unique<const Cells>(std::move(mesh), attribute)) {
 }
 MeshField::~MeshField() = default;
 MeshField::MeshField(MeshField&&) noexcept = default;

@@ -21,7 +21,8 @@ struct ImageRegions {
 
 /// sum:       Σ −ln(1−α) over the pixels; × the area of a pixel it is the optical depth of the whole picture, which under an
 ///            orthographic view is the volume's integral of the extinction
-/// saturated: pixels with α so close to 1 that a float has no more of it; they count as 2⁻²⁴ through
+/// saturated: pixels that let less than 1e-4 through: a float has few digits of that, and renderers stop there. One that lets
+///            nothing through counts as if it were 2⁻²⁴
 struct OpticalDepth {
     double sum = 0;
     std::size_t saturated = 0;

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "subvol/field_metrics.h"
 #include "subvol/hex_mesh.h"
@@ -12,12 +13,11 @@ namespace subvol {
 /// `Field`. For the limit give it a refined mesh (`refine`, `on_limit`). Where cells overlap, the one with the smallest number
 /// counts.
 ///
-/// Copies what it needs.
 /// throws: Error(InvalidInput) as `validate`, or if there is no such attribute of one channel
 /// cost:   a tree of boxes over the cells, about 60 bytes a cell beside the mesh; some µs a value; thread-safe
 class MeshField {
 public:
-    MeshField(const HexMesh& mesh, std::string_view attribute);
+    MeshField(HexMesh mesh, std::string_view attribute);
     ~MeshField();
     MeshField(MeshField&&) noexcept;
     MeshField& operator=(MeshField&&) noexcept;
