@@ -178,7 +178,7 @@ class Mistakes(InFolder):
         points, cells = CUBE.format(last=8).split("Hexahedra")
         points = points.replace("\n1 ", "\n91 ").replace("\n0 ", "\n90 ")
         (self.folder / "far.mesh").write_text(points + "Hexahedra" + cells)
-        self.assert_refused("far.mesh", "cube.mesh", "--levels", "0", "--samples", "100", naming=["far.mesh", "in common"])
+        self.assert_refused("far.mesh", "cube.mesh", "--density", "x", "--levels", "0", "--samples", "100", naming=["far.mesh", "in common"])
 
     def test_options_that_do_not_fit(self):
         self.assert_refused("a.pfm", "a.pfm", "--fail-under", "psnr=much", naming=["much"])
