@@ -40,8 +40,6 @@ public:
     }
 
     int run(Report& report) override {
-        check_there(a_);
-        check_there(b_);
         const InputKind a = kind_of(a_), b = kind_of(b_);
         const bool pictures = b == InputKind::Picture;
         if ((a == InputKind::Picture) != pictures) {
@@ -53,6 +51,8 @@ public:
         std::vector<Demand> demands;
         const auto names = pictures ? pictures_.names() : fields_.names(b == InputKind::Mesh);
         for (const std::string& demand : demands_) demands.push_back(parse_demand(demand, names));
+        check_there(a_);
+        check_there(b_);
 
         const Figures figures = pictures ? pictures_.measure(a_, b_, report) : fields_.measure(a_, b_, common(), report);
         figures.into(report);
