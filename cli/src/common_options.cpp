@@ -27,7 +27,7 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
         ->group(group)
         ->type_name("WHEN")
         ->check(CLI::IsMember({"auto", "on", "off"}));
-    app.add_option("--seed", options.seed, "seed of what is random; nothing is, so far")->group(group)->type_name("N");
+    app.add_option("--seed", options.seed, "seed of what is random: places of samples")->group(group)->type_name("N");
 }
 
 }  // namespace subvol::cli

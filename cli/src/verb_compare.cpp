@@ -1,10 +1,9 @@
-#include <sstream>
+#include <filesystem>
 
-#include "input.h"
+#include "field_comparison.h"
+#include "field_input.h"
+#include "picture_comparison.h"
 #include "subvol/error.h"
-#include "subvol/image_io.h"
-#include "subvol/image_metrics.h"
-#include "text.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -12,70 +11,81 @@ namespace {
 
 constexpr int kComparisonFailed = 1;
 
-/// "psnr=40": the metric may not be worse than the value.
-struct Demand {
-    std::string metric;
-    double value;
-
-    explicit Demand(const std::string& argument) {
-        const std::size_t equals = argument.find('=');
-        metric = argument.substr(0, equals);
-        check_choice("--fail-under", metric, {"mse", "rmse", "mae", "max", "psnr"}, {"ssim", "flip"});
-        std::istringstream in(equals == std::string::npos ? "" : argument.substr(equals + 1));
-        if (!(in >> value) || !in.eof()) {
-            throw Error(ErrorCode::InvalidInput, "'" + argument + "' has no value", "--fail-under", "write it as psnr=40");
-        }
-    }
-
-    [[nodiscard]] bool met_by(double measured) const { return metric == "psnr" ? measured >= value : measured <= value; }
-};
-
-double metric_named(const ImageMetrics& metrics, const std::string& name) {
-    if (name == "mse") return metrics.mse;
-    if (name == "rmse") return metrics.rmse;
-    if (name == "mae") return metrics.mae;
-    if (name == "max") return metrics.max;
-    return metrics.psnr;
-}
-
 class CompareVerb : public Verb {
 public:
     explicit CompareVerb(CLI::App& program)
-        : Verb(program, "compare", "Measure how much two pictures differ, in linear light.",
+        : Verb(program, "compare", "Measure how much two pictures, or two fields, differ; the second is the reference.",
                "  subvol compare splat.exr reference.exr --heatmap difference.png\n"
-               "  subvol compare a.png b.png --fail-under psnr=40 --fail-under max=.1") {
-        app().add_option("A", a_, "a picture")->required();
-        app().add_option("B", b_, "another of the same size")->required();
-        app().add_option("--heatmap", heatmap_, "draw the difference into this picture (.png, .exr)")->type_name("FILE");
+               "  subvol compare a.png b.png --fail-under psnr=40 --fail-under flip=.02 --heatmap flip.png --heatmap-of flip\n"
+               "  subvol compare splat.exr reference.exr --edge-band 2 --fail-under interior.rmse=.001\n"
+               "  subvol compare points.ply mesh.vtu --iso .5 --fail-under l2=.01\n"
+               "\n"
+               "Pictures (any that OpenImageIO reads) are compared in linear light, peak 1: mse, rmse, mae, max, psnr (dB), "
+               "ssim,\n"
+               "flip; under srgb8 the same of their 8-bit sRGB. Fields are meshes, points or .vdb grids: l1, l2 (root mean "
+               "square),\n"
+               "linf, gradient_rmse, mass (relative), hausdorff (with --iso); new_vertex_rmse against a mesh: at the vertices "
+               "that\n"
+               "its first refinement adds. Exit code 1 if a --fail-under is not met.") {
+        app().add_option("A", a_, "a picture or a field")->required();
+        app().add_option("B", b_, "another: a picture of the same size, or a field")->required();
         app()
-            .add_option("--fail-under", demands_,
-                        "exit with 1 if the metric (psnr, mse, rmse, mae, max) is worse than the value; repeatable")
+            .add_option(
+                "--fail-under", demands_,
+                "exit with 1 if the metric is worse than the value (psnr and ssim: below it; all others: above); repeatable")
             ->type_name("METRIC=VALUE")
             ->allow_extra_args(false);
+        pictures_.add_to(app());
+        fields_.add_to(app());
     }
 
     int run(Report& report) override {
-        const std::vector<Demand> demands(demands_.begin(), demands_.end());
-        if (!heatmap_.empty()) check_output(heatmap_, {".png", ".exr"});
-        const Image a = report.timed("read", [&] { return read_image(a_); });
-        const Image b = report.timed("read", [&] { return read_image(b_); });
-        const ImageMetrics metrics = report.timed("compare", [&] { return compare_images(a, b); });
-        bool passed = true;
-        for (const char* name : {"mse", "rmse", "mae", "max", "psnr"}) report[name] = metric_named(metrics, name);
-        for (const Demand& demand : demands) passed = passed && demand.met_by(metric_named(metrics, demand.metric));
-        report["passed"] = passed;
-        if (!heatmap_.empty()) {
-            report.timed("write", [&] { write_image(heatmap_, difference_heatmap(a, b)); });
-            report["heatmap"] = heatmap_;
+        const InputKind a = kind_of(a_), b = kind_of(b_);
+        const bool pictures = b == InputKind::Picture;
+        if ((a == InputKind::Picture) != pictures) {
+            throw Error(ErrorCode::InvalidInput, "is a picture, " + (pictures ? a_ : b_) + " is a field", pictures ? b_ : a_,
+                        "two pictures or two fields can be compared");
         }
+        refuse_options_of(pictures ? "Fields" : "Pictures");
+        pictures_.check();
+        std::vector<Demand> demands;
+        const auto names = pictures ? pictures_.names() : fields_.names(b == InputKind::Mesh);
+        for (const std::string& demand : demands_) demands.push_back(parse_demand(demand, names));
+        check_there(a_);
+        check_there(b_);
+
+        const Figures figures = pictures ? pictures_.measure(a_, b_, report) : fields_.measure(a_, b_, common(), report);
+        figures.into(report);
+        report["input"] = a_;
+        report["reference"] = b_;
+        bool passed = true;
+        for (const Demand& demand : demands) passed = passed && demand.met_by(figures);
+        report["passed"] = passed;
         return passed ? 0 : kComparisonFailed;
     }
 
 private:
+    /// Before a long time is spent on the other one.
+    static void check_there(const std::string& input) {
+        std::error_code ignored;
+        if (input.starts_with("model:") || std::filesystem::is_regular_file(input, ignored)) return;
+        throw Error(ErrorCode::Io, "cannot be read: no such file", input);
+    }
+
+    void refuse_options_of(const std::string& group) {
+        for (const CLI::Option* option : app().get_options()) {
+            if (option->get_group() != group || option->count() == 0) continue;
+            throw Error(ErrorCode::InvalidInput,
+                        group == "Fields" ? "is for fields; these are pictures" : "is for pictures; these are fields",
+                        option->get_name());
+        }
+    }
+
     std::string a_;
     std::string b_;
-    std::string heatmap_;
     std::vector<std::string> demands_;
+    PictureComparison pictures_;
+    FieldComparison fields_;
 };
 
 }  // namespace

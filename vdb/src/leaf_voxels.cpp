@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cell_locator.h"
+#include "subvol/cell_locator.h"
 
 namespace subvol {
 

@@ -18,4 +18,11 @@ enum class PlaceKind { Anywhere, Extraordinary, Boundary };
 [[nodiscard]] FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, PlaceKind kind, double within,
                                          std::size_t count, std::uint64_t seed, Scheme scheme = Scheme::Mcq);
 
+/// The vertices that are new at level `level` + 1 of a refinement, with the scheme's values there, all of weight 1: where
+/// [mnmq2007] measures (table 2). As always the mesh as it came is level 0.
+///
+/// throws: Error(InvalidInput) as `refine`, or if there is no such attribute of one channel
+[[nodiscard]] FieldSamples new_vertices(const HexMesh& mesh, std::string_view attribute, int level = 0,
+                                        Scheme scheme = Scheme::Mcq);
+
 }  // namespace subvol

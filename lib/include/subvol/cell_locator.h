@@ -20,6 +20,9 @@ public:
     /// The weights of the 8 corners at x, which sum to 1. Close to a bent face some may leave [0,1].
     [[nodiscard]] std::array<double, 8> weights(std::size_t tetrahedron, const Vec3& x) const;
 
+    /// The gradient by world position of what has these values at the 8 corners.
+    [[nodiscard]] Vec3 gradient(std::size_t tetrahedron, const Vec3& x, const std::array<double, 8>& values) const;
+
 private:
     // Barycentric coordinate k > 0 of p (relative to the cell's origin) is gradients[k-1] · (p - corner 0).
     struct Tetrahedron {
@@ -36,6 +39,7 @@ private:
     [[nodiscard]] Vec3 position(const Vec3& uvw) const;
     [[nodiscard]] Mat3 jacobian(const Vec3& uvw) const;
     [[nodiscard]] std::optional<Vec3> invert(const Vec3& start, const Vec3& p) const;
+    [[nodiscard]] std::optional<Vec3> parameters_at(const Tetrahedron& tetrahedron, const Vec3& p) const;
 
     Vec3 origin_;
     double size_ = 0;                 // the longest side of the bounding box

@@ -1,4 +1,4 @@
-#include "cell_locator.h"
+#include "subvol/cell_locator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,17 +102,44 @@ std::optional<std::size_t> CellLocator::find_tetrahedron(const Vec3& x) const {
     return std::nullopt;
 }
 
-std::array<double, 8> CellLocator::weights(std::size_t tetrahedron, const Vec3& x) const {
-    const Vec3 p = x - origin_;
-    const auto& corners = tetrahedra_[tetrahedron].corners;
-    const auto lambda = tetrahedra_[tetrahedron].barycentric(p);
+std::optional<Vec3> CellLocator::parameters_at(const Tetrahedron& tetrahedron, const Vec3& p) const {
+    const auto lambda = tetrahedron.barycentric(p);
     Vec3 start(0.0);
-    for (std::size_t k = 0; k < 4; ++k) start += lambda[k] * parameters_of(corners[k]);
-    if (const auto uvw = invert(start, p)) return trilinear_weights(*uvw);
+    for (std::size_t k = 0; k < 4; ++k) start += lambda[k] * parameters_of(tetrahedron.corners[k]);
+    return invert(start, p);
+}
 
+std::array<double, 8> CellLocator::weights(std::size_t tetrahedron, const Vec3& x) const {
+    const Tetrahedron& within = tetrahedra_[tetrahedron];
+    if (const auto uvw = parameters_at(within, x - origin_)) return trilinear_weights(*uvw);
+
+    const auto lambda = within.barycentric(x - origin_);
     std::array<double, 8> linear{};
-    for (std::size_t k = 0; k < 4; ++k) linear[corners[k]] = lambda[k];
+    for (std::size_t k = 0; k < 4; ++k) linear[within.corners[k]] = lambda[k];
     return linear;
+}
+
+Vec3 CellLocator::gradient(std::size_t tetrahedron, const Vec3& x, const std::array<double, 8>& values) const {
+    const Tetrahedron& within = tetrahedra_[tetrahedron];
+    const double first = values[within.corners[0]];
+    Vec3 linear(0.0);
+    for (std::size_t k = 1; k < 4; ++k) linear += (values[within.corners[k]] - first) * within.gradients[k - 1];
+
+    const auto uvw = parameters_at(within, x - origin_);
+    if (!uvw) return linear;
+    const Mat3 j = jacobian(*uvw);
+    const double determinant = glm::determinant(j);
+    if (determinant == 0.0) return linear;
+    Vec3 by_parameters(0.0);
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Vec3 corner = parameters_of(k);
+        const Vec3 factors = corner * *uvw + (1.0 - corner) * (1.0 - *uvw), signs = 2.0 * corner - 1.0;
+        by_parameters += values[k] * signs * Vec3(factors.y * factors.z, factors.z * factors.x, factors.x * factors.y);
+    }
+    // ∇f = J⁻ᵀ (∂f/∂u, ∂f/∂v, ∂f/∂w): the rows of J⁻¹ are cross products of J's columns.
+    return (by_parameters.x * glm::cross(j[1], j[2]) + by_parameters.y * glm::cross(j[2], j[0]) +
+            by_parameters.z * glm::cross(j[0], j[1])) /
+           determinant;
 }
 
 Vec3 CellLocator::position(const Vec3& q) const {

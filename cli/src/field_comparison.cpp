@@ -1,0 +1,70 @@
+#include "field_comparison.h"
+
+#include "field_input.h"
+#include "subvol/error.h"
+#include "subvol/field_places.h"
+#include "text.h"
+
+namespace subvol::cli {
+
+void FieldComparison::add_to(CLI::App& app) {
+    const std::string group = "Fields";
+    app.add_option("--samples", samples, "random places in the second field's domain (default 100000; --seed)")
+        ->group(group)
+        ->type_name("N")
+        ->check(CLI::Range(1, 100'000'000));
+    app.add_option("--iso", iso, "the Hausdorff distance of the isosurfaces of this value too (hausdorff)")
+        ->group(group)
+        ->type_name("V");
+    app.add_option("--resolution", resolution, "cells along the longest side for mass and isosurfaces (default 128)")
+        ->group(group)
+        ->type_name("N")
+        ->check(CLI::Range(2, 2000));
+    refine.add_to(app, "meshes are taken at this level; omitted: at the level that stands for the limit");
+    for (const char* name : {"--scheme", "--tension", "--levels", "--crease-angle"}) app.get_option(name)->group(group);
+}
+
+std::vector<std::string> FieldComparison::names(bool of_mesh) const {
+    std::vector<std::string> all{"l1", "l2", "linf", "gradient_rmse", "mass"};
+    if (of_mesh) all.emplace_back("new_vertex_rmse");
+    if (iso) all.emplace_back("hausdorff");
+    return all;
+}
+
+Figures FieldComparison::measure(const std::string& test, const std::string& reference, const CommonOptions& options,
+                                 Report& report) const {
+    const FieldInput a = load_field(test, options, refine, "a", report);
+    const FieldInput b = load_field(reference, options, refine, "b", report);
+    const FieldErrors errors = report.timed("samples", [&] {
+        return compare_fields(a.view, b.view, {.samples = samples, .seed = options.seed, .progress = report.progress()});
+    });
+    if (errors.samples == 0) {
+        throw Error(ErrorCode::InvalidInput, "the two fields have no place in common", test + ", " + reference);
+    }
+    Figures figures;
+    figures.put("l1", errors.l1);
+    figures.put("l2", errors.l2);
+    figures.put("linf", errors.linf);
+    figures.put("gradient_rmse", errors.gradient_rmse);
+    const MassError mass = report.timed("mass", [&] { return mass_error(a.view, b.view, resolution, report.progress()); });
+    figures.put("mass", mass.relative);
+    report["a"]["mass"] = mass.test;
+    report["b"]["mass"] = mass.reference;
+    if (b.mesh) {
+        const auto places =
+            report.timed("new_vertices", [&] { return new_vertices(*b.mesh, b.field, 0, scheme_named(refine.scheme)); });
+        figures.put("new_vertex_rmse", compare_field(a.view, places).l2);
+    }
+    if (iso) {
+        const auto found =
+            report.timed("hausdorff", [&] { return isosurface_distance(a.view, b.view, *iso, resolution, report.progress()); });
+        figures.put("hausdorff", found.distance);
+        report["isosurface"] = {
+            {"spacing", found.spacing}, {"triangles_a", found.test_triangles}, {"triangles_b", found.reference_triangles}};
+    }
+    report["samples"] = errors.samples;
+    report["uncovered"] = errors.uncovered;
+    return figures;
+}
+
+}  // namespace subvol::cli

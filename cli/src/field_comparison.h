@@ -1,0 +1,29 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "figures.h"
+#include "refine_arguments.h"
+
+namespace subvol::cli {
+
+/// What is measured between two fields.
+struct FieldComparison {
+    std::size_t samples = 100'000;
+    int resolution = 128;
+    std::optional<double> iso;
+    RefineArguments refine;
+
+    void add_to(CLI::App& app);
+
+    /// The names of the figures that `measure` will give; `of_mesh`: the second is a mesh.
+    [[nodiscard]] std::vector<std::string> names(bool of_mesh) const;
+
+    [[nodiscard]] Figures measure(const std::string& test, const std::string& reference, const CommonOptions& options,
+                                  Report& report) const;
+};
+
+}  // namespace subvol::cli

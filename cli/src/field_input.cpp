@@ -1,0 +1,111 @@
+#include "field_input.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "grid_input.h"
+#include "input.h"
+#include "limit_level.h"
+#include "points_input.h"
+#include "subvol/error.h"
+#include "subvol/mesh_field.h"
+#include "subvol/points_field.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kVoxels = 200;  // along the longest side: what the limit's tolerance is relative to, as of `vdb`
+
+std::string extension_of(const std::string& input) {
+    std::string extension = std::filesystem::path(input).extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& report) {
+    const RefineOptions options = refine.options(0, report);
+    if (refine.levels) return refine_reported(mesh, options, Vertices::OnTheLimit, report);
+    const Vec3 size = bounds(mesh).size();
+    const double voxel = std::max({size.x, size.y, size.z}) / kVoxels;
+    LimitMesh limit = report.timed("refine", [&] { return refine_to_limit(mesh, options, voxel); });
+    report["levels"] = limit.level;
+    report["cells"] = limit.mesh.cells.size();
+    if (!limit.converged) {
+        report.warn(text("level ", limit.level, " was the finest within limits; the last step still moved values by ",
+                         limit.value_range, " of their range: --levels sets it"));
+    }
+    return std::move(limit.mesh);
+}
+
+FieldInput mesh_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, Report& report) {
+    auto mesh = std::make_shared<HexMesh>(with_selected_field(load_mesh(input, options, report), options, report));
+    const std::string name = mesh->attributes.front().name;
+    auto field = std::make_shared<MeshField>(refined(*mesh, refine, report), name);
+    return {field->view(), field, mesh, name};
+}
+
+FieldInput points_field(const std::string& input, const CommonOptions& options, Report& report) {
+    const RbfVolume volume = read_points_input(input, report);
+    std::vector<std::string> names;
+    for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
+    const std::string wanted = options.field.value_or(names.front());
+    const auto found = std::ranges::find(names, wanted);
+    if (found == names.end()) {
+        throw Error(ErrorCode::InvalidInput, "there is no field '" + wanted + "'", input, "it has: " + join(names));
+    }
+    report["field"] = wanted;
+    auto field = std::make_shared<PointsField>(volume, static_cast<std::size_t>(found - names.begin()));
+    return {field->view(), field, {}, wanted};
+}
+
+FieldInput grid_field(const std::string& input, const CommonOptions& options, Report& report) {
+    auto grid = std::make_shared<VdbGrid>(load_grid(input, options, report));
+    const GridReport& about = grid->report();
+    FieldView view{.value = [grid = grid.get()](const Vec3& x) { return grid->value(x); },
+                   .box = box_of(about),
+                   .step = about.voxel_size_world / 2};
+    return {std::move(view), grid, {}, about.name};
+}
+
+}  // namespace
+
+InputKind kind_of(const std::string& input) {
+    constexpr std::array kMeshes{".mesh", ".vtk", ".vtu", ".msh"};
+    const std::string extension = extension_of(input);
+    if (input.starts_with("model:") || std::ranges::find(kMeshes, extension) != kMeshes.end()) return InputKind::Mesh;
+    if (holds_points(input)) return InputKind::Points;
+    return extension == ".vdb" ? InputKind::Grid : InputKind::Picture;
+}
+
+FieldInput load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, const char* key,
+                      Report& report) {
+    report["input"] = input;  // whom errors are about
+    Report part(options);
+    FieldInput field;
+    switch (kind_of(input)) {
+        case InputKind::Mesh:
+            field = mesh_field(input, options, refine, part);
+            break;
+        case InputKind::Points:
+            field = points_field(input, options, part);
+            break;
+        case InputKind::Grid:
+            field = grid_field(input, options, part);
+            break;
+        case InputKind::Picture:
+            throw Error(ErrorCode::InvalidInput, "is no field", input, "a mesh, points or a .vdb grid");
+    }
+    for (const auto& [name, value] : part.json().items()) {
+        if (name == "seconds") {
+            for (const auto& [stage, seconds] : value.items()) report.add_seconds(stage, seconds.template get<double>());
+        } else if (name == "warnings") {
+            for (const Json& warning : value) report["warnings"].push_back(warning);
+        } else {
+            report[key][name] = value;
+        }
+    }
+    return field;
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report.h"
+
+namespace subvol::cli {
+
+/// Measured numbers by their names, "psnr" or "srgb8.psnr", in the order in which they were put.
+class Figures {
+public:
+    void put(const std::string& name, double value) { all_.emplace_back(name, value); }
+    [[nodiscard]] double at(const std::string& name) const;
+
+    /// "srgb8.psnr" becomes the key "psnr" of the object "srgb8".
+    void into(Report& report) const;
+
+private:
+    std::vector<std::pair<std::string, double>> all_;
+};
+
+/// "psnr=40": the figure may not be worse than the value. Of psnr and ssim more is better, of all others less.
+struct Demand {
+    std::string metric;
+    double value = 0;
+
+    [[nodiscard]] bool met_by(const Figures& figures) const;
+};
+
+/// known: the names that will be measured
+///
+/// throws: Error(InvalidInput) for another name, or where there is no number
+[[nodiscard]] Demand parse_demand(const std::string& argument, const std::vector<std::string>& known);
+
+}  // namespace subvol::cli

@@ -1,0 +1,67 @@
+#include "closed_surface.h"
+
+#include <utility>
+
+namespace subvol::detail {
+
+namespace {
+
+double twice_area(const Vec3& a, const Vec3& b, const Vec3& p) {
+    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+// Whether p is left of the line from a to b, seen from above. On the line it counts as if it lay a little further along x,
+// and far less along y: never on a line, so that around a corner it is in one triangle alone.
+bool is_left(double area, const Vec3& a, const Vec3& b) {
+    if (area != 0) return area > 0;
+    return b.y != a.y ? b.y < a.y : b.x > a.x;
+}
+
+}  // namespace
+
+std::vector<Box> triangle_boxes(const Surface& surface) {
+    std::vector<Box> boxes(surface.triangles.size());
+    for (std::size_t t = 0; t < boxes.size(); ++t) {
+        for (const Index corner : surface.triangles[t]) boxes[t].add(surface.points[corner]);
+    }
+    return boxes;
+}
+
+ClosedSurface::ClosedSurface(Surface surface) : surface_(std::move(surface)), tree_(triangle_boxes(surface_)) {
+}
+
+int ClosedSurface::crossing(Index triangle, const Vec3& x) const {
+    const auto& corners = surface_.triangles[triangle];
+    int left = 0;
+    std::array<double, 3> areas;
+    for (std::size_t k = 0; k < 3; ++k) {
+        // The edge from its smaller point number, as its other triangle sees it too: rounding is the same for both.
+        const bool turned = corners[k] > corners[(k + 1) % 3];
+        const Vec3& from = surface_.points[corners[turned ? (k + 1) % 3 : k]];
+        const Vec3& to = surface_.points[corners[turned ? k : (k + 1) % 3]];
+        const double area = twice_area(from, to, x);
+        left += is_left(area, from, to) != turned ? 1 : 0;
+        areas[k] = turned ? -area : area;
+    }
+    if (left != 0 && left != 3) return 0;
+    const double sum = areas[0] + areas[1] + areas[2];
+    if (sum == 0) return 0;
+    const auto z = [&](std::size_t k) { return surface_.points[corners[k]].z; };
+    const double height = (areas[1] * z(0) + areas[2] * z(1) + areas[0] * z(2)) / sum;
+    if (height < x.z) return 0;
+    return left == 3 ? 1 : -1;  // counter-clockwise from above: it faces up, the ray leaves
+}
+
+bool ClosedSurface::holds(const Vec3& x) const {
+    const auto above = [&](const Box& box) {
+        return box.lower.x <= x.x && x.x <= box.upper.x && box.lower.y <= x.y && x.y <= box.upper.y && x.z <= box.upper.z;
+    };
+    int left = 0;
+    tree_.visit(above, [&](Index triangle) {
+        left += crossing(triangle, x);
+        return false;
+    });
+    return left > 0;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,147 @@
+#include "subvol/field_metrics.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <random>
+
+#include "subvol/error.h"
+
+namespace subvol {
+
+namespace {
+
+constexpr std::size_t kBatch = 1 << 16;
+constexpr std::size_t kTriesASample = 1000;
+constexpr double kStep = 1e-3;  // of the box's diagonal
+
+struct Place {
+    Vec3 x{0.0};
+    std::optional<double> reference{}, test{};
+};
+
+/// std::uniform_real_distribution differs between libraries; this does not.
+double unit(std::mt19937_64& random) {
+    return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+std::vector<Place> random_batch(const FieldView& test, const FieldView& reference, std::mt19937_64& random) {
+    std::vector<Place> batch(kBatch);
+    for (Place& place : batch) {
+        for (int k = 0; k < 3; ++k) place.x[k] = unit(random);
+        place.x = reference.box.lower + place.x * reference.box.size();
+    }
+    tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
+        Place& place = batch[i];
+        place.reference = reference.value(place.x);
+        if (place.reference) place.test = test.value(place.x);
+    });
+    return batch;
+}
+
+std::vector<Place> random_places_of(const FieldView& test, const FieldView& reference, const FieldErrorOptions& options) {
+    if (reference.box.empty()) throw Error(ErrorCode::InvalidInput, "the reference field has an empty box");
+    std::mt19937_64 random(options.seed);
+    std::vector<Place> places;
+    for (std::size_t tries = 0; places.size() < options.samples && tries < options.samples * kTriesASample; tries += kBatch) {
+        report_progress(options.progress, "sample fields",
+                        static_cast<double>(places.size()) / static_cast<double>(options.samples));
+        for (const Place& place : random_batch(test, reference, random)) {
+            if (place.reference && places.size() < options.samples) places.push_back(place);
+        }
+    }
+    if (places.empty()) throw Error(ErrorCode::InvalidInput, "the reference field has no value at any place of its box");
+    return places;
+}
+
+/// Sums in the order in which they come, weighted.
+struct Errors {
+    double weights = 0, absolutes = 0, squares = 0, largest = 0;
+
+    void add(double difference, double weight) {
+        weights += weight;
+        absolutes += weight * std::abs(difference);
+        squares += weight * difference * difference;
+        // Not a number stays, as in the sums.
+        if (!(std::abs(difference) <= largest)) largest = std::isnan(largest) ? largest : std::abs(difference);
+    }
+    void put_into(FieldErrors& errors) const {
+        if (!(weights > 0)) return;
+        errors.l1 = absolutes / weights;
+        errors.l2 = std::sqrt(squares / weights);
+        errors.linf = largest;
+    }
+};
+
+void put_gradients(const FieldView& test, const FieldView& reference, std::span<const Place> places, FieldErrors& errors) {
+    std::vector<double> squares(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+        squares[i] = -1;  // none
+        if (!places[i].test) return;
+        const auto expected = gradient_at(reference, places[i].x);
+        const auto found = expected ? gradient_at(test, places[i].x) : std::nullopt;
+        if (found) squares[i] = glm::dot(*found - *expected, *found - *expected);
+    });
+    double sum = 0;
+    for (const double square : squares) {
+        if (square < 0) continue;
+        sum += square;
+        ++errors.gradients;
+    }
+    if (errors.gradients > 0) errors.gradient_rmse = std::sqrt(sum / static_cast<double>(errors.gradients));
+}
+
+}  // namespace
+
+std::optional<Vec3> gradient_at(const FieldView& field, const Vec3& x) {
+    if (field.gradient) return field.gradient(x);
+    const auto middle = field.value(x);
+    if (!middle) return std::nullopt;
+    const double step = field.step > 0 ? field.step : kStep * field.box.diagonal();
+    Vec3 gradient(0.0);
+    for (int k = 0; k < 3; ++k) {
+        Vec3 d(0.0);
+        d[k] = step;
+        const auto before = field.value(x - d), after = field.value(x + d);
+        if (!before && !after) return std::nullopt;
+        gradient[k] = (after.value_or(*middle) - before.value_or(*middle)) / (before && after ? 2 * step : step);
+    }
+    return gradient;
+}
+
+FieldErrors compare_fields(const FieldView& test, const FieldView& reference, const FieldErrorOptions& options) {
+    const auto places = random_places_of(test, reference, options);
+    FieldErrors errors;
+    Errors sums;
+    for (const Place& place : places) {
+        if (place.test) {
+            sums.add(*place.test - *place.reference, 1);
+            ++errors.samples;
+        } else {
+            ++errors.uncovered;
+        }
+    }
+    sums.put_into(errors);
+    if (options.gradients) put_gradients(test, reference, places, errors);
+    return errors;
+}
+
+FieldErrors compare_field(const FieldView& test, const FieldSamples& places) {
+    if (places.size() == 0) throw Error(ErrorCode::InvalidInput, "there are no places to compare a field at");
+    std::vector<std::optional<double>> values(places.size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) { values[i] = test.value(places.points[i]); });
+    FieldErrors errors;
+    Errors sums;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (values[i]) {
+            sums.add(*values[i] - places.values[i], places.weights[i]);
+            ++errors.samples;
+        } else {
+            ++errors.uncovered;
+        }
+    }
+    sums.put_into(errors);
+    return errors;
+}
+
+}  // namespace subvol
