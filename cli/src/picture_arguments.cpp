@@ -131,7 +131,11 @@ Optics PictureArguments::make_optics(const Box& box, const Range& field, const R
     return {std::move(function), opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
 }
 
-void PictureArguments::check_legend() const {
+void PictureArguments::check() const {
+    const Box any{{0, 0, 0}, {1, 1, 1}};
+    const auto [width, height] = parse_size("--size", size);
+    (void)parse_camera(camera.value_or(view), any, static_cast<double>(width) / height);
+    (void)find_transfer_function(transfer_function, {0, 1}, false);
     if (legend) check_output(*legend, {".svg"});
 }
 

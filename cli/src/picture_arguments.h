@@ -49,8 +49,10 @@ struct PictureArguments {
     /// field: whose opacities, colors: whose colours are shown, often the same
     [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
 
-    /// Refuses a --legend that cannot be written, before any work is done.
-    void check_legend() const;
+    /// Refuses before any work is done what needs no mesh to be seen as wrong: size, camera, colour map, --legend.
+    ///
+    /// throws: Error(InvalidInput)
+    void check() const;
 
     /// Writes the --legend, if one is wanted, over the range of the colours and with the field's name, the report's "field".
     void write_legend(const Optics& optics, const Range& field, Report& report) const;

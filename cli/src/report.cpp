@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "subvol/error.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -83,6 +84,7 @@ void Report::finish() {
         json_.erase("warnings");
         print_table(json_);
     }
+    if (!std::cout.flush()) throw Error(ErrorCode::Io, "could not be written", "standard output");
 }
 
 }  // namespace subvol::cli

@@ -48,6 +48,8 @@ public:
     void all_said() { all_said_ = true; }
 
     /// Prints; to be called once, when the verb is done.
+    ///
+    /// throws: Error(Io) if standard output takes no more
     void finish();
 
 private:

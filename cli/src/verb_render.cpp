@@ -3,14 +3,13 @@
 #include "picture_arguments.h"
 #include "picture_output.h"
 #include "points_input.h"
+#include "reference_arguments.h"
+#include "reference_pictures.h"
 #include "sample_arguments.h"
 #include "splat_arguments.h"
 #include "subvol/error.h"
 #include "subvol/progressive.h"
 #include "subvol/render.h"
-#include "subvol/render_dense.h"
-#include "subvol/render_grid.h"
-#include "subvol/render_pt.h"
 #include "text.h"
 #include "verb.h"
 
@@ -41,20 +40,7 @@ public:
                         "grid (rays through a .vdb file's voxels)")
             ->type_name("NAME");
         picture_.add_to(app());
-        app()
-            .add_option("--samples", samples_, "tets, dense, grid: n x n rays a pixel (default 1)")
-            ->type_name("N")
-            ->check(CLI::Range(1, 16));
-        app()
-            .add_option("--tolerance-image", image_tolerance_,
-                        "dense, without --levels: raise the level until the RMS of the picture's change is less (default 1e-3)")
-            ->type_name("RMS")
-            ->check(CLI::PositiveNumber);
-        app()
-            .add_option("--order", order_,
-                        "pt: what sorts the tetrahedra: topological (shared faces, the default), centroid, or\n"
-                        "lists (every pixel its own)")
-            ->type_name("NAME");
+        reference_.add_to(app());
         sample_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level (tets, pt: default 1; else: omitted shows the limit)");
         splat_.add_to(app());
@@ -62,25 +48,16 @@ public:
 
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
-        check_choice("--order", order_, {"topological", "centroid", "lists"});
         options_ = splat_.options();
         if (method_ == "sheets") options_.method = SplatMethod::Sheets;
         if (method_ == "sheets" && options_.backend == Backend::Cpu) {
             throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
         }
-        const bool by_rays = method_ == "tets" || method_ == "dense" || method_ == "grid";
-        if (by_rays && (options_.backend == Backend::Gl || splat_.shade || splat_.color_field || splat_.seconds)) {
-            throw Error(ErrorCode::InvalidInput, method_ + ": drawn by the CPU, without light and of one field",
-                        "--backend gl, --shade, --color-field, --seconds");
-        }
-        if (method_ == "pt" && (options_.backend == Backend::Cpu || splat_.shade || splat_.color_field || splat_.seconds)) {
-            throw Error(ErrorCode::InvalidInput, "tetrahedra are projected by OpenGL, without light and of one field",
-                        "--backend cpu, --shade, --color-field, --seconds");
-        }
-        picture_.check_legend();
+        check_reference();
+        picture_.check();
         PictureOutput output(output_, picture_.turntable_frames, picture_);
         if (method_ == "grid") {
-            draw_grid(output, report);
+            draw_voxels(output, report);
         } else if (holds_points(input_)) {
             draw_points(output, report);
         } else {
@@ -90,6 +67,24 @@ public:
     }
 
 private:
+    [[nodiscard]] bool drawn_by_splats() const { return method_ == "splat" || method_ == "sheets"; }
+
+    /// The reference methods know nothing of what is the splats' own.
+    void check_reference() const {
+        (void)reference_.pt_order();
+        if (drawn_by_splats()) return;
+        if (splat_.shade || splat_.color_field || splat_.seconds) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
+                        "--shade, --color-field, --seconds", "use --method splat or sheets");
+        }
+        const bool on_gpu = method_ == "pt";
+        if (options_.backend == (on_gpu ? Backend::Cpu : Backend::Gl)) {
+            throw Error(ErrorCode::InvalidInput,
+                        text("method ", method_, " is drawn by ", on_gpu ? "OpenGL" : "the CPU", " only"),
+                        text("--backend ", splat_.backend));
+        }
+    }
+
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
         if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the colours' field is the field itself
@@ -102,14 +97,14 @@ private:
             const TetsRenderer renderer(fine, fine.attributes.front().values);
             report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
-                return method_ == "pt" ? projected_tets(fine, view, optics, progress, report)
-                                       : tets(renderer, view, optics, progress, report);
+                return method_ == "pt" ? draw_projected_tets(fine, view, optics, reference_, splat_.device, progress, report)
+                                       : draw_tets(renderer, view, optics, reference_, progress, report);
             };
             output.write(views, draw, report);
         } else if (method_ == "dense") {
             const RefineOptions refine = refine_.options(0, report);
             const auto draw = [&](const View& view, Progress* progress) {
-                return dense(mesh, refine, view, optics, progress, report);
+                return draw_dense(mesh, refine, refine_.levels, view, optics, reference_, progress, report);
             };
             output.write(views, draw, report);
         } else if (splat_.seconds) {
@@ -120,29 +115,21 @@ private:
         picture_.write_legend(optics, colors, report);
     }
 
-    void draw_grid(PictureOutput& output, Report& report) {
+    void draw_voxels(PictureOutput& output, Report& report) {
         const VdbGrid grid = load_grid(input_, common(), report);
         const Box box = box_of(grid.report());
         const Range range{grid.report().min, grid.report().max};
         const Optics optics = picture_.make_optics(box, range, range);
         const auto voxels = grid.voxels();
         const auto draw = [&](const View& view, Progress* progress) {
-            GridResult drawn = render_grid(*voxels, view, optics, {.samples = samples_, .progress = progress});
-            report.add_seconds("draw", drawn.report.seconds_draw);
-            report["method"] = method_;
-            report["backend"] = "cpu";
-            report["rays"] = drawn.report.rays;
-            report["cells"] = drawn.report.cells;
-            report["blocks"] = drawn.report.blocks;
-            return Picture{std::move(drawn.image)};
+            return draw_grid(*voxels, view, optics, reference_, progress, report);
         };
         output.write(picture_.make_views(box), draw, report);
         picture_.write_legend(optics, range, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
-        if (method_ == "tets" || method_ == "pt" || method_ == "dense")
-            throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        if (!drawn_by_splats()) throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         if (volume.channels.size() == 1) options_.color_channel.reset();
         const std::vector<View> views = picture_.make_views(volume.bounds);
@@ -181,82 +168,11 @@ private:
         output.write({view}, draw, report);
     }
 
-    [[nodiscard]] Picture tets(const TetsRenderer& renderer, const View& view, const Optics& optics, Progress* progress,
-                               Report& report) const {
-        TetsResult drawn = renderer.draw(view, optics, {.samples = samples_, .progress = progress});
-        report.add_seconds("draw", drawn.report.seconds_draw);
-        report["method"] = method_;
-        report["backend"] = "cpu";
-        report["tets"] = drawn.report.tets;
-        report["degenerate_tets"] = drawn.report.degenerate_tets;
-        report["inverted_tets"] = drawn.report.inverted_tets;
-        report["rays"] = drawn.report.rays;
-        report["lost_rays"] = drawn.report.lost_rays;
-        if (drawn.report.lost_rays > 0) report.warn(text(drawn.report.lost_rays, " rays were lost inside the mesh"));
-        return Picture{std::move(drawn.image)};
-    }
-
-    [[nodiscard]] Picture dense(const HexMesh& mesh, const RefineOptions& refine, const View& view, const Optics& optics,
-                                Progress* progress, Report& report) const {
-        DenseResult drawn = render_dense(mesh, mesh.attributes.front().values, view, optics,
-                                         {.refine = refine,
-                                          .levels = refine_.levels,
-                                          .image_tolerance = image_tolerance_,
-                                          .samples = samples_,
-                                          .progress = progress});
-        report.add_seconds("prepare", drawn.report.seconds_build);
-        report.add_seconds("draw", drawn.report.seconds_draw);
-        report["method"] = method_;
-        report["backend"] = "cpu";
-        report["levels"] = drawn.report.levels;
-        if (drawn.report.image_change) report["image_change"] = *drawn.report.image_change;
-        report["blocks"] = drawn.report.blocks;
-        report["skipped_blocks"] = drawn.report.skipped_blocks;
-        report["micro_cells"] = drawn.report.micro_cells;
-        report["passes"] = drawn.report.passes;
-        report["bytes"] = drawn.report.bytes;
-        report["rays"] = drawn.report.rays;
-        report["lost_rays"] = drawn.report.lost_rays;
-        if (!refine_.levels && !drawn.report.converged) {
-            report.warn(text("the picture still changes by ", drawn.report.image_change.value_or(0), " at level ",
-                             drawn.report.levels, ": --levels draws a finer one"));
-        }
-        if (drawn.report.lost_rays > 0) report.warn(text(drawn.report.lost_rays, " rays were lost inside the mesh"));
-        return Picture{std::move(drawn.image)};
-    }
-
-    [[nodiscard]] Picture projected_tets(const HexMesh& mesh, const View& view, const Optics& optics, Progress* progress,
-                                         Report& report) const {
-        const PtOrder order = order_ == "lists"      ? PtOrder::Lists
-                              : order_ == "centroid" ? PtOrder::Centroid
-                                                     : PtOrder::Topological;
-        PtResult drawn = render_projected_tets(mesh, mesh.attributes.front().values, view, optics,
-                                               {.order = order, .device = splat_.device, .progress = progress});
-        const PtReport& pt = drawn.report;
-        report.add_seconds("prepare", pt.seconds_build);
-        report.add_seconds("sort", pt.seconds_sort);
-        report.add_seconds("draw", pt.seconds_draw);
-        report["method"] = method_;
-        report["backend"] = "gl";
-        report["device"] = pt.device;
-        report["order"] = order_;
-        report["tets"] = pt.tets;
-        report["degenerate_tets"] = pt.degenerate_tets;
-        report["inverted_tets"] = pt.inverted_tets;
-        if (order == PtOrder::Topological) report["cycles"] = pt.cycles;
-        if (order == PtOrder::Lists) report["fragments"] = pt.fragments;
-        if (pt.violations) report["order_violations"] = *pt.violations;
-        if (pt.cycles > 0) report.warn(text("the order of the tetrahedra has cycles, broken ", pt.cycles, " times"));
-        return Picture{std::move(drawn.image)};
-    }
-
     std::string input_;
     std::string output_;
     std::string method_ = "splat";
-    std::string order_ = "topological";
-    int samples_ = 1;
-    double image_tolerance_ = 1e-3;
     PictureArguments picture_;
+    ReferenceArguments reference_;
     SampleArguments sample_;
     SplatArguments splat_;
     SplatOptions options_;

@@ -4,10 +4,10 @@
 
 namespace subvol {
 
-/// throws: Error(InvalidInput) if the sizes differ; names both
-void check_same_size(const Image& a, const Image& b);
+/// throws: Error(InvalidInput) if the sizes differ or there are no pixels; names both
+void check_comparable(const Image& a, const Image& b);
 
-/// The largest difference of the red, green and blue of a pixel; not a number if one of them is none.
-[[nodiscard]] double pixel_difference(const Image& a, const Image& b, int x, int y);
+/// throws: Error(InvalidInput) as `check_comparable`, or if pixels are not finite; says how many
+void check_finite(const Image& a, const Image& b);
 
 }  // namespace subvol

@@ -53,6 +53,15 @@ class Mistakes(InFolder):
         self.assert_refused("render", "model:ball:2", "-o", "a.png", "--legend", "a.png", naming=".svg")
         self.assert_refused("compare", "a.png", "b.png", "--fail-under", "psnr", naming="--fail-under")
 
+    def test_what_needs_no_mesh_is_refused_before_one_is_read(self):
+        for wrong in ("--size", "3y"), ("--camera", "nix"), ("--tf", "missing.json"):
+            self.assert_refused("render", "missing.mesh", "-o", "a.png", *wrong, naming=wrong[1])
+
+    def test_a_full_standard_output(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([COMMAND, "model", "--list"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stderr), (2, "subvol: standard output: could not be written\n"))
+
     def test_files(self):
         self.assert_refused("info", "missing.mesh", naming="missing.mesh")
         self.assert_refused("subdivide", "model:ball:2", "-o", "a.obj", naming=".vtu")

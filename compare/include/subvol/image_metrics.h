@@ -1,22 +1,59 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "subvol/image.h"
+#include "subvol/vec.h"
 
 namespace subvol {
 
-/// Differences over linear RGB, all pixels and channels, peak 1. psnr is infinite for equal images.
+/// Differences over red, green and blue of all pixels, peak 1. psnr is infinite for equal images.
 struct ImageMetrics {
     double mse = 0, rmse = 0, mae = 0, max = 0, psnr = 0;
 };
 
-/// throws: Error(InvalidInput) if the sizes differ or there are no pixels
-[[nodiscard]] ImageMetrics compare_images(const Image& a, const Image& b);
+/// Which pixels count: one a pixel, rows from the top; 0: does not. An empty one where all count.
+using PixelMask = std::vector<std::uint8_t>;
 
-/// The difference as a picture: per pixel the largest channel difference through the map inferno (black over red to pale
-/// yellow), 30 rows of legend below: a bar and the numbers at its ends and middle, as far as there is room.
+/// A number for each pixel, rows from the top: where a metric is how large.
+struct MetricMap {
+    int width = 0;
+    int height = 0;
+    std::vector<float> values;
+};
+
+/// throws: Error(InvalidInput) if the sizes differ, there are no pixels, or none that counts
+[[nodiscard]] ImageMetrics compare_images(const Image& a, const Image& b, std::span<const std::uint8_t> mask = {});
+
+/// The picture as `write_image` puts it into a .png: red, green and blue are the encoded 8-bit values / 255, no longer linear,
+/// alpha is 1. What is measured between two of them is measured on 8-bit sRGB.
 ///
-/// scale:  the difference that takes the last colour; 0: the largest difference
-/// throws: Error(InvalidInput) if the sizes differ or the scale is negative
+/// background: linear RGB
+[[nodiscard]] Image srgb8_image(const Image& image, const Vec3& background = Vec3(0.0));
+
+/// How many pixels have a colour or alpha that is infinite or not a number.
+[[nodiscard]] std::size_t count_not_finite(const Image& image);
+
+/// The mean over the pixels that count.
+///
+/// throws: Error(InvalidInput) if there are none
+[[nodiscard]] double mean_of(const MetricMap& map, std::span<const std::uint8_t> mask = {});
+
+/// Per pixel the largest absolute difference of red, green and blue.
+///
+/// throws: Error(InvalidInput) if the sizes differ or there are no pixels
+[[nodiscard]] MetricMap difference_map(const Image& a, const Image& b);
+
+/// A map as a picture: colours of the map inferno (black over red to pale yellow), 30 rows of legend below: a bar and the
+/// numbers at its ends and middle, as far as there is room.
+///
+/// scale:  the value that takes the last colour; 0: the largest value
+/// throws: Error(InvalidInput) if there are no pixels or the scale is negative
+[[nodiscard]] Image heatmap(const MetricMap& map, double scale = 0);
+
+/// `heatmap` of the `difference_map`.
 [[nodiscard]] Image difference_heatmap(const Image& a, const Image& b, double scale = 0);
 
 }  // namespace subvol

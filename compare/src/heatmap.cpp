@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <string>
 
-#include "image_difference.h"
 #include "pixel_text.h"
 #include "subvol/error.h"
 #include "subvol/image_metrics.h"
@@ -78,33 +77,30 @@ void draw_ticks(Image& image, int top, double scale) {
     if (fits) draw_text(image, middle, middle_start, text_top);
 }
 
-double largest_difference(const Image& a, const Image& b) {
-    double largest = 0;
-    for (int y = 0; y < a.height; ++y) {
-        for (int x = 0; x < a.width; ++x) largest = std::fmax(largest, pixel_difference(a, b, x, y));
-    }
-    return largest;
-}
-
 }  // namespace
 
-Image difference_heatmap(const Image& a, const Image& b, double scale) {
-    check_same_size(a, b);
-    if (a.width < 1 || a.height < 1) throw Error(ErrorCode::InvalidInput, "images without pixels cannot be compared");
+Image heatmap(const MetricMap& map, double scale) {
+    if (map.width < 1 || map.height < 1) throw Error(ErrorCode::InvalidInput, "a map without pixels cannot be drawn");
     if (!(scale >= 0) || !std::isfinite(scale))
         throw Error(ErrorCode::InvalidInput, "the full scale is negative or not finite");
-    if (scale == 0) scale = largest_difference(a, b);
-
-    Image heat(a.width, a.height + kLegendHeight);
-    for (int y = 0; y < a.height; ++y) {
-        for (int x = 0; x < a.width; ++x) {
-            const double difference = pixel_difference(a, b, x, y);
-            set_pixel(heat, x, y, heat_color(difference == 0 ? 0 : difference / scale));
+    if (scale == 0) {
+        for (const float value : map.values) scale = std::fmax(scale, static_cast<double>(value));
+    }
+    Image heat(map.width, map.height + kLegendHeight);
+    for (int y = 0; y < map.height; ++y) {
+        const float* row = map.values.data() + static_cast<std::ptrdiff_t>(y) * map.width;
+        for (int x = 0; x < map.width; ++x) {
+            const auto value = static_cast<double>(row[x]);
+            set_pixel(heat, x, y, heat_color(value == 0 ? 0 : value / scale));
         }
     }
-    draw_bar(heat, a.height);
-    draw_ticks(heat, a.height + kBarHeight, scale);
+    draw_bar(heat, map.height);
+    draw_ticks(heat, map.height + kBarHeight, scale);
     return heat;
+}
+
+Image difference_heatmap(const Image& a, const Image& b, double scale) {
+    return heatmap(difference_map(a, b), scale);
 }
 
 }  // namespace subvol
