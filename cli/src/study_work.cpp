@@ -39,9 +39,14 @@ CaseResult run_case(const StudyCase& of, const CasePlace& place) {
     static const std::set<std::string> kFields{"field", "voxels", "values", "counts"};
     static const std::set<std::string> kKernels{"errors", "fit", "slice"};
     const std::string& method = of.text("method");
-    if (kFields.contains(method)) return run_field_case(of);
-    if (kKernels.contains(method)) return run_kernel_case(of, place);
-    return run_picture_case(of, place);
+    if (!kFields.contains(method) && !kKernels.contains(method)) return run_picture_case(of, place);
+    const auto start = std::chrono::steady_clock::now();
+    CaseResult result = kFields.contains(method) ? run_field_case(of) : run_kernel_case(of, place);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    result.costs = {{"seconds", elapsed.count()},
+                    {"cpu_seconds", cpu_seconds()},
+                    {"peak_bytes", static_cast<double>(peak_memory_bytes())}};
+    return result;
 }
 
 }  // namespace subvol::cli

@@ -3,9 +3,11 @@
 #include <filesystem>
 #include <iostream>
 
+#include "study_host.h"
 #include "study_runner.h"
 #include "subvol/error.h"
 #include "subvol/study.h"
+#include "subvol/study_report.h"
 #include "subvol/study_run.h"
 #include "subvol/study_table.h"
 #include "text.h"
@@ -121,8 +123,20 @@ private:
             failed += all.back().failed;
             tell(all.back(), report);
         }
+        const fs::path page = fs::path(output_) / "report.html";
+        write_text_file(page, report_html(all, output_, {study_host(), study_versions(), command()}));
         report["output"] = output_;
+        report["report"] = page.string();
+        report.say("\n" + text("The report is ", page.string()));
         return failed > 0 ? kCaseFailed : 0;
+    }
+
+    /// What runs the same studies again.
+    [[nodiscard]] std::string command() const {
+        std::string words = "subvol study";
+        for (const std::string& name : names_) words += " " + name;
+        for (const std::string& mesh : meshes_) words += " --mesh " + mesh;
+        return words + " -o " + output_;
     }
 
     static void check_names(const std::vector<Study>& studies) {

@@ -65,7 +65,7 @@ public:
         result.title = json_.contains("title") ? read_text(json_["title"], in(root_, "title")) : result.name;
         if (json_.contains("about")) result.about = read_text(json_["about"], in(root_, "about"));
         result.timed = flag("timed");
-        result.pictures = flag("pictures");
+        if (!json_.contains("pictures") || !json_["pictures"].is_object()) result.pictures = flag("pictures");
         read_presentation(json_, root_, result);
         expand(result);
         return result;

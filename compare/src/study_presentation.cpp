@@ -58,6 +58,10 @@ std::map<std::string, std::string> with_common(std::map<std::string, std::string
 
 void read_presentation(const Json& json, const std::string& root, Study& study) {
     const auto common = words(json, "headings", root);
+    if (json.contains("pictures") && json["pictures"].is_object()) {
+        study.pictures = true;
+        study.pictures_where = words(json, "pictures", root);
+    }
     const Json& tables = list_of(json, "tables", root);
     for (std::size_t i = 0; i < tables.size(); ++i) {
         const std::string path = at(in(root, "tables"), i);

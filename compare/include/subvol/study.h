@@ -70,13 +70,14 @@ struct StudyDemand {
 };
 
 /// timed:    costs are measured: cases run one after the other, alone
-/// pictures: the report shows pictures beside their reference
+/// pictures: the report shows pictures beside their reference, of the cases of `pictures_where`
 struct Study {
     std::string name;
     std::string title;
     std::string about;
     bool timed = false;
     bool pictures = false;
+    StudyFilter pictures_where;
     std::vector<StudyCase> cases;
     std::vector<StudyTableSpec> tables;
     std::vector<StudyPlotSpec> plots;
