@@ -56,9 +56,18 @@ HexMesh study_mesh(const StudyCase& of) {
     return mesh;
 }
 
-View study_view(const StudyCase& of, const HexMesh& mesh) {
+Box visible_bounds(const HexMesh& mesh, const Optics& optics) {
+    Box box;
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        if (optics.extinction(mesh.attributes[0].values[p]) > 0) box.add(mesh.points[p]);
+    }
+    return box;
+}
+
+View study_view(const StudyCase& of, const HexMesh& mesh, const Optics& optics) {
     const int width = of.whole("width"), height = of.whole("height");
-    return {parse_camera(of.text("camera"), bounds(mesh), static_cast<double>(width) / height), width, height};
+    const Box box = of.flag("camera.visible") ? visible_bounds(mesh, optics) : bounds(mesh);
+    return {parse_camera(of.text("camera"), box, static_cast<double>(width) / height), width, height};
 }
 
 Optics study_optics(const StudyCase& of, const HexMesh& mesh) {

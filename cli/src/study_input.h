@@ -13,7 +13,12 @@ namespace subvol::cli {
 /// meshes are alike in it
 [[nodiscard]] HexMesh study_mesh(const StudyCase& of);
 
-[[nodiscard]] View study_view(const StudyCase& of, const HexMesh& mesh);
+/// The box of what can be seen: the pawn fills a small part of its block.
+[[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
+
 [[nodiscard]] Optics study_optics(const StudyCase& of, const HexMesh& mesh);
+
+/// A side is fitted to the mesh's box, or to what can be seen of it.
+[[nodiscard]] View study_view(const StudyCase& of, const HexMesh& mesh, const Optics& optics);
 
 }  // namespace subvol::cli

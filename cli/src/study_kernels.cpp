@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <iomanip>
 
 #include "fit_tables.h"
 #include "study_work.h"
@@ -7,6 +9,7 @@
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
 #include "subvol/srgb.h"
+#include "text.h"
 
 namespace subvol::cli {
 namespace {
@@ -21,13 +24,22 @@ void put(const FitErrors& errors, const std::string& prefix, CaseResult& result)
     if (errors.max > 0) result.metrics[prefix + "max"] = errors.max;
 }
 
+/// A number or a list of numbers, in six digits.
+std::string short_number(const Json& value) {
+    if (!value.is_array()) return text(std::setprecision(6), value.get<double>());
+    std::vector<std::string> parts;
+    for (const Json& part : value) parts.push_back(short_number(part));
+    return "(" + join(parts) + ")";
+}
+
 /// A kernel's numbers, without long tables.
 void put_parameters(const Kernel& kernel, CaseResult& result) {
     std::string words;
     const Json parameters = parameters_of(kernel);
     for (const auto& [key, value] : parameters.items()) {
         if (value.is_number()) result.metrics["parameter." + key] = value.get<double>();
-        words += (words.empty() ? "" : ", ") + key + " " + value.dump();
+        const bool usual = (key == "radius" && value == 3.0) || (key == "amplitude" && value == 1.0);
+        if (!usual) words += (words.empty() ? "" : ", ") + key + " " + short_number(value);
     }
     result.notes["parameters"] = words;
 }

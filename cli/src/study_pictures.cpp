@@ -159,8 +159,8 @@ Image draw(const Scene& scene) {
 
 /// The picture, its costs and counts. The memory of the mesh is there before, and counted by itself.
 Image measured(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
-    const View view = study_view(of, mesh);
     const Optics optics = study_optics(of, mesh);
+    const View view = study_view(of, mesh, optics);
     const auto before = static_cast<double>(peak_memory_bytes());
     const double cpu = cpu_seconds();
     const Stopwatch watch;

@@ -43,9 +43,8 @@ CaseResult run_case(const StudyCase& of, const CasePlace& place) {
     const auto start = std::chrono::steady_clock::now();
     CaseResult result = kFields.contains(method) ? run_field_case(of) : run_kernel_case(of, place);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    result.costs = {{"seconds", elapsed.count()},
-                    {"cpu_seconds", cpu_seconds()},
-                    {"peak_bytes", static_cast<double>(peak_memory_bytes())}};
+    result.costs = {
+        {"seconds", elapsed.count()}, {"cpu_seconds", cpu_seconds()}, {"peak_bytes", static_cast<double>(peak_memory_bytes())}};
     return result;
 }
 

@@ -33,14 +33,14 @@ Judgement judged(const StudyResults& results, const StudyDemand& demand) {
         if (found == results.results[i].metrics.end() && results.results[i].failure.empty()) continue;
         ++judgement.cases;
         const double value = found == results.results[i].metrics.end() ? NAN : found->second;
-        double excess = -INFINITY;
+        double excess = std::isnan(value) ? INFINITY : -INFINITY;
         if (demand.least) excess = std::max(excess, *demand.least - value);
         if (demand.most) excess = std::max(excess, value - *demand.most);
         if (excess <= 0) ++judgement.met;
         if (!worst || excess > worst_excess) {
             worst = value;
             worst_excess = excess;
-            worst_case = of.has("input") ? of.text("input") : of.text("label");
+            worst_case = of.has("input") ? spaced(of.text("input")) : of.text("label");
         }
     }
     judgement.words = heading(results.study, demand.metric);
@@ -82,14 +82,14 @@ std::string summary_html(std::span<const StudyResults> studies) {
         demands += own;
         met += own_met;
         rows += "<tr><td class=\"words\"><a href=\"#" + escaped(results.study.name) + "\">" + escaped(results.study.title) +
-                "</a></td><td>" + std::to_string(results.results.size()) + "</td><td>" + std::to_string(results.failed) +
-                "</td><td>" + (own == 0 ? "–" : std::to_string(own_met) + " of " + std::to_string(own)) + "</td></tr>\n";
+                "</a>" + demands_html(results) + "</td><td>" + std::to_string(results.results.size()) + "</td><td>" +
+                std::to_string(results.failed) + "</td><td>" +
+                (own == 0 ? "–" : std::to_string(own_met) + " of " + std::to_string(own)) + "</td></tr>\n";
     }
     std::string verdict = count(studies.size(), "study", "studies") + ", " + count(cases, "case", "cases") + ": ";
     verdict += failed == 0 ? "all done" : count(failed, "case", "cases") + " failed";
     if (demands > 0) verdict += "; " + std::to_string(met) + " of " + count(demands, "demand", "demands") + " met";
     std::string html = "<p class=\"verdict\">" + escaped(verdict) + ".</p>\n";
-    for (const StudyResults& results : studies) html += demands_html(results);
     return html +
            "<div class=\"wide\"><table>\n<thead><tr><th class=\"words\">study</th><th>cases</th><th>failed</th><th>demands met"
            "</th></tr></thead>\n<tbody>\n" +

@@ -16,9 +16,7 @@ namespace {
 std::string heading(const StudyPlotSpec& spec, const std::string& key) {
     const auto found = spec.headings.find(key);
     if (found != spec.headings.end()) return found->second;
-    std::string words = key;
-    std::ranges::replace(words, '_', ' ');
-    return words;
+    return spaced(key);
 }
 
 std::optional<double> number_of(const StudyCase& of, const CaseResult& result, const std::string& key) {
@@ -72,7 +70,7 @@ std::string image_html(const fs::path& file, const std::string& alternative) {
 }
 
 std::string case_title(const StudyCase& of) {
-    const std::string input = of.text("input"), label = of.text("label");
+    const std::string input = spaced(of.text("input")), label = of.text("label");
     return input.empty() ? label : input + ", " + label;
 }
 
@@ -131,7 +129,7 @@ std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec) {
         if (!x || !y || !matches(of, result, spec.where)) continue;
         std::string name;
         for (const std::string& key : spec.series) name += (name.empty() ? "" : ", ") + value_text(of, result, key);
-        Series& series = named(panels, spec.panels.empty() ? "" : value_text(of, result, spec.panels));
+        Series& series = named(panels, spec.panels.empty() ? "" : spaced(value_text(of, result, spec.panels)));
         named(series, name).push_back({*x, *y});
     }
     std::string html = "<h3>" + escaped(spec.title) + "</h3>\n";

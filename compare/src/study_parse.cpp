@@ -153,7 +153,7 @@ private:
             const std::string path = at(in(root_, "cameras"), i);
             std::string name = "camera" + std::to_string(i), camera;
             if (items[i].is_object()) {
-                const std::vector<std::string> known{"name", "camera"};
+                const std::vector<std::string> known{"name", "camera", "visible"};
                 check_object(items[i], path, known);
                 name = name_of(items[i], path);
                 if (!items[i].contains("camera")) refuse(in(path, "camera"), "the camera is missing");
@@ -163,6 +163,9 @@ private:
                 if (camera.size() <= 4) name = camera;  // a side, such as +x
             }
             StudyValues values{{"view", name}, {"camera", camera}};
+            if (items[i].is_object() && items[i].contains("visible")) {
+                values["camera.visible"] = read_value(items[i]["visible"], {"visible", KeyKind::Switch}, in(path, "visible"));
+            }
             if (camera.ends_with(".json")) add_file(values, "camera", path);
             all.push_back(std::move(values));
         }

@@ -17,15 +17,14 @@ std::size_t width_of(const std::string& text) {
 std::string heading(const StudyTableSpec& spec, const std::string& key) {
     const auto found = spec.headings.find(key);
     if (found != spec.headings.end()) return found->second;
-    std::string words = key.starts_with("given.") ? key.substr(6) : key;
-    std::ranges::replace(words, '_', ' ');
-    return words;
+    return spaced(key.starts_with("given.") ? key.substr(6) : key);
 }
 
-StudyTable::Cell cell_of(const std::optional<StudyValue>& value) {
+StudyTable::Cell cell_of(const StudyCase& of, const CaseResult& result, const std::string& key) {
+    const auto value = find_value(of, result, key);
     if (!value) return std::nan("");
     if (const auto* number = std::get_if<double>(&*value)) return *number;
-    return as_text(*value);
+    return key == "input" ? spaced(as_text(*value)) : as_text(*value);
 }
 
 /// One of several, in the order of their first appearance.
@@ -65,24 +64,29 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
         const std::size_t r = place_in(groups, group);
         if (r == table.rows.size()) {
             auto& row = table.rows.emplace_back(table.columns.size(), std::nan(""));
-            for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(find_value(of, result, spec.rows[k]));
+            for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(of, result, spec.rows[k]);
         }
         auto& row = table.rows[r];
         for (std::size_t k = 0; k < spec.columns.size(); ++k) {  // of the first case that has it
             auto& cell = row[spec.rows.size() + k];
             const auto* number = std::get_if<double>(&cell);
-            if (number != nullptr && std::isnan(*number)) cell = cell_of(find_value(of, result, spec.columns[k]));
+            if (number != nullptr && std::isnan(*number)) cell = cell_of(of, result, spec.columns[k]);
         }
         if (spec.across.empty()) continue;
         const std::size_t a = place_in(across, value_text(of, result, spec.across));
         for (std::size_t v = 0; v < spec.values.size(); ++v) {
-            row[fixed + a * spec.values.size() + v] = cell_of(find_value(of, result, spec.values[v]));
+            row[fixed + a * spec.values.size() + v] = cell_of(of, result, spec.values[v]);
         }
     }
     return table;
 }
 
 }  // namespace
+
+std::string spaced(std::string name) {
+    std::ranges::replace(name, '_', ' ');
+    return name;
+}
 
 std::optional<StudyValue> find_value(const StudyCase& of, const CaseResult& result, const std::string& key) {
     if (const auto found = of.values.find(key); found != of.values.end()) return found->second;

@@ -25,6 +25,9 @@ struct StudyTable {
 /// The same as text; "" if there is none.
 [[nodiscard]] std::string value_text(const StudyCase& of, const CaseResult& result, const std::string& key);
 
+/// A name for people: with spaces for its underscores.
+[[nodiscard]] std::string spaced(std::string name);
+
 [[nodiscard]] bool matches(const StudyCase& of, const CaseResult& result, const StudyFilter& where);
 
 /// The tables of a study, each of the cases that its specification chooses; named as the study, with _2 and so on.
