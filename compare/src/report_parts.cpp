@@ -94,7 +94,7 @@ std::string triple_html(const fs::path& ours, const fs::path& reference, const f
            "aria-label=\"How much of ours is shown, from the "
            "left\"><label><span>ours</span><span>reference</span></label></div>\n" +
            "<figure class=\"difference\">" + image_html(difference, title + ", difference") +
-           "<figcaption>difference, largest of red, green, blue</figcaption></figure>\n</div>\n";
+           "<figcaption>difference (largest channel)</figcaption></figure>\n</div>\n";
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ std::string table_html(const StudyTable& table) {
     html += "</tr></thead>\n<tbody>\n";
     for (const auto& row : table.rows) {
         html += "<tr>";
-        for (std::size_t c = 0; c < row.size(); ++c) html += cell("td", c, readable(row[c]));
+        for (std::size_t c = 0; c < row.size(); ++c) html += cell("td", c, readable(row[c], table.digits));
         html += "</tr>\n";
     }
     return html + "</tbody></table></div>\n";

@@ -65,7 +65,8 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
     const Json& tables = list_of(json, "tables", root);
     for (std::size_t i = 0; i < tables.size(); ++i) {
         const std::string path = at(in(root, "tables"), i);
-        const std::vector<std::string> known{"title", "caption", "rows", "columns", "across", "values", "headings", "where"};
+        const std::vector<std::string> known{"title",  "caption",  "rows",  "columns", "across",
+                                             "values", "headings", "where", "digits"};
         check_object(tables[i], path, known);
         StudyTableSpec table{.title = text_or(tables[i], "title", path, study.title),
                              .caption = text_or(tables[i], "caption", path),
@@ -75,6 +76,10 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
                              .values = texts(tables[i], "values", path, tables[i].contains("across")),
                              .headings = with_common(words(tables[i], "headings", path), common),
                              .where = words(tables[i], "where", path)};
+        if (tables[i].contains("digits")) {
+            const Key digits{"digits", KeyKind::Whole, 1, 17};
+            table.digits = static_cast<int>(std::get<double>(read_value(tables[i]["digits"], digits, in(path, "digits"))));
+        }
         if (!table.values.empty() && table.across.empty()) refuse(in(path, "across"), "values need something to go across");
         study.tables.push_back(std::move(table));
     }

@@ -39,6 +39,7 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
     StudyTable table;
     table.title = spec.title;
     table.caption = spec.caption;
+    table.digits = spec.digits;
     std::vector<std::size_t> chosen;
     std::vector<std::string> groups, across;
     for (std::size_t i = 0; i < results.results.size(); ++i) {
@@ -116,14 +117,18 @@ std::vector<StudyTable> make_tables(const StudyResults& results) {
     return tables;
 }
 
-std::string readable(const StudyTable::Cell& cell) {
+std::string readable(const StudyTable::Cell& cell, int digits) {
     if (const auto* words = std::get_if<std::string>(&cell)) return *words;
     const double number = std::get<double>(cell);
     if (std::isnan(number)) return "–";
     if (std::isinf(number)) return number > 0 ? "∞" : "−∞";
     std::array<char, 32> text{};
     const bool count = number == std::floor(number) && std::abs(number) < 1e15;
-    std::snprintf(text.data(), text.size(), count ? "%.0f" : "%.4g", number);
+    if (count) {
+        std::snprintf(text.data(), text.size(), "%.0f", number);
+    } else {
+        std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+    }
     return text.data();
 }
 
@@ -131,7 +136,7 @@ std::string as_text(const StudyTable& table) {
     std::vector<std::vector<std::string>> lines{table.columns};
     for (const auto& row : table.rows) {
         auto& line = lines.emplace_back();
-        for (const auto& cell : row) line.push_back(readable(cell));
+        for (const auto& cell : row) line.push_back(readable(cell, table.digits));
     }
     std::vector<std::size_t> widths(table.columns.size());
     for (const auto& line : lines) {
@@ -157,7 +162,7 @@ std::string as_csv(const StudyTable& table) {
     };
     for (std::size_t c = 0; c < table.columns.size(); ++c) put(table.columns[c], c + 1 == table.columns.size());
     for (const auto& row : table.rows) {
-        for (std::size_t c = 0; c < row.size(); ++c) put(readable(row[c]), c + 1 == row.size());
+        for (std::size_t c = 0; c < row.size(); ++c) put(readable(row[c], table.digits), c + 1 == row.size());
     }
     return text;
 }

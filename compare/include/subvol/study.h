@@ -37,6 +37,8 @@ using StudyFilter = std::map<std::string, std::string>;
 
 /// A table of the report: a row for each combination of the values under `rows`, first `columns`, then one column for each
 /// value under `across`, with each of `values` in it. Keys are names of values, metrics and costs; headings say them to people.
+///
+/// digits: of numbers that are no counts
 struct StudyTableSpec {
     std::string title;
     std::string caption;
@@ -46,6 +48,7 @@ struct StudyTableSpec {
     std::vector<std::string> values;
     std::map<std::string, std::string> headings;
     StudyFilter where;
+    int digits = 4;
 };
 
 /// A plot of the report: metric `y` over `x`, a line for each combination of the values under `series`, a plot for each of

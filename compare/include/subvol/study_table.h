@@ -17,6 +17,7 @@ struct StudyTable {
     std::string caption;
     std::vector<std::string> columns;
     std::vector<std::vector<Cell>> rows;
+    int digits = 4;
 };
 
 /// A value, metric, cost or note of a case by its key; "done" is "yes", or the failure.
@@ -33,8 +34,8 @@ struct StudyTable {
 /// The tables of a study, each of the cases that its specification chooses; named as the study, with _2 and so on.
 [[nodiscard]] std::vector<StudyTable> make_tables(const StudyResults& results);
 
-/// A number as people read it: four digits, counts in full; NaN is "–".
-[[nodiscard]] std::string readable(const StudyTable::Cell& cell);
+/// A number as people read it: in so many digits, counts in full; NaN is "–".
+[[nodiscard]] std::string readable(const StudyTable::Cell& cell, int digits = 4);
 
 /// The table as text with aligned columns, for people; as comma-separated values, for programs.
 [[nodiscard]] std::string as_text(const StudyTable& table);
