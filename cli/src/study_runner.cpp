@@ -39,7 +39,7 @@ void StudyRunner::make_reference(const StudyCase& reference) {
     if (read_finished_case(file, reference, folder_ / kReferences)) return;
     try {
         std::filesystem::create_directories(folder_ / kReferences);
-        write_case(file, reference, in_child(reference, "", 0));
+        write_case(file, reference, in_child(reference, "", reference_threads_));
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
         failure = error.what();

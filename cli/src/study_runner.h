@@ -15,8 +15,9 @@ namespace subvol::cli {
 class StudyRunner {
 public:
     /// folder:  of all studies' output
-    /// threads: of one case
-    StudyRunner(std::filesystem::path folder, int threads) : folder_(std::move(folder)), threads_(threads) {}
+    /// threads: of one case; reference_threads: of a reference, while nothing else is measured
+    StudyRunner(std::filesystem::path folder, int threads, int reference_threads)
+        : folder_(std::move(folder)), threads_(threads), reference_threads_(reference_threads) {}
 
     /// study: its folder's name
     [[nodiscard]] CaseResult run(const StudyCase& of, const std::string& study);
@@ -26,7 +27,7 @@ private:
     [[nodiscard]] CaseResult in_child(const StudyCase& of, const std::string& study, int threads) const;
 
     std::filesystem::path folder_;
-    int threads_;
+    int threads_, reference_threads_;
     std::mutex mutex_;
     std::map<std::string, std::string> references_;  // done in this run, and how they failed
 };

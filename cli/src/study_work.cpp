@@ -19,7 +19,7 @@ double cpu_seconds() {
 }
 
 std::string case_file(const StudyCase& of, const std::string& ending) {
-    return of.name + "_" + of.id.substr(0, 6) + ending;
+    return of.name + "_" + of.id.substr(0, 8) + ending;
 }
 
 Kernel study_kernel(const std::string& text) {

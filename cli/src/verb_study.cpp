@@ -151,7 +151,7 @@ private:
     [[nodiscard]] StudyResults run_one(const Study& study, Report& report) const {
         const auto cores = static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
         const int jobs = study.timed ? 1 : jobs_.value_or(cores);
-        StudyRunner runner(output_, std::max(cores / jobs, 1));
+        StudyRunner runner(output_, std::max(cores / jobs, 1), cores);
         const auto finished = [&](const StudyCase& of, const CaseResult& result, bool ran) {
             if (!result.failure.empty()) report.warn(text(study.name, ": ", of.name, ": ", result.failure));
             if (ran && result.failure.empty()) report.say(text(study.name, ": ", of.name));

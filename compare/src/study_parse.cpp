@@ -2,7 +2,6 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "study_keys.h"
@@ -141,6 +140,7 @@ private:
                 values["input"] = items[i].contains("name") ? name_of(items[i], path) : name;
                 read_given(items[i], path, values);
                 all.push_back(std::move(values));
+                check_count(all.size(), path);
             }
         }
         return all;
@@ -191,6 +191,7 @@ private:
                 for (const auto& [key, value] : read) values["tf." + key] = value;
                 add_file(values, "tf.colors", path);
                 all.push_back(std::move(values));
+                check_count(all.size(), path);
             }
         }
         if (all.empty()) all.push_back({{"tf", "viridis"}, {"tf.colors", "viridis"}});
@@ -239,47 +240,54 @@ private:
     }
 
     void expand(Study& study) const {
-        const auto all_inputs = inputs(), all_cameras = cameras(), all_lights = lights();
+        const Scenes scenes{inputs(), cameras(), lights()};
         const StudyValues common = picture_values();
         const Json& items = list("methods");
         if (items.empty()) refuse(in(root_, "methods"), "the list is missing");
-        const std::vector<StudyValues> nothing(1);
         for (std::size_t m = 0; m < items.size(); ++m) {
             const std::string path = at(in(root_, "methods"), m);
             if (!items[m].is_object() || !items[m].contains("method")) refuse(path, "names no method");
             const StudyMethod& method = find_method(read_text(items[m]["method"], in(path, "method")), in(path, "method"));
-            if (method.input && all_inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
-            const std::vector<std::string> besides{"method", "label", "given"};
-            StudyValues head{{"study", study.name}, {"method", std::string(method.name)}, {"label", std::string(method.name)}};
-            if (items[m].contains("label")) head["label"] = read_text(items[m]["label"], in(path, "label"));
-            read_given(items[m], path, head);
-            const auto options = read_values(items[m], method.keys, besides, path);
+            if (method.input && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
             const auto swept = swept_keys(items[m]);
-            const auto& cameras_of = method.picture ? all_cameras : nothing;
-            const auto& lights_of = method.picture ? all_lights : nothing;
-            const auto& inputs_of = method.input ? all_inputs : nothing;
-            // Each factor is at most kMaxStudyCases: their product in floating point cannot overflow.
-            const double count = static_cast<double>(study.cases.size()) +
-                                 static_cast<double>(options.size()) * static_cast<double>(inputs_of.size()) *
-                                     static_cast<double>(cameras_of.size()) * static_cast<double>(lights_of.size());
-            if (!(count <= static_cast<double>(kMaxStudyCases))) {
-                refuse(path, "there are too many cases", "at most " + std::to_string(kMaxStudyCases));
-            }
-            for (const auto& input : inputs_of) {
-                for (const auto& camera : cameras_of) {
-                    for (const auto& light : lights_of) {
-                        for (const auto& option : options) {
-                            StudyValues values = head;
-                            for (const auto* part : {&input, &camera, &light, &option})
-                                values.insert(part->begin(), part->end());
-                            if (method.picture) values.insert(common.begin(), common.end());
-                            study.cases.push_back(named_case(std::move(values), swept, study.cases.size()));
-                        }
-                    }
-                }
+            for (StudyValues& values : combinations(items[m], method, scenes, study.cases.size(), path)) {
+                values["study"] = study.name;
+                if (method.picture) values.insert(common.begin(), common.end());
+                study.cases.push_back(named_case(std::move(values), swept));
             }
         }
         check_different(study);
+    }
+
+    /// What a method is applied to.
+    struct Scenes {
+        std::vector<StudyValues> inputs, cameras, lights;
+    };
+
+    /// The cases of one method. already: how many there are before
+    static std::vector<StudyValues> combinations(const Json& item, const StudyMethod& method, const Scenes& scenes,
+                                                 std::size_t already, const std::string& path) {
+        const std::vector<std::string> besides{"method", "label", "given"};
+        StudyValues head{{"method", std::string(method.name)}, {"label", std::string(method.name)}};
+        if (item.contains("label")) head["label"] = read_text(item["label"], in(path, "label"));
+        read_given(item, path, head);
+        const std::vector<StudyValues> nothing(1), options = read_values(item, method.keys, besides, path);
+        std::vector<StudyValues> all{head};
+        for (const auto* factor : {method.input ? &scenes.inputs : &nothing, method.picture ? &scenes.cameras : &nothing,
+                                   method.picture ? &scenes.lights : &nothing, &options}) {
+            check_count(already + all.size() * factor->size(), path);  // each is at most kMaxStudyCases: no overflow
+            std::vector<StudyValues> product;
+            for (const StudyValues& values : all) {
+                for (const StudyValues& more : *factor) product.emplace_back(values).insert(more.begin(), more.end());
+            }
+            all = std::move(product);
+        }
+        return all;
+    }
+
+    static void check_count(std::size_t count, const std::string& path) {
+        if (count <= kMaxStudyCases) return;
+        refuse(path, "there are too many cases", "at most " + std::to_string(kMaxStudyCases));
     }
 
     static std::vector<std::string> swept_keys(const Json& method) {
@@ -290,7 +298,7 @@ private:
         return keys;
     }
 
-    StudyCase named_case(StudyValues values, const std::vector<std::string>& swept, std::size_t number) const {
+    static StudyCase named_case(StudyValues values, const std::vector<std::string>& swept) {
         StudyCase made{.id = case_id(values), .name = {}, .values = std::move(values)};
         for (const char* key : {"input", "input.resolution", "input.refine", "view", "tf", "label"}) {
             if (made.has(key)) made.name += (made.name.empty() ? "" : "_") + as_text(made.values[key]);
@@ -300,17 +308,20 @@ private:
             const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.' || c == '+';
             if (!plain) c = '-';
         }
-        if (made.name.size() > 120) made.name = made.name.substr(0, 100) + "_" + std::to_string(number);
+        if (made.name.size() > 120) made.name = made.name.substr(0, 100) + "_" + made.id;
         return made;
     }
 
-    void check_different(const Study& study) const {
-        std::map<std::string, std::size_t> seen;
+    /// Refuses cases that are the same; gives those that only share their name another one.
+    void check_different(Study& study) const {
+        std::map<std::string, std::size_t> ids, names;
         for (std::size_t i = 0; i < study.cases.size(); ++i) {
-            const auto [other, fresh] = seen.emplace(study.cases[i].id, i);
-            if (fresh) continue;
-            refuse(root_ + "methods",
-                   "the cases '" + study.cases[other->second].name + "' and '" + study.cases[i].name + "' are the same");
+            const auto [other, fresh] = ids.emplace(study.cases[i].id, i);
+            if (!fresh) {
+                refuse(in(root_, "methods"),
+                       "the cases '" + study.cases[other->second].name + "' and '" + study.cases[i].name + "' are the same");
+            }
+            if (++names[study.cases[i].name] > 1) study.cases[i].name += "_" + study.cases[i].id;
         }
     }
 

@@ -34,7 +34,7 @@ class Study(InFolder):
         return name
 
     def case_files(self, out="out"):
-        return {path.name: path.stat().st_mtime_ns for path in (self.folder / out / "small/cases").glob("*.json")}
+        return {path.name: path.stat().st_mtime_ns for path in (self.folder / out / "small/cases").glob("*.json") if len(path.stem) == 16}
 
     def results(self, out="out"):
         return (self.folder / out / "small/results.csv").read_bytes()
