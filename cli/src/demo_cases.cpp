@@ -1,6 +1,7 @@
 #include "demo_cases.h"
 
 #include "input.h"
+#include "study_input.h"
 #include "subvol/model.h"
 
 namespace subvol::cli {
@@ -18,15 +19,6 @@ Optics twist_optics() {
 Optics preset_optics(const std::string& preset, const HexMesh& mesh) {
     const auto [min, max] = field_range(mesh);
     return {transfer_function_preset(preset, min, max), bounds(mesh).diagonal() / 100};
-}
-
-/// The box of what can be seen: the pawn fills a small part of its block.
-Box visible_bounds(const HexMesh& mesh, const Optics& optics) {
-    Box box;
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
-        if (optics.extinction(mesh.attributes[0].values[p]) > 0) box.add(mesh.points[p]);
-    }
-    return box;
 }
 
 }  // namespace

@@ -24,6 +24,9 @@ public:
     [[nodiscard]] const Json& json() const { return json_; }
     [[nodiscard]] Progress* progress() { return &progress_; }
 
+    /// Puts a finished object in place of all that has been collected.
+    void take(Json json) { json_ = std::move(json); }
+
     /// For people on standard error and under "warnings". An empty warning is none.
     void warn(const std::string& warning);
 

@@ -1,30 +1,74 @@
-"""Studies: their files, and the paper's table 2."""
+"""Studies: their files, the paper's table 2, and what is left when a run is killed."""
 
 import csv
 import json
+import os
+import signal
+import subprocess
+import time
 import unittest
 
-from command import InFolder, subvol
+from command import COMMAND, InFolder, subvol
+
+# Pictures and figures of a small ball; twelve cases and two references.
+SMALL = {
+    "name": "small",
+    "inputs": [{"model": "ball", "resolution": 4}],
+    "cameras": ["iso", "+z"],
+    "size": 48,
+    "methods": [
+        {"method": "splat", "per_edge": [1, 2]},
+        {"method": "tets", "levels": [0, 1]},
+        {"method": "field", "seed": [1, 2, 3, 4], "places": 20000},
+    ],
+    "metrics": ["rmse", "psnr"],
+    "reference": {"tolerance": 0.01, "max_levels": 2},
+    "tables": [{"rows": ["input", "view", "label", "per_edge", "levels", "seed"], "columns": ["rmse"]}],
+    "pictures": True,
+}
 
 
 class Study(InFolder):
+    def write(self, study, name="s.json"):
+        (self.folder / name).write_text(json.dumps(study))
+        return name
+
+    def case_files(self, out="out"):
+        return {path.name: path.stat().st_mtime_ns for path in (self.folder / out / "small/cases").glob("*.json") if len(path.stem) == 16}
+
+    def results(self, out="out"):
+        return (self.folder / out / "small/results.csv").read_bytes()
+
     def test_lists_what_there_is(self):
         names = [study["name"] for study in self.run_ok("study", "--list", "--json").json()["studies"]]
-        self.assertIn("table2", names)
+        for name in ("table1", "table2", "figure4", "figure7", "kernels", "spacing", "order", "cost", "vdb"):
+            self.assertIn(name, names)
+            self.assertEqual(json.loads(self.run_ok("study", "--print", name).out)["name"], name)
 
     def test_mistakes_have_a_sentence(self):
         (self.folder / "file").write_text("")
-        for arguments, says in ((["table9", "-o", "out"], "table2"), (["table2"], "-o"), (["-o", "out"], "--list"),
-                                (["table2", "-o", "file"], "file"), (["order", "-o", "out", "--mesh", "no.vtk"], "no.vtk")):
+        bad = self.write(SMALL | {"size": 1})
+        for arguments, says in (
+            (["table9", "-o", "out"], "table2"),
+            (["table2"], "-o"),
+            (["-o", "out"], "--list"),
+            (["table2", "-o", "file"], "file"),
+            (["order", "-o", "out", "--mesh", "no.vtk"], "no.vtk"),
+            (["table1", "-o", "out", "--mesh", "no.vtk"], "takes no mesh"),
+            ([bad, "-o", "out"], "s.json: size: 1 is out of range"),
+            (["no.json", "-o", "out"], "no.json"),
+            (["table1", "table1", "-o", "out"], "two studies"),
+        ):
             done = subvol("study", *arguments, folder=self.folder)
             self.assertEqual(done.code, 2, arguments)
             self.assertIn(says, done.err)
+            self.assertEqual(done.err.count("\n"), 1, done.err)
 
     def test_table_2_of_the_paper(self):
         result = self.run_ok("study", "table2", "-o", "out", "--json").json()
         (table,) = result["tables"]
-        self.assertEqual(table, json.loads((self.folder / "out/table2.json").read_text()))
-        self.assertEqual(len(list(csv.reader((self.folder / "out/table2.csv").read_text().splitlines()))), 8)
+        self.assertEqual(len(list(csv.reader((self.folder / "out/table2/table2.csv").read_text().splitlines()))), 8)
+        self.assertEqual(len(list(csv.reader((self.folder / "out/table2/results.csv").read_text().splitlines()))), 1 + 7 * 5)
         self.assertEqual(len(table["rows"]), 7)
         for _, points, papers, rendered, _, _, paper, mended, two, cubic, scheme in table["rows"]:
             self.assertLess(abs(points - papers), 0.05 * papers)
@@ -34,6 +78,65 @@ class Study(InFolder):
             self.assertLess(cubic, paper / 5)
             self.assertLess(scheme, paper / 10)
             self.assertLess(scheme, 1e-7)  # exact but for the floats that points are stored as
+
+    def test_table_1_of_the_paper(self):
+        tables = self.run_ok("study", "table1", "-o", "out", "--json").json()["tables"]
+        self.assertEqual(len(tables[0]["rows"]), 7)
+        for _, rmse, ours, mae, our_mae, *_ in tables[0]["rows"]:
+            self.assertAlmostEqual(ours, rmse, delta=1e-6)  # the paper prints six decimals
+            self.assertAlmostEqual(our_mae, mae, delta=1e-6)
+
+    def test_a_case_that_fails_loses_no_other(self):
+        study = SMALL | {"methods": [{"method": "field", "seed": [1, 2]}, {"method": "field", "every_second": True}]}
+        done = subvol("study", self.write(study), "-o", "out", "--json", folder=self.folder)
+        self.assertEqual(done.code, 1, done.err)
+        (ran,) = done.json()["studies"]
+        self.assertEqual((ran["cases"], ran["ran"], ran["failed"]), (3, 3, 1))
+        rows = list(csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines()))
+        self.assertEqual([bool(row["failure"]) for row in rows], [False, False, True])
+        self.assertIn("refined", rows[2]["failure"])
+        again = subvol("study", "s.json", "-o", "out", "--json", folder=self.folder).json()["studies"][0]
+        self.assertEqual(again["ran"], 1)
+
+    def test_a_case_keeps_its_costs(self):
+        self.run_ok("study", self.write(SMALL), "-o", "out", "--jobs", 1)
+        for row in csv.DictReader((self.folder / "out/small/costs.csv").read_text().splitlines()):
+            self.assertGreater(float(row["seconds"]), 0)
+            self.assertGreater(float(row["cpu_seconds"]), 0)
+            self.assertGreater(float(row["peak_bytes"]), 1e6)
+            if row["own_bytes"]:  # of pictures
+                self.assertGreaterEqual(float(row["own_bytes"]), 0)
+
+    def test_jobs_change_nothing(self):
+        self.write(SMALL)
+        self.run_ok("study", "s.json", "-o", "one", "--jobs", 1)
+        self.run_ok("study", "s.json", "-o", "two", "--jobs", 3)
+        self.assertEqual(self.results("one"), self.results("two"))
+
+    def test_killed_and_started_again(self):
+        self.write(SMALL)
+        whole = self.run_ok("study", "s.json", "-o", "whole", "--jobs", 1, "--json").json()["studies"][0]
+        self.assertEqual(whole["ran"], whole["cases"])
+
+        for wanted in (1, 5):  # killed twice: finished cases are kept from run to run
+            process = subprocess.Popen(
+                [COMMAND, "study", "s.json", "-o", "out", "--jobs", "1", "--quiet"], cwd=self.folder, stderr=subprocess.DEVNULL
+            )
+            deadline = time.monotonic() + 60
+            while len(self.case_files()) < wanted and time.monotonic() < deadline and process.poll() is None:
+                time.sleep(0.005)
+            os.kill(process.pid, signal.SIGKILL)
+            self.assertEqual(process.wait(), -signal.SIGKILL)
+        time.sleep(0.3)  # the case that was running ends with its parent
+        before = self.case_files()
+        self.assertTrue(5 <= len(before) < whole["cases"], before)
+        self.assertFalse((self.folder / "out/small/results.csv").exists())
+
+        resumed = self.run_ok("study", "s.json", "-o", "out", "--jobs", 1, "--json").json()["studies"][0]
+        self.assertEqual(resumed["ran"], whole["cases"] - len(before))  # no finished one again, all others once
+        after = self.case_files()
+        self.assertEqual({name: after[name] for name in before}, before)  # files as they were
+        self.assertEqual(self.results(), self.results("whole"))
 
 
 if __name__ == "__main__":

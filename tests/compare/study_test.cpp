@@ -1,13 +1,9 @@
-#include "subvol/study.h"
-
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "subvol/error.h"
 #include "subvol/field_places.h"
 #include "subvol/model.h"
-#include "subvol/sample.h"
+#include "subvol/study.h"
 
 namespace subvol {
 namespace {
@@ -26,14 +22,15 @@ TEST(FieldPlaces, LieWhereTheyWereAskedFor) {
     EXPECT_TRUE(random_places(regular, "density", PlaceKind::Extraordinary, 1, 10, 1).points.empty());
 }
 
-TEST(Study, TablesAreAlignedAndQuoted) {
-    const StudyTable table{"t", "Caption", {"name", "½"}, {{"a \"b\"", .5}, {"c", 12.0}, {"d", std::nan("")}}};
-    EXPECT_EQ(as_text(table), "Caption\nname     ½\na \"b\"  0.5\nc       12\nd        -\n");
-    EXPECT_EQ(as_csv(table), "\"name\",\"½\"\n\"a \"\"b\"\"\",\"0.5\"\n\"c\",\"12\"\n\"d\",\"-\"\n");
-}
-
-TEST(Study, UnknownOnesAreRefused) {
-    EXPECT_THROW((void)run_study("table3"), Error);
+TEST(BuiltInStudies, AreFilesThatParse) {
+    ASSERT_GE(list_studies().size(), 8U);
+    for (const StudyInfo& info : list_studies()) {
+        const Study study = built_in_study(info.name);
+        EXPECT_EQ(study.name, info.name);
+        EXPECT_FALSE(study.cases.empty()) << info.name;
+        EXPECT_FALSE(study.tables.empty()) << info.name;
+    }
+    EXPECT_THROW((void)built_in_study("table3"), Error);
 }
 
 }  // namespace

@@ -1,0 +1,90 @@
+#include "child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <system_error>
+
+#include "subvol/error.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr std::size_t kMaxOutput = 16 << 20;
+
+struct Pipe {
+    std::array<int, 2> ends{-1, -1};
+
+    Pipe() {
+        if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+            throw Error(ErrorCode::MissingCapability, std::generic_category().message(errno), "study");
+        }
+    }
+    ~Pipe() {
+        close_end(0);
+        close_end(1);
+    }
+    Pipe(const Pipe&) = delete;
+    Pipe& operator=(const Pipe&) = delete;
+
+    void close_end(std::size_t end) {
+        if (ends[end] >= 0) close(ends[end]);
+        ends[end] = -1;
+    }
+};
+
+/// Reads both to their end.
+void drain(Pipe& out, Pipe& err, ChildResult& result) {
+    std::array<pollfd, 2> files{pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
+    const std::array<std::string*, 2> texts{&result.out, &result.err};
+    while (files[0].fd >= 0 || files[1].fd >= 0) {
+        if (poll(files.data(), files.size(), -1) < 0 && errno != EINTR) return;
+        for (std::size_t i = 0; i < 2; ++i) {
+            if (files[i].fd < 0 || files[i].revents == 0) continue;
+            std::array<char, 1 << 16> bytes;
+            const ssize_t count = read(files[i].fd, bytes.data(), bytes.size());
+            if (count > 0 && texts[i]->size() < kMaxOutput) texts[i]->append(bytes.data(), static_cast<std::size_t>(count));
+            if (count == 0 || (count < 0 && errno != EINTR)) files[i].fd = -1;
+        }
+    }
+}
+
+}  // namespace
+
+ChildResult run_self(const std::vector<std::string>& arguments) {
+    Pipe out, err;
+    std::string name = "subvol";
+    std::vector<std::string> copies = arguments;
+    std::vector<char*> argv{name.data()};
+    for (std::string& argument : copies) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    const pid_t parent = getpid();
+    const pid_t child = fork();
+    if (child < 0) throw Error(ErrorCode::MissingCapability, std::generic_category().message(errno), "study");
+    if (child == 0) {  // only calls that are safe between fork and exec
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != parent) _exit(127);  // it has ended meanwhile
+        dup2(out.ends[1], STDOUT_FILENO);
+        dup2(err.ends[1], STDERR_FILENO);
+        execv("/proc/self/exe", argv.data());
+        _exit(127);
+    }
+    out.close_end(1);
+    err.close_end(1);
+    ChildResult result;
+    drain(out, err, result);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
+    if (WIFEXITED(status)) result.code = WEXITSTATUS(status);
+    return result;
+}
+
+}  // namespace subvol::cli

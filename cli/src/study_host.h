@@ -1,0 +1,13 @@
+#pragma once
+
+#include "subvol/study_report.h"
+
+namespace subvol::cli {
+
+/// The machine: processor, cores, memory, system.
+[[nodiscard]] ReportFacts study_host();
+
+/// This program and what it was built with.
+[[nodiscard]] ReportFacts study_versions();
+
+}  // namespace subvol::cli

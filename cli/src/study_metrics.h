@@ -1,0 +1,16 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "subvol/image.h"
+
+namespace subvol::cli {
+
+/// Metrics of a picture against its reference, by name.
+///
+/// names: separated by commas, as a study has them
+[[nodiscard]] std::map<std::string, double> picture_metrics(const Image& image, const Image& reference,
+                                                            const std::string& names);
+
+}  // namespace subvol::cli

@@ -1,0 +1,70 @@
+#include "study_runner.h"
+
+#include <cstring>
+
+#include "child_process.h"
+#include "study_work.h"
+#include "subvol/error.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr const char* kReferences = "references";
+constexpr int kInterrupted = 130;
+
+/// The last line of what the program complained about, without its own name.
+std::string complaint(std::string said) {
+    while (!said.empty() && said.back() == '\n') said.pop_back();
+    said = said.substr(said.rfind('\n') + 1);
+    const std::string self = "subvol: ";
+    return said.starts_with(self) ? said.substr(self.size()) : said;
+}
+
+}  // namespace
+
+CaseResult StudyRunner::run(const StudyCase& of, const std::string& study) {
+    if (const auto reference = reference_of(of)) make_reference(*reference);
+    return in_child(of, study, threads_);
+}
+
+void StudyRunner::make_reference(const StudyCase& reference) {
+    const std::lock_guard lock(mutex_);  // one at a time: it takes all threads
+    if (const auto known = references_.find(reference.id); known != references_.end()) {
+        if (known->second.empty()) return;
+        throw Error(ErrorCode::InvalidInput, known->second, "its reference");
+    }
+    const std::filesystem::path file = folder_ / kReferences / (reference.id + ".json");
+    std::string& failure = references_[reference.id];
+    if (read_finished_case(file, reference, folder_ / kReferences)) return;
+    try {
+        std::filesystem::create_directories(folder_ / kReferences);
+        write_case(file, reference, in_child(reference, "", reference_threads_));
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) throw;
+        failure = error.what();
+        throw Error(error.code(), failure, "its reference");
+    }
+}
+
+CaseResult StudyRunner::in_child(const StudyCase& of, const std::string& study, int threads) const {
+    std::vector<std::string> arguments{"study",          "--case", to_json(of), "-o",
+                                       folder_.string(), "--json", "--threads", std::to_string(threads)};
+    if (!study.empty()) arguments.insert(arguments.end(), {"--case-of", study});
+    const ChildResult ended = run_self(arguments);
+    if (ended.code == kInterrupted) throw Error(ErrorCode::Cancelled, "interrupted");
+    if (ended.signal != 0) {
+        throw Error(ErrorCode::MissingCapability,
+                    text("the case was ended by signal ", ended.signal, " (", strsignal(ended.signal), ")"));
+    }
+    if (ended.code != 0) throw Error(ErrorCode::InvalidInput, complaint(ended.err));
+    return case_result_from_json(ended.out);
+}
+
+CaseResult run_given_case(const std::string& json, const std::filesystem::path& folder, const std::string& study) {
+    const StudyCase of = study_case_from_json(json);
+    const CasePlace place{folder / study, folder / kReferences};
+    return study.empty() ? run_reference(of, place) : run_case(of, place);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,51 @@
+#include "study_work.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "report.h"
+#include "sample_arguments.h"
+
+namespace subvol::cli {
+
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::string case_file(const StudyCase& of, const std::string& ending) {
+    return of.name + "_" + of.id.substr(0, 8) + ending;
+}
+
+Kernel study_kernel(const std::string& text) {
+    return text.starts_with("{") ? kernel_from_json(text) : named_kernel(text);
+}
+
+SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
+    SampleArguments arguments;
+    arguments.per_edge = std::max(of.whole("per_edge"), 1);
+    arguments.spacing_voxels = of.number("spacing_voxels");
+    if (of.has("correction")) arguments.correction = of.text("correction");
+    if (of.has("kernel")) arguments.kernel = of.text("kernel");
+    return arguments.options(bounds(mesh), {});
+}
+
+CaseResult run_case(const StudyCase& of, const CasePlace& place) {
+    static const std::set<std::string> kFields{"field", "voxels", "values", "counts"};
+    static const std::set<std::string> kKernels{"errors", "fit", "slice"};
+    const std::string& method = of.text("method");
+    if (!kFields.contains(method) && !kKernels.contains(method)) return run_picture_case(of, place);
+    const auto start = std::chrono::steady_clock::now();
+    CaseResult result = kFields.contains(method) ? run_field_case(of) : run_kernel_case(of, place);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    result.costs = {
+        {"seconds", elapsed.count()}, {"cpu_seconds", cpu_seconds()}, {"peak_bytes", static_cast<double>(peak_memory_bytes())}};
+    return result;
+}
+
+}  // namespace subvol::cli

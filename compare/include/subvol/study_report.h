@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "subvol/study_run.h"
+
+namespace subvol {
+
+/// Facts under their names, in the order in which they are shown.
+using ReportFacts = std::vector<std::pair<std::string, std::string>>;
+
+/// host, versions: where and with what the studies ran; command: what runs them again
+struct ReportOptions {
+    ReportFacts host, versions;
+    std::string command;
+};
+
+/// A demand of a study, judged.
+///
+/// words: what was asked for and what came of it; cases: that it is about; met: how many of them meet it
+struct Judgement {
+    std::string words;
+    std::size_t cases = 0;
+    std::size_t met = 0;
+    [[nodiscard]] bool all_met() const { return met == cases && cases > 0; }
+};
+
+[[nodiscard]] std::vector<Judgement> judge(const StudyResults& results);
+
+/// The report on studies as one HTML page that needs no other file and no network: summary, tables, plots, pictures beside
+/// their references with a slider, hardware and versions. All but the slider works without scripts.
+///
+/// folder: the studies' pictures are in folder/NAME, references in folder/references; a picture that is missing is said to be
+[[nodiscard]] std::string report_html(std::span<const StudyResults> studies, const std::filesystem::path& folder,
+                                      const ReportOptions& options);
+
+}  // namespace subvol

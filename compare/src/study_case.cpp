@@ -1,0 +1,112 @@
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "study_keys.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+namespace {
+
+template <class T>
+const T& value_of(const StudyCase& of, const std::string& key, const T& otherwise) {
+    const auto found = of.values.find(key);
+    if (found == of.values.end()) return otherwise;
+    if (const T* value = std::get_if<T>(&found->second)) return *value;
+    throw Error(ErrorCode::InvalidInput, "the value is of another type", key);
+}
+
+/// Names that people gave, and what is known from elsewhere: they change nothing that is computed.
+bool only_shown(const std::string& key) {
+    return key == "study" || key == "input" || key == "view" || key == "tf" || key == "label" || key.starts_with("given.");
+}
+
+StudyValue value_from(const detail::Json& json) {
+    if (json.is_boolean()) return json.get<bool>();
+    if (json.is_number()) return json.get<double>();
+    return json.get<std::string>();
+}
+
+}  // namespace
+
+const std::string& StudyCase::text(const std::string& key) const {
+    static const std::string kNone;
+    return value_of(*this, key, kNone);
+}
+
+double StudyCase::number(const std::string& key) const {
+    return value_of(*this, key, 0.0);
+}
+
+bool StudyCase::flag(const std::string& key) const {
+    return value_of(*this, key, false);
+}
+
+std::string as_text(const StudyValue& value) {
+    if (const auto* words = std::get_if<std::string>(&value)) return *words;
+    if (const auto* on = std::get_if<bool>(&value)) return *on ? "yes" : "no";
+    const double number = std::get<double>(value);
+    if (std::isnan(number)) return "nan";
+    if (std::isinf(number)) return number > 0 ? "inf" : "-inf";
+    std::array<char, 40> text{};
+    const bool count = number == std::floor(number) && std::abs(number) < 1e15;
+    const auto done = count ? std::to_chars(text.data(), text.data() + text.size(), static_cast<std::int64_t>(number))
+                            : std::to_chars(text.data(), text.data() + text.size(), number);
+    return {text.data(), done.ptr};
+}
+
+std::string detail::hash_text(std::string_view bytes) {
+    std::uint64_t hash = 14695981039346656037U;  // FNV-1a
+    for (const char c : bytes) {
+        hash ^= static_cast<unsigned char>(c);
+        hash *= 1099511628211U;
+    }
+    std::array<char, 17> digits{};
+    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash));
+    return digits.data();
+}
+
+std::string detail::case_id(const StudyValues& values) {
+    std::string canonical = "subvol case 1\n";
+    for (const auto& [key, value] : values) {
+        if (!only_shown(key)) canonical += key + '\t' + std::to_string(value.index()) + '\t' + as_text(value) + '\n';
+    }
+    return hash_text(canonical);
+}
+
+std::optional<StudyCase> reference_of(const StudyCase& of) {
+    if (!of.has("reference.method")) return {};
+    StudyCase reference;
+    for (const auto& [key, value] : of.values) {
+        const bool scene = key == "input" || key.starts_with("input.") || key == "view" || key.starts_with("camera") ||
+                           key.starts_with("tf") || key == "width" || key == "height";
+        if (scene) reference.values[key] = value;
+        if (key.starts_with("reference.")) reference.values[key.substr(10)] = value;
+    }
+    reference.values["repeat"] = 1.0;
+    reference.id = detail::case_id(reference.values);
+    reference.name = "reference_" + reference.text("input") + "_" + reference.text("view") + "_" + reference.text("tf");
+    return reference;
+}
+
+std::string to_json(const StudyCase& of) {
+    detail::Json values = detail::Json::object();
+    for (const auto& [key, value] : of.values) std::visit([&](const auto& v) { values[key] = v; }, value);
+    return detail::Json{{"id", of.id}, {"name", of.name}, {"values", values}}.dump();
+}
+
+StudyCase study_case_from_json(std::string_view text) {
+    try {
+        const auto json = detail::Json::parse(text);
+        StudyCase made{.id = json.at("id").get<std::string>(), .name = json.at("name").get<std::string>(), .values = {}};
+        for (const auto& [key, value] : json.at("values").items()) made.values[key] = value_from(value);
+        return made;
+    } catch (const nlohmann::json::exception& error) {
+        throw Error(ErrorCode::InvalidInput, std::string("is no case: ") + error.what(), "study");
+    }
+}
+
+}  // namespace subvol

@@ -1,0 +1,134 @@
+#include "study_keys.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/error.h"
+#include "subvol/kernel.h"
+
+namespace subvol::detail {
+
+namespace {
+
+std::string joined(std::span<const std::string> names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+const char* type_of(const Json& json) {
+    if (json.is_string()) return "a text";
+    if (json.is_number()) return "a number";
+    if (json.is_boolean()) return "a switch";
+    if (json.is_array()) return "a list";
+    return json.is_object() ? "an object" : "nothing";
+}
+
+double read_number(const Json& json, const Key& key, const std::string& path) {
+    const bool whole = key.kind == KeyKind::Whole;
+    const std::string allowed = whole ? as_text(key.least) + " to " + as_text(key.most)
+                                      : "more than " + as_text(key.least) + ", at most " + as_text(key.most);
+    if (!json.is_number()) refuse(path, std::string(type_of(json)) + " is no number", allowed);
+    const double value = json.get<double>();
+    if (whole && value != std::floor(value)) refuse(path, json.dump() + " is no whole number", allowed);
+    const bool in_range = value <= key.most && (whole ? value >= key.least : value > key.least);
+    if (!in_range) refuse(path, json.dump() + " is out of range", allowed);
+    return value;
+}
+
+/// A kernel is kept as its JSON would be written, so that a name and its definition are one case.
+std::string read_kernel(const Json& json, const std::string& path) {
+    try {
+        if (json.is_object()) return to_json(kernel_from_json(json.dump()));
+        const std::string name = read_text(json, path);
+        (void)named_kernel(name);
+        return name;
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        if (message.starts_with(path)) throw;
+        refuse(path, message);
+    }
+}
+
+}  // namespace
+
+void refuse(const std::string& path, const std::string& message, const std::string& allowed) {
+    throw Error(ErrorCode::InvalidInput, message, path, allowed);
+}
+
+std::string in(const std::string& path, const std::string& key) {
+    return path + (path.ends_with(": ") ? "" : ".") + key;
+}
+
+std::string at(const std::string& path, std::size_t index) {
+    return path + "[" + std::to_string(index) + "]";
+}
+
+void check_object(const Json& json, const std::string& path, std::span<const std::string> known) {
+    if (!json.is_object()) refuse(path, std::string(type_of(json)) + " is no object");
+    for (const auto& [key, value] : json.items()) {
+        if (std::ranges::find(known, key) == known.end()) refuse(in(path, key), "this key is unknown", joined(known));
+    }
+}
+
+std::string read_text(const Json& json, const std::string& path) {
+    if (!json.is_string()) refuse(path, std::string(type_of(json)) + " is no text");
+    auto text = json.get<std::string>();
+    if (text.empty()) refuse(path, "the text is empty");
+    return text;
+}
+
+StudyValue read_value(const Json& json, const Key& key, const std::string& path) {
+    switch (key.kind) {
+        case KeyKind::Switch:
+            if (!json.is_boolean()) refuse(path, std::string(type_of(json)) + " is no switch", "true or false");
+            return json.get<bool>();
+        case KeyKind::Whole:
+        case KeyKind::Number:
+            return read_number(json, key, path);
+        case KeyKind::Kernel:
+            return read_kernel(json, path);
+        case KeyKind::Text:
+            break;
+    }
+    const std::string text = read_text(json, path);
+    if (!key.choices.empty() && std::ranges::find(key.choices, text) == key.choices.end()) {
+        refuse(path, "'" + text + "' is unknown", joined(key.choices));
+    }
+    return text;
+}
+
+std::vector<StudyValues> read_values(const Json& json, std::span<const Key> keys, std::span<const std::string> besides,
+                                     const std::string& path) {
+    std::vector<std::string> known(besides.begin(), besides.end());
+    for (const Key& key : keys) known.emplace_back(key.name);
+    check_object(json, path, known);
+    std::vector<StudyValues> all(1);
+    for (const Key& key : keys) {
+        const auto found = json.find(key.name);
+        if (found == json.end()) {
+            if (!key.fallback) continue;
+            for (StudyValues& values : all) values[key.name] = *key.fallback;
+            continue;
+        }
+        const std::string place = in(path, key.name);
+        std::vector<StudyValue> choices;
+        if (found->is_array()) {
+            if (found->empty()) refuse(place, "the list is empty");
+            for (std::size_t i = 0; i < found->size(); ++i) choices.push_back(read_value((*found)[i], key, at(place, i)));
+        } else {
+            choices.push_back(read_value(*found, key, place));
+        }
+        if (all.size() * choices.size() > kMaxStudyCases) {
+            refuse(place, "there are too many combinations", "at most " + std::to_string(kMaxStudyCases) + " cases");
+        }
+        std::vector<StudyValues> product;
+        for (const StudyValues& values : all) {
+            for (const StudyValue& choice : choices) product.emplace_back(values)[key.name] = choice;
+        }
+        all = std::move(product);
+    }
+    return all;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,81 @@
+#include "study_keys.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kSeeds = 9007199254740992;  // 2⁵³: whole numbers that a double holds
+
+using Keys = std::vector<Key>;
+
+Keys operator+(Keys a, const Keys& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+Key flag(const char* name) {
+    return {name, KeyKind::Switch, 0, 0, false};
+}
+
+Key whole(const char* name, double least, double most, std::optional<StudyValue> fallback = {}) {
+    return {name, KeyKind::Whole, least, most, std::move(fallback)};
+}
+
+Key number(const char* name, double least, double most, std::optional<StudyValue> fallback = {}) {
+    return {name, KeyKind::Number, least, most, std::move(fallback)};
+}
+
+/// One of several; the first is taken where the key is missing.
+Key choice(const char* name, std::vector<std::string> choices) {
+    std::string first = choices.front();
+    return {name, KeyKind::Text, 0, 0, std::move(first), std::move(choices)};
+}
+
+Key kernel(const std::optional<std::string>& fallback = {}) {
+    return {"kernel", KeyKind::Kernel, 0, 0, fallback ? std::optional<StudyValue>(*fallback) : std::nullopt};
+}
+
+std::vector<StudyMethod> make_methods() {
+    const Key samples = whole("samples", 1, 16, 1.0), repeat = whole("repeat", 1, 100, 1.0);
+    const Key level = whole("levels", 0, 6, 1.0), resolution = whole("resolution", 2, 2000, 200.0), half = flag("half");
+    const Keys kernels{whole("per_edge", 1, 64, 1.0), number("spacing_voxels", 0, 200), kernel("compact"),
+                       choice("correction", {"second", "none", "gradient", "full"})};
+    const Keys splats = kernels + Keys{whole("sheets", 2, 65536, 200.0), flag("visible_only"), repeat};
+    const Keys places{whole("places", 1, 1e7, 1e5), choice("where", {"anywhere", "extraordinary", "boundary"}),
+                      number("within", 0, 1, 1.0), whole("seed", 0, kSeeds, 0.0)};
+    const Keys dense{whole("levels", 0, 8), number("tolerance", 0, 1, 1e-3), whole("max_levels", 1, 8, 6.0), samples, repeat};
+    const Keys fit{choice("shape", {"gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "gaussians",
+                                    "separable_gaussian", "separable_table", "tucker", "radial_bound"}),
+                   number("extent", 0, 3), flag("sign_slip"), whole("terms", 1, 6), whole("rank", 1, 16)};
+    return {{"splat", true, true, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
+            {"sheets", true, true, splats},
+            {"tets", true, true, {level, samples, repeat}},
+            {"pt", true, true, {level, choice("order", {"topological", "centroid", "lists"}), repeat}},
+            {"dense", true, true, dense},
+            {"grid", true, true, {resolution, half, samples, repeat}},
+            {"field", false, true, kernels + places + Keys{flag("every_second")}},
+            {"voxels", false, true, Keys{resolution, half} + places},
+            {"values", false, true, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
+            {"counts", false, true, {whole("per_edge", 1, 64, 1.0)}},
+            {"errors", false, false, {kernel("gaussian")}},
+            {"fit", false, false, fit},
+            {"slice", false, false, {kernel(), whole("pixels", 8, 2048, 385.0)}}};
+}
+
+}  // namespace
+
+const std::vector<StudyMethod>& study_methods() {
+    static const std::vector<StudyMethod> kMethods = make_methods();
+    return kMethods;
+}
+
+const StudyMethod& find_method(const std::string& name, const std::string& path) {
+    std::string known;
+    for (const StudyMethod& method : study_methods()) {
+        if (name == method.name) return method;
+        known += (known.empty() ? "" : ", ") + std::string(method.name);
+    }
+    refuse(path, "there is no method '" + name + "'", known);
+}
+
+}  // namespace subvol::detail

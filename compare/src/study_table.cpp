@@ -1,0 +1,170 @@
+#include "subvol/study_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace subvol {
+
+namespace {
+
+/// Columns of UTF-8 text are counted in characters.
+std::size_t width_of(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string heading(const StudyTableSpec& spec, const std::string& key) {
+    const auto found = spec.headings.find(key);
+    if (found != spec.headings.end()) return found->second;
+    return spaced(key.starts_with("given.") ? key.substr(6) : key);
+}
+
+StudyTable::Cell cell_of(const StudyCase& of, const CaseResult& result, const std::string& key) {
+    const auto value = find_value(of, result, key);
+    if (!value) return std::nan("");
+    if (const auto* number = std::get_if<double>(&*value)) return *number;
+    return key == "input" ? spaced(as_text(*value)) : as_text(*value);
+}
+
+/// One of several, in the order of their first appearance.
+std::size_t place_in(std::vector<std::string>& all, const std::string& one) {
+    const auto found = std::ranges::find(all, one);
+    if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
+    all.push_back(one);
+    return all.size() - 1;
+}
+
+StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
+    StudyTable table;
+    table.title = spec.title;
+    table.caption = spec.caption;
+    table.digits = spec.digits;
+    std::vector<std::size_t> chosen;
+    std::vector<std::string> groups, across;
+    for (std::size_t i = 0; i < results.results.size(); ++i) {
+        if (!matches(results.study.cases[i], results.results[i], spec.where)) continue;
+        chosen.push_back(i);
+        if (!spec.across.empty()) place_in(across, value_text(results.study.cases[i], results.results[i], spec.across));
+    }
+    for (const auto* keys : {&spec.rows, &spec.columns}) {
+        for (const std::string& key : *keys) table.columns.push_back(heading(spec, key));
+    }
+    const std::size_t fixed = table.columns.size();
+    for (const std::string& which : across) {
+        for (const std::string& value : spec.values) {
+            const std::string label = spec.headings.contains(which) ? spec.headings.at(which) : which;
+            table.columns.push_back(spec.values.size() == 1 ? label : label + ": " + heading(spec, value));
+        }
+    }
+    for (const std::size_t i : chosen) {
+        const StudyCase& of = results.study.cases[i];
+        const CaseResult& result = results.results[i];
+        std::string group;
+        for (const std::string& key : spec.rows) group += value_text(of, result, key) + '\t';
+        const std::size_t r = place_in(groups, group);
+        if (r == table.rows.size()) {
+            auto& row = table.rows.emplace_back(table.columns.size(), std::nan(""));
+            for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(of, result, spec.rows[k]);
+        }
+        auto& row = table.rows[r];
+        for (std::size_t k = 0; k < spec.columns.size(); ++k) {  // of the first case that has it
+            auto& cell = row[spec.rows.size() + k];
+            const auto* number = std::get_if<double>(&cell);
+            if (number != nullptr && std::isnan(*number)) cell = cell_of(of, result, spec.columns[k]);
+        }
+        if (spec.across.empty()) continue;
+        const std::size_t a = place_in(across, value_text(of, result, spec.across));
+        for (std::size_t v = 0; v < spec.values.size(); ++v) {
+            row[fixed + a * spec.values.size() + v] = cell_of(of, result, spec.values[v]);
+        }
+    }
+    return table;
+}
+
+}  // namespace
+
+std::string spaced(std::string name) {
+    std::ranges::replace(name, '_', ' ');
+    return name;
+}
+
+std::optional<StudyValue> find_value(const StudyCase& of, const CaseResult& result, const std::string& key) {
+    if (const auto found = of.values.find(key); found != of.values.end()) return found->second;
+    for (const auto* numbers : {&result.metrics, &result.costs}) {
+        if (const auto found = numbers->find(key); found != numbers->end()) return found->second;
+    }
+    if (const auto found = result.notes.find(key); found != result.notes.end()) return found->second;
+    if (key == "done") return result.failure.empty() ? "yes" : result.failure;
+    return {};
+}
+
+std::string value_text(const StudyCase& of, const CaseResult& result, const std::string& key) {
+    const auto value = find_value(of, result, key);
+    return value ? as_text(*value) : "";
+}
+
+bool matches(const StudyCase& of, const CaseResult& result, const StudyFilter& where) {
+    return std::ranges::all_of(where, [&](const auto& wish) { return value_text(of, result, wish.first) == wish.second; });
+}
+
+std::vector<StudyTable> make_tables(const StudyResults& results) {
+    std::vector<StudyTable> tables;
+    for (const StudyTableSpec& spec : results.study.tables) {
+        tables.push_back(make_table(results, spec));
+        tables.back().name = results.study.name + (tables.size() == 1 ? "" : "_" + std::to_string(tables.size()));
+    }
+    return tables;
+}
+
+std::string readable(const StudyTable::Cell& cell, int digits) {
+    if (const auto* words = std::get_if<std::string>(&cell)) return *words;
+    const double number = std::get<double>(cell);
+    if (std::isnan(number)) return "–";
+    if (std::isinf(number)) return number > 0 ? "∞" : "−∞";
+    std::array<char, 32> text{};
+    const bool count = number == std::floor(number) && std::abs(number) < 1e15;
+    if (count) {
+        std::snprintf(text.data(), text.size(), "%.0f", number);
+    } else {
+        std::snprintf(text.data(), text.size(), "%.*g", digits, number);
+    }
+    return text.data();
+}
+
+std::string as_text(const StudyTable& table) {
+    std::vector<std::vector<std::string>> lines{table.columns};
+    for (const auto& row : table.rows) {
+        auto& line = lines.emplace_back();
+        for (const auto& cell : row) line.push_back(readable(cell, table.digits));
+    }
+    std::vector<std::size_t> widths(table.columns.size());
+    for (const auto& line : lines) {
+        for (std::size_t c = 0; c < line.size(); ++c) widths[c] = std::max(widths[c], width_of(line[c]));
+    }
+    std::string text = table.caption + "\n";
+    for (const auto& line : lines) {
+        for (std::size_t c = 0; c < line.size(); ++c) {
+            const std::string blanks(widths[c] - width_of(line[c]), ' ');
+            text += c == 0 ? line[c] + blanks : "  " + blanks + line[c];
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+std::string as_csv(const StudyTable& table) {
+    std::string text;
+    const auto put = [&](const std::string& field, bool last) {
+        std::string quoted;
+        for (const char c : field) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+        text += '"' + quoted + '"' + (last ? "\n" : ",");
+    };
+    for (std::size_t c = 0; c < table.columns.size(); ++c) put(table.columns[c], c + 1 == table.columns.size());
+    for (const auto& row : table.rows) {
+        for (std::size_t c = 0; c < row.size(); ++c) put(readable(row[c], table.digits), c + 1 == row.size());
+    }
+    return text;
+}
+
+}  // namespace subvol

@@ -1,0 +1,82 @@
+#include "subvol/plot.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace subvol {
+namespace {
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+}
+
+TEST(Plot, OrdersAreSlopes) {
+    PlotLine line{.name = "cubic", .x = {1, .5, .25, .125}, .y = {}};
+    for (const double x : line.x) line.y.push_back(7 * x * x * x);
+    EXPECT_NEAR(*fitted_order(line), 3, 1e-12);
+    line.y[1] = 0;  // left out
+    EXPECT_NEAR(*fitted_order(line), 3, 1e-12);
+    EXPECT_FALSE(fitted_order({.name = "", .x = {1, 1}, .y = {2, 3}}));
+    EXPECT_FALSE(fitted_order({.name = "", .x = {1}, .y = {2}}));
+}
+
+TEST(Plot, TicksAreRoundAndWithinTheAxis) {
+    for (const auto& [min, max] : {std::pair{.9, 1.1}, {1e-6, 1e3}, {3e-5, 4.1e-5}, {2., 2.0001}, {1e-30, 1e30}}) {
+        const auto all = ticks(min, max, true);
+        ASSERT_GE(all.size(), 2U) << min;
+        EXPECT_LE(all.size(), 9U) << min;
+        EXPECT_TRUE(std::ranges::is_sorted(all));
+        EXPECT_GE(all.front(), min);
+        EXPECT_LE(all.back(), max);
+    }
+    EXPECT_EQ(ticks(.3, 40, true), (std::vector<double>{.5, 1, 2, 5, 10, 20}));
+    EXPECT_EQ(ticks(-1, 1, false).size(), 5U);
+}
+
+TEST(Plot, IsOneElementWithAllThatIsShown) {
+    const double inf = std::numeric_limits<double>::infinity();
+    const std::string svg = plot_svg({.title = "a < b & \"c\"",
+                                      .x_label = "x",
+                                      .y_label = "y",
+                                      .fit = true,
+                                      .lines = {{.name = "<script>", .x = {1, 10, 100}, .y = {1, .1, .01}},
+                                                {.name = "holes", .x = {1, 0, 10, 20}, .y = {1, 1, inf, std::nan("")}}}});
+    EXPECT_TRUE(svg.starts_with("<svg "));
+    EXPECT_TRUE(svg.ends_with("</svg>\n"));
+    EXPECT_EQ(svg.find("<script"), std::string::npos);
+    EXPECT_NE(svg.find("&lt;script&gt; (-1.00)"), std::string::npos) << svg;
+    EXPECT_NE(svg.find("a &lt; b &amp; &quot;c&quot;"), std::string::npos);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("inf"), std::string::npos);
+    EXPECT_EQ(count(svg, "<circle"), 4U);  // three points and the legend
+    EXPECT_EQ(svg.find("http"), std::string::npos);
+}
+
+TEST(Plot, PlacesFollowTheAxes) {
+    // Equal ratios are equal distances: the middle point of three decades' ends lies midway.
+    const std::string svg = plot_svg(
+        {.title = "t", .x_label = "x", .y_label = "y", .lines = {{.name = "l", .x = {1, 10, 100}, .y = {1, 10, 100}}}});
+    const std::size_t path = svg.rfind("<path", svg.find("d=\"M", svg.find("frame")));
+    double x[3], y[3];
+    ASSERT_EQ(
+        std::sscanf(svg.c_str() + svg.find("d=\"M", path), "d=\"M%lf %lfL%lf %lfL%lf %lf", x, y, x + 1, y + 1, x + 2, y + 2),
+        6);
+    EXPECT_NEAR(x[1], (x[0] + x[2]) / 2, .02);  // places have two decimals
+    EXPECT_NEAR(y[1], (y[0] + y[2]) / 2, .02);
+    EXPECT_GT(y[0], y[2]);  // up is more
+}
+
+TEST(Plot, WithoutFiguresSaysSo) {
+    EXPECT_NE(plot_svg({.title = "t", .x_label = "", .y_label = "", .lines = {}}).find("no figures"), std::string::npos);
+    EXPECT_EQ(
+        plot_svg({.title = "t", .x_label = "", .y_label = "", .lines = {{.name = "one", .x = {2}, .y = {3}}}}).find("nan"),
+        std::string::npos);
+}
+
+}  // namespace
+}  // namespace subvol

@@ -1,0 +1,193 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "lib/temp_folder.h"
+#include "subvol/study.h"
+
+namespace subvol {
+namespace {
+
+using test::error_of;
+
+/// A study with a part put in place of another.
+std::string study_with(const std::string& part, const std::string& instead) {
+    std::string text = R"({"name": "s", "inputs": [{"model": "ball", "resolution": 4}],
+        "methods": [{"method": "splat", "sheets": [50, 100], "per_edge": [1, 2]}, {"method": "tets"}],
+        "cameras": ["iso", {"name": "front", "camera": "-y"}], "size": [64, 48]})";
+    const std::size_t place = text.find(part);
+    EXPECT_NE(place, std::string::npos) << part;
+    return text.replace(place, part.size(), instead);
+}
+
+Study parse(const std::string& text) {
+    return parse_study(text, "s.json");
+}
+
+const std::string kTets = R"({"method": "tets"})";
+
+TEST(StudyFile, IsExpandedIntoTheProductOfItsLists) {
+    const Study study = parse(study_with(kTets, kTets));
+    ASSERT_EQ(study.cases.size(), 2U * (4 + 1));  // cameras × (2 sheets × 2 per edge + tets)
+    const StudyCase& first = study.cases.front();
+    EXPECT_EQ(first.text("input"), "ball");
+    EXPECT_EQ(first.number("input.resolution"), 4);
+    EXPECT_EQ(first.text("view"), "iso");
+    EXPECT_EQ(first.whole("width"), 64);
+    EXPECT_EQ(first.whole("height"), 48);
+    EXPECT_EQ(first.text("kernel"), "compact");  // what is not said takes its default
+    std::set<std::string> ids, names;
+    for (const StudyCase& of : study.cases) {
+        ids.insert(of.id);
+        names.insert(of.name);
+        EXPECT_EQ(of.id.size(), 16U);
+    }
+    EXPECT_EQ(ids.size(), study.cases.size());
+    EXPECT_EQ(names.size(), study.cases.size());
+}
+
+TEST(StudyFile, MethodsWithoutPicturesNeedNoCamera) {
+    const Study study = parse(study_with(kTets, R"({"method": "field", "per_edge": [1, 2, 4]}, {"method": "fit"})"));
+    EXPECT_EQ(study.cases.size(), 2U * 4 + 3 + 1);
+    EXPECT_FALSE(reference_of(study.cases.back()));
+    EXPECT_TRUE(reference_of(study.cases.front()));
+}
+
+TEST(StudyFile, IdsAreOfWhatIsComputed) {
+    const auto ids = [](const std::string& text) {
+        std::set<std::string> all;
+        for (const StudyCase& of : parse(text).cases) all.insert(of.id);
+        return all;
+    };
+    const auto plain = ids(study_with(kTets, kTets));
+    // Said or left to its default, named or not, in any order: the same cases.
+    EXPECT_EQ(plain, ids(study_with(kTets, R"({"levels": 1, "label": "rays", "given": {"known": 3}, "method": "tets"})")));
+    EXPECT_EQ(plain, ids(study_with(R"("name": "s")", R"("name": "other")")));
+    EXPECT_EQ(plain, ids(study_with(R"("model": "ball")", R"("name": "b", "model": "ball")")));
+    EXPECT_NE(plain, ids(study_with(kTets, R"({"method": "tets", "levels": 2})")));
+    EXPECT_NE(plain, ids(study_with("[64, 48]", "[64, 49]")));
+    // Written down, made by another program (FNV-1a of "subvol case 1\nkernel\t2\tbc\nmethod\t2\terrors\n"): ids are the same
+    // on every machine, so that folders can be carried about.
+    EXPECT_EQ(parse(R"({"name": "s", "methods": [{"method": "errors", "kernel": "bc"}]})").cases.front().id,
+              "3e79ae9a4e9cb9f9");
+}
+
+TEST(StudyFile, CasesReadBack) {
+    for (const StudyCase& of : parse(study_with(kTets, kTets)).cases) {
+        const StudyCase back = study_case_from_json(to_json(of));
+        EXPECT_EQ(back.id, of.id);
+        EXPECT_EQ(back.values, of.values);
+    }
+}
+
+TEST(StudyFile, OneReferenceForAllMethods) {
+    std::set<std::string> references;
+    for (const StudyCase& of : parse(study_with(kTets, kTets)).cases) references.insert(reference_of(of)->id);
+    EXPECT_EQ(references.size(), 2U);  // one a camera
+}
+
+struct Mistake {
+    const char* part;
+    const char* instead;
+    const char* says;
+};
+
+class StudyMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(StudyMistake, IsToldWithItsPlace) {
+    const auto& [part, instead, says] = GetParam();
+    const std::string message = error_of([&] { (void)parse(study_with(part, instead)); });
+    EXPECT_NE(message.find(says), std::string::npos) << message;
+    EXPECT_TRUE(message.starts_with("s.json")) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Study, StudyMistake,
+    testing::Values(
+        Mistake{R"({"name")", R"({"nam")", "s.json: nam: this key is unknown (name, title"},
+        Mistake{R"("name": "s")", R"("name": 7)", "s.json: name: a number is no text"},
+        Mistake{R"("name": "s")", R"("name": "a/b")", "name: 'a/b' is no name"},
+        Mistake{R"({"name": "s", )", "{", "s.json: name: the name is missing"},
+        Mistake{R"({"name": "s", )", R"({"name": "s")", "is not JSON"},
+        Mistake{R"([{"model": "ball", "resolution": 4}])", "[]", "inputs: the list is empty"},
+        Mistake{R"([{"model": "ball", "resolution": 4}])", R"("ball")", "inputs: this is no list"},
+        Mistake{R"({"model": "ball", "resolution": 4})", R"("ball")", "inputs[0]: a text is no object"},
+        Mistake{R"("model": "ball")", R"("model": "cat")", "inputs[0].model: 'cat' is unknown (cell, pawn"},
+        Mistake{R"("model": "ball")", R"("file": "no.vtk")", "inputs[0]: a file has no resolution"},
+        Mistake{R"("model": "ball", "resolution": 4)", R"("file": "no.vtk")", "inputs[0].file: 'no.vtk' cannot be read"},
+        Mistake{R"("model": "ball", )", "", "inputs[0]: an input has either a model or a file"},
+        Mistake{R"("model": "ball")", R"("model": "ball", "field": "f", "density": "x")",
+                "inputs[0]: a density takes the place"},
+        Mistake{R"("resolution": 4)", R"("resolution": 1)", "inputs[0].resolution: 1 is out of range (2 to 512)"},
+        Mistake{R"("resolution": 4)", R"("resolution": [4, 2.5])", "inputs[0].resolution[1]: 2.5 is no whole number"},
+        Mistake{R"("resolution": 4)", R"("resolution": 1e300)", "inputs[0].resolution: 1e+300 is out of range"},
+        Mistake{R"("resolution": 4)", R"("resolution": "4")", "inputs[0].resolution: a text is no number"},
+        Mistake{R"("method": "tets")", R"("method": "magic")", "methods[1].method: there is no method 'magic' (splat, sheets"},
+        Mistake{R"("method": "tets")", R"("level": 1)", "methods[1]: names no method"},
+        Mistake{R"("method": "tets")", R"("method": "tets", "level": 1)", "methods[1].level: this key is unknown"},
+        Mistake{"[50, 100]", "[]", "methods[0].sheets: the list is empty"},
+        Mistake{"[50, 100]", "[50, [100]]", "methods[0].sheets[1]: a list is no number"},
+        Mistake{"[50, 100]", "[50, 50]", "are the same"},
+        Mistake{"[50, 100]", "50, \"correction\": \"third\"", "methods[0].correction: 'third' is unknown (second, none"},
+        Mistake{"[50, 100]", "50, \"visible_only\": 1", "methods[0].visible_only: a number is no switch"},
+        Mistake{"[50, 100]", "50, \"kernel\": \"square\"", "methods[0].kernel: "},
+        Mistake{"[50, 100]", "50, \"kernel\": {\"type\": \"gaussian\", \"sigma\": -1}", "methods[0].kernel: "},
+        Mistake{"[50, 100]", "50, \"given\": {\"x\": []}", "methods[0].given.x: this is neither"},
+        Mistake{R"({"name": "front", "camera": "-y"})", R"({"name": "front"})", "cameras[1].camera: the camera is missing"},
+        Mistake{R"({"name": "front", "camera": "-y"})", "3", "cameras[1]: a number is no text"},
+        Mistake{"[64, 48]", "[64]", "size: a size has a width and a height"},
+        Mistake{"[64, 48]", "[64, 1e9]", "size[1]: 1000000000.0 is out of range"},
+        Mistake{"[64, 48]", "64, \"metrics\": [\"beauty\"]", "metrics[0]: 'beauty' is unknown"},
+        Mistake{"[64, 48]", "64, \"reference\": {\"tolerance\": 0}", "reference.tolerance: 0 is out of range"},
+        Mistake{"[64, 48]", "64, \"reference\": {\"tolerance\": [0.1, 0.2]}", "reference: there is one reference"},
+        Mistake{"[64, 48]", "64, \"transfer_functions\": [\"no.json\"]", "transfer_functions[0]: 'no.json' cannot be read"},
+        Mistake{"[64, 48]", "64, \"tables\": [{\"columns\": [\"rmse\"]}]", "tables[0].rows: this is missing"},
+        Mistake{"[64, 48]", "64, \"tables\": [{\"rows\": \"input\", \"values\": \"rmse\"}]", "tables[0].across: "},
+        Mistake{"[64, 48]", "64, \"plots\": [{\"x\": \"a\", \"y\": \"b\"}]", "plots[0].series: this is missing"},
+        Mistake{"[64, 48]", "64, \"demands\": [{\"metric\": \"psnr\"}]", "demands[0]: a demand has a least or a most"}));
+
+TEST(StudyFile, TooManyCasesAreRefusedBeforeTheyAreMade) {
+    std::string numbers = "1";
+    for (int i = 2; i <= 300; ++i) numbers += "," + std::to_string(i);
+    const std::string seeds = R"({"method": "field", "seed": [)" + numbers + R"(], "places": [)" + numbers + "]}";
+    EXPECT_NE(error_of([&] { (void)parse(study_with(kTets, seeds)); }).find("methods[1].seed: there are too many combinations"),
+              std::string::npos);
+    // Lists that are short enough by themselves, times inputs.
+    const std::string many = R"("resolution": [)" + numbers.substr(2) + "]";
+    std::string text = study_with(R"("resolution": 4)", many);
+    text.replace(text.find("[1, 2]"), 6, "[" + numbers.substr(0, numbers.find(",65")) + "]");
+    EXPECT_NE(error_of([&] { (void)parse(text); }).find("methods[0]: there are too many cases (at most 10000)"),
+              std::string::npos);
+}
+
+TEST(StudyFile, DeepNestingIsNoCrash) {
+    const std::string deep(200000, '[');
+    EXPECT_NE(error_of([&] { (void)parse(deep); }).find("is not JSON"), std::string::npos);
+    const std::string closed = deep + std::string(deep.size(), ']');
+    EXPECT_NE(error_of([&] { (void)parse(closed); }).find("a list is no object"), std::string::npos);
+}
+
+class StudyFolder : public test::TempFolder {};
+
+TEST_F(StudyFolder, AChangedMeshIsAnotherCase) {
+    const auto id = [&] {
+        const auto file =
+            write("s.json", R"({"name": "s", "inputs": [{"file": "a.mesh"}], "methods": [{"method": "values"}]})");
+        return read_study(file).cases.front().id;
+    };
+    write("a.mesh", "one");
+    const std::string one = id();
+    EXPECT_EQ(one, id());
+    write("a.mesh", "two");
+    EXPECT_NE(one, id());
+}
+
+TEST_F(StudyFolder, FilesThatAreNoneAreRefused) {
+    EXPECT_NE(error_of([&] { (void)read_study(path("no.json")); }, ErrorCode::Io).find("no.json"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)read_study(write("big.json", std::string(2 << 20, ' '))); }).find("larger"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace subvol
