@@ -4,7 +4,7 @@ namespace subvol {
 
 /// What a stretch of a ray on which the opacity goes linearly takes from the light: T the optical depth from its front.
 ///
-/// mean:  1 − the mean of e^{−T} over the stretch (1−Ψ of SCIENCE §4)
+/// mean:  1 − the mean of e^{−T} over the stretch (1−Ψ of docs/science.md)
 /// whole: 1 − e^{−T} at its back (1−ζ)
 struct Absorption {
     double mean = 0;

@@ -16,7 +16,7 @@ namespace subvol::detail {
 ///
 /// Pictures are bitwise the same every time: kernels are added up in their order.
 /// cost:   one draw and one dispatch a sheet, each of the sheet's rectangle only
-/// source: SCIENCE §3 (NMM06, VG05)
+/// source: docs/science.md (NMM06, VG05)
 class GlSheets {
 public:
     GlSheets();

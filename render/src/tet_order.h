@@ -21,7 +21,7 @@ struct TetOrder {
 /// taken. Where cycles leave none ready, the farthest centroid of all is, and `cycles` counts it.
 ///
 /// cost:   O(n log n), the order itself on one thread
-/// source: SCIENCE §4 (MPVO; the heuristic for meshes that are not convex is Williams')
+/// source: docs/science.md (MPVO; the heuristic for meshes that are not convex is Williams')
 [[nodiscard]] TetOrder order_topologically(const TetMesh& mesh, const View& view);
 
 }  // namespace subvol

@@ -85,7 +85,7 @@ TEST(ValueRule, BetterRulesErrLess) {
     const double two = rmse_of(mesh, ValueRule::Paper, named_kernel("two_gaussians"));
     const double cubic = rmse_of(mesh, ValueRule::Cubic, {});
     EXPECT_LT(mended, paper);      // the sign slip of the paper costs about a quarter
-    EXPECT_LT(two, mended);        // as the table of SCIENCE §1.4 has it
+    EXPECT_LT(two, mended);        // as docs/science.md says
     EXPECT_LT(cubic, paper / 10);  // fourth order against second
     EXPECT_GT(cubic, 0);
 }
