@@ -10,6 +10,7 @@
 #include <set>
 
 #include "subvol/gl_device.h"
+#include "subvol/version.h"
 #include "text.h"
 
 namespace subvol::cli {
