@@ -15,7 +15,7 @@ namespace subvol::cli {
 namespace {
 
 constexpr int kPaperLevel = 5;  // 193³ samples, as in the paper
-constexpr int kSliceLevel = 7;  // 768 samples across
+constexpr int kSliceLevel = 6;  // 384 intervals across: the default picture has one pixel a sample
 
 void put(const FitErrors& errors, const std::string& prefix, CaseResult& result) {
     result.metrics[prefix + "mse"] = errors.mse;

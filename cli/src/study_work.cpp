@@ -32,7 +32,9 @@ SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
     arguments.spacing_voxels = of.number("spacing_voxels");
     if (of.has("correction")) arguments.correction = of.text("correction");
     if (of.has("kernel")) arguments.kernel = of.text("kernel");
-    return arguments.options(bounds(mesh), {});
+    SampleOptions options = arguments.options(bounds(mesh), {});
+    if (of.has("boundary_levels")) options.boundary_levels = of.whole("boundary_levels");
+    return options;
 }
 
 CaseResult run_case(const StudyCase& of, const CasePlace& place) {

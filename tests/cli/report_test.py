@@ -4,11 +4,12 @@ import json
 import os
 import re
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
 from browser import Browser, find_chromium
-from command import InFolder, subvol
+from command import subvol
 
 STUDY = {
     "name": "small",
@@ -38,15 +39,21 @@ OVERFLOWING = """
 """
 
 
-class ReportInBrowser(InFolder):
+class ReportInBrowser(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        folder = Path(temporary.name)
+        (folder / "s.json").write_text(json.dumps(STUDY))
+        cls.ended = subvol("study", "s.json", "figure4", "-o", "out", "--json", folder=folder)
+        cls.page = folder / "out/report.html"
+        cls.browser = Browser(find_chromium())
+        cls.addClassCleanup(cls.browser.close)
+
     def setUp(self):
-        super().setUp()
-        (self.folder / "s.json").write_text(json.dumps(STUDY))
-        done = subvol("study", "s.json", "figure4", "-o", "out", "--json", folder=self.folder)
-        self.assertEqual(done.code, 1, done.err)  # the case that is to fail
-        self.page = self.folder / "out/report.html"
-        self.browser = Browser(find_chromium())
-        self.addCleanup(self.browser.close)
+        self.assertEqual(self.ended.code, 1, self.ended.err)  # the case that is to fail
+        self.browser.send("Emulation.setEmulatedMedia", media="")
 
     def shot(self, name):
         """Where SUBVOL_SCREENSHOTS says, for people to look at."""
@@ -97,7 +104,7 @@ class ReportInBrowser(InFolder):
             self.browser.resize(width, mobile=width < 500)
             self.browser.open(self.page.as_uri())
             self.assertEqual(self.browser.evaluate(OVERFLOWING), [], width)
-            self.assertEqual(self.browser.evaluate("document.documentElement.scrollWidth"), width)
+            self.assertLessEqual(self.browser.evaluate("document.documentElement.scrollWidth"), width)
             self.shot(f"test_{width}.png")
 
     def test_without_scripts_pictures_stand_side_by_side(self):
