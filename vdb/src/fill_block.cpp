@@ -57,6 +57,7 @@ HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillO
                 if (inside == 0) continue;
                 if (!leaf) leaf = std::make_unique<VoxelLeaf>(options.leaf_channels());
                 leaf->active[word] |= inside << shift;
+                if (options.leaf_channels() == 0) continue;
                 float* row = leaf->values.get() + 64 * word + static_cast<std::size_t>(shift);
                 if (found.count + kLeafSide > FoundVoxels::kMost) filler.fill(found);
                 for (; inside != 0; inside &= inside - 1) {
@@ -69,7 +70,7 @@ HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillO
             }
         }
     }
-    if (options.leaf_channels() > 0) filler.fill(found);
+    filler.fill(found);
 }
 
 }  // namespace subvol::detail::HWY_NAMESPACE

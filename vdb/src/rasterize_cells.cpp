@@ -47,19 +47,6 @@ CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(requ
     request_.refine.progress = nullptr;
 }
 
-std::optional<VoxelBox> CellRasterizer::voxels() const {
-    std::optional<VoxelBox> all;
-    for (const VoxelBox& box : boxes_) {
-        if (box.empty()) continue;
-        if (!all) all = box;
-        for (std::size_t d = 0; d < 3; ++d) {
-            all->lower[d] = std::min(all->lower[d], box.lower[d]);
-            all->upper[d] = std::max(all->upper[d], box.upper[d]);
-        }
-    }
-    return all;
-}
-
 VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
     VoxelBricks bricks(fill_.leaf_channels());
     const std::vector<Index> cells = cells_of(part);

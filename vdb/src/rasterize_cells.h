@@ -43,9 +43,6 @@ public:
     /// throws: Error(InvalidInput) if the voxels are too small: 2³⁰ from the origin, or too many; says what would be right
     explicit CellRasterizer(RasterizeCells request);
 
-    /// Box of what the cells may fill, as far as is known: of all after the first run.
-    [[nodiscard]] std::optional<VoxelBox> voxels() const;
-
     /// part: only these voxels; whole bricks. none: all
     [[nodiscard]] VoxelBricks run(const std::optional<VoxelBox>& part = {});
 

@@ -40,7 +40,7 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
         set_range(
             *integers, [](std::int32_t v) { return static_cast<double>(v); }, report);
     } else {
-        report.kind = grid.valueType();
+        report.kind = grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
     }
 }
 

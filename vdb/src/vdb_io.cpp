@@ -7,11 +7,11 @@
 
 namespace subvol {
 
-void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids) {
+void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids, VdbCompression compression) {
     AtomicFile file(path);
     openvdb::GridCPtrVec written;
     for (const auto& grid : grids) written.push_back(grid.data().grid);
-    write_grids(file, path, written);
+    write_grids(file, path, written, compression);
     file.commit();
 }
 

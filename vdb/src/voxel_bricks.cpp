@@ -6,6 +6,12 @@
 
 namespace subvol::detail {
 
+namespace {
+
+constexpr int kInBrick = ~(kBrickSide - 1);  // rounds down for negative voxels too
+
+}  // namespace
+
 VoxelBox common(const VoxelBox& a, const VoxelBox& b) {
     VoxelBox box;
     for (std::size_t d = 0; d < 3; ++d) {
@@ -41,22 +47,35 @@ std::size_t VoxelBricks::Hash::operator()(const VoxelCoord& c) const {
     return h ^ h >> 32;
 }
 
+VoxelBrick& VoxelBricks::brick_at(const VoxelCoord& origin) {
+    auto& brick = bricks_[origin];
+    if (!brick) {
+        brick = std::make_unique<VoxelBrick>();
+        brick->origin = origin;
+    }
+    return *brick;
+}
+
 void VoxelBricks::enter(Index cell, const VoxelBox& box) {
     if (box.empty()) return;
-    constexpr int kMask = ~(kBrickSide - 1);  // rounds down for negative voxels too
-    for (int x = box.lower[0] & kMask; x <= box.upper[0]; x += kBrickSide) {
-        for (int y = box.lower[1] & kMask; y <= box.upper[1]; y += kBrickSide) {
-            for (int z = box.lower[2] & kMask; z <= box.upper[2]; z += kBrickSide) {
-                auto& brick = bricks_[{x, y, z}];
-                if (!brick) {
-                    brick = std::make_unique<VoxelBrick>();
-                    brick->origin = {x, y, z};
-                }
-                if (brick->cells.empty()) entered_.push_back(brick.get());
-                brick->cells.push_back(cell);
+    for (int x = box.lower[0] & kInBrick; x <= box.upper[0]; x += kBrickSide) {
+        for (int y = box.lower[1] & kInBrick; y <= box.upper[1]; y += kBrickSide) {
+            for (int z = box.lower[2] & kInBrick; z <= box.upper[2]; z += kBrickSide) {
+                VoxelBrick& brick = brick_at({x, y, z});
+                if (brick.cells.empty()) entered_.push_back(&brick);
+                brick.cells.push_back(cell);
             }
         }
     }
+}
+
+void VoxelBricks::put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf) {
+    VoxelBrick& brick = brick_at({origin[0] & kInBrick, origin[1] & kInBrick, origin[2] & kInBrick});
+    std::size_t slot = 0;
+    for (std::size_t d = 0; d < 3; ++d) {
+        slot = slot * kBrickLeaves + static_cast<std::size_t>((origin[d] - brick.origin[d]) / kLeafSide);
+    }
+    brick.leaves[slot] = std::move(leaf);
 }
 
 std::vector<VoxelBrick*> VoxelBricks::take_entered() {

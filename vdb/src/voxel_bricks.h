@@ -64,10 +64,15 @@ public:
     /// The bricks entered since the last call, in the order of their first cells.
     [[nodiscard]] std::vector<VoxelBrick*> take_entered();
 
+    /// Enters a leaf of its own making. origin: its lowest voxel
+    void put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf);
+
     /// All bricks in the order of their origins; what holds them is empty afterwards.
     [[nodiscard]] std::vector<std::unique_ptr<VoxelBrick>> release();
 
 private:
+    [[nodiscard]] VoxelBrick& brick_at(const VoxelCoord& origin);
+
     struct Hash {
         std::size_t operator()(const VoxelCoord& c) const;
     };

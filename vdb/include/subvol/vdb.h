@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -23,6 +24,9 @@ class VdbGrid;
 ///                   where they are or moved to the limit; never more of it in memory than some control cells
 /// half:             floats stored as 16-bit floats
 /// cell_numbers:     one more grid, whole numbers named "cell": the control cell that a voxel lies in
+/// mask:             one more grid, of bits, named "mask": where the volume is
+/// coverage:         one more grid of floats, named "coverage": the part of each voxel that the volume fills, by 4³ samples; it
+///                   is active wherever that is above zero
 /// metadata:         names and texts that every grid carries
 struct RasterizeOptions {
     double voxel_size_world = 0;
@@ -32,12 +36,14 @@ struct RasterizeOptions {
     bool on_limit = false;
     bool half = false;
     bool cell_numbers = false;
+    bool mask = false;
+    bool coverage = false;
     std::string creator = "OpenSubVol";
     std::vector<std::pair<std::string, std::string>> metadata{};
     Progress* progress = nullptr;
 };
 
-/// kind:     float, vector, integer, or another type's name
+/// kind:     float, vector, integer, mask, or another type's name
 /// min, max: of a vector's length
 struct GridReport {
     std::string name;
@@ -90,10 +96,39 @@ private:
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
-/// Writes grids into one `.vdb` file (blosc), beside and then renamed.
+/// One part of a volume. number: from 0; of: how many there are
+struct GridPart {
+    int number = 0, of = 1;
+    std::vector<VdbGrid> grids;
+};
+
+/// The same in slabs of 32 voxels and more across x, one after the other, so that the grids of one take no more than about so
+/// many bytes, if 32 voxels take less. Put together, their leaves are those of `rasterize`.
 ///
-/// throws: Error(Io)
-void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids);
+/// throws: as `rasterize`
+void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
+                     std::size_t memory_bytes, const std::function<void(GridPart)>& take);
+
+/// A grid of floats, active where another one is, with the values of a field there (NaN becomes 0).
+///
+/// field: the values at many points, world
+[[nodiscard]] VdbGrid sample_at_voxels(const VdbGrid& where, const std::string& name,
+                                       const std::function<std::vector<double>(std::span<const Vec3>)>& field);
+
+/// How far the values of two grids of floats are apart where both are active.
+struct GridDifference {
+    std::size_t voxels = 0;
+    double rms = 0, max = 0;
+};
+[[nodiscard]] GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b);
+
+enum class VdbCompression { None, Zip, Blosc };
+
+/// Writes grids into one `.vdb` file, beside and then renamed.
+///
+/// throws: Error(Io); Error(MissingCapability) if OpenVDB was built without that compression
+void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids,
+               VdbCompression compression = VdbCompression::Blosc);
 
 /// Reads the float grids of a `.vdb` file.
 ///
