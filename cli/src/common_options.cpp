@@ -1,5 +1,7 @@
 #include "common_options.h"
 
+#include "subvol/error.h"
+
 namespace subvol::cli {
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
@@ -28,6 +30,13 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
         ->type_name("WHEN")
         ->check(CLI::IsMember({"auto", "on", "off"}));
     app.add_option("--seed", options.seed, "seed of what is random: places of samples")->group(group)->type_name("N");
+}
+
+void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason) {
+    for (const char* name : names) {
+        const CLI::Option* option = app.get_option_no_throw(name);
+        if (option != nullptr && option->count() > 0) throw Error(ErrorCode::InvalidInput, reason, name);
+    }
 }
 
 }  // namespace subvol::cli

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -20,5 +21,10 @@ struct CommonOptions {
 };
 
 void add_common_options(CLI::App& app, CommonOptions& options);
+
+/// Refuses an input that some options do not fit.
+///
+/// throws: Error(InvalidInput) if one of `names` was given
+void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason);
 
 }  // namespace subvol::cli

@@ -5,9 +5,9 @@
 
 #include "grid_input.h"
 #include "input.h"
-#include "limit_level.h"
 #include "points_input.h"
 #include "subvol/error.h"
+#include "subvol/limit_level.h"
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
 #include "text.h"
@@ -16,6 +16,8 @@ namespace subvol::cli {
 namespace {
 
 constexpr double kVoxels = 200;  // along the longest side: what the limit's tolerance is relative to, as of `vdb`
+constexpr double kPositionTolerance_voxels = 0.1;
+constexpr double kMaxCells = 8e6;  // the field keeps them all
 
 std::string extension_of(const std::string& input) {
     std::string extension = std::filesystem::path(input).extension().string();
@@ -24,18 +26,19 @@ std::string extension_of(const std::string& input) {
 }
 
 HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& report) {
-    const RefineOptions options = refine.options(0, report);
+    RefineOptions options = refine.options(0, report);
     if (refine.levels) return refine_reported(mesh, options, Vertices::OnTheLimit, report);
     const Vec3 size = bounds(mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / kVoxels;
-    LimitMesh limit = report.timed("refine", [&] { return refine_to_limit(mesh, options, voxel); });
-    report["levels"] = limit.level;
-    report["cells"] = limit.mesh.cells.size();
+    const LimitLevel limit = report.timed("limit level", [&] {
+        return find_limit_level(mesh, options, {.position_world = kPositionTolerance_voxels * voxel, .max_cells = kMaxCells});
+    });
+    options.levels = limit.level;
     if (!limit.converged) {
         report.warn(text("level ", limit.level, " was the finest within limits; the last step still moved values by ",
-                         limit.value_range, " of their range: --levels sets it"));
+                         limit.value_of_range, " of their range: --levels sets it"));
     }
-    return std::move(limit.mesh);
+    return refine_reported(mesh, options, Vertices::OnTheLimit, report);
 }
 
 FieldInput mesh_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, Report& report) {

@@ -9,9 +9,13 @@
 
 namespace subvol::cli {
 
+bool is_vdb_file(const std::string& input) {
+    return std::filesystem::path(input).extension() == ".vdb";
+}
+
 VdbGrid load_grid(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
-    if (std::filesystem::path(input).extension() != ".vdb") {
+    if (!is_vdb_file(input)) {
         throw Error(ErrorCode::InvalidInput, "is not a grid", input, "a .vdb file, as `subvol vdb` makes of a mesh");
     }
     std::vector<VdbGrid> grids = report.timed("read", [&] { return read_vdb(input); });

@@ -8,6 +8,9 @@
 
 namespace subvol::cli {
 
+/// Whether the input is a `.vdb` file; it may hold points instead.
+[[nodiscard]] bool is_vdb_file(const std::string& input);
+
 /// Reads the float grid of a `.vdb` file that --field names, else the first. Puts "input", "field", the voxels' number and size
 /// into the report.
 ///

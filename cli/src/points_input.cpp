@@ -20,14 +20,6 @@ bool is_vdb(const std::string& input) {
     return std::filesystem::path(input).extension() == ".vdb";
 }
 
-void check_options(const CLI::App& app) {
-    for (const char* name : kOfMeshes) {
-        const CLI::Option* option = app.get_option_no_throw(name);
-        if (option == nullptr || option->count() == 0) continue;
-        throw Error(ErrorCode::InvalidInput, "needs a mesh; these are points that have been sampled already", name);
-    }
-}
-
 }  // namespace
 
 bool holds_points(const std::string& input) {
@@ -44,7 +36,7 @@ RbfVolume read_points_input(const std::string& input, Report& report) {
 
 RbfVolume load_points(const std::string& input, const CommonOptions& options, const std::optional<std::string>& second,
                       const CLI::App& app, Report& report) {
-    check_options(app);
+    refuse_options(app, kOfMeshes, "needs a mesh; these are points that have been sampled already");
     RbfVolume volume = read_points_input(input, report);
     std::vector<std::string> names;
     for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 
+#include "grid_input.h"
 #include "picture_arguments.h"
 #include "subvol/empty_space.h"
 #include "subvol/error.h"
 #include "subvol/reduce.h"
+#include "subvol/vdb_sample.h"
 #include "text.h"
 
 namespace subvol::cli {
 namespace {
 
+constexpr std::initializer_list<const char*> kOfMeshesOnly{
+    "--density",      "--other-cells", "--per-edge",  "--scheme",         "--tension", "--levels",
+    "--crease-angle", "--tolerance",   "--footprint", "--footprint-size", "--values",  "--value-kernel",
+    "--reduce",       "--refine",      "--seconds",   "--color-field"};
 constexpr double kPaperBox = 200;  // --spacing-voxels counts in 1/200 of the longest side
 
 Correction correction_named(const std::string& name) {
@@ -34,7 +40,9 @@ Kernel kernel_from(const std::string& text, const char* fallback) {
 void SampleArguments::add_to(CLI::App& app) {
     auto* edges = app.add_option("--per-edge", per_edge, "sample intervals per cell edge; 1 is one kernel a control point");
     edges->type_name("N")->check(CLI::Range(1, 64));
-    auto* world = app.add_option("--spacing", spacing_world, "distance of the samples, in world units, instead of --per-edge");
+    auto* world = app.add_option("--spacing", spacing_world,
+                                 "distance of the samples, in world units, instead of --per-edge; of a grid's "
+                                 "kernels, to whole voxels (default: a kernel a voxel)");
     world->type_name("H")->check(CLI::PositiveNumber)->excludes(edges);
     app.add_option("--spacing-voxels", spacing_voxels, "the same in 1/200 of the longest side of the bounding box")
         ->type_name("S")
@@ -177,6 +185,24 @@ RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
         all = sample_and_warn(refinement.levels ? level : mesh, options, report);
     }
     RbfVolume volume = without_invisible(std::move(all), arguments, seen, report);
+    report["points"] = volume.size();
+    return volume;
+}
+
+RbfVolume sample_reported(const VdbGrid& grid, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
+                          const CLI::App& app, Report& report) {
+    refuse_options(app, kOfMeshesOnly, "needs a mesh; this is a grid of voxels");
+    const SampleOptions options = arguments.options(box_of(grid.report()), {});
+    VoxelSampleResult sampled = report.timed("sample", [&] {
+        return sample_rbf_points(grid, {.spacing_world = options.spacing_world,
+                                        .correction = options.correction,
+                                        .kernel = options.kernel,
+                                        .progress = report.progress()});
+    });
+    report["spacing"] = sampled.report.spacing_world;
+    report["voxels_a_side"] = sampled.report.voxels_a_side;
+    if (sampled.report.left_out > 0) report["left_out_voxels"] = sampled.report.left_out;
+    RbfVolume volume = without_invisible(std::move(sampled.volume), arguments, seen, report);
     report["points"] = volume.size();
     return volume;
 }

@@ -7,6 +7,7 @@
 #include "refine_arguments.h"
 #include "subvol/sample.h"
 #include "subvol/transfer_function.h"
+#include "subvol/vdb.h"
 
 namespace subvol::cli {
 
@@ -43,5 +44,11 @@ private:
 [[nodiscard]] RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
                                         const RefineArguments& refinement, const std::optional<TransferFunction>& seen,
                                         Report& report);
+
+/// The same of a grid's voxels.
+///
+/// app: the verb's, whose options that only a mesh can follow are refused
+[[nodiscard]] RbfVolume sample_reported(const VdbGrid& grid, const SampleArguments& arguments,
+                                        const std::optional<TransferFunction>& seen, const CLI::App& app, Report& report);
 
 }  // namespace subvol::cli

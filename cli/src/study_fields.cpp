@@ -2,12 +2,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "limit_level.h"
 #include "study_input.h"
 #include "study_work.h"
 #include "subvol/empty_space.h"
 #include "subvol/error.h"
 #include "subvol/field_places.h"
+#include "subvol/limit_level.h"
 #include "subvol/tetrahedra.h"
 #include "subvol/value_rule.h"
 #include "subvol/vdb.h"
@@ -88,9 +88,10 @@ CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const Vec3 size = bounds(mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
-    const LimitMesh limit = refine_to_limit(mesh, {}, voxel);
+    const LimitLevel limit = find_limit_level(mesh, {}, {.position_world = 0.1 * voxel});
     const std::vector<std::string> names{mesh.attributes.front().name};
-    const auto grids = rasterize(limit.mesh, names, {.voxel_size_world = voxel, .half = of.flag("half")});
+    const auto grids =
+        rasterize(mesh, names, {.voxel_size_world = voxel, .refine = {.levels = limit.level}, .half = of.flag("half")});
     const FieldSamples places = places_of(of, mesh);
     double squares = 0, largest = 0;
     std::size_t covered = 0;

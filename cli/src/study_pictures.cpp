@@ -1,7 +1,6 @@
 #include <chrono>
 #include <limits>
 
-#include "limit_level.h"
 #include "report.h"
 #include "study_input.h"
 #include "study_metrics.h"
@@ -10,6 +9,7 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
+#include "subvol/limit_level.h"
 #include "subvol/render.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
@@ -133,9 +133,10 @@ Image grid(const Scene& scene) {
     const Stopwatch watch;
     const Vec3 size = bounds(scene.mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / scene.of.whole("resolution");
-    const LimitMesh limit = refine_to_limit(scene.mesh, {}, voxel);
-    const std::vector<std::string> names{limit.mesh.attributes.front().name};
-    const auto grids = rasterize(limit.mesh, names, {.voxel_size_world = voxel, .half = scene.of.flag("half")});
+    const LimitLevel limit = find_limit_level(scene.mesh, {}, {.position_world = 0.1 * voxel});
+    const std::vector<std::string> names{scene.mesh.attributes.front().name};
+    const auto grids = rasterize(scene.mesh, names,
+                                 {.voxel_size_world = voxel, .refine = {.levels = limit.level}, .half = scene.of.flag("half")});
     const GridReport& about = grids.front().report();
     scene.result.metrics["primitives"] = scene.result.metrics["voxels"] = static_cast<double>(about.active_voxels);
     scene.result.metrics["grid_bytes"] = static_cast<double>(about.bytes);

@@ -1,3 +1,4 @@
+#include "grid_input.h"
 #include "input.h"
 #include "picture_arguments.h"
 #include "sample_arguments.h"
@@ -5,6 +6,7 @@
 #include "subvol/points_io.h"
 #include "subvol/surface_io.h"
 #include "subvol/vdb_points.h"
+#include "text.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -13,12 +15,13 @@ namespace {
 class PointsVerb : public Verb {
 public:
     explicit PointsVerb(CLI::App& program)
-        : Verb(program, "points", "Turn a mesh into radial basis functions.",
+        : Verb(program, "points", "Turn a mesh or a .vdb grid into radial basis functions.",
                "  subvol points model:ball -o ball.ply\n"
                "  subvol points model:ball -o ball.vtp                (ParaView; the surface is beside it: ball.boundary.vtp)\n"
                "  subvol points model:ball -o ball.vdb                (Houdini; as well)\n"
-               "  subvol points model:ball -o dense.ply --per-edge 2 --splats") {
-        app().add_option("FILE", input_, kInputHelp)->required();
+               "  subvol points model:ball -o dense.ply --per-edge 2 --splats\n"
+               "  subvol points smoke.vdb -o smoke.ply --threshold 0  (a kernel a voxel; --spacing for fewer)") {
+        app().add_option("FILE", input_, text(kInputHelp, "; or a .vdb grid of floats"))->required();
         app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb)")->type_name("FILE")->required();
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
         app().add_flag("--splats", splats_, ".ply: for viewers of Gaussian splats too; the surface is then beside it");
@@ -35,10 +38,7 @@ public:
         if (extension != ".ply" && (ascii_ || splats_)) {
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
-        std::optional<TransferFunction> seen;
-        if (!transfer_function_.empty()) seen = find_transfer_function(transfer_function_, field_range(mesh));
-        const RbfVolume volume = sample_reported(mesh, sample_, refine_, seen, report);
+        const RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(report);
         report.timed("write", [&] {
             if (extension == ".vdb") {
                 write_vdb_points(output_, volume);
@@ -53,6 +53,21 @@ public:
     }
 
 private:
+    [[nodiscard]] RbfVolume points_of_mesh(Report& report) {
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        return sample_reported(mesh, sample_, refine_, seen(field_range(mesh)), report);
+    }
+
+    [[nodiscard]] RbfVolume points_of_grid(Report& report) {
+        const VdbGrid grid = load_grid(input_, common(), report);
+        return sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
+    }
+
+    [[nodiscard]] std::optional<TransferFunction> seen(const Range& range) const {
+        if (transfer_function_.empty()) return std::nullopt;
+        return find_transfer_function(transfer_function_, range);
+    }
+
     std::string input_;
     std::string output_;
     bool ascii_ = false;

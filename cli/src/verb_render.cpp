@@ -26,8 +26,11 @@ public:
                "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
                "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2\n"
-               "  subvol render smoke.vdb -o smoke.png --method grid") {
-        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb); grid: a .vdb grid"))->required();
+               "  subvol render smoke.vdb -o smoke.png --method grid\n"
+               "  subvol render smoke.vdb -o smoke.png                    (its voxels as kernels)") {
+        app()
+            .add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
+            ->required();
         app()
             .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")
             ->type_name("IMAGE")
@@ -61,6 +64,8 @@ public:
             draw_voxels(output, report);
         } else if (holds_points(input_)) {
             draw_points(output, report);
+        } else if (is_vdb_file(input_)) {
+            splat_voxels(output, report);
         } else {
             draw_mesh(output, report);
         }
@@ -144,6 +149,19 @@ private:
             return draw_grid(*voxels, view, optics, reference_, progress, report);
         };
         output.write(picture_.make_views(box), draw, report);
+        picture_.write_legend(optics, range, report);
+    }
+
+    void splat_voxels(PictureOutput& output, Report& report) {
+        if (!drawn_by_splats()) {
+            throw Error(ErrorCode::InvalidInput, "a grid has no cells", "--method " + method_, "use grid, splat or sheets");
+        }
+        const VdbGrid grid = load_grid(input_, common(), report);
+        const Box box = box_of(grid.report());
+        const Range range{grid.report().min, grid.report().max};
+        const Optics optics = picture_.make_optics(box, range, range);
+        const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
+        splat(volume, picture_.make_views(box), optics, output, report);
         picture_.write_legend(optics, range, report);
     }
 

@@ -73,8 +73,8 @@ private:
 }
 
 /// Above this share of its terms an area is taken as rounded. Its sign would be right from 3.4e-16 on ((3 + 16ε)ε of Shewchuk's
-/// 2-D orientation test). But areas are the weights of a crossing too: without right digits it lies beside the ray, by up to the
-/// whole face where that is seen almost edge on.
+/// 2-D orientation test). But areas are the weights of a crossing too: without right digits it lies beside the ray, by up to
+/// the whole face where that is seen almost edge on.
 inline constexpr double kSideError = 1e-7;
 
 [[nodiscard]] inline Side side_of(const SeenPoint& a, const SeenPoint& b) {

@@ -209,14 +209,14 @@ TEST(Rasterize, VoxelsLargerThanTheMesh) {
 
 TEST(Rasterize, RefusesWhatCannotBe) {
     auto mesh = with_field(box_mesh(1), "f", kOne);
-    mesh.attributes.push_back({"v", 3, std::vector<double>(24)});
+    mesh.attributes.push_back({"v", 2, std::vector<double>(16)});
     const std::vector<std::string> f{"f"}, none, missing{"g"}, vector{"v"};
     const auto invalid = [&](const std::vector<std::string>& fields, const RasterizeOptions& options, const std::string& says) {
         EXPECT_EQ(code_of([&] { (void)rasterize(mesh, fields, options); }, says), ErrorCode::InvalidInput);
     };
     invalid(none, {}, "no field");
     invalid(missing, {}, "\"g\"");
-    invalid(vector, {}, "3 channels");
+    invalid(vector, {}, "2 channels");
     invalid(f, {.voxel_size_world = -1}, "not positive");
     invalid(f, {.voxel_size_world = std::nan("")}, "not positive");
     invalid(f, {.resolution = 0}, "below one");

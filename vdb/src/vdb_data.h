@@ -1,17 +1,19 @@
 #pragma once
 
-#include <openvdb/Grid.h>
+#include <openvdb/openvdb.h>
 
 #include "subvol/vdb.h"
 
 namespace subvol {
 
+/// floats: the same grid if it is one of floats
 struct VdbGrid::Data {
-    openvdb::FloatGrid::Ptr grid;
+    openvdb::GridBase::Ptr grid;
+    openvdb::FloatGrid::Ptr floats;
     GridReport report;
 };
 
 /// Wraps a grid and counts what its report says.
-[[nodiscard]] VdbGrid make_vdb_grid(openvdb::FloatGrid::Ptr grid);
+[[nodiscard]] VdbGrid make_vdb_grid(const openvdb::GridBase::Ptr& grid);
 
 }  // namespace subvol

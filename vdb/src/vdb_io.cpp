@@ -7,11 +7,11 @@
 
 namespace subvol {
 
-void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids) {
+void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids, VdbCompression compression) {
     AtomicFile file(path);
     openvdb::GridCPtrVec written;
     for (const auto& grid : grids) written.push_back(grid.data().grid);
-    write_grids(file, path, written);
+    write_grids(file, path, written, compression);
     file.commit();
 }
 
@@ -20,8 +20,8 @@ std::vector<VdbGrid> read_vdb(const std::filesystem::path& path) {
     std::vector<VdbGrid> result;
     std::string others;
     for (const auto& grid : *grids) {
-        if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) {
-            result.push_back(make_vdb_grid(std::move(floats)));
+        if (grid->isType<openvdb::FloatGrid>()) {
+            result.push_back(make_vdb_grid(grid));
         } else {
             others += (others.empty() ? "" : ", ") + grid->type();
         }

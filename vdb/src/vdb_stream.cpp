@@ -55,15 +55,29 @@ public:
 // io::File, which would be the usual way, does not notice a full disk: the stream has to be ours here too.
 class ThrowingWriter : public openvdb::io::Archive {
 public:
-    void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids) {
+    void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids, std::uint32_t compression) {
         std::ofstream file;
         file.exceptions(std::ios::failbit | std::ios::badbit);
         file.open(path, std::ios::binary);
-        setCompression(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK);
+        setCompression(compression | openvdb::io::COMPRESS_ACTIVE_MASK);
         write(file, grids, /*seekable=*/true);
         file.close();
     }
 };
+
+std::uint32_t flag_of(VdbCompression compression) {
+    using openvdb::io::Archive;
+    switch (compression) {
+        case VdbCompression::Blosc:
+            if (Archive::hasBloscCompression()) return openvdb::io::COMPRESS_BLOSC;
+            throw Error(ErrorCode::MissingCapability, "OpenVDB was built without blosc", {}, "zip or none");
+        case VdbCompression::Zip:
+            if (Archive::hasZLibCompression()) return openvdb::io::COMPRESS_ZIP;
+            throw Error(ErrorCode::MissingCapability, "OpenVDB was built without zip", {}, "blosc or none");
+        default:
+            return openvdb::io::COMPRESS_NONE;
+    }
+}
 
 }  // namespace
 
@@ -78,10 +92,12 @@ std::vector<std::string> grid_types(const std::filesystem::path& path) {
     return types;
 }
 
-void write_grids(const AtomicFile& file, const std::filesystem::path& path, const openvdb::GridCPtrVec& grids) {
+void write_grids(const AtomicFile& file, const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                 VdbCompression compression) {
+    const std::uint32_t flag = flag_of(compression);
     try {
         openvdb::initialize();
-        ThrowingWriter().write_grids(file.path(), grids);
+        ThrowingWriter().write_grids(file.path(), grids, flag);
     } catch (const std::ios_base::failure&) {
         throw Error(ErrorCode::Io, "cannot be written; the disk may be full", path.string());
     } catch (const std::exception& error) {

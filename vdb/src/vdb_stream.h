@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/atomic_file.h"
+#include "subvol/vdb.h"
 
 namespace subvol {
 
@@ -20,7 +21,8 @@ namespace subvol {
 
 /// Writes grids to the temporary file of `file`. path: its name in the end, for messages
 ///
-/// throws: Error(Io)
-void write_grids(const AtomicFile& file, const std::filesystem::path& path, const openvdb::GridCPtrVec& grids);
+/// throws: Error(Io); Error(MissingCapability) if OpenVDB was built without that compression
+void write_grids(const AtomicFile& file, const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
+                 VdbCompression compression = VdbCompression::Blosc);
 
 }  // namespace subvol

@@ -89,7 +89,10 @@ std::unique_ptr<Voxels> VdbGrid::voxels() const {
         throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid \"" + data_->grid->getName() + "\"",
                     "a linear transform, not a frustum");
     }
-    return std::make_unique<GridVoxels>(data_->grid);
+    if (!data_->floats) {
+        throw Error(ErrorCode::InvalidInput, "its voxels are no floats", "grid \"" + data_->grid->getName() + "\"");
+    }
+    return std::make_unique<GridVoxels>(data_->floats);
 }
 
 }  // namespace subvol

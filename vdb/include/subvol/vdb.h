@@ -1,30 +1,53 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "subvol/hex_mesh.h"
 #include "subvol/progress.h"
+#include "subvol/refine.h"
 #include "subvol/voxels.h"
 
 namespace subvol {
 
+class VdbGrid;
+
 /// voxel_size_world: > 0, or 0 to take `resolution`; resolution: voxels along the longest side of the bounding box
-/// half:             values stored as 16-bit floats
+/// like:             instead of both: a grid whose voxels are taken over, wherever they are; its transform must be linear
+/// refine, on_limit: what is rasterized: the trilinear cells of the refined mesh (levels 0: of the mesh as it is), its vertices
+///                   where they are or moved to the limit; never more of it in memory than some control cells
+/// half:             floats stored as 16-bit floats
+/// cell_numbers:     one more grid, whole numbers named "cell": the control cell that a voxel lies in
+/// mask:             one more grid, of bits, named "mask": where the volume is
+/// coverage:         one more grid of floats, named "coverage": the part of each voxel that the volume fills, by 4³ samples; it
+///                   is active wherever that is above zero
+/// metadata:         names and texts that every grid carries
 struct RasterizeOptions {
     double voxel_size_world = 0;
     int resolution = 200;
+    const VdbGrid* like = nullptr;
+    RefineOptions refine{.levels = 0};
+    bool on_limit = false;
     bool half = false;
+    bool cell_numbers = false;
+    bool mask = false;
+    bool coverage = false;
     std::string creator = "OpenSubVol";
+    std::vector<std::pair<std::string, std::string>> metadata{};
     Progress* progress = nullptr;
 };
 
+/// kind:     float, vector, integer, mask, or another type's name
+/// min, max: of a vector's length
 struct GridReport {
     std::string name;
+    std::string kind;
     std::size_t active_voxels = 0;
     double voxel_size_world = 0;
     std::size_t bytes = 0;  // of the tree in memory
@@ -32,7 +55,7 @@ struct GridReport {
     Box bounds{};  // of the active voxels' centres, world; empty if there are none
 };
 
-/// An OpenVDB float grid, and a field that can be sampled. Voxel centres lie at world = h·ijk.
+/// An OpenVDB grid; of floats it is a field that can be sampled. Those that are made here have voxel centres at world = h·ijk.
 class VdbGrid {
 public:
     struct Data;
@@ -44,12 +67,12 @@ public:
     [[nodiscard]] const GridReport& report() const;
 
     /// Trilinear between the eight voxels about x; nothing where the voxel that holds x is inactive. Inactive neighbours do not
-    /// count: the weights of the active ones are normalised.
+    /// count: the weights of the active ones are normalised. Floats only; of vectors and whole numbers there is nothing.
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
 
     /// The voxels, for a renderer; shares the grid's memory, may outlive it.
     ///
-    /// throws: Error(InvalidInput) if the transform is not linear
+    /// throws: Error(InvalidInput) if the transform is not linear, or the voxels are no floats
     [[nodiscard]] std::unique_ptr<Voxels> voxels() const;
 
     [[nodiscard]] const Data& data() const { return *data_; }
@@ -58,22 +81,54 @@ private:
     std::unique_ptr<Data> data_;
 };
 
-/// Rasterizes one-channel attributes of a hexahedral mesh: cubic voxels, values at voxel centres, active where the centre lies
-/// inside the mesh. The first field becomes a fog volume (named as the attribute), the others plain float grids.
+/// Rasterizes attributes of a hexahedral mesh: cubic voxels, values at voxel centres, active where the centre lies inside the
+/// mesh. One channel becomes a float grid, three a grid of vectors; the first field, if it has one channel, is a fog volume.
+/// Leaves that are full of one value become tiles.
 ///
-/// A centre on the boundary counts as if it lay 1e-6 voxels further up all axes: a box that fits the voxels fills its volume
-/// exactly, and boxes that touch share none. Where cells overlap, the cell with the smallest id counts; leaf-parallel, the same
-/// for any number of threads.
-/// throws: Error(InvalidInput) if the mesh is not valid, a field is missing, has several channels or does not fit its float, or
-///         the voxel size is not positive or below OpenVDB's least of 1.45e-5, makes more than 2·10⁹ voxels or voxel numbers
-///         beyond 2³⁰; Error(Cancelled)
+/// A cell's tetrahedra decide what is inside (`split_cell`; those of refined cells start at the corner that is smallest in x,
+/// then y, then z), its trilinear map where in it. A centre on the boundary counts as if it lay 1e-6 voxels further up all
+/// axes: a box that fits the voxels fills its volume exactly, and boxes that touch share none. Where cells overlap, the control
+/// cell with the smallest id counts. Parallel over bricks of leaves, the same for any number of threads. throws:
+/// Error(InvalidInput) if the mesh is not valid, a field is missing, has two or more than three channels or does not fit
+///         its float, or the voxel size is not positive or below OpenVDB's least of 1.45e-5, makes more than 2·10⁹ voxels or
+///         voxel numbers beyond 2³⁰; Error(Cancelled)
+/// cost:   memory: the grids, and some 20 MB, or where the mesh is refined twice as many nodes as it has points
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
-/// Writes grids into one `.vdb` file (blosc), beside and then renamed.
+/// One part of a volume. number: from 0; of: how many there are
+struct GridPart {
+    int number = 0, of = 1;
+    std::vector<VdbGrid> grids;
+};
+
+/// The same in slabs of 32 voxels and more across x, one after the other, so that the grids of one take no more than about so
+/// many bytes, if 32 voxels take less. Put together, their leaves are those of `rasterize`.
 ///
-/// throws: Error(Io)
-void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids);
+/// throws: as `rasterize`
+void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
+                     std::size_t memory_bytes, const std::function<void(GridPart)>& take);
+
+/// A grid of floats, active where another one is, with the values of a field there (NaN becomes 0).
+///
+/// field: the values at many points, world
+[[nodiscard]] VdbGrid sample_at_voxels(const VdbGrid& where, const std::string& name,
+                                       const std::function<std::vector<double>(std::span<const Vec3>)>& field);
+
+/// How far the values of two grids of floats are apart where both are active.
+struct GridDifference {
+    std::size_t voxels = 0;
+    double rms = 0, max = 0;
+};
+[[nodiscard]] GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b);
+
+enum class VdbCompression { None, Zip, Blosc };
+
+/// Writes grids into one `.vdb` file, beside and then renamed.
+///
+/// throws: Error(Io); Error(MissingCapability) if OpenVDB was built without that compression
+void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids,
+               VdbCompression compression = VdbCompression::Blosc);
 
 /// Reads the float grids of a `.vdb` file.
 ///

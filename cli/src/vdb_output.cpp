@@ -1,0 +1,81 @@
+#include "vdb_output.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "subvol/atomic_file.h"
+#include "subvol/error.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+Json about(const GridReport& grid) {
+    return {{"name", grid.name}, {"kind", grid.kind}, {"active_voxels", grid.active_voxels},
+            {"min", grid.min},   {"max", grid.max},   {"bytes", grid.bytes}};
+}
+
+Json corner(const Vec3& p) {
+    return {p.x, p.y, p.z};
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+    AtomicFile file(path);
+    std::ofstream out(file.path());
+    out << json.dump(2) << '\n';
+    out.close();
+    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", path.string());
+    file.commit();
+}
+
+}  // namespace
+
+void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+    report.timed("write", [&] { write_vdb(output.path, grids, output.compression); });
+    report["output"] = output.path;
+    report["active_voxels"] = grids.front().report().active_voxels;
+    report["voxel_size"] = grids.front().report().voxel_size_world;
+    for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report()));
+}
+
+void write_one_piece(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
+                     const VdbOutput& output, Report& report) {
+    const auto grids = report.timed("rasterize", [&] { return rasterize(mesh, fields, options); });
+    write_reported(grids, output, report);
+}
+
+void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
+                 const VdbOutput& output, Report& report) {
+    const std::filesystem::path path(output.path);
+    std::size_t active = 0;
+    Json parts = Json::array();
+    // The parts are written between the stages of the rasterizer, whose own time is what is left.
+    const auto start = std::chrono::steady_clock::now();
+    double writing = 0;
+    rasterize_parts(mesh, fields, options, output.memory_bytes, [&](const GridPart& part) {
+        const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
+        const GridReport& first = part.grids.front().report();
+        const auto before = std::chrono::steady_clock::now();
+        write_vdb(path.parent_path() / name, part.grids, output.compression);
+        writing += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+        active += first.active_voxels;
+        report["voxel_size"] = first.voxel_size_world;
+        Json entry{{"file", name}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
+        if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
+        for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report()));
+        parts.push_back(std::move(entry));
+    });
+    report.add_seconds("rasterize", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - writing);
+    report.add_seconds("write", writing);
+    const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
+    write_json(manifest, {{"input", report["input"]},
+                          {"version", SUBVOL_VERSION},
+                          {"voxel_size", report["voxel_size"]},
+                          {"active_voxels", active},
+                          {"parts", parts}});
+    report["output"] = manifest.string();
+    report["active_voxels"] = active;
+    report["parts"] = parts.size();
+}
+
+}  // namespace subvol::cli

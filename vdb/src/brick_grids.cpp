@@ -1,0 +1,150 @@
+#include "brick_grids.h"
+
+#include <openvdb/tools/Prune.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kBatch = 64;  // bricks whose leaves exist twice
+
+openvdb::Coord coord_of(const VoxelCoord& c) {
+    return {c[0], c[1], c[2]};
+}
+
+/// Values of one type out of a leaf's channels.
+template <class Value>
+Value value_of(const float* values, std::size_t i) {
+    if constexpr (std::is_same_v<Value, float>) {
+        return values[i];
+    } else if constexpr (std::is_same_v<Value, std::int32_t>) {
+        return std::bit_cast<std::int32_t>(values[i]);
+    } else {
+        return {values[i], values[i + kLeafVoxels], values[i + 2 * kLeafVoxels]};
+    }
+}
+
+bool is_constant(const VoxelLeaf& leaf, const float* values, std::size_t channels) {
+    const auto full = [](std::uint64_t word) { return word == ~std::uint64_t{0}; };
+    if (!std::ranges::all_of(leaf.active, full)) return false;
+    for (std::size_t c = 0; c < channels; ++c) {
+        const float* of_channel = values + c * kLeafVoxels;
+        const auto bits = std::bit_cast<std::uint32_t>(of_channel[0]);
+        if (!std::all_of(of_channel, of_channel + kLeafVoxels,
+                         [=](float v) { return std::bit_cast<std::uint32_t>(v) == bits; })) {
+            return false;
+        }
+    }
+    return true;
+}
+
+class GridMaker {
+public:
+    virtual ~GridMaker() = default;
+    /// Makes the leaves of a batch of bricks, in parallel.
+    virtual void convert(std::span<const std::unique_ptr<VoxelBrick>> bricks) = 0;
+    /// Hangs them into the tree, whose inner nodes are not thread-safe.
+    virtual void hang() = 0;
+    virtual openvdb::GridBase::Ptr finish() = 0;
+};
+
+template <class Grid>
+class GridMakerOf : public GridMaker {
+    using Leaf = typename Grid::TreeType::LeafNodeType;
+    using Value = typename Grid::ValueType;
+
+public:
+    explicit GridMakerOf(std::size_t channel) : channel_(channel), grid_(Grid::create()) {}
+
+    void convert(std::span<const std::unique_ptr<VoxelBrick>> bricks) override {
+        constexpr std::size_t kLeaves = std::tuple_size_v<decltype(VoxelBrick::leaves)>;
+        made_ = std::vector<Made>(bricks.size() * kLeaves);
+        tbb::parallel_for(std::size_t{0}, made_.size(), [&](std::size_t i) {
+            const VoxelBrick& brick = *bricks[i / kLeaves];
+            if (const auto& leaf = brick.leaves[i % kLeaves]) made_[i] = make(*leaf, coord_of(brick.leaf_origin(i % kLeaves)));
+        });
+    }
+
+    void hang() override {
+        for (Made& made : made_) {
+            if (made.leaf) {
+                grid_->tree().addLeaf(made.leaf.release());
+            } else if (made.is_tile) {
+                grid_->tree().addTile(1, made.origin, made.value, true);
+                has_tiles_ = true;
+            }
+        }
+    }
+
+    openvdb::GridBase::Ptr finish() override {
+        made_.clear();
+        if (has_tiles_) openvdb::tools::prune(grid_->tree());
+        return grid_;
+    }
+
+private:
+    struct Made {
+        std::unique_ptr<Leaf> leaf;
+        bool is_tile = false;
+        openvdb::Coord origin;
+        Value value{};
+    };
+
+    Made make(const VoxelLeaf& voxels, const openvdb::Coord& origin) const {
+        const float* values = voxels.values.get() + channel_ * kLeafVoxels;
+        if (is_constant(voxels, values, sizeof(Value) / sizeof(float)))
+            return {nullptr, true, origin, value_of<Value>(values, 0)};
+        auto leaf = std::make_unique<Leaf>(origin, Value(0), false);
+        Value* out = leaf->buffer().data();
+        for (std::size_t i = 0; i < kLeafVoxels; ++i) out[i] = value_of<Value>(values, i);
+        typename Leaf::NodeMaskType mask;
+        for (std::size_t w = 0; w < voxels.active.size(); ++w) {
+            mask.template getWord<std::uint64_t>(static_cast<openvdb::Index>(w)) = voxels.active[w];
+        }
+        leaf->setValueMask(mask);
+        return {std::move(leaf), false, origin, Value(0)};
+    }
+
+    std::size_t channel_;
+    typename Grid::Ptr grid_;
+    std::vector<Made> made_;
+    bool has_tiles_ = false;
+};
+
+std::unique_ptr<GridMaker> make_maker(const GridOfChannels& wanted) {
+    switch (wanted.kind) {
+        case GridKind::Vector:
+            return std::make_unique<GridMakerOf<openvdb::Vec3SGrid>>(wanted.channel);
+        case GridKind::Integer:
+            return std::make_unique<GridMakerOf<openvdb::Int32Grid>>(wanted.channel);
+        default:
+            return std::make_unique<GridMakerOf<openvdb::FloatGrid>>(wanted.channel);
+    }
+}
+
+}  // namespace
+
+std::vector<openvdb::GridBase::Ptr> make_grids(VoxelBricks voxels, const std::vector<GridOfChannels>& wanted) {
+    std::vector<std::unique_ptr<GridMaker>> makers;
+    for (const GridOfChannels& grid : wanted) makers.push_back(make_maker(grid));
+    auto bricks = voxels.release();
+    for (std::size_t first = 0; first < bricks.size(); first += kBatch) {
+        const auto batch = std::span(bricks).subspan(first, std::min(kBatch, bricks.size() - first));
+        for (const auto& maker : makers) maker->convert(batch);
+        for (auto& brick : batch) brick.reset();
+        for (const auto& maker : makers) maker->hang();
+    }
+    std::vector<openvdb::GridBase::Ptr> grids;
+    for (std::size_t g = 0; g < wanted.size(); ++g) {
+        grids.push_back(makers[g]->finish());
+        grids.back()->setName(wanted[g].name);
+    }
+    return grids;
+}
+
+}  // namespace subvol::detail

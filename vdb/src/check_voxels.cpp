@@ -1,0 +1,88 @@
+#include "check_voxels.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <sstream>
+
+#include "subvol/error.h"
+#include "subvol/tetrahedra.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kMaxIndex = 1 << 30;     // leaves room for the sides of bricks and neighbours in 32 bits
+constexpr double kMaxActiveVoxels = 2e9;  // 8 GB a field
+constexpr double kMaxBrickEntries = 5e7;  // a few GB
+
+[[noreturn]] void throw_too_fine(double voxel_size, const std::string& why, double right_size) {
+    std::ostringstream where, allowed;
+    where << "voxel size " << voxel_size;
+    allowed << "at least " << right_size << " would be right";
+    throw Error(ErrorCode::InvalidInput, why, where.str(), allowed.str());
+}
+
+double volume_of(const HexMesh& mesh, Index cell) {
+    double sum = 0;
+    for (const auto& [a, b, c, d] : split_cell(mesh.cells[cell])) {
+        const Vec3& p = mesh.points[a];
+        sum += std::abs(glm::dot(mesh.points[b] - p, glm::cross(mesh.points[c] - p, mesh.points[d] - p)));
+    }
+    return sum / 6.0;
+}
+
+double volume_of(const HexMesh& mesh) {
+    return tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, mesh.cells.size(), 4096), 0.0,
+        [&](const auto& range, double sum) {
+            for (std::size_t c = range.begin(); c < range.end(); ++c) sum += volume_of(mesh, static_cast<Index>(c));
+            return sum;
+        },
+        std::plus<>());
+}
+
+double brick_count(const VoxelBox& box) {
+    if (box.empty()) return 0;
+    double count = 1;
+    for (std::size_t d = 0; d < 3; ++d) {
+        count *= std::floor(box.upper[d] / double{kBrickSide}) - std::floor(box.lower[d] / double{kBrickSide}) + 1;
+    }
+    return count;
+}
+
+}  // namespace
+
+void check_voxel_count(const HexMesh& mesh, const ToVoxels& to_voxels) {
+    const Box box = bounds(mesh);
+    double farthest = 0;
+    for (int k = 0; k < 8; ++k) {
+        const Vec3 corner(k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y,
+                          k & 4 ? box.upper.z : box.lower.z);
+        const Vec3 reach = glm::abs(to_voxels(corner));
+        farthest = std::max({farthest, reach.x, reach.y, reach.z});
+    }
+    if (!(farthest < kMaxIndex)) {
+        throw_too_fine(to_voxels.voxel_size, "voxel numbers count from the world's origin and would not fit 32 bits",
+                       1.01 * to_voxels.voxel_size * farthest / kMaxIndex);
+    }
+    const double in_voxels = std::abs(glm::determinant(to_voxels.linear / to_voxels.voxel_size));
+    const double voxels = volume_of(mesh) * in_voxels;
+    if (!(voxels <= kMaxActiveVoxels)) {
+        throw_too_fine(to_voxels.voxel_size, "the mesh would fill more than 2e9 voxels",
+                       1.01 * to_voxels.voxel_size * std::cbrt(voxels / kMaxActiveVoxels));
+    }
+}
+
+void check_brick_count(std::span<const VoxelBox> boxes, double voxel_size) {
+    double count = 0;
+    for (const VoxelBox& box : boxes) count += brick_count(box);
+    if (!(count <= kMaxBrickEntries)) {
+        throw_too_fine(voxel_size, "the cells' bounding boxes hold too many voxels", 2 * voxel_size);
+    }
+}
+
+}  // namespace subvol::detail

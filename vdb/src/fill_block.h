@@ -1,0 +1,63 @@
+#pragma once
+
+#include "corner_split.h"
+#include "voxel_bricks.h"
+
+namespace subvol::detail {
+
+/// A cell of the control mesh as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
+///
+/// points: in voxels: their centres have whole numbers
+/// values: node-major, so many a node as there are channels
+/// ids:    of the nodes of a grid of 8, by which the cell is split into tetrahedra; null: by the places of the nodes
+struct CellBlock {
+    Index cell = 0;
+    std::size_t side = 2;
+    const Vec3* points = nullptr;
+    const double* values = nullptr;
+    const Index* ids = nullptr;
+};
+
+/// channels:     of the blocks
+/// cell_numbers: one more channel of the leaves, whole numbers: the control cell
+struct FillOptions {
+    std::size_t channels = 1;
+    bool cell_numbers = false;
+
+    [[nodiscard]] std::size_t leaf_channels() const { return channels + (cell_numbers ? 1 : 0); }
+};
+
+/// The voxels whose centres may lie in a block; a little generous. Empty where there is none.
+[[nodiscard]] VoxelBox voxels_of(const CellBlock& block);
+
+/// Activates the voxels of a brick whose centres lie in the block and gives them its values; those that are active stay as they
+/// are.
+///
+/// A cell's six tetrahedra decide what is inside, so neighbours agree; the values are trilinear, at the inverse of the cell's
+/// map, or linear in the tetrahedron where the map has no clear inverse. Left-handed, folded and flat cells are allowed;
+/// tetrahedra without volume hold nothing.
+void fill_block(const CellBlock& block, const FillOptions& options, VoxelBrick& brick);
+
+// What is below is for fill_block.cpp and its vector code.
+
+/// One of a block's cells, corners in VTK order, relative to the first. values: channels × 8
+struct CellShape {
+    Vec3 origin;
+    std::array<std::array<double, 8>, 3> corners;
+    std::vector<double> values;
+    const CornerSplit* split = nullptr;
+    Index cell = 0;
+};
+
+/// Centres in a cell: their places relative to its first corner and where their first values go.
+struct FoundVoxels {
+    static constexpr std::size_t kMost = 64;
+    alignas(64) std::array<std::array<double, kMost>, 3> places;
+    std::array<float*, kMost> values;
+    std::size_t count = 0;
+};
+
+/// The weights of the corners at x: linear in the first tetrahedron that holds it, or else in that which does so best.
+[[nodiscard]] std::array<double, 8> linear_weights(const CellShape& shape, const Vec3& x);
+
+}  // namespace subvol::detail

@@ -1,0 +1,146 @@
+#include "rasterize_cells.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "check_voxels.h"
+#include "subvol/dense_cells.h"
+#include "subvol/flat_array.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kBatchCells = 32768;    // of a mesh as it is
+constexpr std::size_t kBatchNodes = 1 << 20;  // at least, of a refined one; every batch looks at the whole mesh once
+
+bool touch(const VoxelBox& a, const VoxelBox& b) {
+    return !common(a, b).empty();
+}
+
+}  // namespace
+
+/// Blocks of some cells, one after the other. boxes: the voxels of each
+struct CellRasterizer::Batch {
+    std::vector<Index> cells;
+    FlatArray<Vec3> points;
+    FlatArray<double> values;
+    FlatArray<Index> ids;  // of the nodes of unrefined cells
+    std::vector<VoxelBox> boxes;
+};
+
+CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(request)) {
+    fill_.cell_numbers = request_.cell_numbers;
+    fill_.channels = 0;
+    for (const Attribute* field : request_.fields) fill_.channels += static_cast<std::size_t>(field->channels);
+    check_voxel_count(*request_.mesh, request_.to_voxels);
+    if (!refines()) return;
+    side_ = (std::size_t{1} << request_.refine.levels) + 1;
+    refined_mesh_ = {.points = request_.mesh->points,
+                     .cells = request_.mesh->cells,
+                     .attributes = {},
+                     .creases = request_.mesh->creases,
+                     .sharp_faces = request_.mesh->sharp_faces};
+    for (const Attribute* field : request_.fields) refined_mesh_.attributes.push_back(*field);
+    request_.refine.progress = nullptr;
+}
+
+VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
+    VoxelBricks bricks(fill_.leaf_channels());
+    const std::vector<Index> cells = cells_of(part);
+    const std::size_t nodes = side_ * side_ * side_;
+    const std::size_t count =
+        refines() ? std::max<std::size_t>(1, std::max(kBatchNodes, 2 * request_.mesh->points.size()) / nodes) : kBatchCells;
+    const bool first_run = boxes_.empty();
+    std::vector<VoxelBox> boxes;
+    Batch batch;
+    for (std::size_t first = 0; first < cells.size(); first += count) {
+        report_progress(request_.progress, "rasterize", static_cast<double>(first) / static_cast<double>(cells.size()));
+        load(std::span(cells).subspan(first, std::min(count, cells.size() - first)), batch);
+        fill(batch, part, bricks);
+        if (first_run) boxes.insert(boxes.end(), batch.boxes.begin(), batch.boxes.end());
+    }
+    if (first_run) boxes_ = std::move(boxes);
+    report_progress(request_.progress, "rasterize", 1);
+    return bricks;
+}
+
+std::vector<Index> CellRasterizer::cells_of(const std::optional<VoxelBox>& part) const {
+    std::vector<Index> cells;
+    for (std::size_t c = 0; c < request_.mesh->cells.size(); ++c) {
+        if (!part || boxes_.empty() || touch(boxes_[c], *part)) cells.push_back(static_cast<Index>(c));
+    }
+    return cells;
+}
+
+CellBlock CellRasterizer::block(const Batch& batch, std::size_t i) const {
+    const std::size_t nodes = side_ * side_ * side_;
+    return {.cell = batch.cells[i],
+            .side = side_,
+            .points = batch.points.data() + i * nodes,
+            .values = batch.values.data() + i * nodes * fill_.channels,
+            .ids = refines() ? nullptr : batch.ids.data() + i * nodes};
+}
+
+void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
+    const std::size_t nodes = side_ * side_ * side_;
+    batch.cells.assign(cells.begin(), cells.end());
+    batch.points.resize(cells.size() * nodes);
+    batch.values.resize(cells.size() * nodes * fill_.channels);
+    batch.boxes.resize(cells.size());
+    if (refines()) {
+        load_refined(cells, batch);
+    } else {
+        batch.ids.resize(cells.size() * nodes);
+        const HexMesh& mesh = *request_.mesh;
+        constexpr std::array<std::size_t, 8> kNode{0, 1, 3, 2, 4, 5, 7, 6};  // of a corner
+        tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+            for (std::size_t k = 0; k < 8; ++k) {
+                const Index id = mesh.cells[cells[i]][k];
+                const std::size_t node = 8 * i + kNode[k];
+                batch.ids[node] = id;
+                batch.points[node] = request_.to_voxels(mesh.points[id]);
+                double* value = batch.values.data() + node * fill_.channels;
+                for (const Attribute* field : request_.fields) {
+                    const auto channels = static_cast<std::size_t>(field->channels);
+                    value = std::copy_n(field->values.begin() + static_cast<std::ptrdiff_t>(id * channels), channels, value);
+                }
+            }
+        });
+    }
+    tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) { batch.boxes[i] = voxels_of(block(batch, i)); });
+    check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
+}
+
+void CellRasterizer::load_refined(std::span<const Index> cells, Batch& batch) const {
+    std::vector<std::size_t> slots(request_.mesh->cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) slots[cells[i]] = i;
+    const DenseSelection selection{.cells = batch.cells, .on_limit = request_.on_limit};
+    for_each_dense_cell(refined_mesh_, request_.refine, selection, [&](const DenseCell& cell) {
+        const std::size_t nodes = cell.points.size(), first = slots[cell.cell] * nodes;
+        for (std::size_t n = 0; n < nodes; ++n) {
+            batch.points[first + n] = request_.to_voxels(cell.points[n]);
+            double* value = batch.values.data() + (first + n) * fill_.channels;
+            for (std::size_t a = 0; a < cell.values.size(); ++a) {
+                const std::size_t channels = cell.values[a].size() / nodes;
+                value = std::copy_n(cell.values[a].begin() + static_cast<std::ptrdiff_t>(n * channels), channels, value);
+            }
+        }
+    });
+}
+
+void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks) {
+    for (std::size_t i = 0; i < batch.cells.size(); ++i) {
+        bricks.enter(static_cast<Index>(i), part ? common(batch.boxes[i], *part) : batch.boxes[i]);
+    }
+    const std::vector<VoxelBrick*> entered = bricks.take_entered();
+    tbb::parallel_for(std::size_t{0}, entered.size(), [&](std::size_t b) {
+        for (const Index i : entered[b]->cells) fill_block(block(batch, i), fill_, *entered[b]);
+        entered[b]->cells.clear();
+        entered[b]->cells.shrink_to_fit();
+    });
+}
+
+}  // namespace subvol::detail
