@@ -41,7 +41,7 @@ std::vector<StudyMethod> make_methods() {
     const Keys kernels{whole("per_edge", 1, 64, 1.0), number("spacing_voxels", 0, 200), kernel("compact"),
                        choice("correction", {"second", "none", "gradient", "full"})};
     const Keys splats =
-        kernels + Keys{whole("sheets", 2, 65536, 200.0), whole("boundary_levels", 0, 6, 1.0), flag("visible_only"), repeat};
+        kernels + Keys{whole("sheets", 2, 65536, 200.0), whole("boundary_levels", 0, 2, 1.0), flag("visible_only"), repeat};
     const Keys places{whole("places", 1, 1e7, 1e5), choice("where", {"anywhere", "extraordinary", "boundary"}),
                       number("within", 0, 1, 1.0), whole("seed", 0, kSeeds, 0.0)};
     const Keys dense{whole("levels", 0, 8), number("tolerance", 0, 1, 1e-3), whole("max_levels", 1, 8, 6.0), samples, repeat};
