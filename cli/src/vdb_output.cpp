@@ -5,6 +5,7 @@
 
 #include "subvol/atomic_file.h"
 #include "subvol/error.h"
+#include "subvol/version.h"
 #include "text.h"
 
 namespace subvol::cli {

@@ -9,6 +9,7 @@
 #include "subvol/rbf_field.h"
 #include "subvol/sample.h"
 #include "subvol/vdb.h"
+#include "subvol/version.h"
 #include "text.h"
 #include "vdb_output.h"
 #include "verb.h"
