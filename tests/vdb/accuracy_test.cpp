@@ -162,14 +162,14 @@ TEST(VdbAccuracy, LimitOfTheTwistedBlock) {
 TEST(VdbAccuracy, LimitOfTheBall) {
     const auto density = [](const Vec3& x) { return BallField().value(x); };
     const Errors errors = limit_errors(make_model("ball", 12), 80, density);
-    EXPECT_LT(errors.rms, 5e-3);
-    EXPECT_LT(errors.max, 0.05);
+    EXPECT_LT(errors.rms, 1e-3);
+    EXPECT_LT(errors.max, 0.01);
 }
 
 TEST(VdbAccuracy, LimitOfThePawn) {
     const auto density = [](const Vec3& x) { return PawnField().value(x); };
     const Errors errors = limit_errors(make_model("pawn"), 60, density);
-    EXPECT_LT(errors.rms, 0.05);  // its density saturates within four cells of the surface
+    EXPECT_LT(errors.rms, 0.01);  // its density saturates within four cells of the surface
 }
 
 // Centres fall at random across the boundary, so that the error is below surface × h; its mean over shifted meshes falls with

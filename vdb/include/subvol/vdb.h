@@ -111,7 +111,8 @@ void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, c
 
 /// A grid of floats, active where another one is, with the values of a field there (NaN becomes 0).
 ///
-/// field: the values at many points, world
+/// field:  the values at many points, world
+/// throws: Error(InvalidInput) if the voxels of the other are no floats
 [[nodiscard]] VdbGrid sample_at_voxels(const VdbGrid& where, const std::string& name,
                                        const std::function<std::vector<double>(std::span<const Vec3>)>& field);
 
