@@ -96,7 +96,7 @@ def add_camera(camera):
 
 
 def add_material(volume, name, value_range, opacity_unit):
-    """Extinction t = -ln(1 - a)/D with a from 0 to 1/2 over the range, and light t times a grey from 0 to 1."""
+    """Extinction t = -ln(1 - a)/D with a from 0 to 1/2 over the range, and light t times a grey from 0 to 1 in sRGB."""
     material = bpy.data.materials.new("volume")
     material.use_nodes = True
     material.cycles.homogeneous_volume = False
@@ -129,7 +129,8 @@ def add_material(volume, name, value_range, opacity_unit):
     tree.links.new(extinction, absorb.inputs["Density"])
     shine = tree.nodes.new("ShaderNodeEmission")
     tree.links.new(extinction, shine.inputs["Strength"])
-    tree.links.new(share.outputs[0], shine.inputs["Color"])
+    grey = math_node("DIVIDE", math_node("ADD", share.outputs[0], 0.055), 1.055)  # sRGB; without its straight piece near 0
+    tree.links.new(math_node("POWER", grey, 2.4), shine.inputs["Color"])
     both = tree.nodes.new("ShaderNodeAddShader")
     tree.links.new(absorb.outputs[0], both.inputs[0])
     tree.links.new(shine.outputs[0], both.inputs[1])
