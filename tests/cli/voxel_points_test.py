@@ -12,8 +12,8 @@ class VoxelPoints(InFolder):
         super().setUp()
         self.run_ok("vdb", "model:ball:4", "-o", "ball.vdb", "--resolution", "48", "--levels", "1", "--quiet")
 
-    def psnr(self, a, b):
-        return self.run_ok("compare", a, b, "--json").json()["psnr"]
+    def compare(self, a, b):
+        return self.run_ok("compare", a, b, "--json").json()
 
     def test_a_kernel_a_voxel_or_a_block(self):
         voxels = self.run_ok("info", "ball.vdb", "--json").json()["grids"][0]
@@ -34,10 +34,10 @@ class VoxelPoints(InFolder):
         drawn = self.run_ok("render", "ball.vdb", "-o", "splat.exr", "--backend", "cpu", *VIEW, "--json").json()
         self.assertEqual((drawn["method"], drawn["field"]), ("splat", "density"))
         # The rim of the one has steps, of the other it is where half the weight is: that is all the difference to be seen.
-        self.assertGreater(self.psnr("grid.exr", "splat.exr"), 30)
+        self.assertGreater(self.compare("grid.exr", "splat.exr")["psnr"], 30)
         self.run_ok("points", "ball.vdb", "-o", "ball.ply")
         self.run_ok("render", "ball.ply", "-o", "file.exr", "--backend", "cpu", *VIEW)
-        self.assertGreater(self.psnr("splat.exr", "file.exr"), 80)
+        self.assertEqual(self.compare("splat.exr", "file.exr")["max"], 0)
 
     def test_the_threshold_drops_what_is_not_seen(self):
         ramp = ["--opacity", "-1:0,0:0,1:.5"]
@@ -46,7 +46,7 @@ class VoxelPoints(InFolder):
                             "--json").json()
         self.assertLess(fewer["points"], 0.9 * all_of_it["points"])
         self.assertEqual(fewer["points"] + fewer["dropped"], all_of_it["points"])
-        self.assertGreater(self.psnr("all.exr", "seen.exr"), 60)
+        self.assertEqual(self.compare("all.exr", "seen.exr")["max"], 0)
 
     def test_what_needs_a_mesh_is_refused(self):
         for words in (["points", "ball.vdb", "-o", "a.ply", "--per-edge", "2"],
