@@ -23,7 +23,7 @@ using Function = std::function<double(const Vec3&)>;
 constexpr double kFloatTolerance = 1e-5;
 
 /// A sheared lattice away from the origin: what other programs may write.
-const openvdb::Mat4d kSheared(0.2, 0, 0, 0, 0.03, 0.15, 0, 0, 0, -0.02, 0.25, 0, 3, -1, 0.5, 1);
+const openvdb::Mat4d kSheared(0.2, 0., 0., 0., 0.03, 0.15, 0., 0., 0., -0.02, 0.25, 0., 3., -1., 0.5, 1.);
 
 /// A grid through a file, as others' come.
 class VdbSample : public test::TempFolder {
@@ -163,7 +163,7 @@ TEST_F(VdbSample, TilesAreVoxelsToo) {
 
 TEST_F(VdbSample, SameForAnyNumberOfThreads) {
     std::mt19937 random(1);
-    const auto noise = make([&](const Vec3&) { return random() % 1000 * 1e-3; }, {Coord(-20), Coord(25)});
+    const auto noise = make([&](const Vec3&) { return static_cast<double>(random() % 1000) * 1e-3; }, {Coord(-20), Coord(25)});
     for (const openvdb::Coord hole : {Coord(0), Coord(7, 3, -9)}) noise->tree().setValueOff(hole);
     const VdbGrid grid = through_file(noise);
     const auto run = [&](std::size_t threads, double spacing) {

@@ -62,7 +62,7 @@ def described(volume):
 
 
 def check(about, name, bounds):
-    """The grid is there, its voxels are cubes, and its box is that of the active voxels, to half a voxel."""
+    """The grid is there, its voxels are cubes, and the object's box is that of the leaves (8 voxels) of the active ones."""
     found = [grid for grid in about["grids"] if grid["name"] == name]
     if not found:
         raise SystemExit(f"no grid {name}: {[grid['name'] for grid in about['grids']]}")
@@ -72,9 +72,12 @@ def check(about, name, bounds):
         raise SystemExit(f"voxels are no cubes: {sides}")
     if bounds is None:
         return
-    for got, expected in zip(about["box"][0] + about["box"][1], bounds):
-        if abs(got - expected) > 0.5001 * sides[0] + 1e-6 * abs(expected):
-            raise SystemExit(f"the box is {about['box']}, expected {bounds}, voxels of {sides[0]}")
+    inverse = Matrix(matrix).inverted()
+    lower = [8 * (round(i) // 8) for i in inverse @ Vector(bounds[:3])]
+    upper = [8 * (round(i) // 8) + 7 for i in inverse @ Vector(bounds[3:])]
+    found = [list(inverse @ Vector(corner)) for corner in about["box"]]
+    if max(abs(a - b) for a, b in zip(found[0] + found[1], lower + upper)) > 1e-3:
+        raise SystemExit(f"the box is {about['box']}, voxels {found}; expected voxels {lower} to {upper}")
 
 
 def add_camera(camera):
@@ -93,7 +96,7 @@ def add_camera(camera):
 
 
 def add_material(volume, name, value_range, opacity_unit):
-    """Extinction t = -ln(1 - a)/D with a from 0 to 1/2 over the range, and light t times a grey from 0 to 1."""
+    """Extinction t = -ln(1 - a)/D with a from 0 to 1/2 over the range, and light t times a grey from 0 to 1 in sRGB."""
     material = bpy.data.materials.new("volume")
     material.use_nodes = True
     material.cycles.homogeneous_volume = False
@@ -126,7 +129,8 @@ def add_material(volume, name, value_range, opacity_unit):
     tree.links.new(extinction, absorb.inputs["Density"])
     shine = tree.nodes.new("ShaderNodeEmission")
     tree.links.new(extinction, shine.inputs["Strength"])
-    tree.links.new(share.outputs[0], shine.inputs["Color"])
+    grey = math_node("DIVIDE", math_node("ADD", share.outputs[0], 0.055), 1.055)  # sRGB; without its straight piece near 0
+    tree.links.new(math_node("POWER", grey, 2.4), shine.inputs["Color"])
     both = tree.nodes.new("ShaderNodeAddShader")
     tree.links.new(absorb.outputs[0], both.inputs[0])
     tree.links.new(shine.outputs[0], both.inputs[1])
