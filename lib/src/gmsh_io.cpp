@@ -150,8 +150,8 @@ private:
         const bool parametric = values_.integer({"block of $Nodes"}) != 0;
         if (dimension < 0 || dimension > 3) in_.fail("a block of $Nodes is of dimension " + std::to_string(dimension));
         const std::size_t count = values_.count({"block of $Nodes"}, NumberType::UInt64);
-        if (nodes_.size() + count > of) in_.fail("$Nodes: its blocks have more than the " + std::to_string(of) + " announced");
-        reserve_nodes(nodes_.size() + count);
+        if (count > of - nodes_.size()) in_.fail("$Nodes: its blocks have more than the " + std::to_string(of) + " announced");
+        if (nodes_.size() == 0) reserve_nodes(of);
         for (std::size_t n = 0; layout_ == Layout::V41 && n < count; ++n) read_node_number(of, number_type());
         for (std::size_t n = 0; n < count; ++n) {
             if (layout_ == Layout::V40) read_node_number(of, number_type());

@@ -49,7 +49,7 @@ private:
         const StructuredGrid grid = structured_ ? extent_of(piece) : StructuredGrid{};
         const std::size_t points = structured_ ? grid.point_count() : xml_.count(piece, "NumberOfPoints");
         const std::size_t cells = structured_ ? grid.cell_count() : xml_.count(piece, "NumberOfCells");
-        if (first_point + points >= kNone || first_cell + cells >= kNone) xml_.fail_at(piece, "too many points or cells");
+        if (points >= kNone - first_point || cells >= kNone - first_cell) xml_.fail_at(piece, "too many points or cells");
         if (points > 0) read_points(piece, points);
         if (structured_) {
             add_hexes(found_, grid, first_point, first_cell);

@@ -40,9 +40,9 @@ struct Plot3dText {
 private:
     template <class T>
     static std::string words(const std::vector<T>& values) {
-        std::string text;
-        for (const T& value : values) text += number(static_cast<double>(value)) + " ";
-        return text + "\n";
+        std::string line;
+        for (const T& value : values) line += number(static_cast<double>(value)) + " ";
+        return line + "\n";
     }
     [[nodiscard]] std::string reals(const std::vector<double>& values) const {
         if (form == Form::Text) return words(values);

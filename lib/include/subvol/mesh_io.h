@@ -30,7 +30,7 @@ enum class OtherCells { Split, Ignore, Refuse };
 ///       that comes first stays, with its values. A warning says how many. Nothing: they stay apart
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
-    std::optional<double> weld;
+    std::optional<double> weld = {};
 };
 
 struct ReadResult {
