@@ -26,8 +26,8 @@ def integers(cell):
     return [int(word) for word in re.findall(r"\d+", cell)]
 
 
-def info(name):
-    done = subvol("info", COLLECTION / name, "--json")
+def info(name, *options):
+    done = subvol("info", COLLECTION / name, "--json", *options)
     assert done.code == 0, done.err
     return done.json()
 
@@ -77,6 +77,15 @@ class Collection(unittest.TestCase):
                 self.check_fields(fields[name][0], told)
                 if not cells[1].startswith("0 "):  # hexahedra; the others are split into some
                     self.check_counts(cells, told)
+
+    def test_seam(self):
+        name = "lox_post_103k.vtu"
+        pairs = int(re.search(r"(\d+) coincident point pairs", table("Fields and notes")[name][1])[1])
+        apart, welded = info(name), info(name, "--weld")
+        self.assertEqual(welded["points_used"], apart["points_used"] - pairs)
+        self.assertEqual(welded["volume"], apart["volume"])
+        self.assertTrue(any(f"{pairs} points welded" in warning for warning in welded["warnings"]))
+        self.assertEqual(info(name, "--weld=1e-6")["points_used"], welded["points_used"])  # no edge is as short
 
     def test_grid(self):
         note = table("Fields and notes")["arnold_smoke.vdb"][1]
