@@ -49,7 +49,7 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
     const bool model = input.starts_with(kModelPrefix);
     ReadResult read = report.timed("read", [&] {
         return model ? generate(input.substr(kModelPrefix.size()))
-                     : read_mesh(input, {.other_cells = other_cells(options.other_cells)});
+                     : read_mesh(input, {.other_cells = other_cells(options.other_cells), .weld = options.weld});
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;

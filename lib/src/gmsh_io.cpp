@@ -1,48 +1,20 @@
-#include <algorithm>
-#include <limits>
 #include <map>
-#include <set>
 
+#include "gmsh_data.h"
+#include "gmsh_elements.h"
 #include "mesh_file.h"
 
 namespace subvol {
 
 namespace {
 
-struct ElementKind {
-    std::size_t nodes;
-    std::string_view one, many;
-};
-
-constexpr std::int64_t kTetrahedron = 4;
-constexpr std::int64_t kHexahedron = 5;
-constexpr std::int64_t kPrism = 6;
-constexpr std::int64_t kPyramid = 7;
-
-const std::map<std::int64_t, ElementKind> kKinds{{1, {2, "line", "lines"}},
-                                                 {2, {3, "triangle", "triangles"}},
-                                                 {3, {4, "quad", "quads"}},
-                                                 {kTetrahedron, {4, "tetrahedron", "tetrahedra"}},
-                                                 {kHexahedron, {8, "hexahedron", "hexahedra"}},
-                                                 {kPrism, {6, "prism", "prisms"}},
-                                                 {kPyramid, {5, "pyramid", "pyramids"}},
-                                                 {8, {3, "quadratic line", "quadratic lines"}},
-                                                 {9, {6, "quadratic triangle", "quadratic triangles"}},
-                                                 {10, {9, "quadratic quad", "quadratic quads"}},
-                                                 {11, {10, "quadratic tetrahedron", "quadratic tetrahedra"}},
-                                                 {12, {27, "quadratic hexahedron", "quadratic hexahedra"}},
-                                                 {13, {18, "quadratic prism", "quadratic prisms"}},
-                                                 {14, {14, "quadratic pyramid", "quadratic pyramids"}},
-                                                 {15, {1, "point", "points"}},
-                                                 {16, {8, "quadratic quad", "quadratic quads"}},
-                                                 {17, {20, "quadratic hexahedron", "quadratic hexahedra"}},
-                                                 {18, {15, "quadratic prism", "quadratic prisms"}},
-                                                 {19, {13, "quadratic pyramid", "quadratic pyramids"}}};
+// How nodes and elements are laid out: 2 one by one; 4.0 and 4.1 in blocks, one for each entity of the geometry.
+enum class Layout { V2, V40, V41 };
 
 class GmshReader {
 public:
     GmshReader(std::string_view text, std::string_view file, const ReadOptions& options)
-        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options) {}
+        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options), values_(in_) {}
 
     ReadResult read() {
         read_format();
@@ -62,14 +34,25 @@ private:
         const std::string_view first = in_.word();
         if (first != "$MeshFormat") in_.fail("not a Gmsh file: it begins with " + in_quotes(first), "$MeshFormat is missing");
         const double version = in_.real({"version"});
-        if (!(version >= 2 && version < 3)) {
-            in_.fail("version " + number_word() + " of Gmsh's format is not supported", "2 is: gmsh -save -format msh2");
+        if (!(version >= 2 && version < 3) && !(version >= 4 && version < 5)) {
+            in_.fail("version " + number_word() + " of Gmsh's format is not supported", "2 and 4 are: gmsh -save -format msh4");
         }
-        if (in_.integer({"file type"}) != 0) {
-            in_.fail("binary Gmsh files are not supported", "ASCII is: gmsh -save -format msh2 -bin 0");
-        }
-        in_.integer({"data size"});
+        layout_ = version < 3 ? Layout::V2 : version < 4.1 ? Layout::V40 : Layout::V41;
+        const bool binary = in_.integer({"file type"}) != 0;
+        const std::int64_t data_size = in_.integer({"data size"});
+        if (binary) read_order(data_size);
         read_end("$MeshFormat");
+    }
+
+    // A binary file tells the order of its bytes by the number 1.
+    void read_order(std::int64_t data_size) {
+        if (data_size != 8) in_.fail("numbers of " + std::to_string(data_size) + " bytes are not supported", "8 are");
+        in_.line();
+        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"order of bytes"});
+        for (const std::endian order : {std::endian::little, std::endian::big}) {
+            if (integer_from(one, NumberType::Int32, order) == 1) values_.set_binary(order);
+        }
+        if (!values_.binary()) in_.fail("the order of bytes cannot be told", "the number 1 is expected behind the format");
     }
 
     // The word that was read last, as it stands there.
@@ -91,7 +74,11 @@ private:
         } else if (keyword == "$Elements") {
             read_elements();
         } else if (keyword == "$NodeData") {
-            read_node_data();
+            if (found_.points.empty()) in_.fail("$NodeData come before $Nodes");
+            read_gmsh_data(in_, values_, false, nodes_, std::vector<std::uint8_t>(nodes_.size(), 1), found_);
+        } else if (keyword == "$ElementData") {
+            if (!has_elements_) in_.fail("$ElementData come before $Elements");
+            read_gmsh_data(in_, values_, true, elements_, taken_, found_);
         } else {
             skip_section(keyword);
             return;
@@ -99,7 +86,7 @@ private:
         read_end(keyword);
     }
 
-    // Names of physical groups and remarks are not worth a word, data are.
+    // Names of physical groups, entities of the geometry and remarks are not worth a word, data are.
     void skip_section(std::string_view keyword) {
         const std::string end = "$End" + std::string(keyword.substr(1));
         while (!in_.at_end()) {
@@ -110,143 +97,199 @@ private:
         in_.fail_word({keyword}, end, "");
     }
 
-    void read_nodes() {
-        if (!found_.points.empty()) in_.fail("there is a second $Nodes section");
-        const std::size_t count = in_.count({"$Nodes"});
-        found_.points.reserve(std::min(count, in_.room_for(4)));
-        numbers_.reserve(found_.points.capacity());
-        for (std::size_t n = 0; n < count; ++n) {
-            numbers_.push_back(in_.integer({"number of node", static_cast<std::int64_t>(n + 1), count}));
-            read_point(in_, found_, wording_, count);
+    // In a binary file of version 4.1 numbers of nodes and elements, and how many there are, take 8 bytes.
+    [[nodiscard]] NumberType number_type() const { return layout_ == Layout::V41 ? NumberType::UInt64 : NumberType::Int32; }
+
+    // How many in all, then block by block. read_block(count) reads one, of so many in all
+    template <class ReadBlock>
+    void read_blocks(const std::string& section, const GmshNumbers& numbers, const ReadBlock& read_block) {
+        values_.begin();
+        const std::size_t blocks = values_.count({section}, NumberType::UInt64);
+        const std::size_t count = values_.count({section}, NumberType::UInt64);
+        if (layout_ == Layout::V41) {
+            for (const std::string_view end : {"smallest number", "largest number"}) values_.integer({end}, NumberType::UInt64);
         }
-        wording_.point_numbers = numbers_;
-        ids_.reserve(numbers_.size());
-        for (Index n = 0; n < numbers_.size(); ++n) ids_.emplace_back(numbers_[n], n);
-        std::sort(ids_.begin(), ids_.end());
-        const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
-        const auto twice = std::adjacent_find(ids_.begin(), ids_.end(), same);
-        if (twice != ids_.end()) in_.fail("there are two nodes " + std::to_string(twice->first));
+        for (std::size_t b = 0; b < blocks; ++b) read_block(count);
+        if (numbers.size() == count) return;
+        in_.fail(section + ": its blocks have " + std::to_string(numbers.size()) + ", but it announces " +
+                 std::to_string(count));
     }
 
-    // The numbers of nodes may be any; most often they are 1, 2, 3…
-    Index read_node(const Place& place) {
-        const std::int64_t id = in_.integer(place);
-        const auto guess = static_cast<std::size_t>(id) - 1;
-        if (guess < ids_.size() && ids_[guess].first == id) return ids_[guess].second;
-        const auto found = std::lower_bound(ids_.begin(), ids_.end(), std::pair{id, Index{0}});
-        if (found == ids_.end() || found->first != id) {
-            in_.fail(std::string(place.what) + " " + std::to_string(place.number) + ": there is no node " + std::to_string(id));
+    void read_nodes() {
+        if (nodes_.size() > 0) in_.fail("there is a second $Nodes section");
+        if (layout_ == Layout::V2) {
+            const std::size_t count = in_.count({"$Nodes"});
+            values_.begin();
+            reserve_nodes(count);
+            for (std::size_t n = 0; n < count; ++n) {
+                read_node_number(count, NumberType::Int32);
+                read_point(values_, found_, wording_, count);
+            }
+        } else {
+            read_blocks("$Nodes", nodes_, [&](std::size_t count) { read_node_block(count); });
         }
-        return found->second;
+        wording_.point_numbers = nodes_.all();
+        if (const auto twice = nodes_.sort()) in_.fail("there are two nodes " + std::to_string(*twice));
+    }
+
+    void reserve_nodes(std::size_t count) {
+        const std::size_t room = std::min(count, values_.room() / 4);
+        found_.points.reserve(room);
+        nodes_.reserve(room);
+    }
+
+    void read_node_number(std::size_t of, NumberType type) {
+        nodes_.add(values_.integer({"number of node", static_cast<std::int64_t>(nodes_.size() + 1), of}, type));
+    }
+
+    // 4.1: all numbers, then all places; 4.0: each number with its place. A place may have parameters on its curve or surface.
+    void read_node_block(std::size_t of) {
+        const std::int64_t first = values_.integer({"block of $Nodes"});
+        const std::int64_t second = values_.integer({"block of $Nodes"});
+        const std::int64_t dimension = layout_ == Layout::V41 ? first : second;
+        const bool parametric = values_.integer({"block of $Nodes"}) != 0;
+        if (dimension < 0 || dimension > 3) in_.fail("a block of $Nodes is of dimension " + std::to_string(dimension));
+        const std::size_t count = values_.count({"block of $Nodes"}, NumberType::UInt64);
+        if (count > of - nodes_.size()) in_.fail("$Nodes: its blocks have more than the " + std::to_string(of) + " announced");
+        if (nodes_.size() == 0) reserve_nodes(of);
+        for (std::size_t n = 0; layout_ == Layout::V41 && n < count; ++n) read_node_number(of, number_type());
+        for (std::size_t n = 0; n < count; ++n) {
+            if (layout_ == Layout::V40) read_node_number(of, number_type());
+            read_point(values_, found_, wording_, of);
+            for (std::int64_t k = 0; parametric && k < dimension; ++k) values_.real({"parameter of a node"});
+        }
+    }
+
+    Index read_corner(const Place& place, NumberType type) {
+        const std::int64_t number = values_.integer(place, type);
+        const Index node = nodes_.find(number);
+        if (node == kNone) {
+            in_.fail(std::string(place.what) + " " + std::to_string(place.number) + ": there is no node " +
+                     std::to_string(number));
+        }
+        return node;
     }
 
     void read_elements() {
         if (has_elements_) in_.fail("there is a second $Elements section");
         if (found_.points.empty()) in_.fail("$Elements come before $Nodes");
         has_elements_ = true;
-        const std::size_t count = in_.count({"$Elements"});
-        for (std::size_t e = 0; e < count; ++e) read_element({"element", static_cast<std::int64_t>(e + 1), count});
+        if (layout_ == Layout::V2) {
+            const std::size_t count = in_.count({"$Elements"});
+            values_.begin();
+            while (elements_.size() < count) values_.binary() ? read_element_run(count) : read_element_line(count);
+        } else {
+            read_blocks("$Elements", elements_, [&](std::size_t count) { read_element_block(count); });
+        }
+        static_cast<void>(elements_.sort());  // numbers that are there twice matter to no one but to data
     }
 
-    void read_element(const Place& place) {
-        in_.integer(place);
-        const std::int64_t type = in_.integer(place);
-        const auto kind = kKinds.find(type);
-        if (kind == kKinds.end()) {
-            in_.fail("element " + std::to_string(place.number) + " is of the unknown type " + std::to_string(type));
+    [[nodiscard]] Place next_element(std::size_t of) const {
+        return {"element", static_cast<std::int64_t>(elements_.size() + 1), of};
+    }
+
+    [[nodiscard]] const GmshElement& element_of(std::int64_t type) const {
+        const auto element = kGmshElements.find(type);
+        if (element == kGmshElements.end()) {
+            in_.fail("element " + std::to_string(elements_.size() + 1) + " is of the unknown type " + std::to_string(type));
         }
+        return element->second;
+    }
+
+    // Number, type, tags and nodes.
+    void read_element_line(std::size_t of) {
+        const Place place = next_element(of);
+        const std::int64_t number = in_.integer(place);
+        const GmshElement& element = element_of(in_.integer(place));
         const std::size_t tags = in_.count(place);
         for (std::size_t t = 0; t < tags; ++t) in_.integer(place);
-        const bool others = options_.other_cells != OtherCells::Ignore;
-        if (type == kHexahedron) {
-            read_corners(found_.hexes, place, "a hexahedron");
-        } else if (type == kTetrahedron && others) {
-            read_corners(found_.tets, place, "a tetrahedron");
-        } else if (type == kPrism && others) {
-            read_corners(found_.prisms, place, "a prism");
-        } else if (type == kPyramid && others) {
-            read_corners(found_.pyramids, place, "a pyramid");
-        } else {
-            for (std::size_t k = 0; k < kind->second.nodes; ++k) in_.integer(place);
-            ++left_out_[type];
+        take(element, number, place);
+    }
+
+    // Elements of one type and with equally many tags.
+    void read_element_run(std::size_t of) {
+        const GmshElement& element = element_of(values_.integer(next_element(of)));
+        const std::size_t count = values_.count(next_element(of));
+        const std::size_t tags = values_.count(next_element(of));
+        if (count == 0 || count > of - elements_.size()) in_.fail("there are not as many elements as announced");
+        for (std::size_t e = 0; e < count; ++e) {
+            const Place place = next_element(of);
+            const std::int64_t number = values_.integer(place);
+            for (std::size_t t = 0; t < tags; ++t) values_.integer(place);
+            take(element, number, place);
         }
+    }
+
+    // Elements of one type on one entity of the geometry.
+    void read_element_block(std::size_t of) {
+        values_.integer({"block of $Elements"});
+        values_.integer({"block of $Elements"});
+        const GmshElement& element = element_of(values_.integer({"block of $Elements"}));
+        const std::size_t count = values_.count({"block of $Elements"}, NumberType::UInt64);
+        if (count > of - elements_.size()) {
+            in_.fail("$Elements: its blocks have more than the " + std::to_string(of) + " announced");
+        }
+        for (std::size_t e = 0; e < count; ++e) {
+            const Place place = next_element(of);
+            take(element, values_.integer(place, number_type()), place);
+        }
+    }
+
+    // Reads the nodes of an element.
+    void take(const GmshElement& element, std::int64_t number, const Place& place) {
+        const bool others = options_.other_cells != OtherCells::Ignore;
+        const std::size_t before = elements_.size();
+        elements_.add(number);
+        taken_.push_back(1);
+        if (element.shape == GmshShape::Hexahedron) return take_as(found_.hexes, element, before, place, "a hexahedron");
+        if (element.shape == GmshShape::Tetrahedron && others) {
+            return take_as(found_.tets, element, before, place, "a tetrahedron");
+        }
+        if (element.shape == GmshShape::Prism && others) return take_as(found_.prisms, element, before, place, "a prism");
+        if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, before, place, "a pyramid");
+        taken_.back() = 0;
+        for (std::size_t k = 0; k < element.nodes; ++k) values_.integer(place, number_type());
+        auto& [count, many] = left_out_[element.one];
+        ++count;
+        many = element.many;
     }
 
     template <std::size_t N>
-    void read_corners(FileCells<N>& into, const Place& place, std::string_view kind) {
+    void take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, const Place& place,
+                 std::string_view kind) {
         auto& corners = into.corners.emplace_back();
-        for (Index& corner : corners) corner = read_node(place);
-        check_corners(in_, in_.position(), corners, static_cast<std::size_t>(place.number - 1), wording_, kind);
-    }
-
-    // Texts (the first is the name), real numbers (times), integers (step, components, nodes); then a node a line.
-    void read_node_data() {
-        const std::size_t texts = in_.count({"texts of $NodeData"});
-        in_.line();
-        std::string name = "unnamed";
-        for (std::size_t t = 0; t < texts && !in_.at_end(); ++t) {
-            const std::string_view text = in_.line();
-            if (t == 0) name = unquoted(text);
-        }
-        const std::size_t reals = in_.count({"real numbers of $NodeData"});
-        for (std::size_t r = 0; r < reals; ++r) in_.real({"real number of $NodeData"});
-        const std::size_t integers = in_.count({"integers of $NodeData"});
-        if (integers < 3) in_.fail("$NodeData needs at least 3 integers");
-        in_.integer({"time step"});
-        const std::size_t components = in_.count({"components of $NodeData"});
-        if (components < 1 || components > 9)
-            in_.fail("$NodeData has " + std::to_string(components) + " components", "1, 3 or 9");
-        const std::size_t nodes = in_.count({"nodes of $NodeData"});
-        for (std::size_t i = 3; i < integers; ++i) in_.integer({"integer of $NodeData"});
-        read_values(name, components, nodes);
-    }
-
-    void read_values(const std::string& name, std::size_t components, std::size_t nodes) {
-        const std::string what = "array " + in_quotes(name) + ": line";
-        FileArray array{name, static_cast<int>(components), false, {}};
-        array.values.resize(found_.points.size() * components);
-        std::vector<std::uint8_t> given(found_.points.size());
-        for (std::size_t n = 0; n < nodes; ++n) {
-            const Place place{what, static_cast<std::int64_t>(n + 1), nodes};
-            const std::size_t node = read_node(place);
-            given[node] = 1;
-            for (std::size_t k = 0; k < components; ++k) array.values[node * components + k] = in_.real(place);
-        }
-        const auto missing = static_cast<std::size_t>(std::count(given.begin(), given.end(), std::uint8_t{0}));
-        if (missing == 0) {
-            found_.arrays.push_back(std::move(array));
-        } else {
-            found_.warnings.push_back("array \"" + name + "\" has no value at " + counted(missing, "node", "nodes") +
-                                      ": ignored");
-        }
-    }
-
-    static std::string unquoted(std::string_view text) {
-        const std::size_t begin = text.find_first_not_of(" \t\"");
-        if (begin == std::string_view::npos) return "unnamed";
-        return as_utf8(text.substr(begin, text.find_last_not_of(" \t\"") + 1 - begin));
+        for (Index& corner : corners) corner = read_corner(place, number_type());
+        const std::size_t position = in_.position();
+        for (std::size_t k = N; k < element.nodes; ++k) values_.integer(place, number_type());
+        curved_ += element.nodes > N;
+        into.numbers.push_back(number);
+        check_corners(in_, position, corners, number, wording_, kind);
     }
 
     void list_left_out() {
-        std::map<std::string_view, std::pair<std::size_t, std::string_view>> by_name;
-        for (const auto& [type, count] : left_out_) {
-            const ElementKind& kind = kKinds.at(type);
-            by_name[kind.one].first += count;
-            by_name[kind.one].second = kind.many;
+        if (curved_ > 0) {
+            found_.warnings.push_back(counted(curved_, "element has", "elements have") +
+                                      " more nodes than corners: the corners alone are taken");
         }
         std::string list;
-        for (const auto& [one, rest] : by_name) list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);
+        for (const auto& [one, rest] : left_out_) {
+            list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);
+        }
         report_left_out(found_, list, file_);
     }
 
     TextScanner in_;
     std::string_view file_;
     ReadOptions options_;
+    GmshValues values_;
+    Layout layout_ = Layout::V2;
     MeshFile found_;
     Wording wording_{"node", "element", 1};
-    std::vector<std::int64_t> numbers_;                // of the nodes, as they come
-    std::vector<std::pair<std::int64_t, Index>> ids_;  // the number of each node and its place, sorted
-    std::map<std::int64_t, std::size_t> left_out_;
+    GmshNumbers nodes_;
+    GmshNumbers elements_;
+    std::vector<std::uint8_t> taken_;  // of each element whether it is a cell
+    std::size_t curved_ = 0;
+    std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;
     bool has_elements_ = false;
 };
 

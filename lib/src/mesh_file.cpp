@@ -4,10 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "ghost_cells.h"
 #include "mixed_cells_shapes.h"
 #include "mixed_cells_split.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
+#include "weld.h"
 
 namespace subvol {
 
@@ -44,18 +46,26 @@ void warn_of_folded(ReadResult& result) {
                               (folded == 1 ? " has" : " have") + " a negative Jacobian at a corner");
 }
 
-std::vector<std::uint8_t> used_points(const HexMesh& mesh, const MixedCells& others) {
-    std::vector<std::uint8_t> used(mesh.points.size());
+std::vector<std::uint8_t> used_points(const MeshFile& found) {
+    std::vector<std::uint8_t> used(found.points.size());
     const auto mark = [&](const auto& cells) {
-        for (const auto& cell : cells) {
+        for (const auto& cell : cells.corners) {
             for (const Index p : cell) used[p] = 1;
         }
     };
-    mark(mesh.cells);
-    mark(others.tets);
-    mark(others.prisms);
-    mark(others.pyramids);
+    mark(found.hexes);
+    mark(found.tets);
+    mark(found.prisms);
+    mark(found.pyramids);
     return used;
+}
+
+void refuse_not_finite(const MeshFile& found, const TextScanner& in, const Wording& wording) {
+    if (found.not_finite.empty()) return;
+    const auto used = used_points(found);
+    for (const auto& [point, position] : found.not_finite) {
+        if (used[point]) in.fail_at(position, "non-finite coordinate at " + wording.name_point(point));
+    }
 }
 
 FieldInfo describe(const FileArray& array) {
@@ -248,6 +258,10 @@ void report_left_out(MeshFile& found, const std::string& list, std::string_view 
 
 ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file, const Wording& wording,
                   const ReadOptions& options) {
+    drop_ghosts(found);
+    refuse_not_finite(found, in, wording);
+    if (options.weld) weld_points(found, *options.weld, file, wording);
+    Origin origin{used_points(found), {}, {}};
     ReadResult result;
     result.mesh.points = std::move(found.points);
     result.mesh.cells = std::move(found.hexes.corners);
@@ -257,10 +271,7 @@ ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file
         throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(result.mesh.cells.size(), others), std::string(file),
                     "only hexahedra are wanted");
     }
-    Origin origin{used_points(result.mesh, others), take_numbers(found), {}};
-    for (const auto& [point, position] : found.not_finite) {
-        if (origin.used[point]) in.fail_at(position, "non-finite coordinate at " + wording.name_point(point));
-    }
+    origin.cell_numbers = take_numbers(found);
     turn_hexes(result);
     try {
         if (!others.empty()) split_all(result, std::move(others), origin);

@@ -63,13 +63,30 @@ struct Wording {
 /// Reads MEDIT ASCII.
 [[nodiscard]] ReadResult read_medit(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Reads legacy VTK, ASCII or BINARY, unstructured grid.
+/// Reads MEDIT binary, versions 1 to 4.
+[[nodiscard]] ReadResult read_meshb(std::string_view text, std::string_view file, const ReadOptions& options);
+
+/// Reads legacy VTK, ASCII or BINARY, unstructured or structured grid.
 [[nodiscard]] ReadResult read_legacy_vtk(std::string_view text, std::string_view file, const ReadOptions& options);
 
 /// Reads VTK XML, UnstructuredGrid.
 [[nodiscard]] ReadResult read_vtu(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Reads Gmsh, version 2, ASCII.
+/// Reads VTK XML, StructuredGrid.
+[[nodiscard]] ReadResult read_vts(std::string_view text, std::string_view file, const ReadOptions& options);
+
+/// A file of the flow that belongs to a Plot3D grid; without a text there is none.
+struct Plot3dFlow {
+    std::string_view text;
+    std::string_view file;
+};
+
+/// Reads Plot3D's whole grids in three dimensions: text, Fortran's records or plain bytes, in either order and precision, of
+/// one or several blocks, with blanks or without.
+[[nodiscard]] ReadResult read_plot3d(std::string_view text, std::string_view file, const ReadOptions& options,
+                                     const Plot3dFlow& flow = {});
+
+/// Reads Gmsh, versions 2, 4.0 and 4.1, ASCII and binary.
 [[nodiscard]] ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options);
 
 /// Appends a point that stands at a place in the text.
@@ -91,8 +108,8 @@ void check_corners(const TextScanner& in, std::size_t position, std::span<const 
 /// Tells of the cells that are left out, as a list with their counts; refuses a file without any others.
 void report_left_out(MeshFile& found, const std::string& list, std::string_view file);
 
-/// Makes the mesh of what was found: left-handed hexes turned, other cells split, cell arrays carried over to the points, all
-/// checked.
+/// Makes the mesh of what was found: ghosts dropped, points welded, left-handed hexes turned, other cells split, cell arrays
+/// carried over to the points, all checked.
 [[nodiscard]] ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file, const Wording& wording,
                                 const ReadOptions& options);
 

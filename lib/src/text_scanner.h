@@ -52,6 +52,8 @@ public:
     /// The last number, checked as `count` does.
     [[nodiscard]] std::size_t as_count(std::int64_t value, const Place& place) const;
 
+    /// What is left.
+    [[nodiscard]] std::string_view rest() const { return text_.substr(next_); }
     /// How many bytes are left.
     [[nodiscard]] std::size_t bytes_left() const { return text_.size() - next_; }
     /// How many things of `words` words each the rest of the text can hold at most: the limit of any allocation.

@@ -8,6 +8,12 @@ namespace {
 
 enum CellType : std::int64_t { kTetrahedron = 10, kVoxel = 11, kHexahedron = 12, kWedge = 13, kPyramid = 14 };
 
+// The linear type of each that has points in the middle of edges, faces or the cell: they come behind the corners.
+const std::map<std::int64_t, std::int64_t> kLinear{
+    {24, kTetrahedron}, {71, kTetrahedron}, {78, kTetrahedron}, {25, kHexahedron}, {29, kHexahedron}, {33, kHexahedron},
+    {72, kHexahedron},  {79, kHexahedron},  {26, kWedge},       {31, kWedge},      {32, kWedge},      {73, kWedge},
+    {80, kWedge},       {27, kPyramid},     {37, kPyramid},     {74, kPyramid},    {81, kPyramid}};
+
 const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
     {1, {"vertex", "vertices"}},
     {2, {"vertex cell", "vertex cells"}},
@@ -21,11 +27,9 @@ const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
     {13, {"wedge", "wedges"}},
     {14, {"pyramid", "pyramids"}},
     {24, {"quadratic tetrahedron", "quadratic tetrahedra"}},
-    {25, {"quadratic hexahedron", "quadratic hexahedra"}},
+    {26, {"quadratic wedge", "quadratic wedges"}},
+    {27, {"quadratic pyramid", "quadratic pyramids"}},
     {42, {"polyhedron", "polyhedra"}}};
-
-// Points in the middle of edges, of faces and of the cell come behind the corners.
-constexpr std::array<std::size_t, 2> kCurvedHexes{20, 27};
 
 }  // namespace
 
@@ -35,38 +39,40 @@ void VtkCellSorter::take(const VtkCells& cells) {
 }
 
 void VtkCellSorter::take_cell(const VtkCells& cells, std::size_t cell) {
-    const std::int64_t type = cells.types[cell];
+    const auto linear = kLinear.find(cells.types[cell]);
+    const bool curved = linear != kLinear.end();
+    const std::int64_t type = curved ? linear->second : cells.types[cell];
     const bool others = options_.other_cells != OtherCells::Ignore;
+    const std::size_t corners = cells.offsets[cell + 1] - cells.offsets[cell];
     // Files exist whose hexahedra are called tetrahedra: eight corners say more than the type.
-    const bool mislabelled = type == kTetrahedron && cells.offsets[cell + 1] - cells.offsets[cell] == 8;
+    const bool mislabelled = cells.types[cell] == kTetrahedron && corners == 8;
     if (mislabelled) ++mislabelled_;
     if (type == kHexahedron || type == kVoxel || mislabelled) {
-        take_as(found_.hexes, cells, cell, "a hexahedron", kCurvedHexes);
+        // Others exist whose curved hexahedra have the type of linear ones.
+        take_as(found_.hexes, cells, cell, "a hexahedron", curved || corners == 20 || corners == 27);
         if (type != kVoxel) return;
         auto& hex = found_.hexes.corners.back();
         std::swap(hex[2], hex[3]);
         std::swap(hex[6], hex[7]);
     } else if (type == kTetrahedron && others) {
-        take_as(found_.tets, cells, cell, "a tetrahedron");
+        take_as(found_.tets, cells, cell, "a tetrahedron", curved);
     } else if (type == kWedge && others) {
-        take_as(found_.prisms, cells, cell, "a wedge");
+        take_as(found_.prisms, cells, cell, "a wedge", curved);
     } else if (type == kPyramid && others) {
-        take_as(found_.pyramids, cells, cell, "a pyramid");
+        take_as(found_.pyramids, cells, cell, "a pyramid", curved);
     } else {
-        ++left_out_[type];
+        ++left_out_[cells.types[cell]];
     }
 }
 
 template <std::size_t N>
-void VtkCellSorter::take_as(FileCells<N>& into, const VtkCells& cells, std::size_t cell, std::string_view kind,
-                            std::span<const std::size_t> also) {
+void VtkCellSorter::take_as(FileCells<N>& into, const VtkCells& cells, std::size_t cell, std::string_view kind, bool curved) {
     const std::size_t corners = cells.offsets[cell + 1] - cells.offsets[cell];
     const std::size_t number = taken_ + cell;
     const auto& positions = cells.positions;
     const std::size_t position = positions.empty() ? in_.position() : positions[std::min(cell, positions.size() - 1)];
-    const bool curved = std::find(also.begin(), also.end(), corners) != also.end();
-    if (curved) ++curved_;
-    if (corners != N && !curved) {
+    if (corners > N && curved) ++curved_;
+    if (corners < N || (corners > N && !curved)) {
         in_.fail_at(position, kVtkWording.name_cell(number) + " has " + std::to_string(corners) + " corners",
                     std::string(kind) + " has " + std::to_string(N));
     }
@@ -82,8 +88,8 @@ void VtkCellSorter::report(std::string_view file) {
                                   " with 8 corners but the type of a tetrahedron (10) taken as hexahedra");
     }
     if (curved_ > 0) {
-        found_.warnings.push_back(counted(curved_, "hexahedron has", "hexahedra have") +
-                                  " more points than corners: the first 8 are taken");
+        found_.warnings.push_back(counted(curved_, "cell has", "cells have") +
+                                  " more points than corners: the corners alone are taken");
     }
     std::string list;
     for (const auto& [type, count] : left_out_) {

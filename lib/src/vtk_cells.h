@@ -39,17 +39,16 @@ public:
 
 private:
     void take_cell(const VtkCells& cells, std::size_t cell);
-    /// As the kind of cell that `into` holds, of the cell's first N corners; it has to have N, or `also` many.
+    /// As the kind of cell that `into` holds, of the cell's first N corners. curved: more points may follow
     template <std::size_t N>
-    void take_as(FileCells<N>& into, const VtkCells& cells, std::size_t cell, std::string_view kind,
-                 std::span<const std::size_t> also = {});
+    void take_as(FileCells<N>& into, const VtkCells& cells, std::size_t cell, std::string_view kind, bool curved);
 
     const TextScanner& in_;
     MeshFile& found_;
     ReadOptions options_;
     std::size_t taken_ = 0;  // cells of the pieces before
     std::size_t mislabelled_ = 0;
-    std::size_t curved_ = 0;  // hexahedra with points in the middle of their edges
+    std::size_t curved_ = 0;  // cells with points in the middle of their edges
     std::map<std::int64_t, std::size_t> left_out_;
 };
 

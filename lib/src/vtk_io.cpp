@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <optional>
 
 #include "mesh_file.h"
+#include "structured_grid.h"
 #include "vtk_arrays.h"
 #include "vtk_cells.h"
 #include "vtk_values.h"
@@ -30,8 +32,13 @@ public:
             }
         }
         if (cells_.types.size() != cells_.size()) in_.fail("CELLS without CELL_TYPES");
+        if (grid_) check_grid();
         VtkCellSorter sorter(in_, found_, options_);
-        sorter.take(cells_);
+        if (grid_) {
+            add_hexes(found_, *grid_, 0, 0);
+        } else {
+            sorter.take(cells_);
+        }
         sorter.report(file_);
         return finish(std::move(found_), in_, file_, kVtkWording, options_);
     }
@@ -55,23 +62,28 @@ private:
         const std::string_view dataset = in_.word();
         if (upper_case(dataset) != "DATASET") in_.fail_word({"dataset"}, "DATASET", dataset);
         const std::string type = upper_case(in_.word());
-        if (type == "POLYDATA") in_.fail("POLYDATA is not a volume mesh", "UNSTRUCTURED_GRID is needed");
-        if (type != "UNSTRUCTURED_GRID") {
-            in_.fail("DATASET " + in_quotes(type) + " is not supported yet", "UNSTRUCTURED_GRID is");
+        constexpr const char* kAllowed = "UNSTRUCTURED_GRID and STRUCTURED_GRID are";
+        if (type == "POLYDATA") in_.fail("POLYDATA is not a volume mesh", kAllowed);
+        if (type == "STRUCTURED_GRID") {
+            grid_.emplace();
+        } else if (type != "UNSTRUCTURED_GRID") {
+            in_.fail("DATASET " + in_quotes(type) + " is not supported", kAllowed);
         }
     }
 
     bool read_section(const std::string& keyword) {
         if (keyword == "POINTS") {
             read_points();
-        } else if (keyword == "CELLS") {
+        } else if (keyword == "DIMENSIONS" && grid_) {
+            for (std::size_t& along : grid_->points) along = in_.count({"DIMENSIONS"});
+        } else if (keyword == "CELLS" && !grid_) {
             read_cells();
-        } else if (keyword == "CELL_TYPES") {
+        } else if (keyword == "CELL_TYPES" && !grid_) {
             read_cell_types();
         } else if (keyword == "POINT_DATA") {
             start_data(false, found_.points.size(), "points");
         } else if (keyword == "CELL_DATA") {
-            start_data(true, cells_.size(), "cells");
+            start_data(true, grid_ ? grid_->cell_count() : cells_.size(), "cells");
         } else if (keyword == "METADATA") {
             skip_metadata(in_);
         } else {
@@ -86,6 +98,13 @@ private:
         values_.begin(values_.read_type("POINTS"));
         found_.points.reserve(std::min(count, values_.room() / 3));
         for (std::size_t p = 0; p < count; ++p) read_point(values_, found_, kVtkWording, 0);
+    }
+
+    void check_grid() const {
+        if (found_.points.size() != grid_->point_count()) {
+            in_.fail("there are " + std::to_string(found_.points.size()) + " POINTS, but DIMENSIONS says " + size_text(*grid_));
+        }
+        if (grid_->cell_count() == 0) in_.fail("there is no cell between " + size_text(*grid_));
     }
 
     void read_cells() {
@@ -189,6 +208,7 @@ private:
     VtkValues values_;
     VtkArrayReader arrays_;
     VtkCells cells_;
+    std::optional<StructuredGrid> grid_;  // of a structured one
 };
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <pugixml.hpp>
 
 #include "mesh_file.h"
+#include "structured_grid.h"
 #include "vtk_cells.h"
 #include "vtk_xml.h"
 
@@ -13,12 +15,14 @@ namespace {
 // More components are a mistake, and fewer keep every product of counts within 64 bits.
 constexpr std::size_t kMostComponents = 1 << 16;
 
+// structured: a StructuredGrid, whose pieces have no arrays of cells, else an UnstructuredGrid
 class VtuReader {
 public:
-    VtuReader(std::string_view text, std::string_view file, const ReadOptions& options)
+    VtuReader(std::string_view text, std::string_view file, const ReadOptions& options, bool structured)
         : file_(file),
           options_(options),
-          xml_(text, file, "UnstructuredGrid", "a volume mesh of that type is needed"),
+          structured_(structured),
+          xml_(text, file, structured ? "StructuredGrid" : "UnstructuredGrid", "a volume mesh of that type is needed"),
           arrays_(xml_.arrays()),
           sorter_(xml_.in(), found_, options) {}
 
@@ -30,10 +34,9 @@ public:
             ++pieces;
         }
         if (pieces == 0) xml_.fail_at(grid, "there is no Piece element");
-        if (pieces > 1) {
-            found_.warnings.push_back(std::to_string(pieces) +
-                                      " pieces put together; points where they touch are joined only if they share them");
-        }
+        if (pieces > 1)
+            found_.warnings.push_back(std::to_string(pieces) + " pieces put together" +
+                                      (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
         sorter_.report(file_);
         return finish(std::move(found_), xml_.in(), file_, kVtkWording, options_);
@@ -43,14 +46,40 @@ private:
     void read_piece(const pugi::xml_node& piece) {
         const std::size_t first_point = found_.points.size();
         const std::size_t first_cell = cells_before_;
-        const std::size_t points = xml_.count(piece, "NumberOfPoints");
-        const std::size_t cells = xml_.count(piece, "NumberOfCells");
-        if (first_point + points >= kNone || first_cell + cells >= kNone) xml_.fail_at(piece, "too many points or cells");
+        const StructuredGrid grid = structured_ ? extent_of(piece) : StructuredGrid{};
+        const std::size_t points = structured_ ? grid.point_count() : xml_.count(piece, "NumberOfPoints");
+        const std::size_t cells = structured_ ? grid.cell_count() : xml_.count(piece, "NumberOfCells");
+        if (points >= kNone - first_point || cells >= kNone - first_cell) xml_.fail_at(piece, "too many points or cells");
         if (points > 0) read_points(piece, points);
-        if (cells > 0) read_cells(piece.child("Cells"), piece, first_point, cells);
+        if (structured_) {
+            add_hexes(found_, grid, first_point, first_cell);
+        } else if (cells > 0) {
+            read_cells(piece.child("Cells"), piece, first_point, cells);
+        }
         cells_before_ += cells;
         if (points > 0) read_arrays(piece.child("PointData"), false, first_point, points);
         if (cells > 0) read_arrays(piece.child("CellData"), true, first_cell, cells);
+    }
+
+    // The first and the last number along each of the three directions.
+    [[nodiscard]] StructuredGrid extent_of(const pugi::xml_node& piece) const {
+        constexpr std::int64_t kFar = std::int64_t{1} << 40;  // so that differences can be formed
+        const std::string_view text = piece.attribute("Extent").as_string();
+        TextScanner words(text, file_, TextScanner::Comments::None);
+        StructuredGrid grid;
+        for (std::size_t& along : grid.points) {
+            std::array<std::int64_t, 2> ends{};
+            for (std::int64_t& end : ends) {
+                const std::string_view word = words.word();
+                const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), end);
+                if (error != std::errc() || stop != word.data() + word.size() || end < -kFar || end > kFar) {
+                    xml_.fail_at(piece, "its Extent is " + in_quotes(text), "six integers are needed");
+                }
+            }
+            along = ends[1] < ends[0] ? 0 : static_cast<std::size_t>(ends[1] - ends[0]) + 1;
+        }
+        if (!words.at_end()) xml_.fail_at(piece, "its Extent is " + in_quotes(text), "six integers are needed");
+        return grid;
     }
 
     void read_points(const pugi::xml_node& piece, std::size_t count) {
@@ -159,6 +188,7 @@ private:
 
     std::string_view file_;
     ReadOptions options_;
+    bool structured_;
     VtkXml xml_;
     const VtuArrays& arrays_;
     MeshFile found_;
@@ -169,7 +199,11 @@ private:
 }  // namespace
 
 ReadResult read_vtu(std::string_view text, std::string_view file, const ReadOptions& options) {
-    return VtuReader(text, file, options).read();
+    return VtuReader(text, file, options, false).read();
+}
+
+ReadResult read_vts(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtuReader(text, file, options, true).read();
 }
 
 }  // namespace subvol

@@ -178,7 +178,7 @@ TEST_F(MeshIo, VtkErrorsNameThePlace) {
     const std::vector<std::array<std::string, 3>> cases{
         {"ASCII", "BINARY", "unexpected end of file"},
         {"ASCII", "EBCDIC", "line 3: encoding: ASCII or BINARY is expected, not \"EBCDIC\""},
-        {"UNSTRUCTURED_GRID", "STRUCTURED_GRID", "line 4: DATASET \"STRUCTURED_GRID\" is not supported yet"},
+        {"UNSTRUCTURED_GRID", "RECTILINEAR_GRID", "line 4: DATASET \"RECTILINEAR_GRID\" is not supported"},
         {"UNSTRUCTURED_GRID", "POLYDATA", "line 4: POLYDATA is not a volume mesh"},
         {"27 double", "27 dubble", "line 5: POINTS: a data type is expected, not \"dubble\""},
         {"27 double", "99999999999999 double", "line 5: POINTS: count out of range"},

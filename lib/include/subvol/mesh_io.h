@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,12 @@ struct FieldInfo {
 /// Refuse: they are an error
 enum class OtherCells { Split, Ignore, Refuse };
 
+/// weld: join points that are no farther apart (world units; 0: at exactly the same place), as the borders of pieces need; the
+/// one
+///       that comes first stays, with its values. A warning says how many. Nothing: they stay apart
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
+    std::optional<double> weld = {};
 };
 
 struct ReadResult {
@@ -34,11 +39,13 @@ struct ReadResult {
     std::vector<std::string> warnings;  // what was left out, turned round or converted, one sentence each
 };
 
-/// Reads a mesh; the format follows from the file name: MEDIT `.mesh` (ASCII), legacy VTK `.vtk` (ASCII and BINARY,
-/// unstructured grid), VTK XML `.vtu` (all encodings and compressors), Gmsh `.msh` (version 2, ASCII).
+/// Reads a mesh; the format follows from the file name: MEDIT `.mesh` and `.meshb`, legacy VTK `.vtk` (ASCII and BINARY,
+/// unstructured and structured grids), VTK XML `.vtu` and `.vts` (all encodings and compressors), Gmsh `.msh` (2, 4.0 and 4.1,
+/// ASCII and binary), Plot3D `.xyz` and `.p3d`, with the flow of the same name in `.q`.
 ///
-/// Cells of lower dimension and of higher order are left out with a warning.
-/// throws: Error(Io) if the file cannot be opened; Error(InvalidInput) if it is malformed, naming the line, and the cell or
+/// Cells of lower dimension are left out, and of cells of higher order the corners are taken, with a warning.
+/// throws: Error(InvalidInput) if options.weld is negative or makes corners of one cell the same;
+///         Error(Io) if the file cannot be opened; Error(InvalidInput) if it is malformed, naming the line, and the cell or
 ///         point as the file counts them; never allocates by a number from the file that the file's size does not bear out
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

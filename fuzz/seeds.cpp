@@ -1,0 +1,132 @@
+// fuzz_seeds FOLDER: writes small good inputs, those of each fuzzer into a folder of its name.
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <regex>
+
+#include "mesh_texts.h"
+#include "subvol/mesh_io.h"
+#include "subvol/points_io.h"
+#include "subvol/sample.h"
+#include "vtu_texts.h"
+
+namespace subvol::test {
+
+namespace {
+
+class Seeds {
+public:
+    explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    /// The next file of a fuzzer.
+    std::filesystem::path path(const std::string& fuzzer, const std::string& extension = "") {
+        std::filesystem::create_directories(folder_ / fuzzer);
+        return folder_ / fuzzer / ("seed_" + std::to_string(count_++) + extension);
+    }
+    void add(const std::string& fuzzer, const std::string& text) { std::ofstream(path(fuzzer), std::ios::binary) << text; }
+
+private:
+    std::filesystem::path folder_;
+    int count_ = 0;
+};
+
+HexMesh cube() {
+    HexMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+    mesh.attributes = {{"s", 1, {0, 1, 2, 3, 4, 5, 6, 7}}};
+    return mesh;
+}
+
+template <class T>
+std::string little(const std::vector<T>& values) {
+    return bytes_of(values, std::endian::little);
+}
+
+void add_binary_meshes(Seeds& seeds, const HexMesh& mesh) {
+    std::string nodes, meshb = little<std::int32_t>({1, 2, 3, 20, 3, 4, 256, 8});
+    for (std::int32_t p = 0; p < 8; ++p) {
+        const Vec3& x = mesh.points[static_cast<std::size_t>(p)];
+        nodes += little<std::int32_t>({p + 1}) + little<double>({x.x, x.y, x.z});
+        meshb += little<double>({x.x, x.y, x.z}) + little<std::int32_t>({0});
+    }
+    const std::string corners = little<std::int32_t>({1, 2, 3, 4, 5, 6, 7, 8});
+    seeds.add("meshb", meshb + little<std::int32_t>({10, 304, 1}) + corners + little<std::int32_t>({0, 54, 0}));
+    seeds.add("gmsh", "$MeshFormat\n2.2 1 8\n" + little<std::int32_t>({1}) + "\n$EndMeshFormat\n$Nodes\n8\n" + nodes +
+                          "\n$EndNodes\n$Elements\n1\n" + little<std::int32_t>({5, 1, 0, 1}) + corners + "\n$EndElements\n");
+}
+
+void add_plot3d(Seeds& seeds, const HexMesh& mesh) {
+    seeds.add("plot3d", "2 2 2\n" + point_lines(mesh));
+    seeds.add("plot3d", "2\n2 2 2 2 2 2\n" + point_lines(mesh) + point_lines(mesh) + "1 1 1 1 0 1 1 1\n1 1 1 1 1 1 1 1\n");
+    const std::string places = little(coordinates_as<float>(mesh));
+    seeds.add("plot3d", little<std::int32_t>({2, 2, 2}) + places);
+    seeds.add("plot3d", little<std::int32_t>({12, 2, 2, 2, 12, 96}) + places + little<std::int32_t>({96}));
+}
+
+void add_meshes(Seeds& seeds, const HexMesh& mesh) {
+    seeds.add("medit", medit_text(mesh));
+    seeds.add("medit", "MeshVersionFormatted 2 Dimension 3 Vertices 8 " + point_lines(mesh, " 0") +
+                           "Tetrahedra 1 1 2 4 5 0 Prisms 1 1 2 3 5 6 7 0 Pyramids 1 1 2 3 4 5 0 Corners 1 1 End");
+    const std::string data = "POINT_DATA 8\nSCALARS s float 1\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8\nVECTORS v double\n" +
+                             point_lines(mesh) + "CELL_DATA 1\nFIELD f 2\na 1 1 int\n4\nb 1 1 string\nx\n";
+    seeds.add("vtk", vtk_text(mesh) + data);
+    seeds.add("vtk", binary_vtk_text(mesh));
+    seeds.add("gmsh", gmsh_text(mesh, "2 1 3") +
+                          "$NodeData\n1\n\"s\"\n1\n0\n3\n0\n1\n8\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n$EndNodeData\n");
+    seeds.add("vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 2 2\nPOINTS 8 float\n" +
+                         point_lines(mesh) + data);
+    seeds.add("gmsh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 8 1 8\n3 1 0 8\n1 2 3 4 5 6 7 8\n" + point_lines(mesh) +
+                          "$EndNodes\n$Elements\n1 1 1 1\n3 1 5 1\n1 1 2 3 4 5 6 7 8\n$EndElements\n" +
+                          "$ElementData\n1\n\"e\"\n0\n3\n0\n1\n1\n1 5\n$EndElementData\n");
+    add_binary_meshes(seeds, mesh);
+    add_plot3d(seeds, mesh);
+    for (const std::string format : {"ascii", "binary", "appended"}) {
+        for (const std::string compressor : {"", "vtkZLibDataCompressor", "vtkLZMADataCompressor", "vtkLZ4DataCompressor"}) {
+            VtuText vtu{.format = format, .compressor = compressor};
+            const std::string fields = "<PointData>" + vtu.array("Float32", "Name=\"s\"", std::vector<float>(8, 1)) +
+                                       "</PointData><CellData>" +
+                                       vtu.array("Int16", "Name=\"c\"", std::vector<std::int16_t>{1}) + "</CellData>";
+            const std::string piece = vtu.piece(mesh, fields);
+            seeds.add("vtu", vtu.file(piece + piece));
+            const std::string block = "<Piece Extent=\"0 1 0 1 0 1\">" + fields + "<Points>" +
+                                      vtu.array("Float64", "NumberOfComponents=\"3\"", coordinates_as<double>(mesh)) +
+                                      "</Points></Piece>";
+            seeds.add("vts", std::regex_replace(vtu.file(block), std::regex("UnstructuredGrid"), "StructuredGrid"));
+        }
+    }
+}
+
+void add_points(Seeds& seeds, const HexMesh& mesh) {
+    const RbfVolume volume = sample_rbf_points(mesh, {}).value;
+    for (const std::string format : {"ply", "vtp"}) write_points(seeds.path(format, "." + format), volume);
+    seeds.add("kernel", to_json(volume.kernel));
+}
+
+void add_small_files(Seeds& seeds) {
+    seeds.add(
+        "colors",
+        R"([{"Name":"a","ColorSpace":"Diverging","RGBPoints":[0,1,0,0,0.5,1,1,1,1,0,0,1],"Points":[0,0,0.5,0,1,1,0.5,0]}])");
+    seeds.add("colors", R"({"ColorSpace":"Lab","UseLogScale":0,"RGBPoints":[-1,0,0,0,3,1,1,1]})");
+    seeds.add("colors", std::string("\0", 1) + "0:0,0.5:0.2,1:1");
+    seeds.add("camera", R"({"eye":[3,2,1],"target":[0,0,0],"up":[0,0,1],"fovy_deg":30,"ortho_height":2})");
+    seeds.add("camera", std::string("\0", 1) + "3,2,1,0,0,0,0,0,1,30");
+    seeds.add("expression", "sin(3*x)*cos(2*y)+z^2 > 0 ? pi : -1e-3");
+    seeds.add("expression", "if(x<y, min(x,y,z), sqrt(abs(x))) && !(z==1)");
+}
+
+}  // namespace
+
+}  // namespace subvol::test
+
+int main(int argc, char** argv) {
+    if (argc != 2) {
+        std::cerr << "usage: fuzz_seeds FOLDER\n";
+        return 2;
+    }
+    subvol::test::Seeds seeds(argv[1]);
+    subvol::test::add_meshes(seeds, subvol::test::cube());
+    subvol::test::add_points(seeds, subvol::test::cube());
+    subvol::test::add_small_files(seeds);
+}

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+
+#include "mesh_file.h"
+
+namespace subvol {
+
+/// A block of points and of the hexahedra between them, both counted along i first, then along j, then along k.
+///
+/// points: how many there are along each
+struct StructuredGrid {
+    std::array<std::size_t, 3> points{};
+
+    /// How many; kNone if they are more than an Index can count.
+    [[nodiscard]] std::size_t point_count() const;
+    [[nodiscard]] std::size_t cell_count() const;
+};
+
+/// "3 x 4 x 5 points"
+[[nodiscard]] std::string size_text(const StructuredGrid& grid);
+
+/// Appends the hexahedra. first_point, first_cell: the numbers of the block's first ones among all of the file
+void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_point, std::size_t first_cell);
+
+}  // namespace subvol
