@@ -99,7 +99,7 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
 }
 
 void add_points(Seeds& seeds, const HexMesh& mesh) {
-    const RbfVolume volume = sample_rbf_points(mesh, {}).value;
+    const RbfVolume volume = sample_rbf_points(mesh, {}).volume;
     for (const std::string format : {"ply", "vtp"}) write_points(seeds.path(format, "." + format), volume);
     seeds.add("kernel", to_json(volume.kernel));
 }
