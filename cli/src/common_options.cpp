@@ -19,10 +19,10 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
         ->group(group)
         ->type_name("WHAT")
         ->check(CLI::IsMember({"split", "ignore", "refuse"}));
-    app.add_flag("--weld{0}", options.weld,
-                 "join points of a file that are at the same place, with --weld=TOL those within a distance of TOL")
-        ->group(group)
-        ->check(CLI::NonNegativeNumber);
+    app.add_flag("--weld", options.weld, "join points of a file that are at the same place");
+    app.add_option("--weld-distance", options.weld_distance_world, "join points of a file that are no farther apart than this")
+        ->type_name("D")
+        ->check(CLI::PositiveNumber);
     app.add_option("--threads", options.threads, "number of threads, 0 takes all; results do not depend on it")
         ->group(group)
         ->type_name("N")

@@ -13,8 +13,9 @@ struct CommonOptions {
     std::optional<std::string> field;
     std::optional<std::string> density;  // an expression in x, y, z
     std::string other_cells = "split";   // "ignore", "refuse"
-    std::optional<double> weld;          // world units
-    int threads = 0;                     // 0: all
+    bool weld = false;                   // points at the same place
+    std::optional<double> weld_distance_world;
+    int threads = 0;  // 0: all
     bool json = false;
     bool quiet = false;
     std::string progress = "auto";

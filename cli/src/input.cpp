@@ -42,6 +42,11 @@ ReadResult generate(const std::string& description) {
     return result;
 }
 
+std::optional<double> weld_distance(const CommonOptions& options) {
+    if (options.weld_distance_world) return options.weld_distance_world;
+    return options.weld ? std::optional<double>(0) : std::nullopt;
+}
+
 }  // namespace
 
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
@@ -49,7 +54,7 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
     const bool model = input.starts_with(kModelPrefix);
     ReadResult read = report.timed("read", [&] {
         return model ? generate(input.substr(kModelPrefix.size()))
-                     : read_mesh(input, {.other_cells = other_cells(options.other_cells), .weld = options.weld});
+                     : read_mesh(input, {.other_cells = other_cells(options.other_cells), .weld = weld_distance(options)});
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;

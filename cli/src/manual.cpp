@@ -141,18 +141,31 @@ void write_footer(std::ostream& out, const CLI::App& app, const char* heading) {
     }
 }
 
+const char* const kCommon = "Common options";
+
+/// In the help's order: the verb's own first, those of all verbs last.
+std::vector<std::string> groups_of(const CLI::App& verb) {
+    std::vector<std::string> groups{"Options"};
+    for (const std::string& group : verb.get_groups()) {
+        if (!group.empty() && group != "Options" && group != kCommon) groups.push_back(group);
+    }
+    groups.emplace_back(kCommon);
+    return groups;
+}
+
 void write_verb(std::ostream& out, const CLI::App& verb) {
     out << ".SS subvol " << roff(verb.get_name());
     std::vector<Argument> arguments = arguments_of(verb, "Positionals");
     for (const Argument& argument : arguments)
         out << (argument.required ? " " : " [") << roff(argument.value) << (argument.required ? "" : "]");
     out << " [options]\n" << roff(verb.get_description()) << '\n';
-    for (const Argument& option : arguments_of(verb, "Options")) arguments.push_back(option);
     for (const Argument& argument : arguments) write_argument(out, argument);
+    for (const std::string& group : groups_of(verb)) {
+        if (group == kCommon) continue;
+        for (const Argument& option : arguments_of(verb, group)) write_argument(out, option);
+    }
     write_footer(out, verb, ".PP");
 }
-
-const char* const kCommon = "Common options";
 
 }  // namespace
 
@@ -170,8 +183,8 @@ std::vector<Argument> arguments_of(const CLI::App& verb, const std::string& grou
 }
 
 std::vector<Argument> arguments_of(const CLI::App& verb) {
-    std::vector<Argument> arguments;
-    for (const char* group : {"Positionals", "Options", kCommon}) {
+    std::vector<Argument> arguments = arguments_of(verb, "Positionals");
+    for (const std::string& group : groups_of(verb)) {
         for (const Argument& argument : arguments_of(verb, group)) arguments.push_back(argument);
     }
     return arguments;

@@ -96,7 +96,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
                 throw Error(ErrorCode::InvalidInput,
                             "a cell has " + wording.name_point(cell[j]) + " and " + wording.name_point(cell[k]) +
                                 ", which would be welded",
-                            std::string(file), "a smaller tolerance, or no --weld");
+                            std::string(file), "a smaller tolerance, or no welding");
             }
             cell[k] = joined[cell[k]];
         }

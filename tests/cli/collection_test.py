@@ -85,7 +85,7 @@ class Collection(unittest.TestCase):
         self.assertEqual(welded["points_used"], apart["points_used"] - pairs)
         self.assertEqual(welded["volume"], apart["volume"])
         self.assertTrue(any(f"{pairs} points welded" in warning for warning in welded["warnings"]))
-        self.assertEqual(info(name, "--weld=1e-6")["points_used"], welded["points_used"])  # no edge is as short
+        self.assertEqual(info(name, "--weld-distance", "1e-6")["points_used"], welded["points_used"])  # no edge is as short
 
     def test_grid(self):
         note = table("Fields and notes")["arnold_smoke.vdb"][1]

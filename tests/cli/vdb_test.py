@@ -20,10 +20,16 @@ class Grids(InFolder):
         self.assertGreater(active[3], active[0])  # voxels that are covered, but not at their centre
 
     def test_the_limit_is_a_level_and_says_how_far_off(self):
-        made = self.vdb("--resolution", 30, source="model:twist:24")
+        made = self.vdb("--resolution", 30, "--density", "1")
         self.assertGreaterEqual(made["levels"], 1)
         self.assertLessEqual(made["limit_deviation"]["voxels"], 0.1)
         self.assertLessEqual(made["limit_deviation"]["of_range"], 1e-3)
+        self.assertEqual(made["warnings"], [])
+
+    def test_a_limit_that_is_not_reached_is_said(self):
+        made = self.vdb("--resolution", 30, source="model:twist:24")  # its field is cut off: no level draws the kink
+        self.assertGreater(made["limit_deviation"]["of_range"], 1e-3)
+        self.assertRegex(made["warnings"][0], "level . was the finest within limits")
 
     def test_parts_hold_the_voxels_of_the_whole(self):
         whole = self.vdb("--resolution", 200, "--levels", 0)
