@@ -8,6 +8,7 @@
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"
 #include "subvol/vdb.h"
+#include "vdb/each_voxel.h"
 #include "vdb/solid_columns.h"
 #include "vdb/test_meshes.h"
 
@@ -28,23 +29,14 @@ template <class Exact>
 Errors errors_of(const VdbGrid& grid, const Exact& exact) {
     Errors errors;
     const double h = grid.report().voxel_size_world;
-    const auto voxels = grid.voxels();
-    const auto cursor = voxels->cursor();
-    const auto [lower, upper] = voxels->range();
-    for (int x = lower[0]; x <= upper[0]; ++x) {
-        for (int y = lower[1]; y <= upper[1]; ++y) {
-            for (int z = lower[2]; z <= upper[2]; ++z) {
-                const VoxelCorners corners = cursor->corners({x, y, z});
-                if (!(corners.active & 1)) continue;
-                const std::optional<double> value = exact(h * Vec3(x, y, z));
-                if (!value) continue;  // the mesh reaches beyond the curved solid
-                const double error = std::abs(corners.values[0] - *value);
-                errors.max = std::max(errors.max, error);
-                errors.rms += error * error;
-                ++errors.voxels;
-            }
-        }
-    }
+    for_each_voxel(grid, [&](const Voxel& voxel, double stored) {
+        const std::optional<double> value = exact(h * Vec3(voxel[0], voxel[1], voxel[2]));
+        if (!value) return;  // the mesh reaches beyond the curved solid
+        const double error = std::abs(stored - *value);
+        errors.max = std::max(errors.max, error);
+        errors.rms += error * error;
+        ++errors.voxels;
+    });
     errors.rms = std::sqrt(errors.rms / static_cast<double>(std::max<std::size_t>(errors.voxels, 1)));
     return errors;
 }

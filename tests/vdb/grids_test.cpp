@@ -7,6 +7,7 @@
 
 #include "subvol/model.h"
 #include "subvol/vdb.h"
+#include "vdb/each_voxel.h"
 #include "vdb/test_meshes.h"
 
 namespace subvol {
@@ -16,22 +17,6 @@ using namespace test;
 
 const std::vector<std::string> kField{"f"};
 const Field kWave = [](const Vec3& p) { return std::sin(5 * p.x) * std::cos(4 * p.y) + p.z; };
-
-/// Calls visit(voxel, value) for the active voxels of a grid of floats.
-template <class Visit>
-void for_each_voxel(const VdbGrid& grid, const Visit& visit) {
-    const auto voxels = grid.voxels();
-    const auto cursor = voxels->cursor();
-    const auto [lower, upper] = voxels->range();
-    for (int x = lower[0]; x <= upper[0]; ++x) {
-        for (int y = lower[1]; y <= upper[1]; ++y) {
-            for (int z = lower[2]; z <= upper[2]; ++z) {
-                const VoxelCorners corners = cursor->corners({x, y, z});
-                if (corners.active & 1) visit(Voxel{x, y, z}, corners.values[0]);
-            }
-        }
-    }
-}
 
 std::vector<std::pair<Voxel, double>> list(const VdbGrid& grid) {
     std::vector<std::pair<Voxel, double>> all;
