@@ -1,5 +1,6 @@
 #include "vdb_output.h"
 
+#include <deque>
 #include <filesystem>
 #include <fstream>
 
@@ -29,6 +30,17 @@ void write_json(const std::filesystem::path& path, const Json& json) {
     file.commit();
 }
 
+/// name: that people know the file by
+void write_part(const std::filesystem::path& path, const std::string& name, std::span<const VdbGrid> grids,
+                VdbCompression compression) {
+    try {
+        write_vdb(path, grids, compression);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Io) throw;
+        throw Error(ErrorCode::Io, "cannot be written; the disk may be full", name);
+    }
+}
+
 }  // namespace
 
 void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
@@ -48,6 +60,7 @@ void write_one_piece(const HexMesh& mesh, std::span<const std::string> fields, c
 void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
                  const VdbOutput& output, Report& report) {
     const std::filesystem::path path(output.path);
+    std::deque<AtomicFile> files;  // all of them appear, or none
     std::size_t active = 0;
     Json parts = Json::array();
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
@@ -57,7 +70,7 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
         const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
         const GridReport& first = part.grids.front().report();
         const auto before = std::chrono::steady_clock::now();
-        write_vdb(path.parent_path() / name, part.grids, output.compression);
+        write_part(files.emplace_back(path.parent_path() / name).path(), name, part.grids, output.compression);
         writing += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
         active += first.active_voxels;
         report["voxel_size"] = first.voxel_size_world;
@@ -68,6 +81,7 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
     });
     report.add_seconds("rasterize", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - writing);
     report.add_seconds("write", writing);
+    for (AtomicFile& file : files) file.commit();
     const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
     write_json(manifest, {{"input", report["input"]},
                           {"version", SUBVOL_VERSION},

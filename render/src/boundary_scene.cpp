@@ -1,24 +1,10 @@
 #include "boundary_scene.h"
 
-#include <embree3/rtcore.h>
-
-#include <string>
-
-#include "subvol/error.h"
+#include "embree_line.h"
 
 namespace subvol {
 
 namespace {
-
-constexpr double kReach = 1.1;  // the volume lies in a ball of radius 1; the rest is for rounding
-
-void check(RTCDevice device) {
-    const RTCError error = rtcGetDeviceError(device);
-    if (error == RTC_ERROR_NONE) return;
-    throw Error(ErrorCode::MissingCapability, error == RTC_ERROR_OUT_OF_MEMORY
-                                                  ? "Embree has not enough memory"
-                                                  : "Embree failed with error " + std::to_string(static_cast<int>(error)));
-}
 
 // Embree hands the context through to the filter.
 struct Query {
@@ -68,7 +54,7 @@ BoundaryScene::BoundaryScene(const TetMesh& mesh, const Box& box)
       center_(box.center()),
       scale_(box.diagonal() > 0 ? 2 / box.diagonal() : 1) {
     embree_->device = rtcNewDevice(nullptr);
-    check(embree_->device);
+    check_embree(embree_->device);
     const RTCDevice device = embree_->device;
     embree_->scene = rtcNewScene(device);
     rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
@@ -92,31 +78,17 @@ BoundaryScene::BoundaryScene(const TetMesh& mesh, const Box& box)
         rtcCommitScene(embree_->scene);
     }
     rtcReleaseGeometry(geometry);
-    check(device);
+    check_embree(device);
 }
 
 BoundaryScene::~BoundaryScene() = default;
 
 void BoundaryScene::find_crossed(const Ray& ray, std::vector<TetFace>& faces) const {
-    const Vec3 d = glm::normalize(ray.direction);
-    Vec3 nearest = scale_ * (ray.origin - center_);
-    nearest -= dot(nearest, d) * d;
-    if (!(dot(nearest, nearest) <= kReach)) return;
-    const Vec3 origin = nearest - kReach * d;
-
-    RTCRayHit query{};
-    query.ray.org_x = static_cast<float>(origin.x);
-    query.ray.org_y = static_cast<float>(origin.y);
-    query.ray.org_z = static_cast<float>(origin.z);
-    query.ray.dir_x = static_cast<float>(d.x);
-    query.ray.dir_y = static_cast<float>(d.y);
-    query.ray.dir_z = static_cast<float>(d.z);
-    query.ray.tfar = static_cast<float>(2 * kReach);
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    auto query = embree_line(ray, center_, scale_);
+    if (!query) return;
     Query context{{}, boundary_, &faces};
     rtcInitIntersectContext(&context.context);
-    rtcIntersect1(embree_->scene, &context.context, &query);
+    rtcIntersect1(embree_->scene, &context.context, &*query);
 }
 
 }  // namespace subvol

@@ -1,25 +1,12 @@
 #include "dense_scene.h"
 
-#include <embree3/rtcore.h>
-
-#include <string>
-
-#include "subvol/error.h"
+#include "embree_line.h"
 
 namespace subvol {
 
 namespace {
 
-constexpr double kReach = 1.1;    // the volume lies in a ball of radius 1; the rest is for rounding
 constexpr double kMargin = 1e-5;  // about a box, for single precision
-
-void check(RTCDevice device) {
-    const RTCError error = rtcGetDeviceError(device);
-    if (error == RTC_ERROR_NONE) return;
-    throw Error(ErrorCode::MissingCapability, error == RTC_ERROR_OUT_OF_MEMORY
-                                                  ? "Embree has not enough memory"
-                                                  : "Embree failed with error " + std::to_string(static_cast<int>(error)));
-}
 
 // Embree hands the context through to the callback.
 struct Query {
@@ -67,7 +54,7 @@ DenseScene::DenseScene(const std::vector<DenseGrid>& grids) : embree_(std::make_
         embree_->bounds.push_back(bounds);
     }
     embree_->device = rtcNewDevice(nullptr);
-    check(embree_->device);
+    check_embree(embree_->device);
     embree_->scene = rtcNewScene(embree_->device);
     rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_USER);
@@ -82,31 +69,17 @@ DenseScene::DenseScene(const std::vector<DenseGrid>& grids) : embree_(std::make_
     rtcAttachGeometry(embree_->scene, geometry);
     rtcCommitScene(embree_->scene);
     rtcReleaseGeometry(geometry);
-    check(embree_->device);
+    check_embree(embree_->device);
 }
 
 DenseScene::~DenseScene() = default;
 
 void DenseScene::find_met(const Ray& ray, std::vector<std::uint32_t>& grids) const {
-    const Vec3 d = glm::normalize(ray.direction);
-    Vec3 nearest = scale_ * (ray.origin - center_);
-    nearest -= dot(nearest, d) * d;
-    if (!(dot(nearest, nearest) <= kReach)) return;
-    const Vec3 origin = nearest - kReach * d;
-
-    RTCRayHit query{};
-    query.ray.org_x = static_cast<float>(origin.x);
-    query.ray.org_y = static_cast<float>(origin.y);
-    query.ray.org_z = static_cast<float>(origin.z);
-    query.ray.dir_x = static_cast<float>(d.x);
-    query.ray.dir_y = static_cast<float>(d.y);
-    query.ray.dir_z = static_cast<float>(d.z);
-    query.ray.tfar = static_cast<float>(2 * kReach);
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    auto query = embree_line(ray, center_, scale_);
+    if (!query) return;
     Query context{{}, &grids};
     rtcInitIntersectContext(&context.context);
-    rtcIntersect1(embree_->scene, &context.context, &query);
+    rtcIntersect1(embree_->scene, &context.context, &*query);
 }
 
 }  // namespace subvol

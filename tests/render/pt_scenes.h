@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
+#include "render/constant_optics.h"
 #include "render/hex_meshes.h"
+#include "subvol/mesh_io.h"
 #include "subvol/render.h"
 #include "subvol/render_pt.h"
 
@@ -23,10 +26,6 @@ protected:
         if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
     }
 };
-
-inline Optics constant_optics() {
-    return {{{{0, {1, 1, 1}}}, {{0, 0.5}}}, 1.0};
-}
 
 // Colour and opacity change with the value in [0,1], with kinks and a part that cannot be seen.
 inline Optics ramp_optics(double unit = 1) {
@@ -66,6 +65,19 @@ inline double difference_from_rays(const HexMesh& mesh, std::span<const double> 
                                    const PtOptions& options = {}) {
     const auto rays = render_tets(mesh, values, view, optics);
     return largest_difference(render_projected_tets(mesh, values, view, optics, options).image, rays.image);
+}
+
+/// Like rays: three real meshes, none of them convex. Where cells fold over, both count
+/// in pt, which rays do not do: there are no such meshes here.
+inline void expect_real_meshes_like_rays(const std::filesystem::path& data, const PtOptions& options) {
+    for (const char* name : {"ansys_td28_fig14.vtk", "vtkdata_post_tet.vtk", "hexdom_igea_improve.vtk"}) {
+        const HexMesh mesh = read_mesh(data / name).mesh;
+        const Box box = bounds(mesh);
+        std::vector<double> values;
+        for (const Vec3& p : mesh.points) values.push_back(waves((p - box.lower) / box.diagonal()));
+        const View view(fit_camera(box, {-1, 1, -1}), 128, 128);
+        EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1 * box.diagonal()), options), kGlTol) << name;
+    }
 }
 
 }  // namespace subvol::test

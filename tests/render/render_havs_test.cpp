@@ -196,18 +196,7 @@ TEST_F(RenderHavs, InPartsItIsTheSame) {
 TEST_F(RenderHavs, RealMeshesAreLikeRays) {
     const auto data = data_folder();
     if (!data) GTEST_SKIP() << "SUBVOL_DATA does not name the folder of real meshes";
-    for (const char* name : {"ansys_td28_fig14.vtk", "vtkdata_post_tet.vtk", "hexdom_igea_improve.vtk"}) {
-        const HexMesh mesh = read_mesh(*data / name).mesh;
-        const Box box = bounds(mesh);
-        const double diagonal = glm::length(box.upper - box.lower);
-        std::vector<double> values;
-        for (const Vec3& p : mesh.points) values.push_back(waves((p - box.lower) / diagonal));
-        const View view(fit_camera(box, {-1, 1, -1}), 128, 128);
-        EXPECT_LT(
-            difference_from_rays(mesh, values, view, ramp_optics(0.1 * diagonal), {.order = PtOrder::Havs, .kbuffer = kAll}),
-            kGlTol)
-            << name;
-    }
+    expect_real_meshes_like_rays(*data, {.order = PtOrder::Havs, .kbuffer = kAll});
 }
 
 TEST_F(RenderHavs, RefusesWrongOptions) {

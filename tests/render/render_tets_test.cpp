@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/constant_optics.h"
 #include "render/hex_meshes.h"
 #include "subvol/error.h"
 #include "subvol/render.h"
@@ -11,18 +12,12 @@
 namespace subvol {
 namespace {
 
+using test::constant_alpha;
+using test::constant_optics;
 using test::evaluate;
 
 // Images are single precision; double everywhere before.
 constexpr double kFloatTol = 1e-6;
-
-// White with extinction τ = ln 2 per world length, whatever the value.
-Optics constant_optics() {
-    return {{{{0, {1, 1, 1}}}, {{0, 0.5}}}, 1.0};
-}
-double constant_alpha(double length) {
-    return -std::expm1(-std::log(2.0) * length);
-}
 
 // Colour and opacity change with the value in [0,1], with kinks.
 Optics ramp_optics() {
