@@ -41,6 +41,7 @@ std::map<std::string, double> picture_metrics(const Image& image, const Image& r
         if (name == "ssim") metrics[name] = ssim(srgb8_image(image), srgb8_image(reference)).mean;
         if (name == "flip") metrics[name] = flip_of().mean;
         if (name == "flip_hdr") metrics[name] = hdr_flip(image, reference).mean;
+        if (name == "optical_depth") metrics[name] = optical_depth_error(image, reference);
         if (name.ends_with("_interior")) in_region(name, regions.interior);
         if (name.ends_with("_edge")) in_region(name, regions.edge);
     }

@@ -95,16 +95,19 @@ Image tets(const Scene& scene) {
     });
 }
 
+PtOrder pt_order(const std::string& name) {
+    if (name == "lists") return PtOrder::Lists;
+    if (name == "centroid") return PtOrder::Centroid;
+    return name == "havs" ? PtOrder::Havs : PtOrder::Topological;
+}
+
 Image projected_tets(const Scene& scene) {
-    const std::string& order = scene.of.text("order");
     const Stopwatch watch;
     const HexMesh fine = refined(scene);
+    PtRenderer renderer(fine, fine.attributes.front().values);
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
-        PtResult drawn = render_projected_tets(fine, fine.attributes.front().values, scene.view, scene.optics,
-                                               {.order = order == "lists"      ? PtOrder::Lists
-                                                         : order == "centroid" ? PtOrder::Centroid
-                                                                               : PtOrder::Topological});
+        PtResult drawn = renderer.draw(scene.view, scene.optics, {.order = pt_order(scene.of.text("order"))});
         scene.result.metrics["tets"] = scene.result.metrics["primitives"] = static_cast<double>(drawn.report.tets);
         scene.result.notes["device"] = drawn.report.device;
         return std::move(drawn.image);

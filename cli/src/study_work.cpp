@@ -38,7 +38,7 @@ SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
 }
 
 CaseResult run_case(const StudyCase& of, const CasePlace& place) {
-    static const std::set<std::string> kFields{"field", "voxels", "values", "counts"};
+    static const std::set<std::string> kFields{"field", "volume", "voxels", "values", "counts"};
     static const std::set<std::string> kKernels{"errors", "fit", "slice"};
     const std::string& method = of.text("method");
     if (!kFields.contains(method) && !kKernels.contains(method)) return run_picture_case(of, place);

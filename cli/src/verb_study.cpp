@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "folder_lock.h"
 #include "study_host.h"
 #include "study_runner.h"
 #include "subvol/error.h"
@@ -116,6 +117,7 @@ private:
         for (const std::string& name : names_) studies.push_back(load(name));
         check_names(studies);
         make_folder();
+        const FolderLock alone(output_);
         std::size_t failed = 0;
         std::vector<StudyResults> all;
         for (const Study& study : studies) {

@@ -41,9 +41,11 @@ std::vector<StudyMethod> make_methods() {
     const Keys kernels{whole("per_edge", 1, 64, 1.0), number("spacing_voxels", 0, 200), kernel("compact"),
                        choice("correction", {"second", "none", "gradient", "full"})};
     const Keys splats =
-        kernels + Keys{whole("sheets", 2, 65536, 200.0), whole("boundary_levels", 0, 2, 1.0), flag("visible_only"), repeat};
+        kernels + Keys{whole("sheets", 2, 65536, 200.0), whole("boundary_levels", 0, 6), flag("visible_only"), repeat};
     const Keys places{whole("places", 1, 1e7, 1e5), choice("where", {"anywhere", "extraordinary", "boundary"}),
                       number("within", 0, 1, 1.0), whole("seed", 0, kSeeds, 0.0)};
+    const Keys volume{whole("levels", 0, 6, 2.0), whole("places", 1, 1e7, 1e5), whole("seed", 0, kSeeds, 0.0),
+                      whole("resolution", 2, 2000, 64.0), number("iso", -1e300, 1e300)};
     const Keys dense{whole("levels", 0, 8), number("tolerance", 0, 1, 1e-3), whole("max_levels", 1, 8, 6.0), samples, repeat};
     const Keys fit{choice("shape", {"gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "gaussians",
                                     "separable_gaussian", "separable_table", "tucker", "radial_bound"}),
@@ -51,10 +53,11 @@ std::vector<StudyMethod> make_methods() {
     return {{"splat", true, true, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
             {"sheets", true, true, splats},
             {"tets", true, true, {level, samples, repeat}},
-            {"pt", true, true, {level, choice("order", {"topological", "centroid", "lists"}), repeat}},
+            {"pt", true, true, {level, choice("order", {"topological", "centroid", "lists", "havs"}), repeat}},
             {"dense", true, true, dense},
             {"grid", true, true, {resolution, half, samples, repeat}},
             {"field", false, true, kernels + places + Keys{flag("every_second")}},
+            {"volume", false, true, kernels + volume},
             {"voxels", false, true, Keys{resolution, half} + places},
             {"values", false, true, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
             {"counts", false, true, {whole("per_edge", 1, 64, 1.0)}},

@@ -21,8 +21,9 @@ const std::vector<std::string> kStudyKeys{
     "name",  "title",    "about",  "inputs", "methods", "cameras", "transfer_functions", "size", "metrics", "reference",
     "timed", "pictures", "tables", "plots",  "demands", "headings"};
 
-const std::vector<std::string> kMetrics{"mse",  "rmse",     "mae",           "max",       "psnr",          "ssim",
-                                        "flip", "flip_hdr", "psnr_interior", "psnr_edge", "flip_interior", "flip_edge"};
+const std::vector<std::string> kMetrics{"mse",           "rmse",      "mae",          "max",           "psnr",
+                                        "ssim",          "flip",      "flip_hdr",     "psnr_interior", "psnr_edge",
+                                        "flip_interior", "flip_edge", "optical_depth"};
 
 std::vector<Key> input_keys() {
     using enum KeyKind;
@@ -251,6 +252,7 @@ private:
             if (method.input && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
             const auto swept = swept_keys(items[m]);
             for (StudyValues& values : combinations(items[m], method, scenes, study.cases.size(), path)) {
+                values["label"] = filled_in(as_text(values["label"]), values, in(path, "label"));
                 values["study"] = study.name;
                 if (method.picture) values.insert(common.begin(), common.end());
                 study.cases.push_back(named_case(std::move(values), swept));
@@ -283,6 +285,21 @@ private:
             all = std::move(product);
         }
         return all;
+    }
+
+    /// A label with each {key} replaced by the case's value under that key.
+    static std::string filled_in(const std::string& label, const StudyValues& values, const std::string& path) {
+        std::string done;
+        std::size_t from = 0;
+        for (std::size_t open = label.find('{'); open != std::string::npos; open = label.find('{', from)) {
+            const std::size_t close = label.find('}', open);
+            const std::string key = close == std::string::npos ? "" : label.substr(open + 1, close - open - 1);
+            const auto value = values.find(key);
+            if (value == values.end()) refuse(path, "no value has the name '" + key + "'", "{KEY} of an option of the method");
+            done += label.substr(from, open - from) + as_text(value->second);
+            from = close + 1;
+        }
+        return done + label.substr(from);
     }
 
     static void check_count(std::size_t count, const std::string& path) {

@@ -45,7 +45,11 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
     for (std::size_t i = 0; i < results.results.size(); ++i) {
         if (!matches(results.study.cases[i], results.results[i], spec.where)) continue;
         chosen.push_back(i);
-        if (!spec.across.empty()) place_in(across, value_text(results.study.cases[i], results.results[i], spec.across));
+        if (spec.across.empty()) continue;
+        // A case that failed may have no such value.
+        if (const auto which = value_text(results.study.cases[i], results.results[i], spec.across); !which.empty()) {
+            place_in(across, which);
+        }
     }
     for (const auto* keys : {&spec.rows, &spec.columns}) {
         for (const std::string& key : *keys) table.columns.push_back(heading(spec, key));
@@ -73,8 +77,9 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
             const auto* number = std::get_if<double>(&cell);
             if (number != nullptr && std::isnan(*number)) cell = cell_of(of, result, spec.columns[k]);
         }
-        if (spec.across.empty()) continue;
-        const std::size_t a = place_in(across, value_text(of, result, spec.across));
+        const auto which = spec.across.empty() ? "" : value_text(of, result, spec.across);
+        if (which.empty()) continue;
+        const std::size_t a = place_in(across, which);
         for (std::size_t v = 0; v < spec.values.size(); ++v) {
             row[fixed + a * spec.values.size() + v] = cell_of(of, result, spec.values[v]);
         }

@@ -59,6 +59,10 @@ private:
 }  // namespace
 
 Surface boundary_surface(const HexMesh& mesh) {
+    return detail::boundary_surface_where(mesh, [](const auto&) { return true; });
+}
+
+Surface detail::boundary_surface_where(const HexMesh& mesh, const std::function<bool(const std::array<Index, 4>&)>& where) {
     Topology topology;  // of its faces only
     topology.point_count = mesh.points.size();
     topology.cells = mesh.cells;
@@ -66,7 +70,8 @@ Surface boundary_surface(const HexMesh& mesh) {
     SurfaceBuilder builder(mesh.points.size());
     for (std::size_t f = 0; f < topology.faces.size(); ++f) {
         const auto face = static_cast<Index>(f);
-        if (topology.face_on_hull(face)) builder.add(outward_quad(topology, topology.face_cells[f][0], face));
+        if (!topology.face_on_hull(face) || !where(topology.faces[f])) continue;
+        builder.add(outward_quad(topology, topology.face_cells[f][0], face));
     }
     return builder.finish([&](Index p) { return mesh.points[p]; });
 }

@@ -126,6 +126,7 @@ HexMesh without_unused_points(const HexMesh& mesh) {
         if (used[a] && used[b]) result.creases.push_back({renumbered[a], renumbered[b]});
     }
     for (auto face : mesh.sharp_faces) {
+        if (!std::ranges::all_of(face, [&](Index p) { return used[p]; })) continue;
         for (auto& p : face) p = renumbered[p];
         result.sharp_faces.push_back(face);
     }

@@ -1,5 +1,6 @@
 #include "subvol/sample.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -17,7 +18,8 @@ namespace subvol {
 
 namespace {
 
-constexpr int kMostBoundaryLevels = 2;
+constexpr int kMostBoundaryLevels = 6;
+constexpr int kMostDefaultBoundaryLevels = 4;
 
 void check(const SampleOptions& options) {
     if (options.per_edge < 1 || options.per_edge > 64) {
@@ -43,8 +45,9 @@ void check(const SampleOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(radius), {},
                     "1.2 to 4 sample intervals: smaller kernels leave holes");
     }
-    if (options.boundary_levels < 0 || options.boundary_levels > kMostBoundaryLevels) {
-        throw Error(ErrorCode::InvalidInput, "boundary levels: " + std::to_string(options.boundary_levels), {}, "0 to 2");
+    const int boundary_levels = options.boundary_levels.value_or(0);
+    if (boundary_levels < 0 || boundary_levels > kMostBoundaryLevels) {
+        throw Error(ErrorCode::InvalidInput, "boundary levels: " + std::to_string(boundary_levels), {}, "0 to 6");
     }
 }
 
@@ -64,12 +67,13 @@ std::optional<int> level_of_samples(const SampleOptions& options) {
     return std::countr_zero(intervals);
 }
 
-Surface boundary_of_level(const HexMesh& control, const Topology& topology, const SampleOptions& options) {
-    const RefineOptions refine_options = refinement(options, options.boundary_levels);
-    if (options.boundary_levels == 1 && interpolates(options.scheme)) {
-        return detail::boundary_of_child(control, topology, refine_options);
-    }
-    return boundary_surface(on_limit(refine(control, refine_options), options.scheme));
+/// intervals: the most that an edge has
+Surface boundary_of(const HexMesh& control, const Topology& topology, int intervals, const SampleOptions& options) {
+    const int half_an_interval = std::bit_width(static_cast<unsigned>(intervals));
+    const int levels = options.boundary_levels.value_or(std::min(half_an_interval, kMostDefaultBoundaryLevels));
+    const RefineOptions refine_options = refinement(options, levels);
+    if (levels == 1 && interpolates(options.scheme)) return detail::boundary_of_child(control, topology, refine_options);
+    return detail::boundary_at_level(control, refine_options);
 }
 
 void count_entities(SampleReport& report, const Topology& topology, std::size_t n) {
@@ -82,7 +86,7 @@ void count_entities(SampleReport& report, const Topology& topology, std::size_t 
 SampleResult sample_level(HexMesh control, int level, const SampleOptions& options) {
     report_progress(options.progress, "topology", 0);
     Topology topology = build_topology(control);
-    Surface boundary = boundary_of_level(control, topology, options);
+    Surface boundary = boundary_of(control, topology, options.per_edge, options);
     SampleReport counts;
     count_entities(counts, topology, static_cast<std::size_t>(options.per_edge));
     detail::PointLines lines;
@@ -108,11 +112,16 @@ SampleResult sample_cells(const HexMesh& control, const SampleOptions& options) 
     const HexMesh once = refine(control, refinement(options, 1));
     const HexMesh twice = on_limit(refine(once, refinement(options, 1)), options.scheme);
     const Topology topology = build_topology(control);
-    SampleResult result =
-        options.tolerance > 0
-            ? detail::sample_to_tolerance(control, twice, topology, options)
-            : detail::sample_in_cells(control, twice, topology, detail::edge_intervals(control, topology, options), options);
-    result.volume.boundary = boundary_of_level(control, topology, options);
+    SampleResult result;
+    int most = 1;
+    if (options.tolerance > 0) {
+        result = detail::sample_to_tolerance(control, twice, topology, options);
+    } else {
+        std::vector<int> intervals = detail::edge_intervals(control, topology, options);
+        most = std::ranges::max(intervals);
+        result = detail::sample_in_cells(control, twice, topology, std::move(intervals), options);
+    }
+    result.volume.boundary = boundary_of(control, topology, most, options);
     return result;
 }
 

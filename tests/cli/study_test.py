@@ -66,7 +66,7 @@ class Study(InFolder):
 
     def test_table_2_of_the_paper(self):
         result = self.run_ok("study", "table2", "-o", "out", "--json").json()
-        (table,) = result["tables"]
+        table = result["tables"][0]
         self.assertEqual(len(list(csv.reader((self.folder / "out/table2/table2.csv").read_text().splitlines()))), 8)
         self.assertEqual(len(list(csv.reader((self.folder / "out/table2/results.csv").read_text().splitlines()))), 1 + 7 * 5)
         self.assertEqual(len(table["rows"]), 7)
@@ -78,6 +78,12 @@ class Study(InFolder):
             self.assertLess(cubic, paper / 5)
             self.assertLess(scheme, paper / 10)
             self.assertLess(scheme, 1e-7)  # exact but for the floats that points are stored as
+
+        solid = result["tables"][1]["rows"]
+        self.assertEqual(len(solid), 7)
+        for name, papers, ours in solid:
+            if papers is not None:  # of the nozzle there is none
+                self.assertTrue(papers / 2 <= ours <= papers * 2, name)  # of the same size: no copies
 
     def test_table_1_of_the_paper(self):
         tables = self.run_ok("study", "table1", "-o", "out", "--json").json()["tables"]
@@ -106,6 +112,32 @@ class Study(InFolder):
             self.assertGreater(float(row["peak_bytes"]), 1e6)
             if row["own_bytes"]:  # of pictures
                 self.assertGreaterEqual(float(row["own_bytes"]), 0)
+
+    def test_two_runs_do_not_share_a_folder(self):
+        self.write(SMALL)
+        with subprocess.Popen([COMMAND, "study", "s.json", "-o", "out", "--quiet"], cwd=self.folder) as first:
+            while not self.case_files() and first.poll() is None:
+                time.sleep(0.005)
+            second = subvol("study", "s.json", "-o", "out", folder=self.folder)
+        self.assertEqual(second.code, 2, second.err)
+        self.assertIn("another run is writing here", second.err)
+        self.assertEqual(first.returncode, 0)
+        self.assertEqual(subvol("study", "s.json", "-o", "out", "--json", folder=self.folder).json()["studies"][0]["ran"], 0)
+
+    def test_kernels_as_a_whole_field(self):
+        methods = [{"method": "volume", "label": "{correction} {per_edge}", "correction": ["none", "second"], "per_edge": [1, 2],
+                    "places": 5000, "resolution": 24}]
+        self.write(SMALL | {"methods": methods, "inputs": [{"model": "ball", "resolution": 4, "density": "2 + sin(3*x)*cos(2*y)"}]})
+        self.run_ok("study", "s.json", "-o", "out")
+        rows = csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines())
+        by = {row["label"]: {k: float(v) for k, v in row.items() if k in ("l2", "linf", "gradient_rmse", "mass_error", "hausdorff")} for row in rows}
+        self.assertEqual(set(by), {"none 1", "none 2", "second 1", "second 2"})
+        for name, errors in by.items():
+            self.assertLessEqual(errors["l2"], errors["linf"])
+            self.assertTrue(all(0 < value < 1 for value in errors.values()), (name, errors))
+        for metric in ("l2", "gradient_rmse", "hausdorff"):
+            self.assertLess(by["second 1"][metric], by["none 1"][metric])  # what follows the field is nearer to it
+            self.assertLess(by["second 2"][metric], by["second 1"][metric])  # and so are finer kernels
 
     def test_jobs_change_nothing(self):
         self.write(SMALL)

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -57,34 +58,56 @@ TEST(SampleWays, RefinedPointsAreTheRefinedMeshAndItsFieldIsTheLimits) {
     }
 }
 
-TEST(SampleWays, TheBoundaryIsThatOfTheFirstRefinement) {
+using Triangle = std::array<std::array<double, 3>, 3>;
+
+std::vector<Triangle> sorted_triangles(const Surface& surface) {
+    std::vector<Triangle> all;
+    for (const auto& t : surface.triangles) {
+        Triangle corners;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3& p = surface.points[t[k]];
+            corners[k] = {p.x, p.y, p.z};
+        }
+        all.push_back(corners);
+    }
+    std::ranges::sort(all);
+    return all;
+}
+
+void expect_same_triangles(const Surface& made, const Surface& expected) {
+    const auto a = sorted_triangles(made), b = sorted_triangles(expected);
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t d = 0; d < 3; ++d) ASSERT_NEAR(a[i][k][d], b[i][k][d], 1e-14);  // rounding: sums in another order
+        }
+    }
+}
+
+TEST(SampleWays, TheBoundaryIsThatOfTheRefinedMesh) {
     HexMesh mesh = test::make_nested_cubes(2);
     test::jitter(mesh, .02, 3);
     put_wave(mesh);
-    using Triangle = std::array<std::array<double, 3>, 3>;
-    const auto triangles = [](const Surface& surface) {
-        std::vector<Triangle> all;
-        for (const auto& t : surface.triangles) {
-            Triangle corners;
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Vec3& p = surface.points[t[k]];
-                corners[k] = {p.x, p.y, p.z};
-            }
-            all.push_back(corners);
-        }
-        std::sort(all.begin(), all.end());
-        return all;
-    };
-    for (const Scheme scheme : {Scheme::Mcq, Scheme::Linear}) {
-        const auto made = triangles(sample_rbf_points(mesh, {.scheme = scheme}).volume.boundary);
-        const auto expected = triangles(boundary_surface(refine(mesh, {.scheme = scheme})));
-        ASSERT_EQ(made.size(), expected.size());
-        for (std::size_t i = 0; i < made.size(); ++i) {
-            for (std::size_t k = 0; k < 3; ++k) {
-                for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(made[i][k][a], expected[i][k][a], 1e-15);
-            }
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear}) {
+        const HexMesh start = refine(mesh, {.scheme = scheme, .levels = 0});
+        for (const int levels : {0, 1, 2, 3}) {
+            SCOPED_TRACE(std::to_string(static_cast<int>(scheme)) + ", level " + std::to_string(levels));
+            const auto volume = sample_rbf_points(mesh, {.scheme = scheme, .boundary_levels = levels}).volume;
+            expect_same_triangles(volume.boundary,
+                                  boundary_surface(on_limit(refine(start, {.scheme = scheme, .levels = levels}), scheme)));
         }
     }
+}
+
+TEST(SampleWays, TheBoundaryIsAsFineAsHalfASampleInterval) {
+    HexMesh mesh = test::make_nested_cubes(2);
+    put_wave(mesh);
+    const std::size_t quads = boundary_surface(mesh).triangles.size();
+    EXPECT_EQ(sample_rbf_points(mesh, {.per_edge = 1}).volume.boundary.triangles.size(), 4 * quads);
+    EXPECT_EQ(sample_rbf_points(mesh, {.per_edge = 2}).volume.boundary.triangles.size(), 16 * quads);
+    EXPECT_EQ(sample_rbf_points(mesh, {.per_edge = 3}).volume.boundary.triangles.size(), 16 * quads);
+    EXPECT_EQ(sample_rbf_points(mesh, {.per_edge = 8}).volume.boundary.triangles.size(), 256 * quads);
+    EXPECT_EQ(sample_rbf_points(mesh, {.per_edge = 16}).volume.boundary.triangles.size(), 256 * quads);  // and no finer
 }
 
 TEST(SampleWays, LinesAndCellsSeeTheGradientOfTheLimit) {

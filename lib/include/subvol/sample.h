@@ -32,7 +32,9 @@ struct Footprint {
 ///                  at the points of the second refinement
 /// values:          where values between control points come from; gradients and moments come from the scheme
 /// value_kernel:    of the rule `Paper`
-/// boundary_levels: refinements of the boundary surface
+/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many that a quad of it is half a sample interval
+/// wide,
+///                  4 at most
 struct SampleOptions {
     Scheme scheme = Scheme::Mcq;
     double tension = 1.0 / 16.0;
@@ -44,7 +46,7 @@ struct SampleOptions {
     ValueRule values = ValueRule::Scheme;
     Kernel kernel{};
     Kernel value_kernel = BcSplineKernel{.b = 0.039579, .c = 0.028746, .extent = 2};
-    int boundary_levels = 1;
+    std::optional<int> boundary_levels{};
     std::optional<double> crease_angle_deg{};
     Progress* progress = nullptr;
 };
