@@ -26,7 +26,7 @@ template <>
 inline constexpr const char* kVtkType<std::int64_t> = "Int64";
 
 /// Writes a VTK XML file, element by element. Its arrays stand where they belong, compressed by zlib and in base64: small, and
-/// well-formed XML. Appended data would be neither for a newer expat (2.6): VTK up to 9.3 fails to find them with it.
+/// well-formed XML. Appended data, whoever wrote them, ParaView 5.11 cannot read with the later versions of expat.
 class VtkXmlWriter {
 public:
     /// Begins the file. out: must outlive it; data_set: "PolyData" and the like

@@ -29,7 +29,8 @@ def verdicts():
 class BadFiles(InFolder):
     def check(self, path, verdict, expected):
         (self.folder / "out.mesh").unlink(missing_ok=True)
-        done = subvol_measured("subdivide", path, "-o", "out.mesh", "--json", folder=self.folder)
+        done = subvol_measured("subdivide", path, "-o", "out.mesh", "--json", "--threads", 2, folder=self.folder,
+                               max_seconds=MAX_SECONDS, max_mib=MAX_MIB)
         written = (self.folder / "out.mesh").exists()
         self.assertIn(done.code, (0, 2), done.err)
         if not SANITIZED:

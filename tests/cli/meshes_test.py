@@ -4,11 +4,19 @@ import unittest
 
 from command import CUBE, InFolder, subvol
 
-try:  # Debian's python3-vtk9
+try:
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
+    from vtkmodules.vtkCommonCore import vtkDoubleArray
+    from vtkmodules.vtkCommonDataModel import vtkImageData, vtkRectilinearGrid
+    from vtkmodules.vtkIOExodus import vtkExodusIIWriter
+    from vtkmodules.vtkIOLegacy import vtkRectilinearGridWriter, vtkStructuredPointsWriter
+    from vtkmodules.vtkIOXML import (vtkXMLImageDataWriter, vtkXMLPolyDataReader, vtkXMLRectilinearGridWriter,
+                                     vtkXMLUnstructuredGridReader)
+    HAS_VTK = True
 except ImportError:
-    vtkXMLUnstructuredGridReader = None
+    HAS_VTK = False
+
+needs_vtk = unittest.skipUnless(HAS_VTK, "VTK for Python (Debian's package python3-vtk9) is missing")
 
 GAP = 1e-3
 
@@ -57,7 +65,7 @@ class Meshes(InFolder):
         self.assertEqual(reader.GetErrorCode(), 0)
         return reader.GetOutput()
 
-    @unittest.skipUnless(vtkXMLUnstructuredGridReader, "VTK for Python (package python3-vtk9) is missing")
+    @needs_vtk
     def test_vtk_reads_a_mesh_as_it_is(self):
         told = self.run_ok("model", "twist", "-o", "a.vtu", "--resolution", 24, "--json").json()  # some blocks an array
         grid = self.read_by_vtk(vtkXMLUnstructuredGridReader(), "a.vtu")
@@ -69,7 +77,7 @@ class Meshes(InFolder):
         low, high = info["bounds"]
         self.assertEqual(grid.GetBounds(), (low[0], high[0], low[1], high[1], low[2], high[2]))
 
-    @unittest.skipUnless(vtkXMLUnstructuredGridReader, "VTK for Python (package python3-vtk9) is missing")
+    @needs_vtk
     def test_vtk_reads_points_and_their_boundary(self):
         told = self.run_ok("points", "model:twist:8", "-o", "a.vtp", "--json").json()
         points = self.read_by_vtk(vtkXMLPolyDataReader(), "a.vtp")
@@ -77,6 +85,59 @@ class Meshes(InFolder):
         self.assertEqual(points.GetPointData().GetArray("ellipsoid").GetNumberOfComponents(), 9)
         surface = self.read_by_vtk(vtkXMLPolyDataReader(), "a.boundary.vtp")
         self.assertEqual(surface.GetNumberOfPolys(), self.info("a.vtp")["boundary_triangles"])
+
+    def write_by_vtk(self, writer, grid, name):
+        writer.SetFileName(str(self.folder / name))
+        writer.SetInputData(grid)
+        self.assertEqual(writer.Write(), 1)
+
+    def counted_up(self, grid):
+        """The grid with an array `s` of its points' numbers."""
+        values = vtkDoubleArray()
+        values.SetName("s")
+        for i in range(grid.GetNumberOfPoints()):
+            values.InsertNextValue(i)
+        grid.GetPointData().AddArray(values)
+        return grid
+
+    @needs_vtk
+    def test_blocks_that_vtk_writes(self):
+        image = vtkImageData()
+        image.SetExtent(-1, 2, 0, 2, 3, 7)
+        image.SetOrigin(1, 2, 3)
+        image.SetSpacing(2, 1, 0.5)
+        grid = vtkRectilinearGrid()
+        grid.SetExtent(-1, 2, 0, 2, 3, 7)
+        for set_axis, cuts in ((grid.SetXCoordinates, (-1, 1, 3, 5)), (grid.SetYCoordinates, (2, 3, 4)),
+                               (grid.SetZCoordinates, (4.5, 5, 5.5, 6, 6.5))):
+            array = vtkDoubleArray()
+            for cut in cuts:
+                array.InsertNextValue(cut)
+            set_axis(array)
+        for name, writer, data in [("a.vti", vtkXMLImageDataWriter(), image), ("b.vtk", vtkStructuredPointsWriter(), image),
+                                   ("c.vtr", vtkXMLRectilinearGridWriter(), grid), ("d.vtk", vtkRectilinearGridWriter(), grid)]:
+            with self.subTest(name):
+                if name.endswith(".vtk"):
+                    writer.SetFileTypeToBinary()
+                self.write_by_vtk(writer, self.counted_up(data), name)
+                told = self.info(name)
+                self.assertEqual((told["points"], told["cells"], told["volume"]), (60, 24, 24))
+                self.assertEqual(told["bounds"], [[-1, 2, 4.5], [5, 4, 6.5]])
+                self.assertEqual([(f["name"], f["min"], f["max"]) for f in told["fields"]], [("s", 0, 59)])
+
+    @needs_vtk
+    def test_exodus_that_vtk_writes(self):
+        self.run_ok("model", "twist", "-o", "a.vtu", "--resolution", 4)
+        grid = self.counted_up(self.read_by_vtk(vtkXMLUnstructuredGridReader(), "a.vtu"))
+        writer = vtkExodusIIWriter()
+        writer.WriteAllTimeStepsOff()
+        self.write_by_vtk(writer, grid, "a.exo")
+        expected, told = self.info("a.vtu"), self.info("a.exo")
+        for key in ("points", "cells", "edges", "faces", "volume", "bounds"):
+            self.assertEqual(told[key], expected[key])
+        fields = {field["name"]: (field["min"], field["max"]) for field in told["fields"]}
+        self.assertEqual(fields["s"], (0, 124))
+        self.assertEqual(fields["density"], (expected["fields"][0]["min"], expected["fields"][0]["max"]))
 
 
 if __name__ == "__main__":

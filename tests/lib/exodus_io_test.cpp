@@ -158,6 +158,8 @@ TEST_F(ExodusIo, CountsAreBelievedAsFarAsTheFileIsLong) {
             << dimension;
         EXPECT_THAT(read_error(with_length(good, dimension, '\x80')), HasSubstr("negative count")) << dimension;
     }
+    // What stands behind a variable's name is how many dimensions it has: netCDF's library allocates as many.
+    EXPECT_THAT(read_error(with_length(good, "connect1", '\x10')), HasSubstr("netCDF: there is no dimension"));
     std::string records = good;
     records[5] = 1;  // 65538 steps
     EXPECT_THAT(read_error(records), HasSubstr("values go beyond the end of the file"));
