@@ -19,15 +19,15 @@ constexpr std::size_t kAtOnce = 32;      // blocks, by all threads
 
 std::string base64(std::string_view bytes) {
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        unsigned bits = 0;
-        for (std::size_t k = i; k < i + 3; ++k) {
-            bits = (bits << 8) | (k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u);
-        }
-        for (unsigned k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[(bits >> (18 - 6 * k)) & 63];
-    }
+    const std::size_t whole = bytes.size() / 3 * 3;
+    std::string text((bytes.size() + 2) / 3 * 4, '=');
+    const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
+    const auto put = [&](std::size_t i, unsigned characters) {
+        const unsigned bits = (byte(i) << 16) | (byte(i + 1) << 8) | byte(i + 2);
+        for (unsigned k = 0; k < characters; ++k) text[i / 3 * 4 + k] = kDigits[(bits >> (18 - 6 * k)) & 63];
+    };
+    for (std::size_t i = 0; i < whole; i += 3) put(i, 4);
+    if (whole < bytes.size()) put(whole, static_cast<unsigned>(bytes.size() - whole) + 1);
     return text;
 }
 
