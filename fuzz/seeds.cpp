@@ -10,6 +10,9 @@
 #include "subvol/points_io.h"
 #include "subvol/sample.h"
 #include "vtu_texts.h"
+#ifdef SUBVOL_FUZZ_EXODUS
+#include "exodus_texts.h"
+#endif
 
 namespace subvol::test {
 
@@ -57,6 +60,20 @@ void add_binary_meshes(Seeds& seeds, const HexMesh& mesh) {
                           "\n$EndNodes\n$Elements\n1\n" + little<std::int32_t>({5, 1, 0, 1}) + corners + "\n$EndElements\n");
 }
 
+#ifdef SUBVOL_FUZZ_EXODUS
+void add_exodus(Seeds& seeds, const HexMesh& mesh) {
+    const std::vector<double> eight{1, 2, 3, 4, 5, 6, 7, 8};
+    const ExodusBlock tet{"TETRA", 4, {1, 2, 4, 5}}, quad{"SHELL4", 4, {1, 2, 3, 4}};
+    for (const int format : {0, NC_64BIT_OFFSET, NC_64BIT_DATA}) {  // what is HDF5 is left to netCDF's library
+        ExodusText file{.points = mesh.points, .blocks = {hex_block(mesh), tet, quad}, .times = {1}, .format = format};
+        file.of_nodes = {{"V_X", eight}, {"V_Y", eight}, {"V_Z", eight}, {"T", eight}};
+        file.of_elements = {{"e", {{1}, {2}, {}}}};
+        file.old_names = format == 0;
+        seeds.add("exodus", exodus_text(file));
+    }
+}
+#endif
+
 void add_plot3d(Seeds& seeds, const HexMesh& mesh) {
     seeds.add("plot3d", "2 2 2\n" + point_lines(mesh));
     seeds.add("plot3d", "2\n2 2 2 2 2 2\n" + point_lines(mesh) + point_lines(mesh) + "1 1 1 1 0 1 1 1\n1 1 1 1 1 1 1 1\n");
@@ -77,11 +94,19 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
                           "$NodeData\n1\n\"s\"\n1\n0\n3\n0\n1\n8\n1 1\n2 2\n3 3\n4 4\n5 5\n6 6\n7 7\n8 8\n$EndNodeData\n");
     seeds.add("vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\nDIMENSIONS 2 2 2\nPOINTS 8 float\n" +
                          point_lines(mesh) + data);
+    seeds.add("vtk",
+              "# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\nDIMENSIONS 2 2 2\nX_COORDINATES 2 float\n" +
+                  std::string("0 1\nY_COORDINATES 2 float\n0 1\nZ_COORDINATES 2 float\n0 1\n") + data);
+    seeds.add("vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\n" +
+                         std::string("SPACING 1 1 1\n") + data);
     seeds.add("gmsh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 8 1 8\n3 1 0 8\n1 2 3 4 5 6 7 8\n" + point_lines(mesh) +
                           "$EndNodes\n$Elements\n1 1 1 1\n3 1 5 1\n1 1 2 3 4 5 6 7 8\n$EndElements\n" +
                           "$ElementData\n1\n\"e\"\n0\n3\n0\n1\n1\n1 5\n$EndElementData\n");
     add_binary_meshes(seeds, mesh);
     add_plot3d(seeds, mesh);
+#ifdef SUBVOL_FUZZ_EXODUS
+    add_exodus(seeds, mesh);
+#endif
     for (const std::string format : {"ascii", "binary", "appended"}) {
         for (const std::string compressor : {"", "vtkZLibDataCompressor", "vtkLZMADataCompressor", "vtkLZ4DataCompressor"}) {
             VtuText vtu{.format = format, .compressor = compressor};
@@ -94,6 +119,16 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
                                       vtu.array("Float64", "NumberOfComponents=\"3\"", coordinates_as<double>(mesh)) +
                                       "</Points></Piece>";
             seeds.add("vts", std::regex_replace(vtu.file(block), std::regex("UnstructuredGrid"), "StructuredGrid"));
+            std::string cuts;
+            for (int a = 0; a < 3; ++a) cuts += vtu.array("Float32", "Name=\"c\"", std::vector<float>{0, 1});
+            const std::string between =
+                "<Piece Extent=\"0 1 0 1 0 1\">" + fields + "<Coordinates>" + cuts + "</Coordinates></Piece>";
+            seeds.add("vtr", std::regex_replace(vtu.file(between), std::regex("UnstructuredGrid"), "RectilinearGrid"));
+            const std::string image = vtu.file("<Piece Extent=\"0 1 0 1 0 1\">" + fields + "</Piece>");
+            seeds.add("vti", std::regex_replace(std::regex_replace(image, std::regex("<UnstructuredGrid"),
+                                                                   "<ImageData Origin=\"1 2 3\" Spacing=\"1 2 .5\" "
+                                                                   "Direction=\"0 1 0 1 0 0 0 0 1\""),
+                                                std::regex("UnstructuredGrid"), "ImageData"));
         }
     }
 }

@@ -12,7 +12,7 @@
 namespace subvol::cli {
 
 inline constexpr const char* kInputHelp =
-    "a mesh (.mesh, .meshb, .vtk, .vtu, .vts, .msh, .xyz), or model:NAME or model:NAME:RESOLUTION";
+    "a mesh (.mesh, .meshb, .vtk, .vtu, .vts, .msh, .exo, .xyz), or model:NAME or model:NAME:RESOLUTION";
 
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
 [[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);

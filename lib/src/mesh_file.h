@@ -66,14 +66,16 @@ struct Wording {
 /// Reads MEDIT binary, versions 1 to 4.
 [[nodiscard]] ReadResult read_meshb(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Reads legacy VTK, ASCII or BINARY, unstructured or structured grid.
+/// Reads legacy VTK, ASCII or BINARY, of every type but POLYDATA and FIELD.
 [[nodiscard]] ReadResult read_legacy_vtk(std::string_view text, std::string_view file, const ReadOptions& options);
 
 /// Reads VTK XML, UnstructuredGrid.
 [[nodiscard]] ReadResult read_vtu(std::string_view text, std::string_view file, const ReadOptions& options);
 
-/// Reads VTK XML, StructuredGrid.
+/// Reads VTK XML, StructuredGrid, RectilinearGrid or ImageData: their cells are hexahedra.
 [[nodiscard]] ReadResult read_vts(std::string_view text, std::string_view file, const ReadOptions& options);
+[[nodiscard]] ReadResult read_vtr(std::string_view text, std::string_view file, const ReadOptions& options);
+[[nodiscard]] ReadResult read_vti(std::string_view text, std::string_view file, const ReadOptions& options);
 
 /// A file of the flow that belongs to a Plot3D grid; without a text there is none.
 struct Plot3dFlow {
@@ -88,6 +90,11 @@ struct Plot3dFlow {
 
 /// Reads Gmsh, versions 2, 4.0 and 4.1, ASCII and binary.
 [[nodiscard]] ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options);
+
+/// Reads Exodus II, the last time step.
+///
+/// throws: Error(MissingCapability) for a file of HDF5 if this library is built without netCDF's
+[[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
 
 /// Appends a point that stands at a place in the text.
 void add_point(MeshFile& into, const Vec3& point, std::size_t position);
@@ -116,7 +123,7 @@ void report_left_out(MeshFile& found, const std::string& list, std::string_view 
 /// Writes MEDIT ASCII, version 2.
 std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh);
 
-/// Writes VTK XML, UnstructuredGrid, appended raw.
+/// Writes VTK XML, UnstructuredGrid, compressed.
 std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh);
 
 }  // namespace subvol

@@ -39,9 +39,16 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     if (format == ".VTK") return read_legacy_vtk(read_text(path), path.string(), options);
     if (format == ".VTU") return read_vtu(read_text(path), path.string(), options);
     if (format == ".VTS") return read_vts(read_text(path), path.string(), options);
+    if (format == ".VTR") return read_vtr(read_text(path), path.string(), options);
+    if (format == ".VTI") return read_vti(read_text(path), path.string(), options);
     if (format == ".XYZ" || format == ".P3D") return read_grid_and_flow(path, options);
     if (format == ".MSH") return read_gmsh(read_text(path), path.string(), options);
-    refuse_format(path, "read", ".mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts: VTK XML; .msh: Gmsh; .xyz, .p3d: Plot3D");
+    if (format == ".E" || format == ".EXO" || format == ".EX2" || format == ".G") {
+        return read_exodus(read_text(path), path.string(), options);
+    }
+    refuse_format(path, "read",
+                  ".mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti: VTK XML; .msh: Gmsh; .xyz, .p3d: Plot3D; "
+                  ".e, .exo, .ex2, .g: Exodus II");
 }
 
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh) {

@@ -1,5 +1,7 @@
 #include "output_file.h"
 
+#include <sys/types.h>
+
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -19,6 +21,18 @@ OutputFile::~OutputFile() {
 
 void OutputFile::write(std::string_view text) {
     if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) fail(errno);
+}
+
+std::uint64_t OutputFile::position() const {
+    const auto position = ::ftello(stream_);
+    if (position < 0) fail(errno);
+    return static_cast<std::uint64_t>(position);
+}
+
+void OutputFile::overwrite(std::uint64_t position, std::string_view text) {
+    if (::fseeko(stream_, static_cast<off_t>(position), SEEK_SET) != 0) fail(errno);
+    write(text);
+    if (::fseeko(stream_, 0, SEEK_END) != 0) fail(errno);
 }
 
 void OutputFile::close() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <span>
@@ -22,6 +23,10 @@ public:
     void write_values(std::span<const T> values) {
         write({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     }
+    /// How many bytes are written: where the next one goes.
+    [[nodiscard]] std::uint64_t position() const;
+    /// Writes over what stands at a position already.
+    void overwrite(std::uint64_t position, std::string_view text);
     /// Flushes; nothing can be written after that.
     void close();
     /// Closes and gives the file its name.

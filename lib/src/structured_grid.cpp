@@ -37,6 +37,19 @@ std::string size_text(const StructuredGrid& grid) {
     return std::to_string(i) + " x " + std::to_string(j) + " x " + std::to_string(k) + " points";
 }
 
+std::size_t most_points(std::size_t values) {
+    constexpr std::size_t kFew = 1 << 16;
+    return kFew + values;
+}
+
+void add_points(MeshFile& into, const std::array<std::vector<double>, 3>& at, std::size_t position) {
+    for (const double z : at[2]) {
+        for (const double y : at[1]) {
+            for (const double x : at[0]) add_point(into, {x, y, z}, position);
+        }
+    }
+}
+
 void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_point, std::size_t first_cell) {
     const auto cells = cells_along(grid);
     const std::size_t row = grid.points[0], layer = grid.points[0] * grid.points[1];

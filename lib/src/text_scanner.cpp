@@ -186,8 +186,9 @@ void TextScanner::fail_at(std::size_t position, const std::string& message, cons
     const auto lines_before = [&] {
         return std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(position), '\n');
     };
-    const std::string place =
-        names_bytes_ ? ", byte " + std::to_string(position) : ", line " + std::to_string(1 + lines_before());
+    std::string place;
+    if (places_ == Places::Bytes) place = ", byte " + std::to_string(position);
+    if (places_ == Places::Lines) place = ", line " + std::to_string(1 + lines_before());
     throw Error(ErrorCode::InvalidInput, message, std::string(file_) + place, allowed);
 }
 

@@ -31,7 +31,9 @@ public:
     TextScanner(std::string_view text, std::string_view file, Comments comments);
 
     /// From now on failures name the byte instead of the line: a line means nothing in binary data.
-    void name_bytes() { names_bytes_ = true; }
+    void name_bytes() { places_ = Places::Bytes; }
+    /// From now on failures name the file alone: what is read has been taken out of it by a library.
+    void name_no_place() { places_ = Places::None; }
 
     [[nodiscard]] bool at_end();
     /// Empty at the end of the text.
@@ -52,6 +54,8 @@ public:
     /// The last number, checked as `count` does.
     [[nodiscard]] std::size_t as_count(std::int64_t value, const Place& place) const;
 
+    /// How many bytes the text has.
+    [[nodiscard]] std::size_t size() const { return text_.size(); }
     /// What is left.
     [[nodiscard]] std::string_view rest() const { return text_.substr(next_); }
     /// How many bytes are left.
@@ -72,7 +76,7 @@ private:
     std::string_view text_;
     std::string_view file_;
     Comments comments_;
-    bool names_bytes_ = false;
+    enum class Places { Lines, Bytes, None } places_ = Places::Lines;
     std::size_t next_ = 0;
     std::size_t start_ = 0;
 };

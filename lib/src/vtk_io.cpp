@@ -2,8 +2,8 @@
 #include <optional>
 
 #include "mesh_file.h"
-#include "structured_grid.h"
 #include "vtk_arrays.h"
+#include "vtk_blocks.h"
 #include "vtk_cells.h"
 #include "vtk_values.h"
 
@@ -32,10 +32,10 @@ public:
             }
         }
         if (cells_.types.size() != cells_.size()) in_.fail("CELLS without CELL_TYPES");
-        if (grid_) check_grid();
         VtkCellSorter sorter(in_, found_, options_);
-        if (grid_) {
-            add_hexes(found_, *grid_, 0, 0);
+        if (block_) {
+            block_->add_points(in_, found_);
+            block_->add_cells(in_, found_);
         } else {
             sorter.take(cells_);
         }
@@ -62,28 +62,26 @@ private:
         const std::string_view dataset = in_.word();
         if (upper_case(dataset) != "DATASET") in_.fail_word({"dataset"}, "DATASET", dataset);
         const std::string type = upper_case(in_.word());
-        constexpr const char* kAllowed = "UNSTRUCTURED_GRID and STRUCTURED_GRID are";
+        constexpr const char* kAllowed = "UNSTRUCTURED_GRID, STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS are";
         if (type == "POLYDATA") in_.fail("POLYDATA is not a volume mesh", kAllowed);
-        if (type == "STRUCTURED_GRID") {
-            grid_.emplace();
-        } else if (type != "UNSTRUCTURED_GRID") {
-            in_.fail("DATASET " + in_quotes(type) + " is not supported", kAllowed);
-        }
+        block_ = VtkBlock::of(type);
+        if (!block_ && type != "UNSTRUCTURED_GRID") in_.fail("DATASET " + in_quotes(type) + " is not supported", kAllowed);
     }
 
     bool read_section(const std::string& keyword) {
-        if (keyword == "POINTS") {
+        if (keyword == "POINTS" && (!block_ || block_->lists_points())) {
             read_points();
-        } else if (keyword == "DIMENSIONS" && grid_) {
-            for (std::size_t& along : grid_->points) along = in_.count({"DIMENSIONS"});
-        } else if (keyword == "CELLS" && !grid_) {
+        } else if (block_ && block_->read_section(keyword, in_, values_)) {
+            return true;
+        } else if (keyword == "CELLS" && !block_) {
             read_cells();
-        } else if (keyword == "CELL_TYPES" && !grid_) {
+        } else if (keyword == "CELL_TYPES" && !block_) {
             read_cell_types();
         } else if (keyword == "POINT_DATA") {
+            if (block_) block_->add_points(in_, found_);
             start_data(false, found_.points.size(), "points");
         } else if (keyword == "CELL_DATA") {
-            start_data(true, grid_ ? grid_->cell_count() : cells_.size(), "cells");
+            start_data(true, block_ ? block_->grid().cell_count() : cells_.size(), "cells");
         } else if (keyword == "METADATA") {
             skip_metadata(in_);
         } else {
@@ -98,13 +96,6 @@ private:
         values_.begin(values_.read_type("POINTS"));
         found_.points.reserve(std::min(count, values_.room() / 3));
         for (std::size_t p = 0; p < count; ++p) read_point(values_, found_, kVtkWording, 0);
-    }
-
-    void check_grid() const {
-        if (found_.points.size() != grid_->point_count()) {
-            in_.fail("there are " + std::to_string(found_.points.size()) + " POINTS, but DIMENSIONS says " + size_text(*grid_));
-        }
-        if (grid_->cell_count() == 0) in_.fail("there is no cell between " + size_text(*grid_));
     }
 
     void read_cells() {
@@ -208,7 +199,7 @@ private:
     VtkValues values_;
     VtkArrayReader arrays_;
     VtkCells cells_;
-    std::optional<StructuredGrid> grid_;  // of a structured one
+    std::optional<VtkBlock> block_;  // of a structured data set
 };
 
 }  // namespace

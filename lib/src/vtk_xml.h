@@ -23,6 +23,9 @@ public:
     [[nodiscard]] const VtuArrays& arrays() const { return arrays_; }
     [[nodiscard]] const TextScanner& in() const { return in_; }
 
+    /// How many bytes its arrays can have at most when they are decompressed.
+    [[nodiscard]] std::size_t most_bytes() const { return largest_size(encoding_.compressor, text_.size()); }
+
     /// An attribute that counts points or cells.
     [[nodiscard]] std::size_t count(const pugi::xml_node& piece, const char* name) const;
     /// The array of that name; fails if there is none.

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <cstring>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,23 +14,6 @@ namespace subvol {
 
 [[nodiscard]] std::string xml_escaped(std::string_view text);
 
-/// The header of a VTK XML file: its arrays in the order in which their blocks are appended.
-class VtkXmlHeader {
-public:
-    /// data_set: "PolyData" and the like; compressor: VTK's name of one, if the blocks are compressed
-    explicit VtkXmlHeader(const std::string& data_set, const std::string& compressor = {});
-
-    void line(const std::string& text) { text_ += text + "\n"; }
-    /// block_size: bytes, or characters, that its block takes
-    void array(const std::string& type, std::string_view name, std::size_t components, std::size_t block_size);
-
-    [[nodiscard]] const std::string& text() const { return text_; }
-
-private:
-    std::string text_;
-    std::size_t offset_ = 0;
-};
-
 template <class Number>
 inline constexpr const char* kVtkType = nullptr;
 template <>
@@ -36,29 +21,49 @@ inline constexpr const char* kVtkType<float> = "Float32";
 template <>
 inline constexpr const char* kVtkType<double> = "Float64";
 template <>
+inline constexpr const char* kVtkType<std::uint8_t> = "UInt8";
+template <>
 inline constexpr const char* kVtkType<std::int64_t> = "Int64";
 
-/// Collects a VTK XML file whose arrays are appended, compressed by zlib and in base64: small, and well-formed XML.
+/// Writes a VTK XML file, element by element. Its arrays stand where they belong, compressed by zlib and in base64: small, and
+/// well-formed XML. Appended data, whoever wrote them, ParaView 5.11 cannot read with the later versions of expat.
 class VtkXmlWriter {
 public:
-    explicit VtkXmlWriter(const std::string& data_set);
+    /// Begins the file. out: must outlive it; data_set: "PolyData" and the like
+    VtkXmlWriter(OutputFile& out, const std::string& data_set);
 
-    void line(const std::string& text) { header_.line(text); }
+    void line(const std::string& text) { out_.write(text + "\n"); }
+
     template <class Number>
     void array(std::string_view name, std::size_t components, std::span<const Number> values) {
-        append(kVtkType<Number>, name, components, std::as_bytes(values));
+        write_array(kVtkType<Number>, name, components, values.size_bytes(),
+                    [&](std::size_t first, std::span<std::byte> block) {
+                        std::memcpy(block.data(), reinterpret_cast<const std::byte*>(values.data()) + first, block.size());
+                    });
+    }
+    /// The same for values that are made as they are written. value(i): the value of that number; called by several threads
+    template <class Number, class Value>
+    void made_array(std::string_view name, std::size_t components, std::size_t count, const Value& value) {
+        write_array(kVtkType<Number>, name, components, count * sizeof(Number),
+                    [&](std::size_t first, std::span<std::byte> block) {
+                        for (std::size_t i = 0; i < block.size() / sizeof(Number); ++i) {
+                            const Number number = value(first / sizeof(Number) + i);
+                            std::memcpy(block.data() + i * sizeof(Number), &number, sizeof(Number));
+                        }
+                    });
     }
     /// An array of strings, for FieldData.
     void strings(std::string_view name, std::span<const std::string> values);
 
-    /// Writes all; the file is then to be committed.
-    void write(OutputFile& out, const std::string& data_set_end) const;
+    /// Ends the file; it is then to be committed.
+    void end();
 
 private:
-    void append(const char* type, std::string_view name, std::size_t components, std::span<const std::byte> bytes);
+    using Fill = std::function<void(std::size_t first_byte, std::span<std::byte> block)>;
+    void write_array(const char* type, std::string_view name, std::size_t components, std::size_t bytes, const Fill& fill);
 
-    VtkXmlHeader header_;
-    std::string appended_;
+    OutputFile& out_;
+    std::string data_set_;
 };
 
 }  // namespace subvol

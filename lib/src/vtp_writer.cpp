@@ -105,24 +105,24 @@ void write_point_data(VtkXmlWriter& out, const RbfVolume& volume) {
 void write_points(OutputFile& out, const RbfVolume& volume) {
     std::vector<std::int64_t> vertices(volume.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<std::int64_t>(i);
-    VtkXmlWriter xml("PolyData");
-    xml.line("<PolyData>");
+    VtkXmlWriter xml(out, "PolyData");
     write_field_data(xml, volume);
     write_piece(xml, volume.centers, volume.size(), 0);
     write_cells(xml, "Verts", vertices, 1);
     write_point_data(xml, volume);
-    xml.write(out, "</Piece>\n</PolyData>");
+    xml.line("</Piece>");
+    xml.end();
 }
 
 void write_surface(OutputFile& out, const Surface& surface) {
     std::vector<std::int64_t> corners;
     corners.reserve(3 * surface.triangles.size());
     for (const auto& triangle : surface.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
-    VtkXmlWriter xml("PolyData");
-    xml.line("<PolyData>");
+    VtkXmlWriter xml(out, "PolyData");
     write_piece(xml, surface.points, 0, surface.triangles.size());
     write_cells(xml, "Polys", corners, 3);
-    xml.write(out, "</Piece>\n</PolyData>");
+    xml.line("</Piece>");
+    xml.end();
 }
 
 }  // namespace

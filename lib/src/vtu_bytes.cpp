@@ -58,6 +58,8 @@ std::optional<std::string> ByteSource::take(std::size_t count) {
     std::string bytes;
     bytes.reserve(count);
     while (bytes.size() < count) {
+        if (decoded_.empty()) take_whole_groups(bytes, count);
+        if (bytes.size() == count) break;
         if (decoded_.empty() && !decode_group()) return std::nullopt;
         const std::size_t some = std::min(count - bytes.size(), decoded_.size());
         bytes.append(decoded_, 0, some);
@@ -68,6 +70,19 @@ std::optional<std::string> ByteSource::take(std::size_t count) {
 
 std::size_t ByteSource::left() const {
     return base64_ ? decoded_.size() + text_.size() / 4 * 3 : text_.size();
+}
+
+// The most of it: groups without white space or padding, as many as are wanted whole.
+void ByteSource::take_whole_groups(std::string& bytes, std::size_t count) {
+    const auto digit = [&](std::size_t i) { return kDigitOf[static_cast<unsigned char>(text_[i])]; };
+    std::size_t next = 0;
+    for (; count - bytes.size() >= 3 && text_.size() - next >= 4; next += 4) {
+        const unsigned a = digit(next), b = digit(next + 1), c = digit(next + 2), d = digit(next + 3);
+        if (((a | b | c | d) & kNoDigit) != 0) break;
+        const unsigned bits = (a << 18) | (b << 12) | (c << 6) | d;
+        for (const unsigned shift : {16u, 8u, 0u}) bytes += static_cast<char>((bits >> shift) & 0xFF);
+    }
+    text_.remove_prefix(next);
 }
 
 // Four characters are three bytes; each = at the end is one fewer.

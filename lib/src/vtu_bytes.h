@@ -21,6 +21,7 @@ public:
 
 private:
     bool decode_group();
+    void take_whole_groups(std::string& bytes, std::size_t count);
 
     std::string_view text_;
     bool base64_;

@@ -1,12 +1,10 @@
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <pugixml.hpp>
 
 #include "mesh_file.h"
-#include "structured_grid.h"
 #include "vtk_cells.h"
-#include "vtk_xml.h"
+#include "vtk_xml_grid.h"
 
 namespace subvol {
 
@@ -15,14 +13,13 @@ namespace {
 // More components are a mistake, and fewer keep every product of counts within 64 bits.
 constexpr std::size_t kMostComponents = 1 << 16;
 
-// structured: a StructuredGrid, whose pieces have no arrays of cells, else an UnstructuredGrid
 class VtuReader {
 public:
-    VtuReader(std::string_view text, std::string_view file, const ReadOptions& options, bool structured)
+    VtuReader(std::string_view text, std::string_view file, const ReadOptions& options, VtkGrid kind)
         : file_(file),
           options_(options),
-          structured_(structured),
-          xml_(text, file, structured ? "StructuredGrid" : "UnstructuredGrid", "a volume mesh of that type is needed"),
+          kind_(kind),
+          xml_(text, file, name_of(kind), "a volume mesh of that type is needed"),
           arrays_(xml_.arrays()),
           sorter_(xml_.in(), found_, options) {}
 
@@ -46,13 +43,14 @@ private:
     void read_piece(const pugi::xml_node& piece) {
         const std::size_t first_point = found_.points.size();
         const std::size_t first_cell = cells_before_;
-        const StructuredGrid grid = structured_ ? extent_of(piece) : StructuredGrid{};
-        const std::size_t points = structured_ ? grid.point_count() : xml_.count(piece, "NumberOfPoints");
-        const std::size_t cells = structured_ ? grid.cell_count() : xml_.count(piece, "NumberOfCells");
+        const bool structured = kind_ != VtkGrid::Unstructured;
+        const VtkExtent extent = structured ? extent_of(xml_, piece) : VtkExtent{};
+        const std::size_t points = structured ? extent.grid.point_count() : xml_.count(piece, "NumberOfPoints");
+        const std::size_t cells = structured ? extent.grid.cell_count() : xml_.count(piece, "NumberOfCells");
         if (points >= kNone - first_point || cells >= kNone - first_cell) xml_.fail_at(piece, "too many points or cells");
-        if (points > 0) read_points(piece, points);
-        if (structured_) {
-            add_hexes(found_, grid, first_point, first_cell);
+        if (points > 0) read_points(piece, extent, points);
+        if (structured) {
+            add_hexes(found_, extent.grid, first_point, first_cell);
         } else if (cells > 0) {
             read_cells(piece.child("Cells"), piece, first_point, cells);
         }
@@ -61,28 +59,11 @@ private:
         if (cells > 0) read_arrays(piece.child("CellData"), true, first_cell, cells);
     }
 
-    // The first and the last number along each of the three directions.
-    [[nodiscard]] StructuredGrid extent_of(const pugi::xml_node& piece) const {
-        constexpr std::int64_t kFar = std::int64_t{1} << 40;  // so that differences can be formed
-        const std::string_view text = piece.attribute("Extent").as_string();
-        TextScanner words(text, file_, TextScanner::Comments::None);
-        StructuredGrid grid;
-        for (std::size_t& along : grid.points) {
-            std::array<std::int64_t, 2> ends{};
-            for (std::int64_t& end : ends) {
-                const std::string_view word = words.word();
-                const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), end);
-                if (error != std::errc() || stop != word.data() + word.size() || end < -kFar || end > kFar) {
-                    xml_.fail_at(piece, "its Extent is " + in_quotes(text), "six integers are needed");
-                }
-            }
-            along = ends[1] < ends[0] ? 0 : static_cast<std::size_t>(ends[1] - ends[0]) + 1;
+    void read_points(const pugi::xml_node& piece, const VtkExtent& extent, std::size_t count) {
+        if (kind_ == VtkGrid::Rectilinear || kind_ == VtkGrid::Image) {
+            add_grid_points(xml_, kind_, piece, extent, found_);
+            return;
         }
-        if (!words.at_end()) xml_.fail_at(piece, "its Extent is " + in_quotes(text), "six integers are needed");
-        return grid;
-    }
-
-    void read_points(const pugi::xml_node& piece, std::size_t count) {
         const auto values = xml_.coordinates(piece, count);
         const auto position = static_cast<std::size_t>(piece.child("Points").child("DataArray").offset_debug());
         for (std::size_t p = 0; p < count; ++p) {
@@ -188,7 +169,7 @@ private:
 
     std::string_view file_;
     ReadOptions options_;
-    bool structured_;
+    VtkGrid kind_;
     VtkXml xml_;
     const VtuArrays& arrays_;
     MeshFile found_;
@@ -199,11 +180,19 @@ private:
 }  // namespace
 
 ReadResult read_vtu(std::string_view text, std::string_view file, const ReadOptions& options) {
-    return VtuReader(text, file, options, false).read();
+    return VtuReader(text, file, options, VtkGrid::Unstructured).read();
 }
 
 ReadResult read_vts(std::string_view text, std::string_view file, const ReadOptions& options) {
-    return VtuReader(text, file, options, true).read();
+    return VtuReader(text, file, options, VtkGrid::Structured).read();
+}
+
+ReadResult read_vtr(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtuReader(text, file, options, VtkGrid::Rectilinear).read();
+}
+
+ReadResult read_vti(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtuReader(text, file, options, VtkGrid::Image).read();
 }
 
 }  // namespace subvol

@@ -20,14 +20,17 @@ MAX_MIB = 200
 
 
 def verdicts():
-    rows = re.findall(r"^\| `([^`]+)`[^|]*\| ([^|]+?) \|", (COLLECTION / "README.md").read_text(), re.MULTILINE)
-    return dict(rows)
+    """File name → (class, expected)."""
+    pattern = r"^\| `([^`]+)`[^|]*\| ([^|]+?) \|[^|]*\| ([^|]+?) \|$"
+    rows = re.findall(pattern, (COLLECTION / "README.md").read_text(), re.MULTILINE)
+    return {name: (verdict, expected) for name, verdict, expected in rows}
 
 
 class BadFiles(InFolder):
-    def check(self, path, verdict):
+    def check(self, path, verdict, expected):
         (self.folder / "out.mesh").unlink(missing_ok=True)
-        done = subvol_measured("subdivide", path, "-o", "out.mesh", folder=self.folder)
+        done = subvol_measured("subdivide", path, "-o", "out.mesh", "--json", "--threads", 2, folder=self.folder,
+                               max_seconds=MAX_SECONDS, max_mib=MAX_MIB)
         written = (self.folder / "out.mesh").exists()
         self.assertIn(done.code, (0, 2), done.err)
         if not SANITIZED:
@@ -39,16 +42,18 @@ class BadFiles(InFolder):
             self.assertEqual(self.files(), [])
         if verdict == "must work":
             self.assertEqual((done.code, written), (0, True), done.err)
+            if "as 00_ok" in expected or "to 00_ok" in expected:  # "after one split 125 vertices / 64 hexes"
+                self.assertEqual((done.json()["points"], done.json()["cells"]), (125, 64))
         elif verdict == "error":
             self.assertEqual(done.code, 2, "is an error")
         else:
-            self.assertTrue(done.code == 2 or "warning" in done.err, "silence")
+            self.assertTrue(done.code == 2 or done.json()["warnings"], "silence")
 
     def check_all(self, ending):
-        for name, verdict in verdicts().items():
+        for name, (verdict, expected) in verdicts().items():
             if name.endswith(ending):
                 with self.subTest(name):
-                    self.check(COLLECTION / name, verdict)
+                    self.check(COLLECTION / name, verdict, expected)
 
     def test_medit(self):
         self.check_all(".mesh")

@@ -2,6 +2,7 @@
 
 import json
 import os
+import resource
 import subprocess
 import tempfile
 import time
@@ -51,11 +52,19 @@ def subvol(*arguments, folder=None):
     return Run(done.returncode, done.stdout, done.stderr)
 
 
-def subvol_measured(*arguments, folder=None):
-    """As `subvol`, with the seconds and the peak memory of this one process."""
+def subvol_measured(*arguments, folder=None, max_seconds=None, max_mib=None):
+    """As `subvol`, with the seconds and the peak memory of this one process, which ends where it wants more of either."""
+
+    def limit():
+        if max_seconds and not SANITIZED:
+            resource.setrlimit(resource.RLIMIT_CPU, (max_seconds, max_seconds))
+        if max_mib and not SANITIZED:  # of what it allocates: libraries alone take more addresses than that
+            resource.setrlimit(resource.RLIMIT_DATA, (max_mib << 20, max_mib << 20))
+
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+", errors="replace") as err:
         start = time.monotonic()
-        process = subprocess.Popen([COMMAND, *map(str, arguments)], cwd=folder, stdout=out, stderr=err)
+        process = subprocess.Popen([COMMAND, *map(str, arguments)], cwd=folder, stdout=out, stderr=err,
+                                   preexec_fn=limit)
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
         seconds = time.monotonic() - start

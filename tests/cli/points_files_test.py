@@ -24,25 +24,21 @@ VDB_TOLERANCE = 2e-5
 
 
 def vtk_arrays(path):
-    """The appended arrays of a VTK XML file by name: (type, components, bytes)."""
+    """The compressed arrays of a VTK XML file by name: (type, components, bytes)."""
     root = xml.etree.ElementTree.parse(path).getroot()
     assert root.get("compressor") == "vtkZLibDataCompressor" and root.get("header_type") == "UInt64"
     assert root.get("byte_order") == "LittleEndian"
-    appended = root.find("AppendedData")
-    assert appended.get("encoding") == "base64"
-    data = appended.text.strip()
-    assert data[0] == "_"
-    return {node.get("Name"): (node.get("type"), int(node.get("NumberOfComponents")), unpacked(data[1:], int(node.get("offset"))))
-            for node in root.iter("DataArray") if node.get("format") == "appended"}
+    return {node.get("Name"): (node.get("type"), int(node.get("NumberOfComponents")), unpacked(node.text.strip()))
+            for node in root.iter("DataArray") if node.get("format") == "binary"}
 
 
-def unpacked(data, offset):
+def unpacked(data):
     def decoded(start, size):
         return base64.b64decode(data[start : start + (size + 2) // 3 * 4])[:size]
 
-    count = struct.unpack("<Q", decoded(offset, 8))[0]
-    header = struct.unpack(f"<{3 + count}Q", decoded(offset, 8 * (3 + count)))
-    blocks = decoded(offset + (8 * (3 + count) + 2) // 3 * 4, sum(header[3:]))
+    count = struct.unpack("<Q", decoded(0, 8))[0]
+    header = struct.unpack(f"<{3 + count}Q", decoded(0, 8 * (3 + count)))
+    blocks = decoded((8 * (3 + count) + 2) // 3 * 4, sum(header[3:]))
     result = b""
     for i, size in enumerate(header[3:]):
         block = zlib.decompress(blocks[:size])

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -10,8 +11,10 @@
 #include <sys/resource.h>
 
 #include "mesh_texts.h"
+#include "subvol/mesh_report.h"
 #include "temp_folder.h"
 #include "test_meshes.h"
+#include "vtu_texts.h"
 
 namespace subvol::test {
 
@@ -60,6 +63,23 @@ TEST_F(MeshIo, MeditLetsTheSectionsComeInAnyOrder) {
     const std::string text = "MeshVersionFormatted 2 Dimension\n3\nHexahedra\n8\n" + cell_lines(kBox, 1, "", " 7") +
                              "Vertices 27\n" + point_lines(kBox, " -1");
     expect_same_geometry(read("a.mesh", text).mesh, kBox);
+}
+
+std::string with_crlf(const std::string& text) {
+    std::string result;
+    for (const char c : text) result += c == '\n' ? "\r\n" : std::string(1, c);
+    return result;
+}
+
+TEST_F(MeshIo, MeditTakesMarksLineEndsCommentsAndOtherSections) {
+    const std::string good = medit_text(kBox), mark = "\xEF\xBB\xBF";
+    const std::string extra = "Corners\n2\n1\n2\nRequiredVertices 1\n3\nQuads\n1\n1 2 5 4 0\nHexahedra";
+    for (const std::string& text : {with_crlf(good), mark + good, mark + with_crlf(good),
+                                    "# Hexahedra 7\n\n" + replaced(good, "Vertices", "# Vertices 1\nVertices # 2"),
+                                    replaced(good, "Hexahedra", extra), replaced(good, "End\n", "")}) {
+        expect_same_geometry(read("a.mesh", text).mesh, kBox);
+    }
+    EXPECT_THAT(read("a.mesh", replaced(good, "Hexahedra", extra)).warnings, ElementsAre(HasSubstr("Quads")));
 }
 
 TEST_F(MeshIo, MeditTakesWhatNumbersMayLookLike) {
@@ -147,6 +167,24 @@ TEST_F(MeshIo, VtkReadsEveryKindOfArray) {
     EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("\"names\" ignored")));
 }
 
+TEST_F(MeshIo, VtkTakesEveryLineEnd) {
+    expect_same_geometry(read("a.vtk", with_crlf(vtk_text(kBox))).mesh, kBox);
+}
+
+TEST_F(MeshIo, PointsThatNoCellUsesAreCountedAndCanBeLeftOut) {
+    HexMesh mesh = make_box(1, 1, 1);
+    mesh.points.insert(mesh.points.begin() + 3, Vec3(50, 0, 0));
+    for (Index& corner : mesh.cells[0]) corner += corner >= 3 ? 1 : 0;
+    const std::string text = vtk_text(mesh) + "POINT_DATA 9\nSCALARS s float\nLOOKUP_TABLE default\n0 1 2 nan 3 4 5 6 7\n";
+    const HexMesh found = read("a.vtk", text).mesh;
+    EXPECT_EQ(found.points.size(), 9u);
+    EXPECT_EQ(inspect(found).points_used, 8u);
+    EXPECT_EQ(inspect(found).bounds.upper, Vec3(1, 1, 1));
+    const HexMesh used = without_unused_points(found);
+    expect_same_geometry(used, make_box(1, 1, 1));
+    EXPECT_THAT(used.find_attribute("s")->values, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+}
+
 TEST_F(MeshIo, VtkVersion5LayoutGivesTheSameCells) {
     std::string text = vtk_text(kBox);
     const auto cells = text.find("CELLS");
@@ -178,7 +216,7 @@ TEST_F(MeshIo, VtkErrorsNameThePlace) {
     const std::vector<std::array<std::string, 3>> cases{
         {"ASCII", "BINARY", "unexpected end of file"},
         {"ASCII", "EBCDIC", "line 3: encoding: ASCII or BINARY is expected, not \"EBCDIC\""},
-        {"UNSTRUCTURED_GRID", "RECTILINEAR_GRID", "line 4: DATASET \"RECTILINEAR_GRID\" is not supported"},
+        {"UNSTRUCTURED_GRID", "FIELD", "line 4: DATASET \"FIELD\" is not supported"},
         {"UNSTRUCTURED_GRID", "POLYDATA", "line 4: POLYDATA is not a volume mesh"},
         {"27 double", "27 dubble", "line 5: POINTS: a data type is expected, not \"dubble\""},
         {"27 double", "99999999999999 double", "line 5: POINTS: count out of range"},
@@ -323,16 +361,24 @@ TEST_F(MeshIo, NamesInLatin1BecomeUtf8) {
 
 // ---- writers, files
 
-// The block of an array in a file with raw appended data: its bytes, behind their number.
+// The values of an array in a file that holds it as base64 of what zlib compressed, in one block.
 template <class T>
-std::vector<T> appended(const std::string& file, const std::string& name) {
+std::vector<T> compressed(const std::string& file, const std::string& name) {
     const auto array = file.find("Name=\"" + name + "\"");
-    const auto offset = std::stoull(file.substr(file.find("offset=\"", array) + 8));
-    const char* block = file.data() + file.find('_', file.find("<AppendedData")) + 1 + offset;
-    std::uint64_t bytes = 0;
-    std::memcpy(&bytes, block, sizeof bytes);
-    std::vector<T> values(bytes / sizeof(T));
-    std::memcpy(values.data(), block + sizeof bytes, bytes);
+    const auto begin = file.find('\n', array) + 1;
+    const std::string text = file.substr(begin, file.find('\n', begin) - begin);
+    constexpr std::size_t kHeader = 44;  // four numbers of 8 bytes
+    std::array<std::uint64_t, 4> header{};
+    const std::string numbers = from_base64(text.substr(0, kHeader)), data = from_base64(text.substr(kHeader));
+    std::memcpy(header.data(), numbers.data(), sizeof header);
+    EXPECT_EQ(header[0], 1u);
+    EXPECT_EQ(header[3], data.size());
+    std::vector<T> values(header[2] / sizeof(T));
+    uLongf size = header[2];
+    EXPECT_EQ(
+        uncompress(reinterpret_cast<Bytef*>(values.data()), &size, reinterpret_cast<const Bytef*>(data.data()), data.size()),
+        Z_OK);
+    EXPECT_EQ(size, header[2]);
     return values;
 }
 
@@ -344,15 +390,15 @@ TEST_F(MeshIo, VtuHoldsTheMeshToTheBit) {
     const std::string file = read_bytes(path("box.vtu"));
     EXPECT_THAT(file, HasSubstr("NumberOfPoints=\"27\" NumberOfCells=\"8\""));
     EXPECT_THAT(file, HasSubstr("Name=\"velocity\" NumberOfComponents=\"3\""));
-    const auto points = appended<Vec3>(file, "Points");
+    const auto points = compressed<Vec3>(file, "Points");
     EXPECT_EQ(points, mesh.points);
-    const auto connectivity = appended<std::int64_t>(file, "connectivity");
+    const auto connectivity = compressed<std::int64_t>(file, "connectivity");
     ASSERT_EQ(connectivity.size(), 64u);
     for (std::size_t i = 0; i < 64; ++i) EXPECT_EQ(connectivity[i], mesh.cells[i / 8][i % 8]);
-    EXPECT_THAT(appended<std::int64_t>(file, "offsets"), ElementsAre(8, 16, 24, 32, 40, 48, 56, 64));
-    EXPECT_EQ(appended<std::uint8_t>(file, "types"), std::vector<std::uint8_t>(8, 12));
-    EXPECT_EQ(appended<double>(file, "a&lt;&quot;b&quot;&gt;"), mesh.attributes[0].values);
-    EXPECT_EQ(appended<double>(file, "velocity"), mesh.attributes[1].values);
+    EXPECT_THAT(compressed<std::int64_t>(file, "offsets"), ElementsAre(8, 16, 24, 32, 40, 48, 56, 64));
+    EXPECT_EQ(compressed<std::uint8_t>(file, "types"), std::vector<std::uint8_t>(8, 12));
+    EXPECT_EQ(compressed<double>(file, "a&lt;&quot;b&quot;&gt;"), mesh.attributes[0].values);
+    EXPECT_EQ(compressed<double>(file, "velocity"), mesh.attributes[1].values);
 }
 
 TEST_F(MeshIo, WhatAFormatCannotHoldIsSaid) {

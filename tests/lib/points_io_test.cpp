@@ -102,13 +102,14 @@ TEST_F(PointsIo, VtpHessiansAreInTheOrderOfVtk) {
     write_points(path("a.vtp"), volume);
     const std::string text = read_bytes(path("a.vtp"));
     EXPECT_THAT(text, testing::Not(HasSubstr("\"density.hessian\"")));
-    const std::string array = "<DataArray type=\"Float32\" Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"appended\"";
+    const std::string array = "<DataArray type=\"Float32\" Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"binary\"";
     ASSERT_THAT(text, HasSubstr(array));
     // xx yy zz xy yz xz
-    const std::size_t at = text.find(array), end = text.find("/>", at);
+    const std::string close = "</DataArray>";
+    const std::size_t at = text.find(array), end = text.find(close, at);
     const std::string ascii =
         "<DataArray type=\"Float32\" Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"ascii\">1 4 6 2 5 3</DataArray>";
-    write("b.vtp", text.substr(0, at) + ascii + text.substr(end + 2));
+    write("b.vtp", text.substr(0, at) + ascii + text.substr(end + close.size()));
     EXPECT_EQ(read_points(path("b.vtp")).channels[1].hessians, volume.channels[1].hessians);
     EXPECT_EQ(read_points(path("a.vtp")).channels[1].hessians, volume.channels[1].hessians);
 }
@@ -256,10 +257,10 @@ TEST_F(PointsIo, VtpThatIsWrong) {
         {"Name=\"kernel\"", "Name=\"other\"", "no array \"kernel\""},
         {"<FieldData>", "<Other>", "not well-formed XML"},
         {"123 34", "91 34", "no JSON"},
-        {"Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"appended\"",
-         "Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"ascii\"", "18 are needed: 6 a point"},
-        {"offset=\"0\"", "offset=\"999999999\"", "lies behind the appended data"},
-        {"\n_AQ", "\n_/w", "compressed blocks go beyond the end of the data"},
+        {"Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"binary\">",
+         "Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"ascii\">1</DataArray><DataArray>", "18 are needed: 6 a point"},
+        {"format=\"binary\"", "format=\"appended\"", "there are no appended data"},
+        {"\nAQ", "\n/w", "compressed blocks go beyond the end of the data"},
     };
     for (const auto& [from, to, message] : mistakes) {
         const std::string said = error_of_text("b.vtp", replaced(good, from, to));

@@ -35,13 +35,27 @@ std::string vts_piece(VtuText& vtu, const HexMesh& mesh, const std::string& exte
            "</Points>\n</Piece>\n";
 }
 
-std::string vts_file(const VtuText& vtu, const std::string& pieces) {
+// type: StructuredGrid, RectilinearGrid or ImageData; attributes: of its element
+std::string grid_file(const VtuText& vtu, const std::string& type, const std::string& attributes, const std::string& pieces) {
     const std::string unstructured = "UnstructuredGrid";
     std::string text = vtu.file(pieces);
-    for (std::size_t at = 0; (at = text.find(unstructured)) != std::string::npos;) {
-        text.replace(at, unstructured.size(), "StructuredGrid");
-    }
-    return text;
+    for (std::size_t at = 0; (at = text.find(unstructured)) != std::string::npos;) text.replace(at, unstructured.size(), type);
+    return replaced(text, "<" + type + ">", "<" + type + " " + attributes + ">");
+}
+
+std::string vts_file(const VtuText& vtu, const std::string& pieces) {
+    return grid_file(vtu, "StructuredGrid", "", pieces);
+}
+
+std::string cuts(VtuText& vtu) {
+    return "<Coordinates>" + vtu.array("Float32", "Name=\"x\"", std::vector<float>{0, 1, 2, 3}) +
+           vtu.array("Float64", "Name=\"y\"", std::vector<double>{0, 1, 2}) +
+           vtu.array("Int8", "Name=\"z\"", std::vector<std::int8_t>{0, 1, 2, 3, 4}) + "</Coordinates>";
+}
+
+std::string values_of_box(VtuText& vtu) {
+    return "<PointData>" + vtu.array("Float64", "Name=\"p\"", count_up(kBox.points.size())) + "</PointData><CellData>" +
+           vtu.array("Float64", "Name=\"c\"", std::vector<double>(kBox.cells.size(), 7)) + "</CellData>";
 }
 
 class StructuredIo : public TempFolder {
@@ -60,20 +74,63 @@ void expect_box(const HexMesh& mesh) {
     EXPECT_EQ(inspect(mesh).volume, 24);
 }
 
+void expect_box_with_values(const ReadResult& result) {
+    expect_box(result.mesh);
+    EXPECT_EQ(result.mesh.find_attribute("p")->values, count_up(kBox.points.size()));
+    EXPECT_DOUBLE_EQ(result.mesh.find_attribute("c")->values.front(), 7);
+}
+
 TEST_F(StructuredIo, XmlInEveryEncoding) {
     for (const std::string format : {"ascii", "binary", "appended"}) {
         for (const std::string compressor : {"", "vtkZLibDataCompressor", "vtkLZ4DataCompressor"}) {
             if (format == "ascii" && !compressor.empty()) continue;
             VtuText vtu{.format = format, .compressor = compressor};
-            const std::string data =
-                "<PointData>" + vtu.array("Float64", "Name=\"p\"", count_up(kBox.points.size())) + "</PointData><CellData>" +
-                vtu.array("Float64", "Name=\"c\"", std::vector<double>(kBox.cells.size(), 7)) + "</CellData>";
-            const ReadResult result = read("a.vts", vts_file(vtu, vts_piece(vtu, kBox, "-1 2 5 7 0 4", data)));
-            expect_box(result.mesh);
-            EXPECT_EQ(result.mesh.find_attribute("p")->values, count_up(kBox.points.size()));
-            EXPECT_DOUBLE_EQ(result.mesh.find_attribute("c")->values.front(), 7);
+            const std::string data = values_of_box(vtu);
+            expect_box_with_values(read("a.vts", vts_file(vtu, vts_piece(vtu, kBox, "-1 2 5 7 0 4", data))));
         }
     }
+}
+
+TEST_F(StructuredIo, XmlWithParallelPlanes) {
+    for (const std::string format : {"ascii", "appended"}) {
+        VtuText vtu{.format = format};
+        const std::string data = cuts(vtu) + values_of_box(vtu);
+        const std::string piece = "<Piece Extent=\"7 10 0 2 0 4\">" + data + "</Piece>";
+        expect_box_with_values(read("a.vtr", grid_file(vtu, "RectilinearGrid", "", piece)));
+    }
+}
+
+TEST_F(StructuredIo, XmlImages) {
+    VtuText vtu;
+    const auto image = [&](const std::string& attributes, const std::string& extent) {
+        const std::string piece = "<Piece Extent=\"" + extent + "\">" + values_of_box(vtu) + "</Piece>";
+        return read("a.vti", grid_file(vtu, "ImageData", attributes, piece));
+    };
+    expect_box_with_values(image("", "0 3 0 2 0 4"));
+    // The origin is at the number 0, wherever the piece begins.
+    expect_box_with_values(image("Origin=\"-5 10 0\" Spacing=\"1 1 1\"", "5 8 -10 -8 0 4"));
+    const auto turned = image("Origin=\"1 2 3\" Spacing=\"2 1 .5\" Direction=\"0 -1 0 1 0 0 0 0 1\"", "0 3 0 2 0 4");
+    EXPECT_EQ(turned.mesh.points.back(), Vec3(1 - 2, 2 + 6, 3 + 2));
+    EXPECT_EQ(inspect(turned.mesh).volume, 24);
+}
+
+TEST_F(StructuredIo, XmlErrorsOfParallelPlanes) {
+    VtuText vtu;
+    const std::string good = grid_file(vtu, "RectilinearGrid", "", "<Piece Extent=\"0 3 0 2 0 4\">" + cuts(vtu) + "</Piece>");
+    EXPECT_THAT(read_error("a.vtr", replaced(good, "0 2 0 4", "0 3 0 4")),
+                HasSubstr("it has 3 values (4 are needed: the coordinates along an axis)"));
+    EXPECT_THAT(read_error("a.vtr", replaced(good, "<Coordinates>", "<Other>")), HasSubstr("not well-formed XML"));
+    EXPECT_THAT(read_error("a.vtr", grid_file(vtu, "RectilinearGrid", "", "<Piece Extent=\"0 3 0 2 0 4\"/>")),
+                HasSubstr("the piece has not three arrays of Coordinates"));
+    const auto image = [&](const std::string& attributes, const std::string& extent) {
+        return read_error("a.vti", grid_file(vtu, "ImageData", attributes, "<Piece Extent=\"" + extent + "\"/>"));
+    };
+    EXPECT_THAT(image("Origin=\"0 0\"", "0 1 0 1 0 1"), HasSubstr("its Origin is \"0 0\" (3 numbers are needed)"));
+    EXPECT_THAT(image("Spacing=\"1 x 1\"", "0 1 0 1 0 1"), HasSubstr("its Spacing is \"1 x 1\""));
+    EXPECT_THAT(image("Spacing=\"1 nan 1\"", "0 1 0 1 0 1"), HasSubstr("non-finite coordinate at point 0"));
+    EXPECT_THAT(image("", "0 999 0 999 0 999"),
+                HasSubstr("1000 x 1000 x 1000 points are more than the file can have values for"));
+    EXPECT_THAT(image("", "0 9 0 9 0 0"), HasSubstr("no hexahedra"));
 }
 
 TEST_F(StructuredIo, PiecesAreJoinedByWelding) {
@@ -111,15 +168,49 @@ TEST_F(StructuredIo, XmlErrors) {
     EXPECT_THAT(read_error("a.vts", vtu.file("")), HasSubstr("\"UnstructuredGrid\" is not a StructuredGrid"));
 }
 
-TEST_F(StructuredIo, LegacyWithFields) {
-    std::string text = legacy_text("4 3 5", kBox) + "POINT_DATA 60\nSCALARS p double 1\nLOOKUP_TABLE default\n";
+std::string legacy_values() {
+    std::string text = "POINT_DATA 60\nSCALARS p double 1\nLOOKUP_TABLE default\n";
     for (int p = 0; p < 60; ++p) text += std::to_string(p) + " ";
     text += "\nCELL_DATA 24\nSCALARS c int\nLOOKUP_TABLE default\n";
     for (int c = 0; c < 24; ++c) text += "7 ";
-    const ReadResult result = read("a.vtk", text);
-    expect_box(result.mesh);
-    EXPECT_EQ(result.mesh.find_attribute("p")->values, count_up(60));
-    EXPECT_DOUBLE_EQ(result.mesh.find_attribute("c")->values.back(), 7);
+    return text;
+}
+
+TEST_F(StructuredIo, LegacyWithFields) {
+    expect_box_with_values(read("a.vtk", legacy_text("4 3 5", kBox) + legacy_values()));
+}
+
+const std::string kLegacyHead = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET ";
+
+TEST_F(StructuredIo, LegacyWithParallelPlanes) {
+    const std::string cuts =
+        "X_COORDINATES 4 float\n0 1 2 3\nY_COORDINATES 3 float\n0 1 2\nZ_COORDINATES 5 double\n0 1 2 3 4\n";
+    const std::string head = kLegacyHead + "RECTILINEAR_GRID\nDIMENSIONS 4 3 5\n";
+    expect_box_with_values(read("a.vtk", head + cuts + legacy_values()));
+    expect_box(read("a.vtk", head + cuts).mesh);
+    EXPECT_THAT(read_error("a.vtk", head + replaced(cuts, "4 float\n0 1 2 3", "3 float\n0 1 2")),
+                HasSubstr("there are 3 X_COORDINATES, but DIMENSIONS says 4 x 3 x 5 points"));
+    EXPECT_THAT(read_error("a.vtk", head + "POINTS 1 float\n0 0 0\n"), HasSubstr("a keyword is expected, not \"POINTS\""));
+    const auto big = [](const std::vector<double>& values) { return bytes_of(values, std::endian::big) + "\n"; };
+    expect_box(read("a.vtk", replaced(head, "ASCII", "BINARY") + "X_COORDINATES 4 double\n" + big({0, 1, 2, 3}) +
+                                 "Y_COORDINATES 3 double\n" + big({0, 1, 2}) + "Z_COORDINATES 5 double\n" +
+                                 big({0, 1, 2, 3, 4}))
+                   .mesh);
+}
+
+TEST_F(StructuredIo, LegacyImages) {
+    const std::string head = kLegacyHead + "STRUCTURED_POINTS\nDIMENSIONS 4 3 5\n";
+    expect_box_with_values(read("a.vtk", head + legacy_values()));
+    const ReadResult placed = read("a.vtk", head + "ORIGIN 1 2 3\nSPACING 2 1 .5\n" + legacy_values());
+    EXPECT_EQ(placed.mesh.points.front(), Vec3(1, 2, 3));
+    EXPECT_EQ(placed.mesh.points.back(), Vec3(7, 4, 5));
+    for (const auto& [dimensions, message] : std::vector<std::array<std::string, 2>>{
+             {"200 200 200", "200 x 200 x 200 points are more than the file can have values for"},
+             {"60 0 1", "there is no cell between"},
+             {"60 1 1", "there is no cell between 60 x 1 x 1 points"},
+             {"4 3 6", "POINT_DATA is for 60 points, but there are 72"}}) {
+        EXPECT_THAT(read_error("a.vtk", replaced(head, "4 3 5", dimensions) + legacy_values()), HasSubstr(message));
+    }
 }
 
 TEST_F(StructuredIo, LegacyBinary) {
@@ -144,8 +235,8 @@ TEST_F(StructuredIo, LegacyErrors) {
     EXPECT_THAT(read_error("a.vtk", legacy_text("4 3 99999999999", kBox)), HasSubstr("count out of range"));
     EXPECT_THAT(read_error("a.vtk", legacy_text("4 3 5", kBox) + "CELLS 1 9\n"),
                 HasSubstr("a keyword is expected, not \"CELLS\""));
-    EXPECT_THAT(read_error("a.vtk", replaced(legacy_text("4 3 5", kBox), "STRUCTURED_GRID", "RECTILINEAR_GRID")),
-                HasSubstr("\"RECTILINEAR_GRID\" is not supported (UNSTRUCTURED_GRID and STRUCTURED_GRID are)"));
+    EXPECT_THAT(read_error("a.vtk", replaced(legacy_text("4 3 5", kBox), "STRUCTURED_GRID", "FIELD")),
+                HasSubstr("DATASET \"FIELD\" is not supported"));
 }
 
 }  // namespace

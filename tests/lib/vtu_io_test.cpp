@@ -123,6 +123,17 @@ TEST_F(VtuIo, WhatIsWrittenIsReadAgainToTheBit) {
     EXPECT_TRUE(back.warnings.empty());
 }
 
+// Blocks are of 128 KiB, 32 of them are compressed at once.
+TEST_F(VtuIo, ManyBlocksAreOneArray) {
+    HexMesh mesh = make_box(42, 42, 42);
+    mesh.attributes = {{"s", 1, ramp(mesh.points.size())}};
+    write_mesh(path("a.vtu"), mesh);
+    const ReadResult back = read_mesh(path("a.vtu"));
+    EXPECT_EQ(back.mesh.points, mesh.points);
+    EXPECT_EQ(back.mesh.cells, mesh.cells);
+    EXPECT_EQ(back.mesh.attributes[0].values, mesh.attributes[0].values);
+}
+
 TEST_F(VtuIo, PiecesFollowEachOther) {
     VtuText vtu{.format = "appended"};
     const HexMesh first = make_box(2, 1, 1);

@@ -24,6 +24,20 @@ inline std::string base64(const std::string& bytes) {
     return text;
 }
 
+inline std::string from_base64(const std::string& text) {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    unsigned bits = 0, count = 0;
+    for (const char c : text.substr(0, text.find('='))) {
+        bits = (bits << 6) | static_cast<unsigned>(digits.find(c));
+        count += 6;
+        if (count < 8) continue;
+        count -= 8;
+        bytes += static_cast<char>(bits >> count);
+    }
+    return bytes;
+}
+
 inline std::string compressed_by(const std::string& compressor, const std::string& bytes) {
     std::string result(2 * bytes.size() + 1024, '\0');
     if (compressor == "vtkZLibDataCompressor") {

@@ -40,16 +40,19 @@ struct ReadResult {
 };
 
 /// Reads a mesh; the format follows from the file name: MEDIT `.mesh` and `.meshb`, legacy VTK `.vtk` (ASCII and BINARY,
-/// unstructured and structured grids), VTK XML `.vtu` and `.vts` (all encodings and compressors), Gmsh `.msh` (2, 4.0 and 4.1,
-/// ASCII and binary), Plot3D `.xyz` and `.p3d`, with the flow of the same name in `.q`.
+/// unstructured, structured and rectilinear grids, structured points), VTK XML `.vtu`, `.vts`, `.vtr` and `.vti` (all encodings
+/// and compressors), Gmsh `.msh` (2, 4.0 and 4.1, ASCII and binary), Plot3D `.xyz` and `.p3d`, with the flow of the same name
+/// in
+/// `.q`, Exodus II `.e`, `.exo`, `.ex2` and `.g` (the last time step).
 ///
 /// Cells of lower dimension are left out, and of cells of higher order the corners are taken, with a warning.
 /// throws: Error(InvalidInput) if options.weld is negative or makes corners of one cell the same;
+///         Error(MissingCapability) for Exodus II as HDF5 in a build without netCDF's library;
 ///         Error(Io) if the file cannot be opened; Error(InvalidInput) if it is malformed, naming the line, and the cell or
 ///         point as the file counts them; never allocates by a number from the file that the file's size does not bear out
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (appended raw, with all attributes). Written beside and
+/// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (compressed, with all attributes). Written beside and
 /// renamed, so that there is never half a file.
 ///
 /// returns: warnings, such as attributes that the format cannot hold
