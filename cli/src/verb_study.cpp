@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "input.h"
 #include "study_host.h"
 #include "study_runner.h"
 #include "subvol/error.h"
@@ -115,7 +116,7 @@ private:
         std::vector<Study> studies;
         for (const std::string& name : names_) studies.push_back(load(name));
         check_names(studies);
-        make_folder();
+        make_folder(output_);
         std::size_t failed = 0;
         std::vector<StudyResults> all;
         for (const Study& study : studies) {
@@ -162,12 +163,6 @@ private:
                           .fresh = fresh_,
                           .finished = finished,
                           .progress = report.progress()});
-    }
-
-    void make_folder() const {
-        std::error_code error;
-        fs::create_directories(output_, error);
-        if (error || !fs::is_directory(output_)) throw Error(ErrorCode::Io, "the folder cannot be made", output_);
     }
 
     void tell(const StudyResults& results, Report& report) const {
