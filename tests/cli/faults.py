@@ -92,7 +92,7 @@ def judge(ended, expected):
     if ended.code not in expected:
         raise Problem(f"exit code {ended.code}, said {ended.err[-300:]!r}")
     sentence = ended.sentence()
-    if ended.code > 1 and not sentence:
+    if ended.code > 1 and not sentence.rstrip(": ").partition(": ")[2]:
         raise Problem(f"exit code {ended.code} without a sentence")
     return expected[ended.code]
 
