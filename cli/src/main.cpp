@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -115,9 +118,16 @@ void keep_standard_streams() {
     }
 }
 
+/// Libraries may throw where nothing can be caught, as OpenVDB does when it frees a grid and memory is short.
+[[noreturn]] void end_with_a_sentence() {
+    std::fputs("subvol: a library could not go on; memory may be short\n", stderr);
+    std::_Exit(kEnvironment);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    std::set_terminate(end_with_a_sentence);
     keep_standard_streams();
     setenv("EGL_LOG_LEVEL", "fatal", 0);  // what OpenGL lacks is said in one sentence, by us
     std::signal(SIGXFSZ, SIG_IGN);        // a file that gets too long is an error of the write

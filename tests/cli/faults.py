@@ -270,6 +270,8 @@ class Faults:
             self.table.attempt(command, "memory limit", attempt)
 
     def no_opengl(self, command):
+        if not command.name.startswith("render"):
+            return
         def attempt():
             with tempfile.TemporaryDirectory() as name:
                 put_old_files(command, Path(name))
