@@ -84,19 +84,19 @@ def commands(inputs):
     """inputs: the folder that `prepare` fills."""
     draw = "render model:ball:4 --size 160"
     return [
-        Command("model .vtu", "model twist --resolution 24 -o a.vtu", quick=True),
+        Command("model .vtu", "model twist --resolution 24 -o a.vtu"),
         Command("model .mesh", "model twist --resolution 16 -o a.mesh"),
         Command("info", "info model:ball:8"),
         Command("subdivide", "subdivide model:ball:4 -o a.vtu --levels 1", quick=True),
         Command("fit", "fit --kernel gaussian --level 3"),
-        Command("points .ply", "points model:ball:8 -o a.ply", quick=True),
+        Command("points .ply", "points model:ball:8 -o a.ply"),
         Command("points .vtp", "points model:ball:8 -o a.vtp"),
         Command("points .vdb", "points model:ball:8 -o a.vdb"),
         Command("vdb", "vdb model:ball:4 -o a.vdb --resolution 80", quick=True),
         Command("vdb --memory", "vdb model:ball:4 -o a.vdb --resolution 80 --memory 1M"),
         Command("render cpu", f"{draw} -o a.png --backend cpu", quick=True),
         Command("render auto, legend", f"{draw} -o a.exr --legend a.svg"),
-        Command("render gl", f"{draw} -o a.png --backend gl", opengl=True, quick=True),
+        Command("render gl", f"{draw} -o a.png --backend gl", opengl=True),
         Command("render sheets", f"{draw} -o a.png --method sheets", opengl=True),
         Command("render pt", f"{draw} -o a.png --method pt", opengl=True),
         Command("render tets", f"{draw} -o a.exr --method tets"),
@@ -108,5 +108,5 @@ def commands(inputs):
         Command("compare --heatmap", f"compare {inputs}/a.png {inputs}/b.png --heatmap a.png"),
         Command("compare fields", f"compare {inputs}/a.ply {inputs}/a.vtu"),
         Command("study", f"study {inputs}/study.json -o out --jobs 2", children=True),
-        Command("demo", "demo -o out --size 48 --resolution 4", children=False),
+        Command("demo", "demo -o out --size 48 --resolution 4"),
     ]
