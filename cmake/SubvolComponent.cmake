@@ -22,6 +22,9 @@ function(subvol_component name)
   set_property(GLOBAL APPEND PROPERTY SUBVOL_COMPONENTS ${name})
 endfunction()
 
+# For code that runs once and is made of libraries' templates: the compiler spends most of its time on optimising what is thrown away.
+set(SUBVOL_COLD $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
+
 function(subvol_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wshadow $<$<BOOL:${SUBVOL_WERROR}>:-Werror>)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)

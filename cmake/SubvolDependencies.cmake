@@ -33,10 +33,6 @@ if(SUBVOL_VDB AND NOT TARGET OpenVDB::openvdb) # found once for all folders of a
   subvol_find_openvdb()
 endif()
 
-if(SUBVOL_VDB OR SUBVOL_RENDER)
-  find_package(hwy CONFIG REQUIRED)
-endif()
-
 if(SUBVOL_RENDER)
   find_package(embree 3.13 CONFIG REQUIRED)
   pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)

@@ -25,7 +25,7 @@ Headers, static libraries and CMake package of subvol::lib, subvol::vdb,
 subvol::render and subvol::compare.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsubvol-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libtbb-dev, libglm-dev, nlohmann-json3-dev, libpugixml-dev, libceres-dev, \
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libtbb-dev, libglm-dev, libhwy-dev, nlohmann-json3-dev, libpugixml-dev, libceres-dev, \
 zlib1g-dev, liblzma-dev, liblz4-dev, libmuparser-dev, pkg-config")
 if(SUBVOL_NETCDF)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libnetcdf-dev")
@@ -34,7 +34,7 @@ if(SUBVOL_VDB)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenvdb-dev, libboost-iostreams-dev")
 endif()
 if(SUBVOL_RENDER)
-  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libembree-dev, libhwy-dev, libepoxy-dev")
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libembree-dev, libepoxy-dev")
 endif()
 if(SUBVOL_COMPARE)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenimageio-dev, openimageio-tools")

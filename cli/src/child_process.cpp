@@ -11,12 +11,14 @@
 #include <csignal>
 #include <system_error>
 
+#include "interrupt.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
 namespace {
 
 constexpr std::size_t kMaxOutput = 16 << 20;
+constexpr int kLookForInterrupts_ms = 100;
 
 struct Pipe {
     std::array<int, 2> ends{-1, -1};
@@ -39,12 +41,14 @@ struct Pipe {
     }
 };
 
-/// Reads both to their end.
-void drain(Pipe& out, Pipe& err, ChildResult& result) {
+/// Reads both to their end; hands on a signal that asks us to stop.
+void drain(Pipe& out, Pipe& err, pid_t child, ChildResult& result) {
+    bool told = false;
     std::array<pollfd, 2> files{pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
     const std::array<std::string*, 2> texts{&result.out, &result.err};
     while (files[0].fd >= 0 || files[1].fd >= 0) {
-        if (poll(files.data(), files.size(), -1) < 0 && errno != EINTR) return;
+        if (poll(files.data(), files.size(), kLookForInterrupts_ms) < 0 && errno != EINTR) return;
+        if (!told && interrupt_signal() != 0) told = kill(child, SIGTERM) == 0;
         for (std::size_t i = 0; i < 2; ++i) {
             if (files[i].fd < 0 || files[i].revents == 0) continue;
             std::array<char, 1 << 16> bytes;
@@ -67,7 +71,8 @@ ChildResult run_self(const std::vector<std::string>& arguments) {
     const pid_t parent = getpid();
     const pid_t child = fork();
     if (child < 0) throw Error(ErrorCode::MissingCapability, std::generic_category().message(errno), "study");
-    if (child == 0) {  // only calls that are safe between fork and exec
+    if (child == 0) {   // only calls that are safe between fork and exec
+        setpgid(0, 0);  // Ctrl-C reaches it once: by us
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         if (getppid() != parent) _exit(127);  // it has ended meanwhile
         dup2(out.ends[1], STDOUT_FILENO);
@@ -78,7 +83,7 @@ ChildResult run_self(const std::vector<std::string>& arguments) {
     out.close_end(1);
     err.close_end(1);
     ChildResult result;
-    drain(out, err, result);
+    drain(out, err, child, result);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }

@@ -14,8 +14,8 @@ struct ChildResult {
     std::string out, err;
 };
 
-/// Runs this program again with other arguments and waits for it. It ends with its parent, whatever ends that. Callable from
-/// several threads.
+/// Runs this program again with other arguments and waits for it. It is asked to stop when this program is, and ends with it,
+/// whatever ends that. Callable from several threads.
 ///
 /// throws: Error(MissingCapability) if it cannot be started
 [[nodiscard]] ChildResult run_self(const std::vector<std::string>& arguments);

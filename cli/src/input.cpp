@@ -1,7 +1,11 @@
 #include "input.h"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <system_error>
 
 #include "subvol/error.h"
 #include "subvol/expression.h"
@@ -47,6 +51,11 @@ std::optional<double> weld_distance(const CommonOptions& options) {
     return options.weld ? std::optional<double>(0) : std::nullopt;
 }
 
+void check_writable(const std::filesystem::path& folder, const std::string& output) {
+    if (::access(folder.c_str(), W_OK | X_OK) == 0) return;
+    throw Error(ErrorCode::Io, "cannot be written: " + std::generic_category().message(errno), output);
+}
+
 }  // namespace
 
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
@@ -89,6 +98,14 @@ void check_output(const std::filesystem::path& path, const std::vector<std::stri
     if (!folder.empty() && !std::filesystem::is_directory(folder)) {
         throw Error(ErrorCode::Io, "the folder " + folder.string() + " does not exist", path.string());
     }
+    check_writable(folder.empty() ? "." : folder, path.string());
+}
+
+void make_folder(const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error) throw Error(ErrorCode::Io, "the folder cannot be made: " + error.message(), path.string());
+    check_writable(path, path.string());
 }
 
 }  // namespace subvol::cli

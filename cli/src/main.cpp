@@ -1,10 +1,17 @@
+#include <fcntl.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 
+#include "interrupt.h"
 #include "manual.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
@@ -18,7 +25,7 @@ using subvol::ErrorCode;
 
 constexpr int kBadInput = 2;
 constexpr int kEnvironment = 3;
-constexpr int kInterrupted = 130;
+constexpr int kEndedBySignal = 128;  // and the signal's number, as shells count
 
 constexpr const char* kDescription = "Subdivision volumes: refine hexahedral meshes, splat them, turn them into OpenVDB grids.";
 constexpr const char* kFooter = R"(Start here:
@@ -28,14 +35,14 @@ constexpr const char* kFooter = R"(Start here:
   subvol vdb part.vtk -o part.vdb        an OpenVDB grid
   subvol VERB --help                     everything about a verb
 
-Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the environment lacks something, 130 interrupted.)";
+Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the environment lacks something, 130 interrupted (143 by SIGTERM).)";
 
 int exit_code(ErrorCode code) {
     switch (code) {
         case ErrorCode::MissingCapability:
             return kEnvironment;
         case ErrorCode::Cancelled:
-            return kInterrupted;
+            return kEndedBySignal + (subvol::cli::interrupt_signal() != 0 ? subvol::cli::interrupt_signal() : SIGINT);
         case ErrorCode::InvalidInput:
         case ErrorCode::Io:
             break;
@@ -104,9 +111,26 @@ int run(CLI::App& program, int argc, char** argv) {
     return kBadInput;
 }
 
+/// A stream that is closed would be the next file that is opened. To write to what is opened here instead is refused.
+void keep_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (fcntl(stream, F_GETFD) < 0) (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    }
+}
+
+/// Libraries may throw where nothing can be caught, as OpenVDB does when it frees a grid and memory is short.
+[[noreturn]] void end_with_a_sentence() {
+    std::fputs("subvol: a library could not go on; memory may be short\n", stderr);
+    std::_Exit(kEnvironment);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    std::set_terminate(end_with_a_sentence);
+    keep_standard_streams();
+    setenv("EGL_LOG_LEVEL", "fatal", 0);  // what OpenGL lacks is said in one sentence, by us
+    std::signal(SIGXFSZ, SIG_IGN);        // a file that gets too long is an error of the write
     CLI::App program(kDescription, "subvol");
     try {
         return run(program, argc, argv);

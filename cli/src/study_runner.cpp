@@ -1,5 +1,6 @@
 #include "study_runner.h"
 
+#include <csignal>
 #include <cstring>
 
 #include "child_process.h"
@@ -11,7 +12,13 @@ namespace subvol::cli {
 namespace {
 
 constexpr const char* kReferences = "references";
-constexpr int kInterrupted = 130;
+
+/// It was asked to stop, whether it knew already how to answer that or not.
+bool interrupted(const ChildResult& ended) {
+    constexpr int kBySignal = 128;
+    const int signal = ended.signal != 0 ? ended.signal : ended.code - kBySignal;
+    return signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
+}
 
 /// The last line of what the program complained about, without its own name.
 std::string complaint(std::string said) {
@@ -52,7 +59,7 @@ CaseResult StudyRunner::in_child(const StudyCase& of, const std::string& study, 
                                        folder_.string(), "--json", "--threads", std::to_string(threads)};
     if (!study.empty()) arguments.insert(arguments.end(), {"--case-of", study});
     const ChildResult ended = run_self(arguments);
-    if (ended.code == kInterrupted) throw Error(ErrorCode::Cancelled, "interrupted");
+    if (interrupted(ended)) throw Error(ErrorCode::Cancelled, "interrupted");
     if (ended.signal != 0) {
         throw Error(ErrorCode::MissingCapability,
                     text("the case was ended by signal ", ended.signal, " (", strsignal(ended.signal), ")"));

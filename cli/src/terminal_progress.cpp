@@ -1,27 +1,17 @@
 #include "terminal_progress.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
+
+#include "interrupt.h"
 
 namespace subvol::cli {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
-
-void on_interrupt(int) {
-    interrupted = 1;
-    std::signal(SIGINT, SIG_DFL);
-}
 
 constexpr int kBarWidth = 30;
 constexpr std::chrono::milliseconds kRedrawInterval{80};
 
 }  // namespace
-
-void catch_interrupts() {
-    std::signal(SIGINT, on_interrupt);
-}
 
 void TerminalProgress::report(std::string_view stage, double fraction) {
     if (!visible_) return;
@@ -38,7 +28,7 @@ void TerminalProgress::report(std::string_view stage, double fraction) {
 }
 
 bool TerminalProgress::cancelled() const {
-    return interrupted != 0;
+    return interrupt_signal() != 0;
 }
 
 void TerminalProgress::clear() {

@@ -7,10 +7,7 @@
 
 namespace subvol::cli {
 
-/// From here on an interrupt (Ctrl-C) asks the running work to stop; a second one ends the program at once.
-void catch_interrupts();
-
-/// A bar on standard error, and the interrupt as a wish to stop.
+/// A bar on standard error, and an interrupt as a wish to stop.
 class TerminalProgress : public Progress {
 public:
     explicit TerminalProgress(bool visible) : visible_(visible) {}

@@ -2,10 +2,11 @@
 
 #include <deque>
 #include <filesystem>
-#include <fstream>
+#include <functional>
 
 #include "subvol/atomic_file.h"
 #include "subvol/error.h"
+#include "subvol/study_run.h"
 #include "subvol/version.h"
 #include "text.h"
 
@@ -21,20 +22,10 @@ Json corner(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
-void write_json(const std::filesystem::path& path, const Json& json) {
-    AtomicFile file(path);
-    std::ofstream out(file.path());
-    out << json.dump(2) << '\n';
-    out.close();
-    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", path.string());
-    file.commit();
-}
-
 /// name: that people know the file by
-void write_part(const std::filesystem::path& path, const std::string& name, std::span<const VdbGrid> grids,
-                VdbCompression compression) {
+void write_named(const std::string& name, const std::function<void()>& write) {
     try {
-        write_vdb(path, grids, compression);
+        write();
     } catch (const Error& error) {
         if (error.code() != ErrorCode::Io) throw;
         throw Error(ErrorCode::Io, "cannot be written; the disk may be full", name);
@@ -70,7 +61,8 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
         const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
         const GridReport& first = part.grids.front().report();
         const auto before = std::chrono::steady_clock::now();
-        write_part(files.emplace_back(path.parent_path() / name).path(), name, part.grids, output.compression);
+        const std::filesystem::path& file = files.emplace_back(path.parent_path() / name).path();
+        write_named(name, [&] { write_vdb(file, part.grids, output.compression); });
         writing += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
         active += first.active_voxels;
         report["voxel_size"] = first.voxel_size_world;
@@ -81,13 +73,15 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
     });
     report.add_seconds("rasterize", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - writing);
     report.add_seconds("write", writing);
-    for (AtomicFile& file : files) file.commit();
     const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
-    write_json(manifest, {{"input", report["input"]},
-                          {"version", SUBVOL_VERSION},
-                          {"voxel_size", report["voxel_size"]},
-                          {"active_voxels", active},
-                          {"parts", parts}});
+    const Json json{{"input", report["input"]},
+                    {"version", SUBVOL_VERSION},
+                    {"voxel_size", report["voxel_size"]},
+                    {"active_voxels", active},
+                    {"parts", parts}};
+    files.emplace_back(manifest);
+    write_named(manifest.string(), [&] { write_text_file(files.back().path(), json.dump(2) + "\n"); });
+    for (AtomicFile& file : files) file.commit();
     report["output"] = manifest.string();
     report["active_voxels"] = active;
     report["parts"] = parts.size();

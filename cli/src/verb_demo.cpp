@@ -1,18 +1,16 @@
 #include <sys/utsname.h>
 #include <tbb/global_control.h>
 
-#include <fstream>
 #include <iomanip>
 
 #include "demo_cases.h"
 #include "input.h"
 #include "picture_arguments.h"
-#include "subvol/atomic_file.h"
-#include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
 #include "subvol/render.h"
 #include "subvol/sample.h"
+#include "subvol/study_run.h"
 #include "subvol/vdb.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -38,15 +36,6 @@ Json host() {
             {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)}};
 }
 
-void write_json(const std::filesystem::path& path, const Json& json) {
-    AtomicFile file(path);
-    std::ofstream out(file.path());
-    out << json.dump(2) << '\n';
-    out.close();
-    if (!out) throw Error(ErrorCode::Io, "could not be written", path.string());
-    file.commit();
-}
-
 class DemoVerb : public Verb {
 public:
     explicit DemoVerb(CLI::App& program)
@@ -64,7 +53,7 @@ public:
 
     int run(Report& report) override {
         const PictureSize size = parse_size("--size", size_);
-        std::filesystem::create_directories(folder_);
+        make_folder(folder_);
         report.say("model     points  equivalent cells    splat s  reference s  PSNR dB");
         report["cases"] = Json::array();
         for (const std::string& name : demo_names()) {
@@ -73,7 +62,7 @@ public:
         }
         report["version"] = SUBVOL_VERSION;
         report["host"] = host();
-        write_json(folder_ / "summary.json", report.json());
+        write_text_file(folder_ / "summary.json", report.json().dump(2) + "\n");
         report.say(text("Everything is in ", folder_.string()));
         report.all_said();
         return 0;

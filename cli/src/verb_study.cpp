@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "folder_lock.h"
+#include "input.h"
 #include "study_host.h"
 #include "study_runner.h"
 #include "subvol/error.h"
@@ -116,7 +117,7 @@ private:
         std::vector<Study> studies;
         for (const std::string& name : names_) studies.push_back(load(name));
         check_names(studies);
-        make_folder();
+        make_folder(output_);
         const FolderLock alone(output_);
         std::size_t failed = 0;
         std::vector<StudyResults> all;
@@ -164,12 +165,6 @@ private:
                           .fresh = fresh_,
                           .finished = finished,
                           .progress = report.progress()});
-    }
-
-    void make_folder() const {
-        std::error_code error;
-        fs::create_directories(output_, error);
-        if (error || !fs::is_directory(output_)) throw Error(ErrorCode::Io, "the folder cannot be made", output_);
     }
 
     void tell(const StudyResults& results, Report& report) const {

@@ -51,6 +51,13 @@ std::uint8_t encoded_byte(double linear) {
     throw Error(ErrorCode::Io, "cannot be written: " + why, path.string());
 }
 
+/// Where memory is short OpenImageIO may leave a picture unfinished without a word.
+bool is_whole(const fs::path& path, const OIIO::ImageSpec& spec) {
+    const auto input = OIIO::ImageInput::open(path.string());
+    std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
+    return input && input->read_scanline(spec.height - 1, 0, OIIO::TypeDesc::FLOAT, row.data());
+}
+
 void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void* pixels) {
     AtomicFile file(path);
     // OpenImageIO does not tell of a disk that is full when it writes .png: the stream does.
@@ -58,13 +65,20 @@ void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void*
     if (!stream) fail(path, std::generic_category().message(errno));
     OIIO::Filesystem::IOFile proxy(stream.get(), OIIO::Filesystem::IOProxy::Write);
     const auto output = OIIO::ImageOutput::create(file.path().string(), &proxy);
-    if (!output) throw Error(ErrorCode::MissingCapability, OIIO::geterror(), path.string());
+    if (!output) {
+        const std::string said = OIIO::geterror();
+        throw Error(ErrorCode::MissingCapability, said.empty() ? "cannot be written; memory may be short" : said,
+                    path.string());
+    }
     const bool written =
         output->open(file.path().string(), spec) && output->write_image(spec.format, pixels) && output->close();
     if (!written) fail(path, output->geterror());
     const bool failed = std::ferror(stream.get()) != 0;
     if (std::fclose(stream.release()) != 0) fail(path, std::generic_category().message(errno));
     if (failed) fail(path, "the disk is full, or the file too large");
+    if (!is_whole(file.path(), spec)) {
+        throw Error(ErrorCode::MissingCapability, "was not written whole; memory may be short", path.string());
+    }
     file.commit();
 }
 

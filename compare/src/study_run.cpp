@@ -3,6 +3,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "subvol/error.h"
@@ -30,13 +31,7 @@ public:
     StudyResults finish() {
         const std::size_t jobs = all_.study.timed ? 1 : static_cast<std::size_t>(std::max(options_.jobs, 1));
         take_over();
-        if (jobs == 1 || open_.size() < 2) {
-            run_open();
-        } else {
-            std::vector<std::thread> threads;
-            for (std::size_t t = 0; t < std::min(jobs, open_.size()); ++t) threads.emplace_back([this] { run_open(); });
-            for (std::thread& thread : threads) thread.join();
-        }
+        run_with(std::min(jobs, open_.size()));
         if (stopped_) std::rethrow_exception(stopped_);
         report_progress(options_.progress, all_.study.name, 1);
         for (const CaseResult& result : all_.results) all_.failed += result.failure.empty() ? 0 : 1;
@@ -57,6 +52,16 @@ private:
             all_.results[i] = std::move(*known);
             if (options_.finished) options_.finished(of, all_.results[i], false);
         }
+    }
+
+    /// This thread is one of them.
+    void run_with(std::size_t threads) {
+        std::vector<std::jthread> others;
+        try {
+            while (others.size() + 1 < threads) others.emplace_back([this] { run_open(); });
+        } catch (const std::system_error&) {  // the system gives no more: fewer will do
+        }
+        run_open();
     }
 
     void run_open() {

@@ -2,13 +2,13 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "dense_block.h"
 #include "patch.h"
+#include "run_nested.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 
@@ -103,10 +103,8 @@ void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, cons
     constexpr std::size_t kTurn = 64;  // batches between two reports of progress
     for (std::size_t turn = 0; turn < batches; turn += kTurn) {
         report_progress(options.progress, "dense cells", static_cast<double>(turn) / static_cast<double>(batches));
-        tbb::parallel_for(turn, std::min(batches, turn + kTurn), [&](std::size_t b) {
-            // What a batch runs in parallel must not take up another batch meanwhile, and its memory with it.
-            tbb::this_task_arena::isolate([&] { refine_batch(b); });
-        });
+        tbb::parallel_for(turn, std::min(batches, turn + kTurn),
+                          [&](std::size_t b) { detail::run_nested([&] { refine_batch(b); }); });
     }
     report_progress(options.progress, "dense cells", 1);
 }

@@ -1,13 +1,13 @@
 #include "subvol/limit.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "limit_batch.h"
+#include "run_nested.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -73,7 +73,7 @@ void run_batches(const std::vector<Descent>& open, Progress* progress, LimitRepo
         tbb::parallel_for(turn, std::min(batches, turn + kTurn), [&](std::size_t b) {
             const auto begin = open.begin() + static_cast<std::ptrdiff_t>(b * kBatch);
             const auto end = open.begin() + static_cast<std::ptrdiff_t>(std::min(open.size(), (b + 1) * kBatch));
-            tbb::this_task_arena::isolate([&] { reports[b] = run(b, std::vector<Descent>(begin, end)); });
+            detail::run_nested([&] { reports[b] = run(b, std::vector<Descent>(begin, end)); });
         });
     }
     report_progress(progress, "limit", 1);

@@ -1,5 +1,3 @@
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -9,6 +7,7 @@
 #include "incident.h"
 #include "opposite.h"
 #include "regular_grid.h"
+#include "run_nested.h"
 #include "scheme_rows.h"
 #include "subvol/limit.h"
 
@@ -138,7 +137,7 @@ public:
     void limit_of(Index vertex, const SchemeRows& rows, StencilBuilder& row) const {
         // What this runs in parallel must not take up another block, which could come here again.
         std::call_once(built_, [&] {
-            tbb::this_task_arena::isolate([&] {
+            detail::run_nested([&] {
                 child_ = detail::child_topology(topology_);
                 child_rows_ = std::make_unique<SchemeRows>(child_, RefineOptions{.scheme = scheme_});
             });

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <array>
@@ -45,10 +46,17 @@ bool opengl_installed() {
     return installed;
 }
 
+/// Drivers end the program where they get no memory, Mesa's software with some hundred MB left: under a limit, ask first.
+bool addresses_left() {
+    constexpr std::size_t kOfADriver = std::size_t{1} << 30;
+    void* const room = mmap(nullptr, kOfADriver, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return room != MAP_FAILED && munmap(room, kOfADriver) == 0;
+}
+
 /// Hardware, then Mesa's software by its own platform, then by that of devices: the former may turn out to be hardware.
 std::vector<Candidate> find_candidates() {
     std::vector<Candidate> hardware, software;
-    if (!opengl_installed()) return {};
+    if (!opengl_installed() || !addresses_left()) return {};
     const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     if (!has_extension(client, "EGL_EXT_platform_base")) return {};
     if (has_extension(client, "EGL_MESA_platform_surfaceless"))

@@ -1,0 +1,112 @@
+"""What the faults are tried on: a command of every verb, its files when nothing is wrong, and when one of them is whole."""
+
+import json
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from command import COMMAND
+
+STUDY = {
+    "name": "small",
+    "inputs": [{"model": "ball", "resolution": 3}],
+    "cameras": ["iso"],
+    "size": 48,
+    "methods": [{"method": "splat", "per_edge": [1, 2]}, {"method": "tets", "levels": [0, 1]},
+                {"method": "field", "seed": [1, 2], "places": 1000}],
+    "metrics": ["rmse"],
+    "reference": {"tolerance": 0.05, "max_levels": 1},
+    "pictures": True,
+}
+
+# Stands in for the program that makes videos: keeps the pictures' bytes.
+FFMPEG = """#!/bin/sh
+for last; do :; done
+exec cat > "${last#file:}"
+"""
+
+# The same input gives the same bytes.
+SAME_BYTES = {".vtu", ".mesh", ".ply", ".vtp", ".png", ".exr", ".svg", ".mp4"}
+
+
+class Command:
+    """good: its files and their bytes. seconds: how long it takes. Both after `run_undisturbed`."""
+
+    def __init__(self, name, words, quick=False, opengl=False, children=False, environment=None):
+        self.name, self.words, self.quick, self.opengl, self.children = name, words.split(), quick, opengl, children
+        self.environment = environment or {}
+        self.good, self.seconds = {}, 0.0
+
+    def run_undisturbed(self):
+        with tempfile.TemporaryDirectory() as name:
+            start = time.monotonic()
+            done = subprocess.run([COMMAND, *self.words], cwd=name, capture_output=True, text=True, timeout=300,
+                                  env={**os.environ, **self.environment})
+            self.seconds = time.monotonic() - start
+            if done.returncode != 0:
+                raise SystemExit(f"{self.name}: {done.stderr}")
+            files = [path for path in Path(name).rglob("*") if path.is_file()]
+            self.good = {str(path.relative_to(name)): path.read_bytes() for path in files}
+
+    def is_whole(self, name, path, content):
+        suffix = path.suffix
+        if suffix in SAME_BYTES:
+            return content == self.good[name]
+        if suffix == ".json":
+            return is_json(content)
+        if suffix == ".vdb":  # has a number of its own every time
+            return subprocess.run([COMMAND, "info", path], capture_output=True).returncode == 0
+        if suffix == ".html":
+            return content.rstrip().endswith(b"</html>")
+        return content.endswith(b"\n")  # tables as text
+
+
+def is_json(content):
+    try:
+        json.loads(content)
+        return True
+    except ValueError:
+        return False
+
+
+def prepare(inputs):
+    (inputs / "study.json").write_text(json.dumps(STUDY))
+    (inputs / "ffmpeg").write_text(FFMPEG)
+    (inputs / "ffmpeg").chmod(0o755)
+    for words in ("render model:ball:3 -o a.png --size 256 --backend cpu", "render model:ball:4 -o b.png --size 256 --backend cpu",
+                  "points model:ball:4 -o a.ply", "vdb model:ball:3 -o a.vdb --resolution 40", "model ball --resolution 4 -o a.vtu"):
+        subprocess.run([COMMAND, *words.split()], cwd=inputs, check=True, capture_output=True)
+
+
+def commands(inputs):
+    """inputs: the folder that `prepare` fills."""
+    draw = "render model:ball:4 --size 160"
+    return [
+        Command("model .vtu", "model twist --resolution 24 -o a.vtu"),
+        Command("model .mesh", "model twist --resolution 16 -o a.mesh"),
+        Command("info", "info model:ball:8"),
+        Command("subdivide", "subdivide model:ball:4 -o a.vtu --levels 1", quick=True),
+        Command("fit", "fit --kernel gaussian --level 3"),
+        Command("points .ply", "points model:ball:8 -o a.ply"),
+        Command("points .vtp", "points model:ball:8 -o a.vtp"),
+        Command("points .vdb", "points model:ball:8 -o a.vdb"),
+        Command("vdb", "vdb model:ball:4 -o a.vdb --resolution 80", quick=True),
+        Command("vdb --memory", "vdb model:ball:4 -o a.vdb --resolution 80 --memory 1M"),
+        Command("render cpu", f"{draw} -o a.png --backend cpu", quick=True),
+        Command("render auto, legend", f"{draw} -o a.exr --legend a.svg"),
+        Command("render gl", f"{draw} -o a.png --backend gl", opengl=True),
+        Command("render sheets", f"{draw} -o a.png --method sheets", opengl=True),
+        Command("render pt", f"{draw} -o a.png --method pt", opengl=True),
+        Command("render tets", f"{draw} -o a.exr --method tets"),
+        Command("render dense", f"{draw} -o a.png --method dense"),
+        Command("render grid", f"render {inputs}/a.vdb --size 160 -o a.png --method grid"),
+        Command("render turntable", f"{draw} -o a.png --turntable 3 --backend cpu"),
+        Command("render video", f"{draw} -o a.mp4 --turntable 3 --backend cpu", children=True,
+                environment={"PATH": f"{inputs}:{os.environ['PATH']}"}),
+        Command("compare --heatmap", f"compare {inputs}/a.png {inputs}/b.png --heatmap a.png"),
+        Command("compare fields", f"compare {inputs}/a.ply {inputs}/a.vtu"),
+        Command("study", f"study {inputs}/study.json -o out --jobs 2", children=True),
+        Command("demo", "demo -o out --size 48 --resolution 4"),
+    ]
