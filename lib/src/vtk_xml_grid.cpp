@@ -54,16 +54,23 @@ std::array<std::vector<double>, 3> even_cuts(const VtkExtent& extent, const std:
     return at;
 }
 
-void place_image(const VtkXml& xml, std::span<Vec3> points) {
-    const auto origin = reals_of<3>(xml, "Origin", {0, 0, 0});
-    const auto axes = reals_of<9>(xml, "Direction", {1, 0, 0, 0, 1, 0, 0, 0, 1});  // row by row
-    for (Vec3& point : points) {
-        const Vec3 along = point;
+// How an image lies in the world: its axes, row by row, from its origin.
+struct Placement {
+    std::array<double, 3> origin;
+    std::array<double, 9> axes;
+
+    Vec3 operator()(const Vec3& along) const {
+        Vec3 point;
         for (int i = 0; i < 3; ++i) {
             const auto row = static_cast<std::size_t>(3 * i);
             point[i] = origin[row / 3] + axes[row] * along.x + axes[row + 1] * along.y + axes[row + 2] * along.z;
         }
+        return point;
     }
+};
+
+Placement placement(const VtkXml& xml) {
+    return {reals_of<3>(xml, "Origin", {0, 0, 0}), reals_of<9>(xml, "Direction", {1, 0, 0, 0, 1, 0, 0, 0, 1})};
 }
 
 }  // namespace
@@ -91,14 +98,18 @@ VtkExtent extent_of(const VtkXml& xml, const pugi::xml_node& piece) {
 }
 
 void add_grid_points(const VtkXml& xml, VtkGrid kind, const pugi::xml_node& piece, const VtkExtent& extent, MeshFile& into) {
-    const std::size_t first = into.points.size();
     if (extent.grid.point_count() > most_points(xml.most_bytes())) {
         xml.fail_at(piece, size_text(extent.grid) + " are more than the file can have values for");
     }
     const auto position = static_cast<std::size_t>(piece.offset_debug());
-    const bool image = kind == VtkGrid::Image;
-    add_points(into, image ? even_cuts(extent, reals_of<3>(xml, "Spacing", {1, 1, 1})) : cuts(xml, piece, extent), position);
-    if (image) place_image(xml, std::span(into.points).subspan(first));
+    if (kind == VtkGrid::Rectilinear) {
+        add_points(into, cuts(xml, piece, extent), position);
+        return;
+    }
+    MeshFile along;
+    add_points(along, even_cuts(extent, reals_of<3>(xml, "Spacing", {1, 1, 1})), position);
+    const Placement place = placement(xml);
+    for (const Vec3& point : along.points) add_point(into, place(point), position);
 }
 
 }  // namespace subvol

@@ -128,6 +128,7 @@ TEST_F(StructuredIo, XmlErrorsOfParallelPlanes) {
     EXPECT_THAT(image("Origin=\"0 0\"", "0 1 0 1 0 1"), HasSubstr("its Origin is \"0 0\" (3 numbers are needed)"));
     EXPECT_THAT(image("Spacing=\"1 x 1\"", "0 1 0 1 0 1"), HasSubstr("its Spacing is \"1 x 1\""));
     EXPECT_THAT(image("Spacing=\"1 nan 1\"", "0 1 0 1 0 1"), HasSubstr("non-finite coordinate at point 0"));
+    EXPECT_THAT(image("Origin=\"0 0 inf\"", "0 1 0 1 0 1"), HasSubstr("non-finite coordinate at point 0"));
     EXPECT_THAT(image("", "0 999 0 999 0 999"),
                 HasSubstr("1000 x 1000 x 1000 points are more than the file can have values for"));
     EXPECT_THAT(image("", "0 9 0 9 0 0"), HasSubstr("no hexahedra"));
