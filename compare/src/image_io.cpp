@@ -51,6 +51,10 @@ std::uint8_t encoded_byte(double linear) {
     throw Error(ErrorCode::Io, "cannot be written: " + why, path.string());
 }
 
+std::string first_line(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
 /// Where memory is short OpenImageIO may leave a picture unfinished without a word.
 bool is_whole(const fs::path& path, const OIIO::ImageSpec& spec) {
     const auto input = OIIO::ImageInput::open(path.string());
@@ -72,8 +76,10 @@ void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void*
     }
     const bool written =
         output->open(file.path().string(), spec) && output->write_image(spec.format, pixels) && output->close();
-    if (!written) fail(path, output->geterror());
     const bool failed = std::ferror(stream.get()) != 0;
+    if (!written && failed) fail(path, first_line(output->geterror()));
+    if (!written)
+        throw Error(ErrorCode::MissingCapability, "cannot be written: " + first_line(output->geterror()), path.string());
     if (std::fclose(stream.release()) != 0) fail(path, std::generic_category().message(errno));
     if (failed) fail(path, "the disk is full, or the file too large");
     if (!is_whole(file.path(), spec)) {

@@ -39,8 +39,8 @@ class Ended:
         self.code, self.out, self.err, self.killed = process.returncode, out, err, killed
 
     def sentence(self):
-        """What it complained of; warnings are no complaint."""
-        lines = [line for line in self.err.splitlines() if not line.startswith("subvol: warning: ")]
+        """What it complained of; warnings are no complaint, and libpng cannot be kept from speaking itself."""
+        lines = [line for line in self.err.splitlines() if not line.startswith(("subvol: warning: ", "libpng error: "))]
         for word in DISASTERS:
             if word in self.err:
                 raise Problem(f"said {word!r}: {self.err[-300:]!r}")
