@@ -8,6 +8,8 @@
 
 #include "brick_grids.h"
 #include "coverage.h"
+#include "distance_band.h"
+#include "level_set.h"
 #include "rasterize_cells.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
@@ -81,7 +83,18 @@ std::vector<GridOfChannels> grids_of(std::span<const Attribute* const> fields, b
     return grids;
 }
 
-openvdb::GridBase::Ptr mask_of(const openvdb::GridBase& grid) {
+void check_level_set(const RasterizeOptions& options) {
+    const double half_width = options.level_set->half_width_voxels;
+    if (!(half_width >= 1 && half_width <= 1000)) {
+        throw Error(ErrorCode::InvalidInput, "the half width of the level set's band is not from 1 to 1000 voxels");
+    }
+    if (options.like && !options.like->data().grid->hasUniformVoxels()) {
+        throw Error(ErrorCode::InvalidInput, "its voxels are no cubes, which a level set needs",
+                    "grid \"" + options.like->report().name + "\"");
+    }
+}
+
+openvdb::MaskGrid::Ptr mask_of(const openvdb::GridBase& grid) {
     auto mask = openvdb::MaskGrid::create();
     if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&grid)) {
         mask->setTree(std::make_shared<openvdb::MaskTree>(floats->constTree(), false, openvdb::TopologyCopy()));
@@ -98,13 +111,12 @@ public:
     Rasterizer(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options)
         : options_(options), rasterizer_(request(mesh, fields, options)) {
         check_representable(to_voxels_.voxel_size);
-        if (options.coverage) {
-            samples_.emplace(detail::samples_within({.mesh = &mesh,
-                                                     .fields = {},
-                                                     .to_voxels = to_voxels_,
-                                                     .refine = options.refine,
-                                                     .on_limit = options.on_limit,
-                                                     .progress = options.progress}));
+        detail::RasterizeCells shape = request(mesh, options);
+        if (options.coverage) samples_.emplace(detail::samples_within(shape));
+        if (options.level_set) {
+            check_level_set(options);
+            boundary_ = detail::boundary_triangles(shape);
+            detail::check_band(boundary_, options.level_set->half_width_voxels);
         }
         openvdb::initialize();
     }
@@ -122,8 +134,10 @@ public:
         report_progress(options_.progress, "make grids", 0);
         auto grids = detail::make_grids(std::move(bricks), grids_of(attributes_, options_.cell_numbers));
         if (attributes_.front()->channels == 1) grids.front()->setGridClass(openvdb::GRID_FOG_VOLUME);
-        if (options_.mask) grids.push_back(mask_of(*grids.front()));
+        const auto mask = options_.mask || options_.level_set ? mask_of(*grids.front()) : nullptr;
+        if (options_.mask) grids.push_back(mask);
         if (samples_) grids.push_back(coverage(part));
+        if (options_.level_set) grids.push_back(level_set(*mask, part));
         std::vector<VdbGrid> result;
         for (const auto& grid : grids) {
             describe(*grid);
@@ -142,13 +156,31 @@ private:
         } else {
             to_voxels_.voxel_size = voxel_size_of(bounds(mesh), options);
         }
+        detail::RasterizeCells all = request(mesh, options);
+        all.fields = attributes_;
+        all.cell_numbers = options.cell_numbers;
+        return all;
+    }
+
+    /// Without values.
+    [[nodiscard]] detail::RasterizeCells request(const HexMesh& mesh, const RasterizeOptions& options) const {
         return {.mesh = &mesh,
-                .fields = attributes_,
+                .fields = {},
                 .to_voxels = to_voxels_,
                 .refine = options.refine,
                 .on_limit = options.on_limit,
-                .cell_numbers = options.cell_numbers,
+                .tables = options.tables,
                 .progress = options.progress};
+    }
+
+    [[nodiscard]] openvdb::GridBase::Ptr level_set(const openvdb::MaskGrid& inside,
+                                                   const std::optional<detail::VoxelBox>& part) const {
+        report_progress(options_.progress, "level set", 0);
+        const auto& [name, half_width] = *options_.level_set;
+        const auto grid =
+            detail::level_set(detail::distance_band(boundary_, half_width, part), inside, to_voxels_.voxel_size, half_width);
+        grid->setName(name);
+        return grid;
     }
 
     [[nodiscard]] openvdb::GridBase::Ptr coverage(const std::optional<detail::VoxelBox>& part) {
@@ -182,6 +214,7 @@ private:
     detail::ToVoxels to_voxels_;
     detail::CellRasterizer rasterizer_;
     std::optional<detail::CellRasterizer> samples_;
+    std::vector<detail::VoxelTriangle> boundary_;  // of the level set
 };
 
 constexpr int kFar = 1 << 30;
@@ -232,6 +265,10 @@ std::vector<detail::VoxelBox> slabs_of(const HexMesh& mesh, const Rasterizer& ra
 
 std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
     return Rasterizer(mesh, fields, options).run();
+}
+
+RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {
+    return detail::tables_of(mesh, options.refine, options.on_limit);
 }
 
 void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,

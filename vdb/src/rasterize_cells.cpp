@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "check_voxels.h"
-#include "subvol/dense_cells.h"
 #include "subvol/flat_array.h"
 
 namespace subvol::detail {
@@ -31,20 +30,12 @@ struct CellRasterizer::Batch {
     std::vector<VoxelBox> boxes;
 };
 
-CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(request)) {
+CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(request)), refined_(request_) {
     fill_.cell_numbers = request_.cell_numbers;
     fill_.channels = 0;
     for (const Attribute* field : request_.fields) fill_.channels += static_cast<std::size_t>(field->channels);
     check_voxel_count(*request_.mesh, request_.to_voxels);
-    if (!refines()) return;
-    side_ = (std::size_t{1} << request_.refine.levels) + 1;
-    refined_mesh_ = {.points = request_.mesh->points,
-                     .cells = request_.mesh->cells,
-                     .attributes = {},
-                     .creases = request_.mesh->creases,
-                     .sharp_faces = request_.mesh->sharp_faces};
-    for (const Attribute* field : request_.fields) refined_mesh_.attributes.push_back(*field);
-    request_.refine.progress = nullptr;
+    if (refines()) side_ = (std::size_t{1} << request_.refine.levels) + 1;
 }
 
 VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
@@ -117,8 +108,7 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
 void CellRasterizer::load_refined(std::span<const Index> cells, Batch& batch) const {
     std::vector<std::size_t> slots(request_.mesh->cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) slots[cells[i]] = i;
-    const DenseSelection selection{.cells = batch.cells, .on_limit = request_.on_limit};
-    for_each_dense_cell(refined_mesh_, request_.refine, selection, [&](const DenseCell& cell) {
+    refined_.for_each(batch.cells, [&](const DenseCell& cell) {
         const std::size_t nodes = cell.points.size(), first = slots[cell.cell] * nodes;
         for (std::size_t n = 0; n < nodes; ++n) {
             batch.points[first + n] = request_.to_voxels(cell.points[n]);
