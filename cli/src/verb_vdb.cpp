@@ -3,6 +3,7 @@
 
 #include "input.h"
 #include "mesh_frames.h"
+#include "points_input.h"
 #include "refine_arguments.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
@@ -37,13 +38,15 @@ std::vector<std::string> names_of(const HexMesh& mesh) {
 class VdbVerb : public Verb {
 public:
     explicit VdbVerb(CLI::App& program)
-        : Verb(program, "vdb", "Turn a mesh into an OpenVDB file: a grid a field.",
+        : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: a grid a field.",
                "  subvol vdb model:ball -o ball.vdb\n"
                "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
                "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
                "  subvol vdb 'run_####.vtu' -o 'run_####.vdb' --frames 1-240 --velocity --fps 24\n"
+               "  subvol vdb rest.vtu --to bent.vtu -o 'bend_##.vdb' --frames 24\n"
+               "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
                "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G") {
-        app().add_option("FILE", input_, kInputHelp)->required();
+        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
         app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
         add_size_options();
         refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the level that stands for the limit");
@@ -63,6 +66,8 @@ public:
         if (!like_.empty()) like_grids_ = read_vdb(like_);
         if (!frames_.empty() || !to_.empty() || has_number(input_)) {
             run_frames(report);
+        } else if (holds_points(input_)) {
+            run_points(report);
         } else {
             run_one(report);
         }
@@ -108,8 +113,10 @@ private:
             ->needs(level_set_option_);
         app().add_flag("--half", half_, "store floats in 16 bits");
         app()
-            .add_option("--from", from_,
-                        "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh")
+            .add_option(
+                "--from", from_,
+                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; a FILE "
+                "of points (.ply, .vtp, .vdb) has its own")
             ->type_name("WHAT");
         app()
             .add_option("--per-edge", per_edge_, "with --from points: sample intervals an edge")
@@ -167,6 +174,16 @@ private:
         }
     }
 
+    void run_points(Report& report) {
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        from_ = "points";
+        RasterizeOptions options = options_of_grids(report);
+        options.voxel_size_world = voxel_size_;
+        options.resolution = resolution_;
+        options.level_set = level_set();
+        write_reported(grids_of_points(input_, fields_, common(), app(), options, report), output_, report);
+    }
+
     /// All frames have the voxels and the level that the first one asks for.
     void run_frames(Report& report) {
         if (output_.memory_bytes > 0) throw Error(ErrorCode::InvalidInput, "goes with one mesh only, no frames", "--memory");
@@ -219,30 +236,35 @@ private:
         if (!refine_.levels) refinement.levels = limit_level(mesh, refinement, voxel_size, report);
         report["levels"] = refinement.levels;
         report["cells"] = mesh.cells.size() << (3 * refinement.levels);
-        return {.voxel_size_world = voxel_size,
-                .like = like_grids_.empty() ? nullptr : &like_grids_.front(),
-                .refine = refinement,
-                .on_limit = !interpolates(refinement.scheme),
+        RasterizeOptions options = options_of_grids(report);
+        options.voxel_size_world = voxel_size;
+        options.refine = refinement;
+        options.on_limit = !interpolates(refinement.scheme);
+        options.level_set = level_set();
+        if (options.level_set && mesh.find_attribute(options.level_set->name)) {
+            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
+                        "--sdf with another name");
+        }
+        options.metadata.emplace_back("subvol_scheme", refine_.scheme);
+        options.metadata.emplace_back("subvol_level", std::to_string(refinement.levels));
+        return options;
+    }
+
+    /// What does not depend on the mesh.
+    [[nodiscard]] RasterizeOptions options_of_grids(Report& report) const {
+        return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
                 .half = half_,
                 .cell_numbers = cell_numbers_,
                 .mask = mask_,
                 .coverage = coverage_,
-                .level_set = level_set(mesh),
-                .metadata = {{"subvol_input", input_},
-                             {"subvol_from", from_},
-                             {"subvol_scheme", refine_.scheme},
-                             {"subvol_level", std::to_string(refinement.levels)},
-                             {"subvol_version", SUBVOL_VERSION}},
+                .metadata = {{"subvol_input", input_}, {"subvol_from", from_}, {"subvol_version", SUBVOL_VERSION}},
                 .progress = report.progress()};
     }
 
-    [[nodiscard]] std::optional<LevelSetOptions> level_set(const HexMesh& mesh) const {
+    [[nodiscard]] std::optional<LevelSetOptions> level_set() const {
         if (level_set_option_->count() == 0) return std::nullopt;
         LevelSetOptions options = level_set_;
         if (options.name.empty()) options.name = kDefaultLevelSet;
-        if (mesh.find_attribute(options.name)) {
-            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.name, "--sdf with another name");
-        }
         return options;
     }
 

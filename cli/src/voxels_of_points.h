@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "common_options.h"
 #include "report.h"
 #include "subvol/vdb.h"
 
@@ -13,5 +14,13 @@ namespace subvol::cli {
 /// throws: Error(InvalidInput) as `rasterize`, or if a field has three components
 [[nodiscard]] std::vector<VdbGrid> kernel_sums(const HexMesh& mesh, const RasterizeOptions& options, int per_edge,
                                                Report& report);
+
+/// Grids of a file of points: of the fields named, or of the one that the options select, or of the first.
+///
+/// app:    the verb's, whose options that only a mesh can follow are refused
+/// throws: Error(InvalidInput) as `rasterize_points`, or if a field is not there
+[[nodiscard]] std::vector<VdbGrid> grids_of_points(const std::string& input, std::vector<std::string> fields,
+                                                   const CommonOptions& common, const CLI::App& app,
+                                                   const RasterizeOptions& options, Report& report);
 
 }  // namespace subvol::cli

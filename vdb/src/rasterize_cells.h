@@ -6,6 +6,7 @@
 
 #include "fill_block.h"
 #include "refined_cells.h"
+#include "surface_columns.h"
 #include "voxel_bricks.h"
 
 namespace subvol::detail {
@@ -13,8 +14,9 @@ namespace subvol::detail {
 /// Rasterizes the cells of a mesh into bricks of voxels, as often as wanted: for one part of space after the other.
 ///
 /// A batch of cells at a time, in the order of their numbers: refined in parallel, then filled in parallel, a brick a task, so
-/// that the first cell that holds a centre counts, whatever the number of threads. Memory: the voxels, and some 10 MB or, where
-/// the mesh is refined, twice as many nodes as the mesh has points.
+/// that the first cell that holds a centre counts, whatever the number of threads. Where cells are folded, voxels that the
+/// mesh's boundary does not go round are taken out again. Memory: the voxels, and some 10 MB or, where the mesh is refined,
+/// twice as many nodes as the mesh has points.
 class CellRasterizer {
 public:
     /// The mesh must be valid; it is kept by reference.
@@ -30,6 +32,7 @@ private:
     void load(std::span<const Index> cells, Batch& batch);
     void load_refined(std::span<const Index> cells, Batch& batch) const;
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
+    void drop_leaks();
     [[nodiscard]] std::vector<Index> cells_of(const std::optional<VoxelBox>& part) const;
     [[nodiscard]] CellBlock block(const Batch& batch, std::size_t i) const;
     [[nodiscard]] bool refines() const { return request_.refines(); }
@@ -37,8 +40,10 @@ private:
     RasterizeCells request_;
     RefinedCells refined_;
     FillOptions fill_;
-    std::size_t side_ = 2;         // nodes of a block
-    std::vector<VoxelBox> boxes_;  // of every cell, after the first run
+    std::size_t side_ = 2;                   // nodes of a block
+    std::vector<VoxelBox> boxes_;            // of every cell, after the first run
+    std::vector<VoxelBrick*> doubtful_;      // of this run
+    std::optional<SurfaceColumns> columns_;  // of the boundary, once a brick was doubtful
 };
 
 }  // namespace subvol::detail
