@@ -6,6 +6,7 @@
 
 #include "subvol/atomic_file.h"
 #include "subvol/error.h"
+#include "subvol/nanovdb.h"
 #include "subvol/study_run.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -32,20 +33,29 @@ void write_named(const std::string& name, const std::function<void()>& write) {
     }
 }
 
+void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
+    write_vdb(output.path, grids, output.compression);
+    if (output.nano) write_nanovdb(std::filesystem::path(output.path).replace_extension(".nvdb"), grids);
+}
+
 }  // namespace
 
 void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
-    report.timed("write", [&] { write_vdb(output.path, grids, output.compression); });
+    report.timed("write", [&] { write_files(grids, output); });
     report["output"] = output.path;
     report["active_voxels"] = grids.front().report().active_voxels;
     report["voxel_size"] = grids.front().report().voxel_size_world;
     for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report()));
 }
 
-void write_one_piece(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
-                     const VdbOutput& output, Report& report) {
-    const auto grids = report.timed("rasterize", [&] { return rasterize(mesh, fields, options); });
-    write_reported(grids, output, report);
+void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+    report.timed("write", [&] { write_files(grids, output); });
+    const GridReport& first = grids.front().report();
+    report["voxel_size"] = first.voxel_size_world;
+    report["active_voxels"] = report.json().value("active_voxels", std::size_t{0}) + first.active_voxels;
+    Json entry{{"frame", frame}, {"output", output.path}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
+    for (const VdbGrid& grid : grids) entry["grids"].push_back(about(grid.report()));
+    report["frames"].push_back(std::move(entry));
 }
 
 void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,

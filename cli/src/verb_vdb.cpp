@@ -2,88 +2,74 @@
 #include <cmath>
 
 #include "input.h"
+#include "mesh_frames.h"
+#include "points_input.h"
 #include "refine_arguments.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
+#include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
-#include "subvol/rbf_field.h"
-#include "subvol/sample.h"
+#include "subvol/nanovdb.h"
 #include "subvol/vdb.h"
 #include "subvol/version.h"
 #include "text.h"
 #include "vdb_output.h"
 #include "verb.h"
+#include "voxels_of_points.h"
 
 namespace subvol::cli {
 namespace {
 
 constexpr double kPositionTolerance_voxels = 0.1;
-constexpr double kBytesOfChannel = 5.5;  // a voxel's float in leaves that are not all full, with their masks
+constexpr double kBytesOfChannel = 5.5;     // a voxel's float in leaves that are not all full, with their masks
+constexpr double kMostCellsOfTables = 8e6;  // of refined cells, some 200 bytes each
+constexpr const char* kDefaultLevelSet = "sdf";
 
 VdbCompression compression_named(const std::string& name) {
     return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
 }
 
+std::vector<std::string> names_of(const HexMesh& mesh) {
+    std::vector<std::string> names;
+    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+    return names;
+}
+
 class VdbVerb : public Verb {
 public:
     explicit VdbVerb(CLI::App& program)
-        : Verb(program, "vdb", "Turn a mesh into an OpenVDB file: a grid a field.",
+        : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: a grid a field.",
                "  subvol vdb model:ball -o ball.vdb\n"
                "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
+               "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
+               "  subvol vdb 'run_####.vtu' -o 'run_####.vdb' --frames 1-240 --velocity --fps 24\n"
+               "  subvol vdb rest.vtu --to bent.vtu -o 'bend_##.vdb' --frames 24\n"
+               "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
                "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G") {
-        app().add_option("FILE", input_, kInputHelp)->required();
+        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
         app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
         add_size_options();
         refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the level that stands for the limit");
         add_grid_options();
-        app()
-            .add_option("--compression", compression_, "blosc (the default), zip, none")
-            ->type_name("NAME")
-            ->check(CLI::IsMember({"blosc", "zip", "none"}));
-        app()
-            .add_option("--memory", output_.memory_bytes,
-                        "write parts whose grids take no more than this, e.g. 2G: NAME_0000.vdb and so on, and NAME.json, "
-                        "which lists them")
-            ->type_name("BYTES")
-            ->transform(CLI::AsSizeValue(false));
-        app().add_flag("--nano", nano_, "write a NanoVDB file beside it; needs a build with NanoVDB");
+        add_file_options();
+        add_frame_options();
     }
 
     int run(Report& report) override {
         check_choice("--from", from_, {"mesh", "points"});
-        if (nano_) throw Error(ErrorCode::MissingCapability, "this build has no NanoVDB", "--nano");
+        if (output_.nano && !has_nanovdb()) {
+            throw Error(ErrorCode::MissingCapability, "this build has no NanoVDB", "--nano",
+                        "configure again where libnanovdb-dev is installed");
+        }
         output_.compression = compression_named(compression_);
-        RefineOptions refinement = refine_.options(0, report);
         check_output(output_.path, {".vdb"});
-        const HexMesh mesh = with_written_fields(load_mesh(input_, common(), report), report);
-        const std::vector<VdbGrid> like = like_.empty() ? std::vector<VdbGrid>() : read_vdb(like_);
-        const double voxel_size = like.empty() ? voxel_size_world(mesh) : like.front().report().voxel_size_world;
-        if (!refine_.levels) refinement.levels = limit_level(mesh, refinement, voxel_size, report);
-        report["levels"] = refinement.levels;
-        report["cells"] = mesh.cells.size() << (3 * refinement.levels);
-
-        std::vector<std::string> names;
-        for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
-        const RasterizeOptions options{.voxel_size_world = voxel_size,
-                                       .like = like.empty() ? nullptr : &like.front(),
-                                       .refine = refinement,
-                                       .on_limit = !interpolates(refinement.scheme),
-                                       .half = half_,
-                                       .cell_numbers = cell_numbers_,
-                                       .mask = mask_,
-                                       .coverage = coverage_,
-                                       .metadata = {{"subvol_input", input_},
-                                                    {"subvol_from", from_},
-                                                    {"subvol_scheme", refine_.scheme},
-                                                    {"subvol_level", std::to_string(refinement.levels)},
-                                                    {"subvol_version", SUBVOL_VERSION}},
-                                       .progress = report.progress()};
-        if (from_ == "points") {
-            write_from_points(mesh, names, options, report);
-        } else if (output_.memory_bytes > 0) {
-            write_parts(mesh, names, options, output_, report);
+        if (!like_.empty()) like_grids_ = read_vdb(like_);
+        if (!frames_.empty() || !to_.empty() || has_number(input_)) {
+            run_frames(report);
+        } else if (holds_points(input_)) {
+            run_points(report);
         } else {
-            write_one_piece(mesh, names, options, output_, report);
+            run_one(report);
         }
         return 0;
     }
@@ -116,15 +102,180 @@ private:
         app().add_flag("--cell-ids", cell_numbers_, "one more grid: the number of the control cell");
         app().add_flag("--mask", mask_, "one more grid: where the volume is");
         app().add_flag("--coverage", coverage_, "one more grid: the part of each voxel that the volume fills");
+        level_set_option_ = app().add_option("--sdf", level_set_.name,
+                                             "one more grid, named NAME or sdf: the distance to the boundary, negative inside, "
+                                             "as a level set with a narrow band");
+        level_set_option_->type_name("[NAME]")->expected(0, 1);
+        app()
+            .add_option("--half-width", level_set_.half_width_voxels, "of that band to either side, in voxels (default 3)")
+            ->type_name("N")
+            ->check(CLI::Range(1.0, 1000.0))
+            ->needs(level_set_option_);
         app().add_flag("--half", half_, "store floats in 16 bits");
         app()
-            .add_option("--from", from_,
-                        "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh")
+            .add_option(
+                "--from", from_,
+                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; a FILE "
+                "of points (.ply, .vtp, .vdb) has its own")
             ->type_name("WHAT");
         app()
             .add_option("--per-edge", per_edge_, "with --from points: sample intervals an edge")
             ->type_name("N")
             ->check(CLI::Range(1, 64));
+    }
+
+    void add_file_options() {
+        app()
+            .add_option("--compression", compression_, "blosc (the default), zip, none")
+            ->type_name("NAME")
+            ->check(CLI::IsMember({"blosc", "zip", "none"}));
+        app()
+            .add_option("--memory", output_.memory_bytes,
+                        "write parts whose grids take no more than this, e.g. 2G: NAME_0000.vdb and so on, and NAME.json, "
+                        "which lists them")
+            ->type_name("BYTES")
+            ->transform(CLI::AsSizeValue(false));
+        app().add_flag("--nano", output_.nano, "write a NanoVDB file beside it, NAME.nvdb; needs a build with NanoVDB");
+    }
+
+    void add_frame_options() {
+        app()
+            .add_option(
+                "--frames", frames_,
+                "a sequence: A-B, or N for 1-N. The rows of # in FILE and in --output stand for the number of the frame, "
+                "with zeros before it to that many digits")
+            ->type_name("A-B");
+        app()
+            .add_option("--to", to_,
+                        "a sequence from FILE to this mesh of the same cells: points and values go in straight lines")
+            ->type_name("FILE");
+        auto* velocity = app().add_flag("--velocity", velocity_,
+                                        "one more grid, of vectors, named vel: how the volume moves, in world units a frame");
+        app()
+            .add_option("--fps", frames_per_second_, "with --velocity: in world units a second, at so many frames a second")
+            ->type_name("F")
+            ->check(CLI::PositiveNumber)
+            ->needs(velocity);
+    }
+
+    [[nodiscard]] HexMesh load(const std::string& input, Report& report) const {
+        return with_written_fields(load_mesh(input, common(), report), report);
+    }
+
+    void run_one(Report& report) {
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        const HexMesh mesh = load(input_, report);
+        const RasterizeOptions options = set_up(mesh, report);
+        if (output_.memory_bytes > 0) {
+            refuse_with_memory();
+            write_parts(mesh, names_of(mesh), options, output_, report);
+        } else {
+            write_reported(grids_of(mesh, options, report), output_, report);
+        }
+    }
+
+    void run_points(Report& report) {
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        from_ = "points";
+        RasterizeOptions options = options_of_grids(report);
+        options.voxel_size_world = voxel_size_;
+        options.resolution = resolution_;
+        options.level_set = level_set();
+        write_reported(grids_of_points(input_, fields_, common(), app(), options, report), output_, report);
+    }
+
+    /// All frames have the voxels and the level that the first one asks for.
+    void run_frames(Report& report) {
+        if (output_.memory_bytes > 0) throw Error(ErrorCode::InvalidInput, "goes with one mesh only, no frames", "--memory");
+        check_frame_names();
+        const FrameRange range = parse_frames(frames_);
+        MeshFrames frames(input_, to_.empty() ? std::nullopt : std::optional(to_), range,
+                          [&](const std::string& name) { return load(name, report); });
+        const HexMesh first = frames.mesh(range.first);
+        RasterizeOptions options = set_up(first, report);
+        std::optional<RefinementTables> tables;
+        if (!refine_.crease_angle_deg && report["cells"].get<double>() <= kMostCellsOfTables) {
+            tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
+        }
+        for (int frame = range.first; frame <= range.last; ++frame) {
+            HexMesh mesh = frames.mesh(frame);
+            options.tables = tables && same_cells(first, mesh) ? &*tables : nullptr;
+            if (velocity_) add_velocity(frames.velocity(frame), mesh);
+            VdbOutput output = output_;
+            output.path = with_number(output_.path, frame);
+            write_frame(frame, grids_of(mesh, options, report), output, report);
+        }
+        report["input"] = input_;
+        report["output"] = output_.path;
+    }
+
+    void check_frame_names() const {
+        if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "which frames?", "--frames", "1-10");
+        if (!has_number(output_.path)) {
+            throw Error(ErrorCode::InvalidInput, "has no place for the number of a frame", output_.path, "out_####.vdb");
+        }
+        if (to_.empty() != has_number(input_)) {
+            throw Error(ErrorCode::InvalidInput,
+                        to_.empty() ? "has no place for the number of a frame" : "has a place for a number, and --to is given",
+                        input_, "in_####.vtu, or one mesh and --to another");
+        }
+    }
+
+    void add_velocity(Attribute velocity, HexMesh& mesh) const {
+        if (mesh.find_attribute(velocity.name)) {
+            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", "vel", "--fields without it");
+        }
+        for (double& v : velocity.values) v *= frames_per_second_;
+        mesh.attributes.push_back(std::move(velocity));
+    }
+
+    /// What a mesh asks for, by its box and its fields.
+    [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report) {
+        const double voxel_size = like_grids_.empty() ? voxel_size_world(mesh) : like_grids_.front().report().voxel_size_world;
+        RefineOptions refinement = refine_.options(0, report);
+        if (!refine_.levels) refinement.levels = limit_level(mesh, refinement, voxel_size, report);
+        report["levels"] = refinement.levels;
+        report["cells"] = mesh.cells.size() << (3 * refinement.levels);
+        RasterizeOptions options = options_of_grids(report);
+        options.voxel_size_world = voxel_size;
+        options.refine = refinement;
+        options.on_limit = !interpolates(refinement.scheme);
+        options.level_set = level_set();
+        if (options.level_set && mesh.find_attribute(options.level_set->name)) {
+            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
+                        "--sdf with another name");
+        }
+        options.metadata.emplace_back("subvol_scheme", refine_.scheme);
+        options.metadata.emplace_back("subvol_level", std::to_string(refinement.levels));
+        return options;
+    }
+
+    /// What does not depend on the mesh.
+    [[nodiscard]] RasterizeOptions options_of_grids(Report& report) const {
+        return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
+                .half = half_,
+                .cell_numbers = cell_numbers_,
+                .mask = mask_,
+                .coverage = coverage_,
+                .metadata = {{"subvol_input", input_}, {"subvol_from", from_}, {"subvol_version", SUBVOL_VERSION}},
+                .progress = report.progress()};
+    }
+
+    [[nodiscard]] std::optional<LevelSetOptions> level_set() const {
+        if (level_set_option_->count() == 0) return std::nullopt;
+        LevelSetOptions options = level_set_;
+        if (options.name.empty()) options.name = kDefaultLevelSet;
+        return options;
+    }
+
+    [[nodiscard]] std::vector<VdbGrid> grids_of(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const {
+        if (from_ == "points") return kernel_sums(mesh, options, per_edge_, report);
+        return report.timed("rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
+    }
+
+    void refuse_with_memory() const {
+        if (from_ == "points") throw Error(ErrorCode::InvalidInput, "goes with a mesh only", "--memory");
+        if (output_.nano) throw Error(ErrorCode::InvalidInput, "goes with one file only, no parts", "--nano");
     }
 
     [[nodiscard]] HexMesh with_written_fields(HexMesh mesh, Report& report) const {
@@ -169,40 +320,22 @@ private:
         return limit.level;
     }
 
-    /// The kernels' sums at the voxels of the mesh, and how far they are from the mesh's own values.
-    void write_from_points(const HexMesh& mesh, std::span<const std::string> names, const RasterizeOptions& options,
-                           Report& report) const {
-        if (output_.memory_bytes > 0) throw Error(ErrorCode::InvalidInput, "goes with a mesh only", "--memory");
-        auto grids = report.timed("rasterize", [&] { return rasterize(mesh, names, options); });
-        const SampleOptions sampling{.scheme = options.refine.scheme, .tension = options.refine.tension, .per_edge = per_edge_};
-        const RbfVolume volume = report.timed("sample", [&] { return sample_rbf_points(mesh, sampling).volume; });
-        report["points"] = volume.size();
-        for (std::size_t f = 0; f < names.size(); ++f) {
-            if (mesh.attributes[f].channels != 1) {
-                throw Error(ErrorCode::InvalidInput, "has three components; kernels carry one", "field " + names[f]);
-            }
-            VdbGrid sums = report.timed("kernel sums", [&] {
-                const RbfField field(volume, {.channel = f, .least_weight = 0});
-                return sample_at_voxels(grids[f], names[f], [&](std::span<const Vec3> x) { return field.evaluate(x); });
-            });
-            const GridDifference difference = compare_voxels(grids[f], sums);
-            report["against_mesh"].push_back(
-                {{"name", names[f]}, {"l2", difference.rms}, {"linf", difference.max}, {"voxels", difference.voxels}});
-            grids[f] = std::move(sums);
-        }
-        write_reported(grids, output_, report);
-    }
-
     std::string input_;
     VdbOutput output_;
     double voxel_size_ = 0;
     int resolution_ = 200;
     std::uint64_t budget_bytes_ = 0;
     std::string like_;
+    std::vector<VdbGrid> like_grids_;
     std::vector<std::string> fields_;
-    bool half_ = false, cell_numbers_ = false, mask_ = false, coverage_ = false, nano_ = false;
+    bool half_ = false, cell_numbers_ = false, mask_ = false, coverage_ = false;
+    LevelSetOptions level_set_{.name = {}};
+    CLI::Option* level_set_option_ = nullptr;
     std::string from_ = "mesh", compression_ = "blosc";
     int per_edge_ = 1;
+    std::string frames_, to_;
+    bool velocity_ = false;
+    double frames_per_second_ = 1;
     RefineArguments refine_;
 };
 

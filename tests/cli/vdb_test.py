@@ -7,6 +7,14 @@ import unittest
 from command import InFolder, subvol
 
 
+def write_box(path, offset=0.0, length=1.0):
+    """A mesh of one cell: a unit cube that is moved and stretched along x."""
+    points = [(offset + length * (k in (1, 2, 5, 6)), k in (2, 3, 6, 7), k > 3) for k in range(8)]
+    vertices = "\n".join(f"{x} {int(y)} {int(z)} 0" for x, y, z in points)
+    path.write_text(f"MeshVersionFormatted 2\nDimension 3\nVertices\n8\n{vertices}\n"
+                    "Hexahedra\n1\n1 2 3 4 5 6 7 8 0\nEnd\n")
+
+
 class Grids(InFolder):
     def vdb(self, *arguments, source="model:ball:4"):
         return self.run_ok("vdb", source, "-o", "a.vdb", "--quiet", "--json", *arguments).json()
@@ -64,12 +72,108 @@ class Grids(InFolder):
         self.assertLess(finer["against_mesh"][0]["l2"], against["l2"])
         self.assertLess(against["l2"], 0.05)  # of a range of 2
 
-    def test_refusals(self):
-        for code, *arguments in [(3, "--nano"), (2, "--voxel-size", 0.1, "--resolution", 20), (2, "--from", "air"),
-                                 (2, "--from", "points", "--memory", "1G")]:
-            done = subvol("vdb", "model:ball:2", "-o", "a.vdb", *arguments, folder=self.folder)
-            self.assertEqual(done.code, code, done.err)
+    def test_a_level_set_stands_beside_the_other_grids(self):
+        made = self.vdb("--resolution", 60, "--sdf", "--half-width", 4, source="model:ball:8")
+        self.assertEqual([grid["name"] for grid in made["grids"]], ["density", "sdf"])
+        h, level_set = made["voxel_size"], made["grids"][1]
+        self.assertLess(abs(level_set["min"] + 4 * h), 0.1 * h)  # the band is whole on both sides
+        self.assertLess(abs(level_set["max"] - 4 * h), 0.1 * h)
+        shell = 4 * 3.14159 * 8 / h**2  # voxels of a shell of radius 1
+        self.assertAlmostEqual(level_set["active_voxels"] / shell, 1, delta=0.05)
+        named = self.vdb("--resolution", 20, "--sdf", "surface")
+        self.assertEqual(named["grids"][1]["name"], "surface")
+
+    def test_nanovdb_beside_it_or_the_reason(self):
+        done = subvol("vdb", "model:ball:2", "-o", "a.vdb", "--resolution", 20, "--nano", folder=self.folder)
+        if done.code == 3:
+            self.assertIn("libnanovdb-dev", done.err)
             self.assertEqual(self.files(), [])
+        else:
+            self.assertEqual((done.code, self.files()), (0, ["a.nvdb", "a.vdb"]))
+            self.assertEqual((self.folder / "a.nvdb").read_bytes()[:8], b"NanoVDB0")
+
+    def test_points_of_a_file_give_the_sums_of_the_mesh(self):
+        write_box(self.folder / "one.mesh")
+        self.run_ok("subdivide", "one.mesh", "-o", "box.mesh", "--levels", 2, "--quiet")
+        density = ("--density", "sin(4*x)*y+z")
+        self.run_ok("vdb", "box.mesh", "-o", "mesh.vdb", "--from", "points", "--voxel-size", 0.03, "--quiet", *density)
+        for points in ("p.ply", "p.vtp", "p.vdb"):
+            self.run_ok("points", "box.mesh", "-o", points, "--quiet", *density)
+            made = self.vdb("--voxel-size", 0.03, "--from", "points", source=points)
+            self.assertEqual((made["points"], made["active_voxels"]), (125, 34**3))
+            off = self.run_ok("compare", "a.vdb", "mesh.vdb", "--json").json()
+            self.assertLess(off["linf"], 1e-6, points)  # floats up to 2, and the rounding of the positions of a .vdb
+
+    def test_refusals(self):
+        self.run_ok("points", "model:ball:2", "-o", "p.ply", "--quiet")
+        for code, source, *arguments in [
+                (2, "model:ball:2", "--voxel-size", 0.1, "--resolution", 20), (2, "model:ball:2", "--from", "air"),
+                (2, "model:ball:2", "--from", "points", "--memory", "1G"), (2, "model:ball:2", "--half-width", 3),
+                (2, "model:ball:2", "--velocity"), (2, "model:ball:2", "--fps", 24), (2, "p.ply", "--levels", 1),
+                (2, "p.ply", "--fields", "heat"), (2, "model:ball:2", "--frames", "1-3"), (2, "model:#", "--frames", "3-1"),
+                (2, "in_##.mesh"), (2, "model:ball:2", "--sdf", "density")]:
+            done = subvol("vdb", source, "-o", "a.vdb", *arguments, folder=self.folder)
+            self.assertEqual(done.code, code, f"{arguments}: {done.err}")
+            self.assertEqual(self.files(), ["p.ply"])
+
+
+class Frames(InFolder):
+    """Sequences of a box of one cell that moves, is stretched, or is another one."""
+
+    def frames(self, *arguments, source="in_###.mesh"):
+        return self.run_ok("vdb", source, "-o", "out_##.vdb", "--voxel-size", 0.125, "--density", "x+2*y", "--quiet",
+                           "--json", *arguments).json()
+
+    def test_numbered_files_are_exported_as_each_by_itself(self):
+        for frame in (8, 9, 10):
+            write_box(self.folder / f"in_{frame:03}.mesh", offset=0.25 * (frame - 8))
+        made = self.frames("--frames", "8-10", "--levels", 1)
+        self.assertEqual([frame["output"] for frame in made["frames"]], ["out_08.vdb", "out_09.vdb", "out_10.vdb"])
+        self.assertEqual(made["active_voxels"], 3 * 512)
+        for frame in made["frames"]:
+            alone = self.run_ok("vdb", f"in_{frame['frame']:03}.mesh", "-o", "a.vdb", "--voxel-size", 0.125, "--levels", 1,
+                                "--density", "x+2*y", "--json", "--quiet").json()
+            self.assertEqual(frame["grids"], alone["grids"])
+            self.assertEqual(self.run_ok("compare", "a.vdb", frame["output"], "--json").json()["linf"], 0)
+
+    def test_velocity_is_that_of_the_points(self):
+        for frame in range(1, 5):  # the place is a square of time: 0, 0.25, 1, 2.25
+            write_box(self.folder / f"in_{frame:03}.mesh", offset=0.25 * (frame - 1) ** 2)
+        made = self.frames("--frames", "4", "--velocity", "--fps", "24")
+        for frame, speed in zip(made["frames"], (0.25, 0.5, 1.0, 1.25)):  # central, but for the first and the last
+            velocity = frame["grids"][-1]
+            self.assertEqual((velocity["name"], velocity["kind"]), ("vel", "vector"))
+            self.assertAlmostEqual(velocity["min"], 24 * speed, places=5)
+            self.assertAlmostEqual(velocity["max"], 24 * speed, places=5)
+
+    def test_one_mesh_becomes_another(self):
+        write_box(self.folder / "short.mesh")
+        write_box(self.folder / "long.mesh", length=2.0)
+        made = self.frames("--to", "long.mesh", "--frames", "1-5", "--velocity", "--sdf", source="short.mesh")
+        self.assertEqual([frame["active_voxels"] for frame in made["frames"]], [512, 640, 768, 896, 1024])
+        for frame in made["frames"]:  # the far end moves by a quarter a frame, the near one not at all
+            self.assertEqual([grid["name"] for grid in frame["grids"]], ["density", "vel", "sdf"])
+            self.assertAlmostEqual(frame["grids"][1]["min"], 0, places=6)
+            self.assertLess(frame["grids"][1]["max"], 0.25)
+            self.assertGreater(frame["grids"][1]["max"], 0.2)
+
+    def test_cells_that_change_are_exported_without_velocity(self):
+        write_box(self.folder / "in_001.mesh")
+        self.run_ok("subdivide", "in_001.mesh", "-o", "in_002.mesh", "--quiet")
+        made = self.frames("--frames", "2")
+        self.assertEqual([frame["active_voxels"] for frame in made["frames"]], [512, 512])
+        before = self.files()
+        for arguments in (("in_###.mesh", "--velocity"), ("in_001.mesh", "--to", "in_002.mesh")):
+            done = subvol("vdb", *arguments, "-o", "new_#.vdb", "--frames", "2", folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertIn("cells", done.err)
+            self.assertEqual(self.files(), before)
+
+    def test_a_frame_that_is_missing_is_named(self):
+        write_box(self.folder / "in_001.mesh")
+        done = subvol("vdb", "in_###.mesh", "-o", "out_#.vdb", "--frames", "1-2", folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertIn("in_002.mesh", done.err)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <sstream>
 
 #include "subvol/error.h"
@@ -26,23 +25,31 @@ constexpr double kMaxBrickEntries = 5e7;  // a few GB
     throw Error(ErrorCode::InvalidInput, why, where.str(), allowed.str());
 }
 
-double volume_of(const HexMesh& mesh, Index cell) {
-    double sum = 0;
+/// all: of the tetrahedra; oriented: those of negative orientation count against it
+struct Volume {
+    double all = 0, oriented = 0;
+};
+
+Volume volume_of(const HexMesh& mesh, Index cell) {
+    Volume sum;
     for (const auto& [a, b, c, d] : split_cell(mesh.cells[cell])) {
         const Vec3& p = mesh.points[a];
-        sum += std::abs(glm::dot(mesh.points[b] - p, glm::cross(mesh.points[c] - p, mesh.points[d] - p)));
+        const double six = glm::dot(mesh.points[b] - p, glm::cross(mesh.points[c] - p, mesh.points[d] - p));
+        sum.all += std::abs(six) / 6.0;
+        sum.oriented += six / 6.0;
     }
-    return sum / 6.0;
+    return sum;
 }
 
-double volume_of(const HexMesh& mesh) {
+Volume volume_of(const HexMesh& mesh) {
+    const auto add = [](const Volume& a, const Volume& b) { return Volume{a.all + b.all, a.oriented + b.oriented}; };
     return tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::size_t>(0, mesh.cells.size(), 4096), 0.0,
-        [&](const auto& range, double sum) {
-            for (std::size_t c = range.begin(); c < range.end(); ++c) sum += volume_of(mesh, static_cast<Index>(c));
+        tbb::blocked_range<std::size_t>(0, mesh.cells.size(), 4096), Volume{},
+        [&](const auto& range, Volume sum) {
+            for (std::size_t c = range.begin(); c < range.end(); ++c) sum = add(sum, volume_of(mesh, static_cast<Index>(c)));
             return sum;
         },
-        std::plus<>());
+        add);
 }
 
 double brick_count(const VoxelBox& box) {
@@ -56,7 +63,7 @@ double brick_count(const VoxelBox& box) {
 
 }  // namespace
 
-void check_voxel_count(const HexMesh& mesh, const ToVoxels& to_voxels) {
+double check_voxel_count(const HexMesh& mesh, const ToVoxels& to_voxels) {
     const Box box = bounds(mesh);
     double farthest = 0;
     for (int k = 0; k < 8; ++k) {
@@ -69,12 +76,14 @@ void check_voxel_count(const HexMesh& mesh, const ToVoxels& to_voxels) {
         throw_too_fine(to_voxels.voxel_size, "voxel numbers count from the world's origin and would not fit 32 bits",
                        1.01 * to_voxels.voxel_size * farthest / kMaxIndex);
     }
-    const double in_voxels = std::abs(glm::determinant(to_voxels.linear / to_voxels.voxel_size));
-    const double voxels = volume_of(mesh) * in_voxels;
+    const double in_voxels = glm::determinant(to_voxels.linear / to_voxels.voxel_size);
+    const Volume volume = volume_of(mesh);
+    const double voxels = volume.all * std::abs(in_voxels);
     if (!(voxels <= kMaxActiveVoxels)) {
         throw_too_fine(to_voxels.voxel_size, "the mesh would fill more than 2e9 voxels",
                        1.01 * to_voxels.voxel_size * std::cbrt(voxels / kMaxActiveVoxels));
     }
+    return volume.oriented * in_voxels;
 }
 
 void check_brick_count(std::span<const VoxelBox> boxes, double voxel_size) {

@@ -20,13 +20,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
-// Centres on the surface go to the side of a small step along all axes (half-open: a box of n³ voxels fills n³ of them, and
-// two boxes that touch share none). The step is far above the rounding and in no plane that meshes like to have.
-const Vec3 kStep = 1e-6 * Vec3(1.0, 0.83, 0.71);  // voxels
-
 /// Fills the voxels of `box`, which lies in the brick, whose centres lie in a cell.
 HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillOptions& options, VoxelBrick& brick) {
     const TetPlanes planes(shape);
+    if (planes.has_turned(options.orientation)) brick.doubtful.push_back(box);
     ValueFiller filler(shape, options);
     FoundVoxels found;
     const VoxelCoord lower{box.lower[0] - brick.origin[0], box.lower[1] - brick.origin[1], box.lower[2] - brick.origin[2]};
@@ -37,7 +34,7 @@ HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillO
         for (int i = 0; i < kLeafSide; ++i) {
             const double index = brick.origin[2] + z0 + i;
             z[i] = index - shape.origin.z;
-            z_shifted[i] = (index + kStep.z) - shape.origin.z;
+            z_shifted[i] = (index + kCentreStep.z) - shape.origin.z;
         }
         const std::uint64_t reach =
             (std::uint64_t{2} << std::min(upper[2] - z0, kLeafSide - 1)) - (std::uint64_t{1} << std::max(lower[2] - z0, 0));
@@ -53,7 +50,7 @@ HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillO
                 if (open == 0) continue;
                 const double y = brick.origin[1] + iy;
                 std::uint64_t inside =
-                    open & planes.inside((x + kStep.x) - shape.origin.x, (y + kStep.y) - shape.origin.y, z_shifted);
+                    open & planes.inside((x + kCentreStep.x) - shape.origin.x, (y + kCentreStep.y) - shape.origin.y, z_shifted);
                 if (inside == 0) continue;
                 if (!leaf) leaf = std::make_unique<VoxelLeaf>(options.leaf_channels());
                 leaf->active[word] |= inside << shift;

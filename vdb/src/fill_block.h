@@ -20,12 +20,18 @@ struct CellBlock {
 
 /// channels:     of the blocks
 /// cell_numbers: one more channel of the leaves, whole numbers: the control cell
+/// orientation:  1, or -1 of a mesh of left-handed cells
 struct FillOptions {
     std::size_t channels = 1;
     bool cell_numbers = false;
+    double orientation = 1;
 
     [[nodiscard]] std::size_t leaf_channels() const { return channels + (cell_numbers ? 1 : 0); }
 };
+
+/// Centres on a surface go to the side of a small step along all axes, in voxels (half-open: a box of n³ voxels fills n³ of
+/// them, and two boxes that touch share none). The step is far above the rounding and in no plane that meshes like to have.
+inline const Vec3 kCentreStep = 1e-6 * Vec3(1.0, 0.83, 0.71);
 
 /// The voxels whose centres may lie in a block; a little generous. Empty where there is none.
 [[nodiscard]] VoxelBox voxels_of(const CellBlock& block);
@@ -35,7 +41,8 @@ struct FillOptions {
 ///
 /// A cell's six tetrahedra decide what is inside, so neighbours agree; the values are trilinear, at the inverse of the cell's
 /// map, or linear in the tetrahedron where the map has no clear inverse. Left-handed, folded and flat cells are allowed;
-/// tetrahedra without volume hold nothing.
+/// tetrahedra without volume hold nothing. Where a tetrahedron is oriented against `orientation`, what it holds may lie outside
+/// the mesh: its voxels become `doubtful`.
 void fill_block(const CellBlock& block, const FillOptions& options, VoxelBrick& brick);
 
 // What is below is for fill_block.cpp and its vector code.

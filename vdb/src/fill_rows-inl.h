@@ -63,6 +63,14 @@ public:
         return bits;
     }
 
+    /// Whether a tetrahedron with volume is not as the sign says: positively oriented, or negatively.
+    bool has_turned(double sign) const {
+        for (std::size_t t = 0; t < 6; ++t) {
+            if (signs_[t] != sign && least_[t] != std::numeric_limits<double>::infinity()) return true;
+        }
+        return false;
+    }
+
 private:
     struct Vec {
         Doubles x, y, z;
@@ -94,6 +102,7 @@ private:
         n[3] = cross(a, b);
         const auto determinant = dot(a, n[1]), volume = hn::Abs(determinant);
         const auto sign = hn::CopySign(hn::Set(d, 1.0), determinant);
+        hn::Store(sign, d, signs_ + i);
         n[0] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
         for (std::size_t k = 1; k < 4; ++k) {
             n[k] = {hn::Mul(sign, n[k].x), hn::Mul(sign, n[k].y), hn::Mul(sign, n[k].z)};
@@ -115,6 +124,7 @@ private:
     HWY_ALIGN double normals_[4][3][8];
     HWY_ALIGN double offsets_[4][8];
     HWY_ALIGN double least_[8];
+    HWY_ALIGN double signs_[8];
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "brick_grids.h"
 #include "coverage.h"
+#include "distance_band.h"
+#include "grid_setup.h"
+#include "level_set.h"
 #include "rasterize_cells.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
@@ -21,40 +23,6 @@ using detail::GridKind;
 using detail::GridOfChannels;
 
 constexpr double kMaxHalf = 65504;
-constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB takes a transform for singular whose determinant is below 3e-15
-
-void check_representable(double voxel_size) {
-    if (voxel_size >= kLeastVoxel_world) return;
-    std::ostringstream message;
-    message << "voxel size " << voxel_size << ": OpenVDB takes a grid of such small voxels for flat";
-    throw Error(ErrorCode::InvalidInput, message.str(), {}, "at least 1.45e-5; a mesh in smaller units has larger voxels");
-}
-
-double voxel_size_of(const Box& box, const RasterizeOptions& options) {
-    if (!(options.voxel_size_world >= 0) || !std::isfinite(options.voxel_size_world)) {
-        throw Error(ErrorCode::InvalidInput, "the voxel size is not positive");
-    }
-    if (options.voxel_size_world > 0) return options.voxel_size_world;
-    if (options.resolution < 1) throw Error(ErrorCode::InvalidInput, "the resolution is below one voxel");
-    const double side = std::max({box.size().x, box.size().y, box.size().z});
-    if (!(side > 0)) throw Error(ErrorCode::InvalidInput, "the mesh is a single point");
-    return side / options.resolution;
-}
-
-detail::ToVoxels to_voxels_of(const openvdb::GridBase& like) {
-    if (!like.transform().isLinear()) {
-        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid \"" + like.getName() + "\"",
-                    "a linear transform, not a frustum");
-    }
-    const auto vec = [](const openvdb::Vec3d& v) { return Vec3(v[0], v[1], v[2]); };
-    const auto map = like.transform().baseMap();
-    const Mat3 to_world(vec(map->applyJacobian({1, 0, 0})), vec(map->applyJacobian({0, 1, 0})),
-                        vec(map->applyJacobian({0, 0, 1})));
-    const double size = std::cbrt(std::abs(glm::determinant(to_world)));
-    const Mat3 linear = size * glm::inverse(to_world);
-    return {linear, -(linear * vec(map->applyMap(openvdb::Vec3d(0.0)))), size};
-}
-
 const Attribute& field_of(const HexMesh& mesh, const std::string& name, bool half) {
     const std::string where = "field \"" + name + "\"";
     const Attribute* field = mesh.find_attribute(name);
@@ -81,30 +49,18 @@ std::vector<GridOfChannels> grids_of(std::span<const Attribute* const> fields, b
     return grids;
 }
 
-openvdb::GridBase::Ptr mask_of(const openvdb::GridBase& grid) {
-    auto mask = openvdb::MaskGrid::create();
-    if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&grid)) {
-        mask->setTree(std::make_shared<openvdb::MaskTree>(floats->constTree(), false, openvdb::TopologyCopy()));
-    } else if (const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(&grid)) {
-        mask->setTree(std::make_shared<openvdb::MaskTree>(vectors->constTree(), false, openvdb::TopologyCopy()));
-    }
-    mask->setName("mask");
-    return mask;
-}
-
 /// Everything that is checked and set up once, for one part of space after the other.
 class Rasterizer {
 public:
     Rasterizer(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options)
         : options_(options), rasterizer_(request(mesh, fields, options)) {
-        check_representable(to_voxels_.voxel_size);
-        if (options.coverage) {
-            samples_.emplace(detail::samples_within({.mesh = &mesh,
-                                                     .fields = {},
-                                                     .to_voxels = to_voxels_,
-                                                     .refine = options.refine,
-                                                     .on_limit = options.on_limit,
-                                                     .progress = options.progress}));
+        detail::check_representable(to_voxels_.voxel_size);
+        const detail::RasterizeCells shape = request(mesh, options);
+        if (options.coverage) samples_.emplace(detail::samples_within(shape));
+        if (options.level_set) {
+            detail::check_level_set(options);
+            boundary_ = detail::boundary_triangles(shape);
+            detail::check_band(boundary_, options.level_set->half_width_voxels);
         }
         openvdb::initialize();
     }
@@ -122,11 +78,13 @@ public:
         report_progress(options_.progress, "make grids", 0);
         auto grids = detail::make_grids(std::move(bricks), grids_of(attributes_, options_.cell_numbers));
         if (attributes_.front()->channels == 1) grids.front()->setGridClass(openvdb::GRID_FOG_VOLUME);
-        if (options_.mask) grids.push_back(mask_of(*grids.front()));
+        const auto mask = options_.mask || options_.level_set ? detail::mask_of(*grids.front()) : nullptr;
+        if (options_.mask) grids.push_back(mask);
         if (samples_) grids.push_back(coverage(part));
+        if (options_.level_set) grids.push_back(level_set(*mask, part));
         std::vector<VdbGrid> result;
         for (const auto& grid : grids) {
-            describe(*grid);
+            detail::describe(*grid, to_voxels_, options_);
             result.push_back(make_vdb_grid(grid));
         }
         return result;
@@ -137,18 +95,32 @@ private:
         validate(mesh);
         if (fields.empty()) throw Error(ErrorCode::InvalidInput, "no field is named to be rasterized");
         for (const auto& name : fields) attributes_.push_back(&field_of(mesh, name, options.half));
-        if (options.like) {
-            to_voxels_ = to_voxels_of(*options.like->data().grid);
-        } else {
-            to_voxels_.voxel_size = voxel_size_of(bounds(mesh), options);
-        }
+        to_voxels_ = detail::voxels_asked_for(bounds(mesh), options);
+        detail::RasterizeCells all = request(mesh, options);
+        all.fields = attributes_;
+        all.cell_numbers = options.cell_numbers;
+        return all;
+    }
+
+    /// Without values.
+    [[nodiscard]] detail::RasterizeCells request(const HexMesh& mesh, const RasterizeOptions& options) const {
         return {.mesh = &mesh,
-                .fields = attributes_,
+                .fields = {},
                 .to_voxels = to_voxels_,
                 .refine = options.refine,
                 .on_limit = options.on_limit,
-                .cell_numbers = options.cell_numbers,
+                .tables = options.tables,
                 .progress = options.progress};
+    }
+
+    [[nodiscard]] openvdb::GridBase::Ptr level_set(const openvdb::MaskGrid& inside,
+                                                   const std::optional<detail::VoxelBox>& part) const {
+        report_progress(options_.progress, "level set", 0);
+        const auto& [name, half_width] = *options_.level_set;
+        const auto grid =
+            detail::level_set(detail::distance_band(boundary_, half_width, part), inside, to_voxels_.voxel_size, half_width);
+        grid->setName(name);
+        return grid;
     }
 
     [[nodiscard]] openvdb::GridBase::Ptr coverage(const std::optional<detail::VoxelBox>& part) {
@@ -163,18 +135,6 @@ private:
         return detail::make_grids(detail::coverage_of(samples_->run(of_samples)), wanted).front();
     }
 
-    void describe(openvdb::GridBase& grid) const {
-        if (options_.like) {
-            grid.setTransform(options_.like->data().grid->transform().copy());
-        } else {
-            grid.setTransform(openvdb::math::Transform::createLinearTransform(to_voxels_.voxel_size));
-        }
-        grid.setCreator(options_.creator);
-        grid.insertMeta("subvol_field", openvdb::StringMetadata(grid.getName()));
-        for (const auto& [name, text] : options_.metadata) grid.insertMeta(name, openvdb::StringMetadata(text));
-        grid.setSaveFloatAsHalf(options_.half);
-    }
-
     static constexpr int kFarthest = 1 << 28;  // of voxels whose samples have numbers
 
     const RasterizeOptions& options_;
@@ -182,6 +142,7 @@ private:
     detail::ToVoxels to_voxels_;
     detail::CellRasterizer rasterizer_;
     std::optional<detail::CellRasterizer> samples_;
+    std::vector<detail::VoxelTriangle> boundary_;  // of the level set
 };
 
 constexpr int kFar = 1 << 30;
@@ -232,6 +193,10 @@ std::vector<detail::VoxelBox> slabs_of(const HexMesh& mesh, const Rasterizer& ra
 
 std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
     return Rasterizer(mesh, fields, options).run();
+}
+
+RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {
+    return detail::tables_of(mesh, options.refine, options.on_limit);
 }
 
 void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,

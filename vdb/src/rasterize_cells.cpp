@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "check_voxels.h"
-#include "subvol/dense_cells.h"
 #include "subvol/flat_array.h"
 
 namespace subvol::detail {
@@ -20,6 +19,29 @@ bool touch(const VoxelBox& a, const VoxelBox& b) {
     return !common(a, b).empty();
 }
 
+/// Takes those voxels of a box in a brick out that lie outside a surface.
+void drop_outside(const SurfaceColumns& surface, const VoxelBox& box, std::size_t channels, VoxelBrick& brick) {
+    for (std::size_t l = 0; l < brick.leaves.size(); ++l) {
+        auto& leaf = brick.leaves[l];
+        const VoxelCoord o = brick.leaf_origin(l);
+        const VoxelBox part = common(box, {o, {o[0] + kLeafSide - 1, o[1] + kLeafSide - 1, o[2] + kLeafSide - 1}});
+        if (!leaf || part.empty()) continue;
+        for (int x = part.lower[0]; x <= part.upper[0]; ++x) {
+            for (int y = part.lower[1]; y <= part.upper[1]; ++y) {
+                for (int z = part.lower[2]; z <= part.upper[2]; ++z) {
+                    const auto word = static_cast<std::size_t>(x - o[0]);
+                    const auto place = static_cast<std::size_t>((y - o[1]) * kLeafSide + z - o[2]);
+                    const std::uint64_t bit = std::uint64_t{1} << place;
+                    if ((leaf->active[word] & bit) == 0 || surface.winding({x, y, z}) != 0) continue;
+                    leaf->active[word] &= ~bit;
+                    for (std::size_t c = 0; c < channels; ++c) leaf->values[c * kLeafVoxels + 64 * word + place] = 0;
+                }
+            }
+        }
+        if (leaf->empty()) leaf.reset();
+    }
+}
+
 }  // namespace
 
 /// Blocks of some cells, one after the other. boxes: the voxels of each
@@ -31,20 +53,12 @@ struct CellRasterizer::Batch {
     std::vector<VoxelBox> boxes;
 };
 
-CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(request)) {
+CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(request)), refined_(request_) {
     fill_.cell_numbers = request_.cell_numbers;
     fill_.channels = 0;
     for (const Attribute* field : request_.fields) fill_.channels += static_cast<std::size_t>(field->channels);
-    check_voxel_count(*request_.mesh, request_.to_voxels);
-    if (!refines()) return;
-    side_ = (std::size_t{1} << request_.refine.levels) + 1;
-    refined_mesh_ = {.points = request_.mesh->points,
-                     .cells = request_.mesh->cells,
-                     .attributes = {},
-                     .creases = request_.mesh->creases,
-                     .sharp_faces = request_.mesh->sharp_faces};
-    for (const Attribute* field : request_.fields) refined_mesh_.attributes.push_back(*field);
-    request_.refine.progress = nullptr;
+    fill_.orientation = check_voxel_count(*request_.mesh, request_.to_voxels) < 0 ? -1 : 1;
+    if (refines()) side_ = (std::size_t{1} << request_.refine.levels) + 1;
 }
 
 VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
@@ -63,6 +77,7 @@ VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
         if (first_run) boxes.insert(boxes.end(), batch.boxes.begin(), batch.boxes.end());
     }
     if (first_run) boxes_ = std::move(boxes);
+    drop_leaks();
     report_progress(request_.progress, "rasterize", 1);
     return bricks;
 }
@@ -117,8 +132,7 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
 void CellRasterizer::load_refined(std::span<const Index> cells, Batch& batch) const {
     std::vector<std::size_t> slots(request_.mesh->cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) slots[cells[i]] = i;
-    const DenseSelection selection{.cells = batch.cells, .on_limit = request_.on_limit};
-    for_each_dense_cell(refined_mesh_, request_.refine, selection, [&](const DenseCell& cell) {
+    refined_.for_each(batch.cells, [&](const DenseCell& cell) {
         const std::size_t nodes = cell.points.size(), first = slots[cell.cell] * nodes;
         for (std::size_t n = 0; n < nodes; ++n) {
             batch.points[first + n] = request_.to_voxels(cell.points[n]);
@@ -141,6 +155,22 @@ void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& par
         entered[b]->cells.clear();
         entered[b]->cells.shrink_to_fit();
     });
+    for (VoxelBrick* brick : entered) {
+        if (!brick->doubtful.empty()) doubtful_.push_back(brick);
+    }
+}
+
+/// Orientations of the tetrahedra about a centre add up to its winding number: where it is 0, turned ones cancel the others.
+void CellRasterizer::drop_leaks() {
+    std::ranges::sort(doubtful_);
+    doubtful_.erase(std::ranges::unique(doubtful_).begin(), doubtful_.end());
+    if (!doubtful_.empty() && !columns_) columns_.emplace(boundary_triangles(request_));
+    tbb::parallel_for(std::size_t{0}, doubtful_.size(), [&](std::size_t i) {
+        VoxelBrick& brick = *doubtful_[i];
+        for (const VoxelBox& box : brick.doubtful) drop_outside(*columns_, box, fill_.leaf_channels(), brick);
+        brick.doubtful = {};
+    });
+    doubtful_.clear();
 }
 
 }  // namespace subvol::detail

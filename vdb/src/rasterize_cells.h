@@ -1,41 +1,22 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fill_block.h"
-#include "subvol/refine.h"
+#include "refined_cells.h"
+#include "surface_columns.h"
 #include "voxel_bricks.h"
 
 namespace subvol::detail {
 
-/// From the world to voxels, whose centres have whole numbers: (linear · x + offset) / voxel_size.
-struct ToVoxels {
-    Mat3 linear{1.0};
-    Vec3 offset{0.0};
-    double voxel_size = 1;
-
-    [[nodiscard]] Vec3 operator()(const Vec3& x) const { return (linear * x + offset) / voxel_size; }
-};
-
-/// fields:   of the mesh; their channels become those of the voxels, one after the other
-/// refine:   levels 0: the mesh as it is, unless on_limit
-/// on_limit: the refined vertices are moved to the limit
-struct RasterizeCells {
-    const HexMesh* mesh = nullptr;
-    std::vector<const Attribute*> fields;
-    ToVoxels to_voxels;
-    RefineOptions refine{.levels = 0};
-    bool on_limit = false;
-    bool cell_numbers = false;
-    Progress* progress = nullptr;
-};
-
 /// Rasterizes the cells of a mesh into bricks of voxels, as often as wanted: for one part of space after the other.
 ///
 /// A batch of cells at a time, in the order of their numbers: refined in parallel, then filled in parallel, a brick a task, so
-/// that the first cell that holds a centre counts, whatever the number of threads. Memory: the voxels, and some 10 MB or, where
-/// the mesh is refined, twice as many nodes as the mesh has points.
+/// that the first cell that holds a centre counts, whatever the number of threads. Where cells are folded, voxels that the
+/// mesh's boundary does not go round are taken out again. Memory: the voxels, and some 10 MB or, where the mesh is refined,
+/// twice as many nodes as the mesh has points.
 class CellRasterizer {
 public:
     /// The mesh must be valid; it is kept by reference.
@@ -51,15 +32,18 @@ private:
     void load(std::span<const Index> cells, Batch& batch);
     void load_refined(std::span<const Index> cells, Batch& batch) const;
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
+    void drop_leaks();
     [[nodiscard]] std::vector<Index> cells_of(const std::optional<VoxelBox>& part) const;
     [[nodiscard]] CellBlock block(const Batch& batch, std::size_t i) const;
-    [[nodiscard]] bool refines() const { return request_.refine.levels > 0 || request_.on_limit; }
+    [[nodiscard]] bool refines() const { return request_.refines(); }
 
     RasterizeCells request_;
+    RefinedCells refined_;
     FillOptions fill_;
-    HexMesh refined_mesh_;         // the mesh with nothing but the fields, if it is refined
-    std::size_t side_ = 2;         // nodes of a block
-    std::vector<VoxelBox> boxes_;  // of every cell, after the first run
+    std::size_t side_ = 2;                   // nodes of a block
+    std::vector<VoxelBox> boxes_;            // of every cell, after the first run
+    std::vector<VoxelBrick*> doubtful_;      // of this run
+    std::optional<SurfaceColumns> columns_;  // of the boundary, once a brick was doubtful
 };
 
 }  // namespace subvol::detail

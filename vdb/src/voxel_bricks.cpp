@@ -69,13 +69,23 @@ void VoxelBricks::enter(Index cell, const VoxelBox& box) {
     }
 }
 
-void VoxelBricks::put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf) {
-    VoxelBrick& brick = brick_at({origin[0] & kInBrick, origin[1] & kInBrick, origin[2] & kInBrick});
+std::unique_ptr<VoxelLeaf>& VoxelBricks::slot_of(const VoxelCoord& voxel) {
+    VoxelBrick& brick = brick_at({voxel[0] & kInBrick, voxel[1] & kInBrick, voxel[2] & kInBrick});
     std::size_t slot = 0;
     for (std::size_t d = 0; d < 3; ++d) {
-        slot = slot * kBrickLeaves + static_cast<std::size_t>((origin[d] - brick.origin[d]) / kLeafSide);
+        slot = slot * kBrickLeaves + static_cast<std::size_t>((voxel[d] - brick.origin[d]) / kLeafSide);
     }
-    brick.leaves[slot] = std::move(leaf);
+    return brick.leaves[slot];
+}
+
+VoxelLeaf& VoxelBricks::leaf_at(const VoxelCoord& voxel) {
+    auto& leaf = slot_of(voxel);
+    if (!leaf) leaf = std::make_unique<VoxelLeaf>(channels_);
+    return *leaf;
+}
+
+void VoxelBricks::put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf) {
+    slot_of(origin) = std::move(leaf);
 }
 
 std::vector<VoxelBrick*> VoxelBricks::take_entered() {

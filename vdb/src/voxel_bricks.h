@@ -41,11 +41,13 @@ struct VoxelLeaf {
 
 /// 4³ leaves that one thread fills at a time; a leaf is there once a voxel of it is active.
 ///
-/// cells: of the batch that is being rasterized, those that may fill voxels of it
+/// cells:    of the batch that is being rasterized, those that may fill voxels of it
+/// doubtful: where folded cells lie, which may have filled voxels outside the mesh
 struct VoxelBrick {
     VoxelCoord origin{};
     std::array<std::unique_ptr<VoxelLeaf>, kBrickLeaves * kBrickLeaves * kBrickLeaves> leaves;
     std::vector<Index> cells;
+    std::vector<VoxelBox> doubtful;
 
     [[nodiscard]] VoxelBox box() const;
     /// The lowest voxel of a leaf.
@@ -64,6 +66,9 @@ public:
     /// The bricks entered since the last call, in the order of their first cells.
     [[nodiscard]] std::vector<VoxelBrick*> take_entered();
 
+    /// The leaf that holds a voxel; it is made if it is not there.
+    [[nodiscard]] VoxelLeaf& leaf_at(const VoxelCoord& voxel);
+
     /// Enters a leaf of its own making. origin: its lowest voxel
     void put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf);
 
@@ -72,6 +77,7 @@ public:
 
 private:
     [[nodiscard]] VoxelBrick& brick_at(const VoxelCoord& origin);
+    [[nodiscard]] std::unique_ptr<VoxelLeaf>& slot_of(const VoxelCoord& voxel);
 
     struct Hash {
         std::size_t operator()(const VoxelCoord& c) const;

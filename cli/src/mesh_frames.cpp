@@ -1,0 +1,97 @@
+#include "mesh_frames.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "subvol/error.h"
+#include "subvol/mesh_motion.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+std::optional<int> whole_number(std::string_view text) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || number < 0) return std::nullopt;
+    return number;
+}
+
+bool same_fields(const HexMesh& a, const HexMesh& b) {
+    return std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(), b.attributes.end(),
+                      [](const Attribute& x, const Attribute& y) { return x.name == y.name && x.channels == y.channels; });
+}
+
+}  // namespace
+
+FrameRange parse_frames(const std::string& text) {
+    const std::string_view all = text;
+    const std::size_t dash = all.find('-');
+    const auto first = dash == std::string::npos ? std::optional(1) : whole_number(all.substr(0, dash));
+    const auto last = whole_number(dash == std::string::npos ? all : all.substr(dash + 1));
+    if (!first || !last || *last < *first) {
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' are no frames", "--frames", "1-10, or 10 for the same");
+    }
+    return {*first, *last};
+}
+
+bool has_number(const std::string& pattern) {
+    return pattern.find('#') != std::string::npos;
+}
+
+std::string with_number(const std::string& pattern, int number) {
+    const std::size_t last = pattern.find_last_of('#');
+    if (last == std::string::npos) return pattern;
+    std::size_t first = last;
+    while (first > 0 && pattern[first - 1] == '#') --first;
+    const std::string digits = std::to_string(number);
+    const std::size_t width = last + 1 - first;
+    const std::string zeros(width > digits.size() ? width - digits.size() : 0, '0');
+    return pattern.substr(0, first) + zeros + digits + pattern.substr(last + 1);
+}
+
+MeshFrames::MeshFrames(std::string input, const std::optional<std::string>& to, FrameRange range, Load load)
+    : input_(std::move(input)), range_(range), load_(std::move(load)) {
+    if (!to) return;
+    from_ = load_(input_);
+    to_ = load_(*to);
+    if (!same_cells(*from_, *to_)) {
+        throw Error(ErrorCode::InvalidInput, "has not the same cells as " + input_, *to,
+                    "two meshes that differ in points and values");
+    }
+    if (!same_fields(*from_, *to_)) {
+        throw Error(ErrorCode::InvalidInput, "has not the same fields as " + input_, *to, "--fields names some that both have");
+    }
+}
+
+HexMesh MeshFrames::between(double t) const {
+    HexMesh mesh = *from_;
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) mesh.points[i] = (1 - t) * mesh.points[i] + t * to_->points[i];
+    for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+        std::vector<double>& values = mesh.attributes[a].values;
+        const std::vector<double>& last = to_->attributes[a].values;
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = (1 - t) * values[i] + t * last[i];
+    }
+    return mesh;
+}
+
+const HexMesh& MeshFrames::mesh(int frame) {
+    meshes_.erase(meshes_.begin(), meshes_.lower_bound(frame - 2));
+    const auto found = meshes_.find(frame);
+    if (found != meshes_.end()) return found->second;
+    const double t = range_.count() > 1 ? static_cast<double>(frame - range_.first) / (range_.count() - 1) : 0;
+    return meshes_.emplace(frame, from_ ? between(t) : load_(with_number(input_, frame))).first->second;
+}
+
+Attribute MeshFrames::velocity(int frame) {
+    if (range_.count() < 2) throw Error(ErrorCode::InvalidInput, "needs two frames at least", "--velocity");
+    const int before = std::max(frame - 1, range_.first), after = std::min(frame + 1, range_.last);
+    const HexMesh &a = mesh(before), &here = mesh(frame), &b = mesh(after);
+    if (!same_cells(a, here) || !same_cells(here, b)) {
+        throw Error(ErrorCode::InvalidInput, text("the cells change between the frames ", before, " and ", after), "--velocity",
+                    "meshes of the same cells");
+    }
+    return velocity_between(a, b, after - before);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol::cli {
+
+/// Numbers of frames, both ends in it.
+struct FrameRange {
+    int first = 1, last = 1;
+
+    [[nodiscard]] int count() const { return last - first + 1; }
+};
+
+/// "3-12", or "10" for 1 to 10.
+///
+/// throws: Error(InvalidInput) if it is anything else
+[[nodiscard]] FrameRange parse_frames(const std::string& text);
+
+/// Whether a file's name has a place for the number of a frame: one or more #.
+[[nodiscard]] bool has_number(const std::string& pattern);
+
+/// The name with the number in the place of its last row of #, with zeros before it to that many digits.
+[[nodiscard]] std::string with_number(const std::string& pattern, int number);
+
+/// The meshes of a sequence: files with numbers in their names, or one mesh that becomes another, all its points and values in
+/// straight lines.
+class MeshFrames {
+public:
+    /// Reads a mesh by the name of its file.
+    using Load = std::function<HexMesh(const std::string&)>;
+
+    /// to: the mesh at the last frame; none: `input` has a place for the number
+    /// throws: Error(InvalidInput) if the two have not the same cells and fields
+    MeshFrames(std::string input, const std::optional<std::string>& to, FrameRange range, Load load);
+
+    /// Meshes are kept until they are two frames old.
+    [[nodiscard]] const HexMesh& mesh(int frame);
+
+    /// `velocity_between` the frames before and after, in world units a frame; one-sided at the first and the last one.
+    ///
+    /// throws: Error(InvalidInput) if the frames beside it have other cells, or if there is only one frame
+    [[nodiscard]] Attribute velocity(int frame);
+
+private:
+    [[nodiscard]] HexMesh between(double t) const;
+
+    std::string input_;
+    FrameRange range_;
+    Load load_;
+    std::optional<HexMesh> from_, to_;  // of a morph
+    std::map<int, HexMesh> meshes_;
+};
+
+}  // namespace subvol::cli

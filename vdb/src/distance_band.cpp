@@ -1,0 +1,138 @@
+#include "distance_band.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kMaxVoxels = 2e9;
+constexpr double kMaxBricks = 5e7;
+
+/// The squared distance from p to a triangle: to its face, or to the edge or corner that p lies before. NaN if it has no area
+/// and p lies before none of them; its neighbours have its edges too. Source: Ericson, Real-Time Collision Detection, 5.1.5
+double squared_distance(const Vec3& p, const VoxelTriangle& triangle) {
+    const auto& [a, b, c] = triangle;
+    const auto squared = [](const Vec3& v) { return glm::dot(v, v); };
+    const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return squared(ap);
+    const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return squared(bp);
+    const double vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared(ap - d1 / (d1 - d3) * ab);
+    const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return squared(cp);
+    const double vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared(ap - d2 / (d2 - d6) * ac);
+    const double va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 >= d3 && d5 >= d6) return squared(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
+    const Vec3 normal = glm::cross(ab, ac);
+    const double along = glm::dot(normal, ap);
+    return along * along / squared(normal);
+}
+
+VoxelBox box_about(const VoxelTriangle& triangle, double half_width) {
+    VoxelBox box;
+    for (std::size_t d = 0; d < 3; ++d) {
+        const int axis = static_cast<int>(d);
+        const auto [low, high] = std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+        box.lower[d] = static_cast<int>(std::ceil(low - half_width));
+        box.upper[d] = static_cast<int>(std::floor(high + half_width));
+    }
+    return box;
+}
+
+/// Whether a triangle may be nearer than `half_width` to a voxel of the cube of `side` voxels at `origin`.
+bool is_near(const VoxelTriangle& triangle, const VoxelCoord& origin, int side, double half_width) {
+    const double half = 0.5 * (side - 1);
+    const Vec3 middle(origin[0] + half, origin[1] + half, origin[2] + half);
+    const double reach = half_width + std::sqrt(3.0) * half;
+    return !(squared_distance(middle, triangle) > reach * reach);
+}
+
+/// The bricks that triangles are near to, with the numbers of these triangles.
+void enter(std::span<const VoxelTriangle> triangles, double half_width, const std::optional<VoxelBox>& part,
+           VoxelBricks& bricks) {
+    constexpr int kInBrick = ~(kBrickSide - 1);
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        const VoxelBox whole = box_about(triangles[t], half_width), box = part ? common(whole, *part) : whole;
+        if (box.empty()) continue;
+        for (int x = box.lower[0] & kInBrick; x <= box.upper[0]; x += kBrickSide) {
+            for (int y = box.lower[1] & kInBrick; y <= box.upper[1]; y += kBrickSide) {
+                for (int z = box.lower[2] & kInBrick; z <= box.upper[2]; z += kBrickSide) {
+                    if (!is_near(triangles[t], {x, y, z}, kBrickSide, half_width)) continue;
+                    bricks.enter(static_cast<Index>(t), {{x, y, z}, {x, y, z}});
+                }
+            }
+        }
+    }
+}
+
+std::unique_ptr<VoxelLeaf> fill_leaf(std::span<const VoxelTriangle> triangles, const std::vector<Index>& numbers,
+                                     const VoxelCoord& origin, double half_width) {
+    std::vector<Index> near;
+    for (const Index t : numbers) {
+        if (is_near(triangles[t], origin, kLeafSide, half_width)) near.push_back(t);
+    }
+    if (near.empty()) return nullptr;
+    std::vector<double> best(kLeafVoxels, half_width * half_width);
+    const VoxelBox within{origin, {origin[0] + kLeafSide - 1, origin[1] + kLeafSide - 1, origin[2] + kLeafSide - 1}};
+    for (const Index t : near) {
+        const VoxelBox box = common(box_about(triangles[t], half_width), within);
+        for (int x = box.lower[0]; x <= box.upper[0]; ++x) {
+            for (int y = box.lower[1]; y <= box.upper[1]; ++y) {
+                const auto row = static_cast<std::size_t>((x - origin[0]) * 64 + (y - origin[1]) * 8);
+                for (int z = box.lower[2]; z <= box.upper[2]; ++z) {
+                    double& least = best[row + static_cast<std::size_t>(z - origin[2])];
+                    const double squared = squared_distance(Vec3(x, y, z), triangles[t]);
+                    if (squared < least) least = squared;
+                }
+            }
+        }
+    }
+    auto leaf = std::make_unique<VoxelLeaf>(1);
+    for (std::size_t i = 0; i < kLeafVoxels; ++i) {
+        if (!(best[i] < half_width * half_width)) continue;
+        leaf->active[i / 64] |= std::uint64_t{1} << i % 64;
+        leaf->values[i] = static_cast<float>(std::sqrt(best[i]));
+    }
+    return leaf->empty() ? nullptr : std::move(leaf);
+}
+
+}  // namespace
+
+void check_band(std::span<const VoxelTriangle> triangles, double half_width) {
+    double area = 0, bricks = 0;
+    for (const VoxelTriangle& t : triangles) {
+        area += 0.5 * glm::length(glm::cross(t[1] - t[0], t[2] - t[0]));
+        const VoxelBox box = box_about(t, half_width);
+        double count = 1;
+        for (std::size_t d = 0; d < 3; ++d) count *= (double{1} * box.upper[d] - box.lower[d]) / kBrickSide + 1;
+        bricks += count;
+    }
+    if (2 * half_width * area <= kMaxVoxels && bricks <= kMaxBricks) return;
+    throw Error(ErrorCode::InvalidInput, "the level set would hold too many voxels about the surface", {},
+                "larger voxels, or a narrower band");
+}
+
+VoxelBricks distance_band(std::span<const VoxelTriangle> triangles, double half_width, const std::optional<VoxelBox>& part) {
+    VoxelBricks bricks(1);
+    enter(triangles, half_width, part, bricks);
+    const std::vector<VoxelBrick*> entered = bricks.take_entered();
+    tbb::parallel_for(std::size_t{0}, entered.size(), [&](std::size_t b) {
+        VoxelBrick& brick = *entered[b];
+        for (std::size_t l = 0; l < brick.leaves.size(); ++l) {
+            brick.leaves[l] = fill_leaf(triangles, brick.cells, brick.leaf_origin(l), half_width);
+        }
+        brick.cells = {};
+    });
+    return bricks;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,89 @@
+#include "grid_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "subvol/error.h"
+#include "vdb_data.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB takes a transform for singular whose determinant is below 3e-15
+
+double voxel_size_of(const Box& box, const RasterizeOptions& options) {
+    if (!(options.voxel_size_world >= 0) || !std::isfinite(options.voxel_size_world)) {
+        throw Error(ErrorCode::InvalidInput, "the voxel size is not positive");
+    }
+    if (options.voxel_size_world > 0) return options.voxel_size_world;
+    if (options.resolution < 1) throw Error(ErrorCode::InvalidInput, "the resolution is below one voxel");
+    const double side = std::max({box.size().x, box.size().y, box.size().z});
+    if (!(side > 0)) throw Error(ErrorCode::InvalidInput, "the mesh is a single point");
+    return side / options.resolution;
+}
+
+ToVoxels to_voxels_of(const openvdb::GridBase& like) {
+    if (!like.transform().isLinear()) {
+        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid \"" + like.getName() + "\"",
+                    "a linear transform, not a frustum");
+    }
+    const auto vec = [](const openvdb::Vec3d& v) { return Vec3(v[0], v[1], v[2]); };
+    const auto map = like.transform().baseMap();
+    const Mat3 to_world(vec(map->applyJacobian({1, 0, 0})), vec(map->applyJacobian({0, 1, 0})),
+                        vec(map->applyJacobian({0, 0, 1})));
+    const double size = std::cbrt(std::abs(glm::determinant(to_world)));
+    const Mat3 linear = size * glm::inverse(to_world);
+    return {linear, -(linear * vec(map->applyMap(openvdb::Vec3d(0.0)))), size};
+}
+
+}  // namespace
+
+void check_representable(double voxel_size) {
+    if (voxel_size >= kLeastVoxel_world) return;
+    std::ostringstream message;
+    message << "voxel size " << voxel_size << ": OpenVDB takes a grid of such small voxels for flat";
+    throw Error(ErrorCode::InvalidInput, message.str(), {}, "at least 1.45e-5; a mesh in smaller units has larger voxels");
+}
+
+ToVoxels voxels_asked_for(const Box& box, const RasterizeOptions& options) {
+    if (options.like) return to_voxels_of(*options.like->data().grid);
+    return {.voxel_size = voxel_size_of(box, options)};
+}
+
+void check_level_set(const RasterizeOptions& options) {
+    const double half_width = options.level_set->half_width_voxels;
+    if (!(half_width >= 1 && half_width <= 1000)) {
+        throw Error(ErrorCode::InvalidInput, "the half width of the level set's band is not from 1 to 1000 voxels");
+    }
+    if (options.like && !options.like->data().grid->hasUniformVoxels()) {
+        throw Error(ErrorCode::InvalidInput, "its voxels are no cubes, which a level set needs",
+                    "grid \"" + options.like->report().name + "\"");
+    }
+}
+
+void describe(openvdb::GridBase& grid, const ToVoxels& to_voxels, const RasterizeOptions& options) {
+    if (options.like) {
+        grid.setTransform(options.like->data().grid->transform().copy());
+    } else {
+        grid.setTransform(openvdb::math::Transform::createLinearTransform(to_voxels.voxel_size));
+    }
+    grid.setCreator(options.creator);
+    grid.insertMeta("subvol_field", openvdb::StringMetadata(grid.getName()));
+    for (const auto& [name, text] : options.metadata) grid.insertMeta(name, openvdb::StringMetadata(text));
+    grid.setSaveFloatAsHalf(options.half);
+}
+
+openvdb::MaskGrid::Ptr mask_of(const openvdb::GridBase& grid) {
+    auto mask = openvdb::MaskGrid::create();
+    if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&grid)) {
+        mask->setTree(std::make_shared<openvdb::MaskTree>(floats->constTree(), false, openvdb::TopologyCopy()));
+    } else if (const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(&grid)) {
+        mask->setTree(std::make_shared<openvdb::MaskTree>(vectors->constTree(), false, openvdb::TopologyCopy()));
+    }
+    mask->setName("mask");
+    return mask;
+}
+
+}  // namespace subvol::detail

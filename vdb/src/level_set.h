@@ -1,0 +1,15 @@
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include "voxel_bricks.h"
+
+namespace subvol::detail {
+
+/// Distances become a level set: world units, negative where the mask is active, ± its half width beyond the band.
+///
+/// band: distances in voxels, as `distance_band` makes them
+[[nodiscard]] openvdb::FloatGrid::Ptr level_set(VoxelBricks band, const openvdb::MaskGrid& inside, double voxel_size,
+                                                double half_width_voxels);
+
+}  // namespace subvol::detail

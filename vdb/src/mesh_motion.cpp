@@ -1,0 +1,25 @@
+#include "subvol/mesh_motion.h"
+
+#include "subvol/error.h"
+
+namespace subvol {
+
+bool same_cells(const HexMesh& a, const HexMesh& b) {
+    return a.points.size() == b.points.size() && a.cells == b.cells && a.creases == b.creases && a.sharp_faces == b.sharp_faces;
+}
+
+Attribute velocity_between(const HexMesh& before, const HexMesh& after, double time, const std::string& name) {
+    if (!same_cells(before, after)) {
+        throw Error(ErrorCode::InvalidInput, "a velocity is between meshes of the same cells; these have others");
+    }
+    if (!(time > 0)) throw Error(ErrorCode::InvalidInput, "the time between two meshes is not positive");
+    Attribute velocity{name, 3, {}};
+    velocity.values.reserve(3 * before.points.size());
+    for (std::size_t i = 0; i < before.points.size(); ++i) {
+        const Vec3 v = (after.points[i] - before.points[i]) / time;
+        velocity.values.insert(velocity.values.end(), {v.x, v.y, v.z});
+    }
+    return velocity;
+}
+
+}  // namespace subvol
