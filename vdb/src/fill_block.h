@@ -27,6 +27,18 @@ struct FillOptions {
     [[nodiscard]] std::size_t leaf_channels() const { return channels + (cell_numbers ? 1 : 0); }
 };
 
+/// One of a block's cells, corners in VTK order, relative to the first.
+///
+/// values: channels × 8; size: the longest side of its bounding box
+struct CellShape {
+    Vec3 origin;
+    std::array<std::array<double, 8>, 3> corners;
+    std::vector<double> values;
+    double size = 0;
+    const CornerSplit* split = nullptr;
+    Index cell = 0;
+};
+
 /// The voxels whose centres may lie in a block; a little generous. Empty where there is none.
 [[nodiscard]] VoxelBox voxels_of(const CellBlock& block);
 
@@ -35,19 +47,10 @@ struct FillOptions {
 ///
 /// A cell's six tetrahedra decide what is inside, so neighbours agree; the values are trilinear, at the inverse of the cell's
 /// map, or linear in the tetrahedron where the map has no clear inverse. Left-handed, folded and flat cells are allowed;
-/// tetrahedra without volume hold nothing.
-void fill_block(const CellBlock& block, const FillOptions& options, VoxelBrick& brick);
+/// tetrahedra without volume hold nothing. shape: memory, from one call to the next
+void fill_block(const CellBlock& block, const FillOptions& options, CellShape& shape, VoxelBrick& brick);
 
 // What is below is for fill_block.cpp and its vector code.
-
-/// One of a block's cells, corners in VTK order, relative to the first. values: channels × 8
-struct CellShape {
-    Vec3 origin;
-    std::array<std::array<double, 8>, 3> corners;
-    std::vector<double> values;
-    const CornerSplit* split = nullptr;
-    Index cell = 0;
-};
 
 /// Centres in a cell: their places relative to its first corner and where their first values go.
 struct FoundVoxels {

@@ -6,15 +6,14 @@
 #include <numeric>
 
 #include "check_voxels.h"
-#include "subvol/dense_cells.h"
 #include "subvol/flat_array.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatchCells = 32768;    // of a mesh as it is
-constexpr std::size_t kBatchNodes = 1 << 20;  // at least, of a refined one; every batch looks at the whole mesh once
+constexpr std::size_t kBatchCells = 32768;  // of a mesh as it is
+constexpr std::size_t kBatches = 2;         // of `DenseCells`, of a refined one
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {
     return !common(a, b).empty();
@@ -38,21 +37,20 @@ CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(requ
     check_voxel_count(*request_.mesh, request_.to_voxels);
     if (!refines()) return;
     side_ = (std::size_t{1} << request_.refine.levels) + 1;
-    refined_mesh_ = {.points = request_.mesh->points,
-                     .cells = request_.mesh->cells,
-                     .attributes = {},
-                     .creases = request_.mesh->creases,
-                     .sharp_faces = request_.mesh->sharp_faces};
-    for (const Attribute* field : request_.fields) refined_mesh_.attributes.push_back(*field);
+    HexMesh with_fields{.points = request_.mesh->points,
+                        .cells = request_.mesh->cells,
+                        .attributes = {},
+                        .creases = request_.mesh->creases,
+                        .sharp_faces = request_.mesh->sharp_faces};
+    for (const Attribute* field : request_.fields) with_fields.attributes.push_back(*field);
     request_.refine.progress = nullptr;
+    refined_.emplace(with_fields, request_.refine, request_.on_limit);
 }
 
 VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
     VoxelBricks bricks(fill_.leaf_channels());
     const std::vector<Index> cells = cells_of(part);
-    const std::size_t nodes = side_ * side_ * side_;
-    const std::size_t count =
-        refines() ? std::max<std::size_t>(1, std::max(kBatchNodes, 2 * request_.mesh->points.size()) / nodes) : kBatchCells;
+    const std::size_t count = refined_ ? kBatches * refined_->batch_size() : kBatchCells;
     const bool first_run = boxes_.empty();
     std::vector<VoxelBox> boxes;
     Batch batch;
@@ -81,7 +79,7 @@ CellBlock CellRasterizer::block(const Batch& batch, std::size_t i) const {
             .side = side_,
             .points = batch.points.data() + i * nodes,
             .values = batch.values.data() + i * nodes * fill_.channels,
-            .ids = refines() ? nullptr : batch.ids.data() + i * nodes};
+            .ids = refined_ ? nullptr : batch.ids.data() + i * nodes};
 }
 
 void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
@@ -90,8 +88,8 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
     batch.points.resize(cells.size() * nodes);
     batch.values.resize(cells.size() * nodes * fill_.channels);
     batch.boxes.resize(cells.size());
-    if (refines()) {
-        load_refined(cells, batch);
+    if (refined_) {
+        load_refined(batch);
     } else {
         batch.ids.resize(cells.size() * nodes);
         const HexMesh& mesh = *request_.mesh;
@@ -114,12 +112,10 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
     check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
 }
 
-void CellRasterizer::load_refined(std::span<const Index> cells, Batch& batch) const {
-    std::vector<std::size_t> slots(request_.mesh->cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) slots[cells[i]] = i;
-    const DenseSelection selection{.cells = batch.cells, .on_limit = request_.on_limit};
-    for_each_dense_cell(refined_mesh_, request_.refine, selection, [&](const DenseCell& cell) {
-        const std::size_t nodes = cell.points.size(), first = slots[cell.cell] * nodes;
+void CellRasterizer::load_refined(Batch& batch) const {
+    refined_->for_each(batch.cells, [&](const DenseCell& cell) {
+        const auto slot = std::ranges::lower_bound(batch.cells, cell.cell) - batch.cells.begin();
+        const std::size_t nodes = cell.points.size(), first = static_cast<std::size_t>(slot) * nodes;
         for (std::size_t n = 0; n < nodes; ++n) {
             batch.points[first + n] = request_.to_voxels(cell.points[n]);
             double* value = batch.values.data() + (first + n) * fill_.channels;
@@ -137,7 +133,8 @@ void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& par
     }
     const std::vector<VoxelBrick*> entered = bricks.take_entered();
     tbb::parallel_for(std::size_t{0}, entered.size(), [&](std::size_t b) {
-        for (const Index i : entered[b]->cells) fill_block(block(batch, i), fill_, *entered[b]);
+        CellShape shape;
+        for (const Index i : entered[b]->cells) fill_block(block(batch, i), fill_, shape, *entered[b]);
         entered[b]->cells.clear();
         entered[b]->cells.shrink_to_fit();
     });

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "fill_block.h"
+#include "subvol/dense_cells.h"
 #include "subvol/refine.h"
 #include "voxel_bricks.h"
 
@@ -34,8 +35,8 @@ struct RasterizeCells {
 /// Rasterizes the cells of a mesh into bricks of voxels, as often as wanted: for one part of space after the other.
 ///
 /// A batch of cells at a time, in the order of their numbers: refined in parallel, then filled in parallel, a brick a task, so
-/// that the first cell that holds a centre counts, whatever the number of threads. Memory: the voxels, and some 10 MB or, where
-/// the mesh is refined, twice as many nodes as the mesh has points.
+/// that the first cell that holds a centre counts, whatever the number of threads. Memory: the voxels, and some 10 MB; where
+/// the mesh is refined, a copy of it, and some 100 MB.
 class CellRasterizer {
 public:
     /// The mesh must be valid; it is kept by reference.
@@ -49,7 +50,7 @@ public:
 private:
     struct Batch;
     void load(std::span<const Index> cells, Batch& batch);
-    void load_refined(std::span<const Index> cells, Batch& batch) const;
+    void load_refined(Batch& batch) const;
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
     [[nodiscard]] std::vector<Index> cells_of(const std::optional<VoxelBox>& part) const;
     [[nodiscard]] CellBlock block(const Batch& batch, std::size_t i) const;
@@ -57,7 +58,7 @@ private:
 
     RasterizeCells request_;
     FillOptions fill_;
-    HexMesh refined_mesh_;         // the mesh with nothing but the fields, if it is refined
+    std::optional<DenseCells> refined_;
     std::size_t side_ = 2;         // nodes of a block
     std::vector<VoxelBox> boxes_;  // of every cell, after the first run
 };
