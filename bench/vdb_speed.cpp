@@ -115,7 +115,7 @@ void measure(int resolution, int side, int level) {
     const double voxels = static_cast<double>(about.active_voxels) / 1e6;
     std::printf("  %.3f M active voxels, grid %.1f MB, peak memory %.1f MB above the start: %.2f of the grid\n", voxels,
                 bytes / 1e6, held / 1e6, held / bytes);
-    const int repeats = first > 2 ? 1 : resolution > kFine ? 3 : 10;
+    const int repeats = first > 2 ? 1 : resolution > kFine ? 4 : 30;
     const double seconds = std::min(first, bench::seconds_of(run, repeats));
     const double copy = seconds_of_copy(about.bytes);
     std::printf(

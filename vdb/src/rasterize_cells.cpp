@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatchCells = 32768;  // of a mesh as it is
+constexpr std::size_t kBatchCells = 16384;  // of a mesh as it is
 constexpr std::size_t kBatches = 2;         // of `DenseCells`, of a refined one
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {

@@ -36,7 +36,7 @@ struct RasterizeCells {
 ///
 /// A batch of cells at a time, in the order of their numbers: refined in parallel, then filled in parallel, a brick a task, so
 /// that the first cell that holds a centre counts, whatever the number of threads. Memory: the voxels, and some 10 MB; where
-/// the mesh is refined, a copy of it, and some 100 MB.
+/// the mesh is refined, a copy of it, and some 150 MB.
 class CellRasterizer {
 public:
     /// The mesh must be valid; it is kept by reference.

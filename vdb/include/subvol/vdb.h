@@ -92,7 +92,7 @@ private:
 /// Error(InvalidInput) if the mesh is not valid, a field is missing, has two or more than three channels or does not fit
 ///         its float, or the voxel size is not positive or below OpenVDB's least of 1.45e-5, makes more than 2·10⁹ voxels or
 ///         voxel numbers beyond 2³⁰; Error(Cancelled)
-/// cost:   memory: the grids, and some 20 MB, or where the mesh is refined some 100 MB and twice the mesh
+/// cost:   memory: the grids, and some 20 MB, or where the mesh is refined some 150 MB and twice the mesh
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
