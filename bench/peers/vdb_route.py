@@ -52,9 +52,14 @@ def measured(command):
     return {"cpu": usage.ru_utime + usage.ru_stime, "wall": time.monotonic() - start, "mb": usage.ru_maxrss / 1024}
 
 
-def active_voxels(file):
+def print_active_voxels(file):
     import pyopenvdb
-    return pyopenvdb.read(str(file), "density").activeVoxelCount()
+    print(pyopenvdb.read(file, "density").activeVoxelCount())
+
+
+def active_voxels(file):
+    """In a process of its own: a program's peak memory counts from that of the process which starts it."""
+    return int(subprocess.run([sys.executable, __file__, "--count", file], stdout=subprocess.PIPE, check=True).stdout)
 
 
 def row(name, figures, file, reference):
@@ -82,5 +87,7 @@ def main(build="build/release", n="40", *sides):
 
 if sys.argv[1:2] == ["--vtk"]:
     vtk_route(sys.argv[2], int(sys.argv[3]), sys.argv[4])
+elif sys.argv[1:2] == ["--count"]:
+    print_active_voxels(sys.argv[2])
 else:
     main(*sys.argv[1:])
