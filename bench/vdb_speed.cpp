@@ -1,19 +1,35 @@
-// The twisted block into voxels: active voxels a second with 1 and 2 threads, error against the exact inverse, memory, writing.
-// Arguments: voxels along the longest side, cells a side, level (its vertices on the limit; -1: the mesh as it is).
+// The twisted block into voxels, by resolution: seconds with 2 and 1 threads, memory, the part of a plain copy's speed,
+// writing, error against the exact inverse. Every resolution is a process of its own, so that its peak of memory is its own.
+//
+//   vdb_speed [-n cells a side = 40] [-l level = none] [voxels along the longest side = 200 400 800…]
+//
+// level: of the refined mesh, its vertices on the limit; -l limit: that which stands for the limit; none: the mesh as it is.
+#include <sys/wait.h>
 #include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <string>
 
 #include "measure.h"
+#include "subvol/limit_level.h"
+#include "subvol/mesh_report.h"
 #include "subvol/model.h"
 #include "subvol/vdb.h"
 
 namespace {
 
 using namespace subvol;
+
+constexpr std::size_t kThreads = 2;
+constexpr int kAsItIs = -1, kLimit = -2;
+constexpr int kFine = 300;                // voxels from which on a run takes long
+constexpr double kToleranceVoxels = 0.1;  // of the limit, as the command line has it
 
 /// Every voxel of a grid as `visit(centre, value)`.
 template <class Visit>
@@ -41,47 +57,109 @@ void print_error(const VdbGrid& grid) {
         squares += error * error;
         ++count;
     });
-    std::printf("error against the exact inverse: largest %.2e, RMS %.2e over %zu voxels\n", most,
-                std::sqrt(squares / static_cast<double>(count)), count);
+    std::printf("  error against the exact inverse: largest %.2e, RMS %.2e\n", most,
+                std::sqrt(squares / static_cast<double>(count)));
+}
+
+/// Seconds to copy so many bytes from memory to memory, by all threads.
+double seconds_of_copy(std::size_t bytes) {
+    constexpr std::size_t kPiece = 1 << 18;
+    const std::vector<char> from(bytes, 1);
+    std::vector<char> to(bytes, 2);
+    return bench::seconds_of(
+        [&] {
+            tbb::parallel_for(std::size_t{0}, (bytes + kPiece - 1) / kPiece, [&](std::size_t p) {
+                std::memcpy(&to[p * kPiece], &from[p * kPiece], std::min(kPiece, bytes - p * kPiece));
+            });
+        },
+        5);
+}
+
+void print_writing(std::span<const VdbGrid> grids) {
+    const auto path = std::filesystem::temp_directory_path() / ("subvol_vdb_speed" + std::to_string(getpid()) + ".vdb");
+    const double seconds = bench::seconds_of([&] { write_vdb(path, grids); }, 1);
+    std::printf("  write: %.3f s, %.1f MB\n", seconds, static_cast<double>(std::filesystem::file_size(path)) / 1e6);
+    std::filesystem::remove(path);
+}
+
+int limit_level(const HexMesh& mesh, int resolution) {
+    const Vec3 size = bounds(mesh).size();
+    const double voxel_size = std::max({size.x, size.y, size.z}) / resolution;
+    LimitLevel limit;
+    const double seconds =
+        bench::seconds_of([&] { limit = find_limit_level(mesh, {}, {.position_world = kToleranceVoxels * voxel_size}); }, 1);
+    std::printf("  limit: level %d%s, found in %.3f s\n", limit.level, limit.converged ? "" : " (not converged)", seconds);
+    return limit.level;
+}
+
+void measure(int resolution, int side, int level) {
+    std::printf("%d voxels along the longest side, %d^3 cells\n", resolution, side);
+    const HexMesh mesh = make_model("twist", side);
+    const std::vector<std::string> fields{"density"};
+    RasterizeOptions options{.resolution = resolution};
+    const tbb::global_control both(tbb::global_control::max_allowed_parallelism, kThreads);
+    const double before = bench::peak_bytes();
+    if (level == kLimit) level = limit_level(mesh, resolution);
+    if (level >= 0) {
+        options.refine.levels = level;
+        options.on_limit = true;
+    }
+    std::vector<VdbGrid> grids;
+    const auto run = [&] {
+        grids.clear();
+        grids = rasterize(mesh, fields, options);
+    };
+    const double first = bench::seconds_of(run, 1);
+    const GridReport about = grids.front().report();
+    const double held = bench::peak_bytes() - before, bytes = static_cast<double>(about.bytes);
+    const double voxels = static_cast<double>(about.active_voxels) / 1e6;
+    std::printf("  %.3f M active voxels, grid %.1f MB, peak memory %.1f MB above the start: %.2f of the grid\n", voxels,
+                bytes / 1e6, held / 1e6, held / bytes);
+    const int repeats = first > 2 ? 1 : resolution > kFine ? 4 : 30;
+    const double seconds = std::min(first, bench::seconds_of(run, repeats));
+    const double copy = seconds_of_copy(about.bytes);
+    std::printf(
+        "  %zu threads: %.4f s, %.1f M voxels/s, first run %.4f s; copying as many bytes: %.4f s (%.1f GB/s), %.3f of it\n",
+        kThreads, seconds, voxels / seconds, first, copy, bytes / copy / 1e9, copy / seconds);
+    {
+        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        const double alone = bench::seconds_of(run, repeats);
+        std::printf("  1 thread: %.4f s, %.1f M voxels/s\n", alone, voxels / alone);
+    }
+    print_writing(grids);
+    if (resolution <= kFine) print_error(grids.front());
+}
+
+/// In a process of its own. returns: whether it went well
+bool measure_apart(int resolution, int side, int level) {
+    std::fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        measure(resolution, side, level);
+        std::fflush(stdout);
+        _exit(0);
+    }
+    int status = 1;
+    return child > 0 && waitpid(child, &status, 0) == child && status == 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int resolution = argc > 1 ? std::atoi(argv[1]) : 200, side = argc > 2 ? std::atoi(argv[2]) : 40;
-    const int levels = argc > 3 ? std::atoi(argv[3]) : -1;
-    const HexMesh mesh = make_model("twist", side);
-    const std::vector<std::string> fields{"density"};
-    RasterizeOptions options{.resolution = resolution};
-    if (levels >= 0) {
-        options.refine.levels = levels;
-        options.on_limit = true;
-    }
-    const double before = bench::peak_bytes();
-    std::vector<VdbGrid> grids;
-    const auto run = [&] { grids = rasterize(mesh, fields, options); };
-    for (const std::size_t threads : {2u, 1u}) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        run();
-        if (threads == 2) {
-            const GridReport& about = grids.front().report();
-            const double held = bench::peak_bytes() - before, bytes = static_cast<double>(about.bytes);
-            std::printf("%zu active voxels, grid %.1f MB, peak memory %.1f MB above the start: %.2f of the grid\n",
-                        about.active_voxels, bytes / 1e6, held / 1e6, held / bytes);
+    int side = 40, level = kAsItIs;
+    for (int option; (option = getopt(argc, argv, "n:l:")) != -1;) {
+        if (option == 'n') {
+            side = std::atoi(optarg);
+        } else if (option == 'l') {
+            level = std::string(optarg) == "limit" ? kLimit : std::atoi(optarg);
+        } else {
+            return 2;
         }
-        grids.clear();
-        const double seconds = bench::seconds_of(
-            [&] {
-                grids.clear();
-                run();
-            },
-            resolution > 300 ? 2 : 5);
-        std::printf("%zu threads: %.4f s, %.1f M voxels/s\n", threads, seconds,
-                    static_cast<double>(grids.front().report().active_voxels) / seconds / 1e6);
     }
-    const auto path = std::filesystem::temp_directory_path() / "subvol_vdb_speed.vdb";
-    const double seconds = bench::seconds_of([&] { write_vdb(path, grids); }, 1);
-    std::printf("write: %.3f s, %.1f MB\n", seconds, static_cast<double>(std::filesystem::file_size(path)) / 1e6);
-    std::filesystem::remove(path);
-    print_error(grids.front());
+    std::vector<int> resolutions;
+    for (int i = optind; i < argc; ++i) resolutions.push_back(std::atoi(argv[i]));
+    if (resolutions.empty()) resolutions = {200, 400, 800};
+    bool good = true;
+    for (const int resolution : resolutions) good = measure_apart(resolution, side, level) && good;
+    return good ? 0 : 1;
 }

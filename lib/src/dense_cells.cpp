@@ -55,42 +55,35 @@ private:
     std::vector<std::vector<double>> values_;
 };
 
-}  // namespace
-
-void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options,
-                         const std::function<void(const DenseCell&)>& visit) {
-    for_each_dense_cell(mesh, options, {}, visit);
-}
-
-void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
-                         const std::function<void(const DenseCell&)>& visit) {
-    const int levels = options.levels;
-    if (levels < 0 || levels > 10) {
-        throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {}, "0 to 10");
+HexMesh control_mesh(const HexMesh& mesh, const RefineOptions& options) {
+    if (options.levels < 0 || options.levels > 10) {
+        throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(options.levels), {}, "0 to 10");
     }
     validate(mesh);
     HexMesh control = without_unused_points(mesh);
-    if (options.crease_angle_deg && levels > 0) tag_creases(control, *options.crease_angle_deg);
-    const detail::PatchSource source(control);
-    const detail::DenseBlock block(levels);
-    RefineOptions quiet = options;
-    quiet.progress = nullptr;
-    const std::vector<Index> wanted = selection.cells ? *selection.cells : all_cells(control);
-    for (const Index c : wanted) {
-        if (c < control.cells.size()) continue;
-        throw Error(ErrorCode::InvalidInput, "there is no cell " + std::to_string(c), {},
-                    "the mesh has " + std::to_string(control.cells.size()) + " cells");
+    if (options.crease_angle_deg && options.levels > 0) tag_creases(control, *options.crease_angle_deg);
+    return control;
+}
+
+}  // namespace
+
+struct DenseCells::State {
+    State(const HexMesh& mesh, const RefineOptions& wanted, bool on_limit)
+        : control(control_mesh(mesh, wanted)),
+          source(control),
+          block(wanted.levels),
+          options(wanted),
+          progress(wanted.progress),
+          move(on_limit && !interpolates(wanted.scheme)) {
+        options.progress = nullptr;
     }
-    const bool move = selection.on_limit && !interpolates(options.scheme);
-    const int last_layers = move ? 1 : 0;  // a vertex's limit asks for the cells around it
-    const std::size_t batch = batch_size(levels), batches = (wanted.size() + batch - 1) / batch;
-    tbb::enumerable_thread_specific<Gather> gathers;
-    const auto refine_batch = [&](std::size_t b) {
-        const auto first = wanted.begin() + static_cast<std::ptrdiff_t>(b * batch);
-        const std::vector<Index> cells(first, first + static_cast<std::ptrdiff_t>(std::min(batch, wanted.size() - b * batch)));
+
+    void refine_batch(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) {
+        const int levels = options.levels;
+        const int last_layers = move ? 1 : 0;  // a vertex's limit asks for the cells around it
         detail::Patch patch = source.cut(cells, std::min(levels + last_layers, 2));
         for (int level = 1; level <= levels; ++level) {
-            patch = detail::refine_patch(patch, quiet, std::min(levels - level + last_layers, 2));
+            patch = detail::refine_patch(patch, options, std::min(levels - level + last_layers, 2));
         }
         if (move) patch.mesh = on_limit(std::move(patch.mesh), options.scheme);
         Gather& gather = gathers.local();
@@ -99,14 +92,56 @@ void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, cons
             gather.run(patch.mesh, i << (3 * levels), block, cell);
             visit(cell);
         }
-    };
+    }
+
+    HexMesh control;
+    detail::PatchSource source;
+    detail::DenseBlock block;
+    RefineOptions options;
+    Progress* progress;
+    bool move;
+    tbb::enumerable_thread_specific<Gather> gathers;
+};
+
+DenseCells::DenseCells(const HexMesh& mesh, const RefineOptions& options, bool on_limit)
+    : state_(std::make_unique<State>(mesh, options, on_limit)) {
+}
+DenseCells::~DenseCells() = default;
+DenseCells::DenseCells(DenseCells&&) noexcept = default;
+DenseCells& DenseCells::operator=(DenseCells&&) noexcept = default;
+
+std::size_t DenseCells::batch_size() const {
+    return subvol::batch_size(state_->options.levels);
+}
+
+void DenseCells::for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const {
+    const std::size_t count = state_->control.cells.size();
+    for (const Index c : cells) {
+        if (c < count) continue;
+        throw Error(ErrorCode::InvalidInput, "there is no cell " + std::to_string(c), {},
+                    "the mesh has " + std::to_string(count) + " cells");
+    }
+    const std::size_t batch = batch_size(), batches = (cells.size() + batch - 1) / batch;
     constexpr std::size_t kTurn = 64;  // batches between two reports of progress
     for (std::size_t turn = 0; turn < batches; turn += kTurn) {
-        report_progress(options.progress, "dense cells", static_cast<double>(turn) / static_cast<double>(batches));
-        tbb::parallel_for(turn, std::min(batches, turn + kTurn),
-                          [&](std::size_t b) { detail::run_nested([&] { refine_batch(b); }); });
+        report_progress(state_->progress, "dense cells", static_cast<double>(turn) / static_cast<double>(batches));
+        tbb::parallel_for(turn, std::min(batches, turn + kTurn), [&](std::size_t b) {
+            detail::run_nested(
+                [&] { state_->refine_batch(cells.subspan(b * batch, std::min(batch, cells.size() - b * batch)), visit); });
+        });
     }
-    report_progress(options.progress, "dense cells", 1);
+    report_progress(state_->progress, "dense cells", 1);
+}
+
+void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options,
+                         const std::function<void(const DenseCell&)>& visit) {
+    for_each_dense_cell(mesh, options, {}, visit);
+}
+
+void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
+                         const std::function<void(const DenseCell&)>& visit) {
+    const DenseCells dense(mesh, options, selection.on_limit);
+    dense.for_each(selection.cells ? *selection.cells : all_cells(mesh), visit);
 }
 
 }  // namespace subvol

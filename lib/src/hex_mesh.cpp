@@ -26,21 +26,21 @@ std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
 }
 
 void validate_cells(const HexMesh& mesh) {
+    const auto where = [](std::size_t c) { return "cell " + std::to_string(c); };
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        const std::string where = "cell " + std::to_string(c);
         auto corners = mesh.cells[c];
         for (std::size_t k = 0; k < 8; ++k) {
             if (corners[k] >= mesh.points.size()) {
                 throw Error(ErrorCode::InvalidInput,
                             "corner " + std::to_string(k) + " is " + std::to_string(corners[k]) + "; the mesh has " +
                                 std::to_string(mesh.points.size()) + " points",
-                            where);
+                            where(c));
             }
         }
         std::sort(corners.begin(), corners.end());
         const auto twice = std::adjacent_find(corners.begin(), corners.end());
         if (twice != corners.end()) {
-            throw Error(ErrorCode::InvalidInput, "point " + std::to_string(*twice) + " is listed twice", where,
+            throw Error(ErrorCode::InvalidInput, "point " + std::to_string(*twice) + " is listed twice", where(c),
                         "a hexahedron needs 8 different points");
         }
     }
@@ -144,9 +144,10 @@ std::size_t orient_cells(HexMesh& mesh) {
 }
 
 Box bounds(const HexMesh& mesh) {
+    const auto used = used_points(mesh);
     Box box;
-    for (const auto& cell : mesh.cells) {
-        for (const Index p : cell) box.add(mesh.points[p]);
+    for (std::size_t p = 0; p < used.size(); ++p) {
+        if (used[p]) box.add(mesh.points[p]);
     }
     return box;
 }

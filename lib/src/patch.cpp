@@ -187,6 +187,29 @@ PatchSource::PatchSource(const HexMesh& mesh)
     parallel_each(cells_.size(), [&](std::size_t i) { cells_[i] = corners.records[i].cell; });
 }
 
+std::vector<Index> PatchSource::cells_about(std::span<const Index> cells) const {
+    std::vector<Index> found;
+    const auto for_each_found = [&](const auto& take) {
+        for (const Index c : cells) {
+            for (const Index p : mesh_.cells[c]) {
+                for (std::size_t i = offsets_[p]; i < offsets_[p + 1]; ++i) take(cells_[i]);
+            }
+        }
+    };
+    if (mesh_.cells.size() > 64 * cells.size()) {  // a few cells of a large mesh
+        for_each_found([&](Index c) { found.push_back(c); });
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+    std::vector<std::uint8_t> marks(mesh_.cells.size(), 0);
+    for_each_found([&](Index c) { marks[c] = 1; });
+    for (std::size_t c = 0; c < marks.size(); ++c) {
+        if (marks[c] != 0) found.push_back(static_cast<Index>(c));
+    }
+    return found;
+}
+
 Patch PatchSource::cut(std::span<const Index> cells, int layers) const {
     std::vector<Index> chosen(cells.begin(), cells.end());
     std::vector<Index> known(chosen);  // sorted
@@ -194,15 +217,7 @@ Patch PatchSource::cut(std::span<const Index> cells, int layers) const {
     Patch patch{.mesh = {}, .wanted = cells.size(), .first_layer = cells.size()};
     std::size_t begin = 0;
     for (int layer = 1; layer <= layers; ++layer) {
-        std::vector<Index> next;
-        for (std::size_t i = begin; i < chosen.size(); ++i) {
-            for (const Index p : mesh_.cells[chosen[i]]) {
-                next.insert(next.end(), cells_.begin() + static_cast<std::ptrdiff_t>(offsets_[p]),
-                            cells_.begin() + static_cast<std::ptrdiff_t>(offsets_[p + 1]));
-            }
-        }
-        std::sort(next.begin(), next.end());
-        next.erase(std::unique(next.begin(), next.end()), next.end());
+        const std::vector<Index> next = cells_about(std::span(chosen).subspan(begin));
         begin = chosen.size();
         std::set_difference(next.begin(), next.end(), known.begin(), known.end(), std::back_inserter(chosen));
         known.assign(chosen.begin(), chosen.end());

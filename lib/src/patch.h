@@ -24,6 +24,9 @@ public:
     [[nodiscard]] Patch cut(std::span<const Index> cells, int layers) const;
 
 private:
+    /// Those that share a point with some cells, and these: sorted.
+    [[nodiscard]] std::vector<Index> cells_about(std::span<const Index> cells) const;
+
     const HexMesh& mesh_;
     std::vector<std::array<Index, 2>> creases_;      // sorted
     std::vector<std::array<Index, 4>> sharp_faces_;  // their points sorted, sorted

@@ -76,6 +76,23 @@ TEST(DenseCells, OfASelectionAreThoseOfAll) {
     EXPECT_THROW(for_each_dense_cell(mesh, options, none, [](const DenseCell&) {}), Error);
 }
 
+TEST(DenseCells, InLotsAreThoseOfAll) {
+    const HexMesh mesh = irregular();
+    const RefineOptions options{.levels = 2};
+    const Grids all = dense(mesh, options);
+    const DenseCells lots(mesh, options, false);
+    EXPECT_GT(lots.batch_size(), 1u);
+    std::size_t visited = 0;
+    for (Index first = 0; first < mesh.cells.size(); first += 3) {
+        std::vector<Index> cells;
+        for (Index c = first; c < std::min<std::size_t>(first + 3, mesh.cells.size()); ++c) cells.push_back(c);
+        std::vector<std::vector<Vec3>> points(mesh.cells.size());
+        lots.for_each(cells, [&](const DenseCell& cell) { points[cell.cell].assign(cell.points.begin(), cell.points.end()); });
+        for (const Index c : cells) visited += points[c] == all.points[c];
+    }
+    EXPECT_EQ(visited, mesh.cells.size());
+}
+
 TEST(DenseCells, OnTheLimitAreTheRefinedMeshOnTheLimit) {
     const HexMesh mesh = irregular();
     for (const int levels : {0, 1, 3}) {

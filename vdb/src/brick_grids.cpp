@@ -11,7 +11,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatch = 64;  // bricks whose leaves exist twice
+constexpr std::size_t kBatch = 16;  // bricks whose leaves exist twice
 
 openvdb::Coord coord_of(const VoxelCoord& c) {
     return {c[0], c[1], c[2]};

@@ -56,7 +56,7 @@ double brick_count(const VoxelBox& box) {
     if (box.empty()) return 0;
     double count = 1;
     for (std::size_t d = 0; d < 3; ++d) {
-        count *= std::floor(box.upper[d] / double{kBrickSide}) - std::floor(box.lower[d] / double{kBrickSide}) + 1;
+        count *= brick_layer(box.upper[d]) - brick_layer(box.lower[d]) + 1;
     }
     return count;
 }

@@ -20,54 +20,76 @@
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
-/// Fills the voxels of `box`, which lies in the brick, whose centres lie in a cell.
-HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillOptions& options, VoxelBrick& brick) {
-    const TetPlanes planes(shape);
-    if (planes.has_turned(options.orientation)) brick.doubtful.push_back(box);
-    ValueFiller filler(shape, options);
-    FoundVoxels found;
-    const VoxelCoord lower{box.lower[0] - brick.origin[0], box.lower[1] - brick.origin[1], box.lower[2] - brick.origin[2]};
-    const VoxelCoord upper{box.upper[0] - brick.origin[0], box.upper[1] - brick.origin[1], box.upper[2] - brick.origin[2]};
-    for (int lz = lower[2] / kLeafSide; lz <= upper[2] / kLeafSide; ++lz) {
-        const int z0 = lz * kLeafSide;
-        HWY_ALIGN double z[kLeafSide], z_shifted[kLeafSide];
-        for (int i = 0; i < kLeafSide; ++i) {
-            const double index = brick.origin[2] + z0 + i;
-            z[i] = index - shape.origin.z;
-            z_shifted[i] = (index + kCentreStep.z) - shape.origin.z;
+/// Fills the voxels of a brick whose centres lie in a cell.
+class CellFiller {
+public:
+    CellFiller(const CellShape& shape, const FillOptions& options, VoxelBrick& brick)
+        : shape_(shape), options_(options), brick_(brick) {}
+
+    /// box: where to look, inside the brick. Its rows along z are taken as many at a time as there are lanes.
+    HWY_ATTR void run(const VoxelBox& box) {
+        const Lanes d;
+        const TetPlanes planes(shape_, Vec3(box.lower[0], box.lower[1], box.lower[2]) + kCentreStep - shape_.origin);
+        if (planes.has_turned(options_.orientation)) brick_.doubtful.push_back(box);
+        const int along_y = box.upper[1] - box.lower[1] + 1, along_z = box.upper[2] - box.lower[2] + 1;
+        const int rows = (box.upper[0] - box.lower[0] + 1) * along_y;
+        for (int row = 0; row < rows; row += static_cast<int>(kLanes)) {
+            const auto numbers = hn::Iota(d, row);
+            const auto x = hn::Floor(hn::Mul(hn::Add(numbers, hn::Set(d, 0.5)), hn::Set(d, 1.0 / along_y)));
+            const auto y = hn::NegMulAdd(x, hn::Set(d, along_y), numbers);
+            HWY_ALIGN std::uint64_t inside[kLanes];
+            hn::Store(planes.inside(x, y, along_z), BitLanes(), inside);
+            const int end = std::min(rows, row + static_cast<int>(kLanes));
+            for (int r = row; r < end; ++r) {
+                const std::uint64_t bits = inside[r - row];
+                if (bits != 0) fill_row({box.lower[0] + r / along_y, box.lower[1] + r % along_y, box.lower[2]}, bits);
+            }
         }
-        const std::uint64_t reach =
-            (std::uint64_t{2} << std::min(upper[2] - z0, kLeafSide - 1)) - (std::uint64_t{1} << std::max(lower[2] - z0, 0));
-        for (int ix = lower[0]; ix <= upper[0]; ++ix) {
-            const double x = brick.origin[0] + ix;
-            for (int iy = lower[1]; iy <= upper[1]; ++iy) {
-                const auto slot =
-                    static_cast<std::size_t>((ix / kLeafSide * kBrickLeaves + iy / kLeafSide) * kBrickLeaves + lz);
-                auto& leaf = brick.leaves[slot];
-                const auto word = static_cast<std::size_t>(ix % kLeafSide);
-                const int shift = iy % kLeafSide * kLeafSide;
-                const std::uint64_t open = leaf ? reach & ~(leaf->active[word] >> shift) : reach;
-                if (open == 0) continue;
-                const double y = brick.origin[1] + iy;
-                std::uint64_t inside =
-                    open & planes.inside((x + kCentreStep.x) - shape.origin.x, (y + kCentreStep.y) - shape.origin.y, z_shifted);
-                if (inside == 0) continue;
-                if (!leaf) leaf = std::make_unique<VoxelLeaf>(options.leaf_channels());
-                leaf->active[word] |= inside << shift;
-                if (options.leaf_channels() == 0) continue;
-                float* row = leaf->values.get() + 64 * word + static_cast<std::size_t>(shift);
-                if (found.count + kLeafSide > FoundVoxels::kMost) filler.fill(found);
-                for (; inside != 0; inside &= inside - 1) {
-                    const auto i = static_cast<std::size_t>(std::countr_zero(inside));
-                    found.places[0][found.count] = x - shape.origin.x;
-                    found.places[1][found.count] = y - shape.origin.y;
-                    found.places[2][found.count] = z[i];
-                    found.values[found.count++] = row + i;
-                }
+        fill_values();
+    }
+
+private:
+    /// inside: bit i: the i-th voxel of the row, from the first one on
+    HWY_ATTR void fill_row(const VoxelCoord& first, std::uint64_t inside) {
+        const auto [x, y, z] =
+            VoxelCoord{first[0] - brick_.origin[0], first[1] - brick_.origin[1], first[2] - brick_.origin[2]};
+        const auto leaf_column = static_cast<std::size_t>((x / kLeafSide * kBrickLeaves + y / kLeafSide) * kBrickLeaves);
+        const auto word = static_cast<std::size_t>(x % kLeafSide), shift = static_cast<std::size_t>(y % kLeafSide * kLeafSide);
+        inside <<= z;
+        for (std::size_t l = leaf_column; inside != 0; ++l, inside >>= kLeafSide) {
+            std::uint64_t bits = inside & 0xff;
+            if (bits == 0) continue;
+            auto& leaf = brick_.leaves[l];
+            if (!leaf) leaf = std::make_unique<VoxelLeaf>(options_.leaf_channels());
+            bits &= ~(leaf->active[word] >> shift);
+            leaf->active[word] |= bits << shift;
+            if (options_.leaf_channels() == 0) continue;
+            if (found_.count + kLeafSide > FoundVoxels::kMost) fill_values();
+            float* values = leaf->values.get() + kLeafVoxels / kLeafSide * word + shift;
+            const double z0 = brick_.origin[2] + static_cast<int>(l - leaf_column) * kLeafSide;
+            for (; bits != 0; bits &= bits - 1) {
+                const int i = std::countr_zero(bits);
+                found_.places[0][found_.count] = first[0] - shape_.origin.x;
+                found_.places[1][found_.count] = first[1] - shape_.origin.y;
+                found_.places[2][found_.count] = (z0 + i) - shape_.origin.z;
+                found_.values[found_.count++] = values + i;
             }
         }
     }
-    filler.fill(found);
+
+    HWY_ATTR void fill_values() {
+        if (found_.count > 0) ValueFiller(shape_, options_).fill(found_);
+    }
+
+    const CellShape& shape_;
+    const FillOptions& options_;
+    VoxelBrick& brick_;
+    FoundVoxels found_;
+};
+
+/// Fills the voxels of `box`, which lies in the brick, whose centres lie in a cell.
+HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillOptions& options, VoxelBrick& brick) {
+    CellFiller(shape, options, brick).run(box);
 }
 
 }  // namespace subvol::detail::HWY_NAMESPACE
@@ -128,10 +150,9 @@ VoxelBox voxels_of(const CellBlock& block) {
     return voxels_between(box.lower, box.upper);
 }
 
-void fill_block(const CellBlock& block, const FillOptions& options, VoxelBrick& brick) {
+void fill_block(const CellBlock& block, const FillOptions& options, CellShape& shape, VoxelBrick& brick) {
     const auto fill_cell_here = HWY_DYNAMIC_DISPATCH(fill_cell);
     const VoxelBox within = brick.box();
-    CellShape shape;
     for (std::size_t w = 0; w + 1 < block.side; ++w) {
         for (std::size_t v = 0; v + 1 < block.side; ++v) {
             for (std::size_t u = 0; u + 1 < block.side; ++u) {
@@ -141,6 +162,7 @@ void fill_block(const CellBlock& block, const FillOptions& options, VoxelBrick& 
                 const VoxelBox voxels = common(voxels_between(box.lower, box.upper), within);
                 if (voxels.empty()) continue;
                 set_shape(block, nodes, options.channels, shape);
+                shape.size = std::max({box.size().x, box.size().y, box.size().z});
                 fill_cell_here(shape, voxels, options, brick);
             }
         }

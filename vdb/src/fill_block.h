@@ -30,8 +30,21 @@ struct FillOptions {
 };
 
 /// Centres on a surface go to the side of a small step along all axes, in voxels (half-open: a box of n³ voxels fills n³ of
-/// them, and two boxes that touch share none). The step is far above the rounding and in no plane that meshes like to have.
-inline const Vec3 kCentreStep = 1e-6 * Vec3(1.0, 0.83, 0.71);
+/// them, and two boxes that touch share none). The step is far above the rounding and in no plane that meshes like to have; as
+/// a multiple of 2⁻³² it keeps the distance of two centres a whole number.
+inline const Vec3 kCentreStep = Vec3(4295, 3565, 3049) / 4294967296.0;  // about 1e-6 voxels
+
+/// One of a block's cells, corners in VTK order, relative to the first.
+///
+/// values: channels × 8; size: the longest side of its bounding box
+struct CellShape {
+    Vec3 origin;
+    std::array<std::array<double, 8>, 3> corners;
+    std::vector<double> values;
+    double size = 0;
+    const CornerSplit* split = nullptr;
+    Index cell = 0;
+};
 
 /// The voxels whose centres may lie in a block; a little generous. Empty where there is none.
 [[nodiscard]] VoxelBox voxels_of(const CellBlock& block);
@@ -42,19 +55,10 @@ inline const Vec3 kCentreStep = 1e-6 * Vec3(1.0, 0.83, 0.71);
 /// A cell's six tetrahedra decide what is inside, so neighbours agree; the values are trilinear, at the inverse of the cell's
 /// map, or linear in the tetrahedron where the map has no clear inverse. Left-handed, folded and flat cells are allowed;
 /// tetrahedra without volume hold nothing. Where a tetrahedron is oriented against `orientation`, what it holds may lie outside
-/// the mesh: its voxels become `doubtful`.
-void fill_block(const CellBlock& block, const FillOptions& options, VoxelBrick& brick);
+/// the mesh: its voxels become `doubtful`. shape: memory, from one call to the next
+void fill_block(const CellBlock& block, const FillOptions& options, CellShape& shape, VoxelBrick& brick);
 
 // What is below is for fill_block.cpp and its vector code.
-
-/// One of a block's cells, corners in VTK order, relative to the first. values: channels × 8
-struct CellShape {
-    Vec3 origin;
-    std::array<std::array<double, 8>, 3> corners;
-    std::vector<double> values;
-    const CornerSplit* split = nullptr;
-    Index cell = 0;
-};
 
 /// Centres in a cell: their places relative to its first corner and where their first values go.
 struct FoundVoxels {

@@ -9,6 +9,9 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 #include "fill_block.h"
 #include "fill_rows-inl.h"
@@ -63,18 +66,79 @@ HWY_ATTR inline Residual residual(const Polynomial& p, const Parameters& q, Doub
     return {hn::Sub(wanted, value), du, dv, dw};
 }
 
+/// At least the length.
+inline double sum_of_sides(const std::array<double, 3>& v) {
+    return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
+}
+
+/// The map of a cell near its middle: the first of Newton's steps, which is the same for all centres.
+class MiddleOfCell {
+public:
+    explicit MiddleOfCell(const std::array<Polynomial, 3>& map) {
+        std::array<std::array<double, 3>, 3> d;  // by u, v, w
+        for (std::size_t a = 0; a < 3; ++a) {
+            const double* c = map[a].c;
+            place_[a] = c[0] + 0.5 * (c[1] + c[2] + c[3]) + 0.25 * (c[4] + c[5] + c[6]) + 0.125 * c[7];
+            d[0][a] = c[1] + 0.5 * (c[4] + c[6]) + 0.25 * c[7];
+            d[1][a] = c[2] + 0.5 * (c[4] + c[5]) + 0.25 * c[7];
+            d[2][a] = c[3] + 0.5 * (c[5] + c[6]) + 0.25 * c[7];
+        }
+        double determinant = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (std::size_t r = 0; r < 3; ++r) {
+                const auto &e = d[(r + 1) % 3], &f = d[(r + 2) % 3];
+                inverse_[r][a] = e[(a + 1) % 3] * f[(a + 2) % 3] - e[(a + 2) % 3] * f[(a + 1) % 3];
+            }
+            determinant += d[0][a] * inverse_[0][a];
+        }
+        const double scale = 1 / determinant;
+        for (auto& row : inverse_) {
+            for (double& x : row) x *= scale;
+        }
+        set_bend(map, d, std::abs(determinant));
+    }
+
+    HWY_ATTR Parameters parameters(Doubles x, Doubles y, Doubles z) const {
+        const Lanes d;
+        const auto px = hn::Sub(x, hn::Set(d, place_[0])), py = hn::Sub(y, hn::Set(d, place_[1]));
+        const auto pz = hn::Sub(z, hn::Set(d, place_[2]));
+        const auto along = [&](const std::array<double, 3>& row) HWY_ATTR {
+            const auto sum = hn::MulAdd(hn::Set(d, row[0]), px, hn::MulAdd(hn::Set(d, row[1]), py, hn::Set(d, 0.5)));
+            return hn::MulAdd(hn::Set(d, row[2]), pz, sum);
+        };
+        return {along(inverse_[0]), along(inverse_[1]), along(inverse_[2])};
+    }
+
+    /// What one of Newton's steps of at most m parameters, m up to 1, that ends near the cell leaves is at most bend·m².
+    /// Infinite where the map is so bent or so flat that rounding might count.
+    [[nodiscard]] double bend() const { return bend_; }
+
+private:
+    void set_bend(const std::array<Polynomial, 3>& map, const std::array<std::array<double, 3>, 3>& d, double volume) {
+        const auto term = [&](std::size_t k) { return sum_of_sides({map[0].c[k], map[1].c[k], map[2].c[k]}); };
+        const double bend = term(4) + term(5) + term(6) + 8 * term(7);
+        const double length = std::max({sum_of_sides(d[0]), sum_of_sides(d[1]), sum_of_sides(d[2])});
+        // The least stretch is at least volume/length²; then it is so all over the cell.
+        const bool tame = 4 * bend * length * length < volume && 1e4 * volume > length * length * length;
+        bend_ = tame ? bend : std::numeric_limits<double>::infinity();
+    }
+
+    std::array<double, 3> place_;
+    std::array<std::array<double, 3>, 3> inverse_;
+    double bend_ = 0;
+};
+
 /// Gives centres in a cell the values of its channels.
 class ValueFiller {
 public:
     HWY_ATTR ValueFiller(const CellShape& shape, const FillOptions& options)
         : shape_(shape),
           options_(options),
-          x_(shape.corners[0].data()),
-          y_(shape.corners[1].data()),
-          z_(shape.corners[2].data()) {
-        double size = 0;
-        for (const auto& c : shape.corners) size = std::max(size, *std::ranges::max_element(c) - *std::ranges::min_element(c));
-        tolerance_ = kNewtonTolerance * kNewtonTolerance * size * size;
+          map_{Polynomial(shape.corners[0].data()), Polynomial(shape.corners[1].data()), Polynomial(shape.corners[2].data())},
+          middle_(map_) {
+        const double tolerance = kNewtonTolerance * shape.size;
+        tolerance_ = tolerance * tolerance;
+        most_ = std::min(1.0, std::sqrt(tolerance / middle_.bend()));
     }
 
     /// The list is empty afterwards.
@@ -89,7 +153,7 @@ public:
 private:
     HWY_ATTR void fill(const FoundVoxels& found, std::size_t first, std::size_t count) {
         const Lanes d;
-        Parameters q{hn::Set(d, 0.5), hn::Set(d, 0.5), hn::Set(d, 0.5)};
+        Parameters q;
         const auto good = invert(hn::Load(d, &found.places[0][first]), hn::Load(d, &found.places[1][first]),
                                  hn::Load(d, &found.places[2][first]), q);
         for (std::size_t c = 0; c < options_.channels; ++c) {
@@ -112,14 +176,22 @@ private:
 
     static float bits_of(Index cell) { return std::bit_cast<float>(static_cast<std::uint32_t>(cell)); }
 
+    HWY_ATTR hn::Mask<Lanes> is_short(Doubles du, Doubles dv, Doubles dw) const {
+        const auto longest = hn::Max(hn::Abs(du), hn::Max(hn::Abs(dv), hn::Abs(dw)));
+        return hn::Le(longest, hn::Set(Lanes(), most_));
+    }
+
     /// Newton's steps for all of them at once. returns: which have arrived, and near the cell
     HWY_ATTR hn::Mask<Lanes> invert(Doubles px, Doubles py, Doubles pz, Parameters& q) const {
         const Lanes d;
-        for (int step = 0;; ++step) {
-            const Residual x = residual(x_, q, px), y = residual(y_, q, py), z = residual(z_, q, pz);
+        const auto half = hn::Set(d, 0.5);
+        q = middle_.parameters(px, py, pz);
+        auto arrived = is_short(hn::Sub(q.u, half), hn::Sub(q.v, half), hn::Sub(q.w, half));
+        for (int step = 1; !hn::AllTrue(d, arrived); ++step) {
+            const Residual x = residual(map_[0], q, px), y = residual(map_[1], q, py), z = residual(map_[2], q, pz);
             const auto square = hn::MulAdd(x.left, x.left, hn::MulAdd(y.left, y.left, hn::Mul(z.left, z.left)));
-            const auto arrived = hn::Le(square, hn::Set(d, tolerance_));
-            if (step == kNewtonSteps || hn::AllTrue(d, arrived)) return hn::And(arrived, near(q));
+            arrived = hn::Or(arrived, hn::Le(square, hn::Set(d, tolerance_)));
+            if (step == kNewtonSteps || hn::AllTrue(d, arrived)) break;
             // Cramer's rule. Those that have arrived stay; what is not finite never arrives.
             const auto ax = hn::MulSub(y.dv, z.dw, hn::Mul(y.dw, z.dv)), ay = hn::MulSub(z.dv, x.dw, hn::Mul(z.dw, x.dv));
             const auto az = hn::MulSub(x.dv, y.dw, hn::Mul(x.dw, y.dv));
@@ -131,11 +203,13 @@ private:
             const auto cx = hn::MulSub(y.dv, z.left, hn::Mul(y.left, z.dv));
             const auto cy = hn::MulSub(z.dv, x.left, hn::Mul(z.left, x.dv));
             const auto cz = hn::MulSub(x.dv, y.left, hn::Mul(x.left, y.dv));
-            const auto du = hn::MulAdd(x.left, ax, hn::MulAdd(y.left, ay, hn::Mul(z.left, az)));
-            const auto dv = hn::MulAdd(x.du, bx, hn::MulAdd(y.du, by, hn::Mul(z.du, bz)));
-            const auto dw = hn::MulAdd(x.du, cx, hn::MulAdd(y.du, cy, hn::Mul(z.du, cz)));
-            q = {hn::MulAdd(scale, du, q.u), hn::MulAdd(scale, dv, q.v), hn::MulAdd(scale, dw, q.w)};
+            const auto du = hn::Mul(scale, hn::MulAdd(x.left, ax, hn::MulAdd(y.left, ay, hn::Mul(z.left, az))));
+            const auto dv = hn::Mul(scale, hn::MulAdd(x.du, bx, hn::MulAdd(y.du, by, hn::Mul(z.du, bz))));
+            const auto dw = hn::Mul(scale, hn::MulAdd(x.du, cx, hn::MulAdd(y.du, cy, hn::Mul(z.du, cz))));
+            q = {hn::Add(q.u, du), hn::Add(q.v, dv), hn::Add(q.w, dw)};
+            arrived = hn::Or(arrived, is_short(du, dv, dw));
         }
+        return hn::And(arrived, near(q));
     }
 
     HWY_ATTR static hn::Mask<Lanes> near(const Parameters& q) {
@@ -165,8 +239,10 @@ private:
 
     const CellShape& shape_;
     const FillOptions& options_;
-    Polynomial x_, y_, z_;
+    std::array<Polynomial, 3> map_;
+    MiddleOfCell middle_;
     double tolerance_;
+    double most_;  // of a step, in parameters, that arrives without a further look
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

@@ -12,8 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatchCells = 32768;    // of a mesh as it is
-constexpr std::size_t kBatchNodes = 1 << 20;  // at least, of a refined one; every batch looks at the whole mesh once
+constexpr std::size_t kBatchCells = 16384;  // of a mesh as it is
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {
     return !common(a, b).empty();
@@ -64,9 +63,7 @@ CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(requ
 VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
     VoxelBricks bricks(fill_.leaf_channels());
     const std::vector<Index> cells = cells_of(part);
-    const std::size_t nodes = side_ * side_ * side_;
-    const std::size_t count =
-        refines() ? std::max<std::size_t>(1, std::max(kBatchNodes, 2 * request_.mesh->points.size()) / nodes) : kBatchCells;
+    const std::size_t count = refines() ? refined_.batch_size() : kBatchCells;
     const bool first_run = boxes_.empty();
     std::vector<VoxelBox> boxes;
     Batch batch;
@@ -106,7 +103,7 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
     batch.values.resize(cells.size() * nodes * fill_.channels);
     batch.boxes.resize(cells.size());
     if (refines()) {
-        load_refined(cells, batch);
+        load_refined(batch);
     } else {
         batch.ids.resize(cells.size() * nodes);
         const HexMesh& mesh = *request_.mesh;
@@ -129,11 +126,10 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
     check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
 }
 
-void CellRasterizer::load_refined(std::span<const Index> cells, Batch& batch) const {
-    std::vector<std::size_t> slots(request_.mesh->cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) slots[cells[i]] = i;
+void CellRasterizer::load_refined(Batch& batch) const {
     refined_.for_each(batch.cells, [&](const DenseCell& cell) {
-        const std::size_t nodes = cell.points.size(), first = slots[cell.cell] * nodes;
+        const auto slot = std::ranges::lower_bound(batch.cells, cell.cell) - batch.cells.begin();
+        const std::size_t nodes = cell.points.size(), first = static_cast<std::size_t>(slot) * nodes;
         for (std::size_t n = 0; n < nodes; ++n) {
             batch.points[first + n] = request_.to_voxels(cell.points[n]);
             double* value = batch.values.data() + (first + n) * fill_.channels;
@@ -151,7 +147,8 @@ void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& par
     }
     const std::vector<VoxelBrick*> entered = bricks.take_entered();
     tbb::parallel_for(std::size_t{0}, entered.size(), [&](std::size_t b) {
-        for (const Index i : entered[b]->cells) fill_block(block(batch, i), fill_, *entered[b]);
+        CellShape shape;
+        for (const Index i : entered[b]->cells) fill_block(block(batch, i), fill_, shape, *entered[b]);
         entered[b]->cells.clear();
         entered[b]->cells.shrink_to_fit();
     });

@@ -15,8 +15,8 @@ namespace subvol::detail {
 ///
 /// A batch of cells at a time, in the order of their numbers: refined in parallel, then filled in parallel, a brick a task, so
 /// that the first cell that holds a centre counts, whatever the number of threads. Where cells are folded, voxels that the
-/// mesh's boundary does not go round are taken out again. Memory: the voxels, and some 10 MB or, where the mesh is refined,
-/// twice as many nodes as the mesh has points.
+/// mesh's boundary does not go round are taken out again. Memory: the voxels, and some 10 MB; where the mesh is refined, a copy
+/// of it, and some 150 MB.
 class CellRasterizer {
 public:
     /// The mesh must be valid; it is kept by reference.
@@ -30,7 +30,7 @@ public:
 private:
     struct Batch;
     void load(std::span<const Index> cells, Batch& batch);
-    void load_refined(std::span<const Index> cells, Batch& batch) const;
+    void load_refined(Batch& batch) const;
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
     void drop_leaks();
     [[nodiscard]] std::vector<Index> cells_of(const std::optional<VoxelBox>& part) const;

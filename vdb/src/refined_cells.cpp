@@ -48,7 +48,7 @@ RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, boo
 }
 
 RefinedCells::RefinedCells(const RasterizeCells& request)
-    : refine_(request.refine), on_limit_(request.on_limit), tables_(request.refines() ? request.tables : nullptr) {
+    : refine_(request.refine), tables_(request.refines() ? request.tables : nullptr) {
     refine_.progress = nullptr;
     if (!request.refines()) return;
     const HexMesh& mesh = *request.mesh;
@@ -61,6 +61,8 @@ RefinedCells::RefinedCells(const RasterizeCells& request)
         mesh_.cells = mesh.cells;
         mesh_.creases = mesh.creases;
         mesh_.sharp_faces = mesh.sharp_faces;
+        dense_.emplace(mesh_, refine_, request.on_limit);
+        mesh_ = {};
     }
 }
 
@@ -90,10 +92,14 @@ void RefinedCells::refine_whole(const RefinementTables& tables) {
     }
 }
 
+std::size_t RefinedCells::batch_size() const {
+    constexpr std::size_t kLots = 2, kNodes = 1 << 20;
+    return dense_ ? kLots * dense_->batch_size() : std::max<std::size_t>(1, kNodes / std::max<std::size_t>(nodes_.size(), 1));
+}
+
 void RefinedCells::for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const {
-    if (!tables_) {
-        for_each_dense_cell(mesh_, refine_, {.cells = std::vector<Index>(cells.begin(), cells.end()), .on_limit = on_limit_},
-                            visit);
+    if (dense_) {
+        dense_->for_each(cells, visit);
         return;
     }
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size()), [&](const auto& range) {

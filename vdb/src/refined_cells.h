@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,14 +49,17 @@ public:
     /// visit: is called from several threads at once and in no order; the spans are gone after the call
     void for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const;
 
+    /// Control cells in a lot that is fast.
+    [[nodiscard]] std::size_t batch_size() const;
+
 private:
     void refine_whole(const RefinementTables& tables);
     void gather(Index cell, DenseCell& dense, std::vector<Vec3>& points, std::vector<std::vector<double>>& values) const;
 
     RefineOptions refine_;
-    bool on_limit_;
+    std::optional<DenseCells> dense_;  // without tables
     const RefinementTables* tables_;
-    HexMesh mesh_;  // with nothing but the fields; from tables: refined, without its cells
+    HexMesh mesh_;  // from tables: refined, with nothing but the fields, without its cells
     /// Of each node of a grid: a cell among the descendants of the control cell, and its corner.
     struct Node {
         std::size_t cell, corner;

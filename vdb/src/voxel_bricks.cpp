@@ -43,16 +43,21 @@ VoxelCoord VoxelBrick::leaf_origin(std::size_t leaf) const {
 
 std::size_t VoxelBricks::Hash::operator()(const VoxelCoord& c) const {
     std::uint64_t h = 0;
-    for (const int x : c) h = (h ^ static_cast<std::uint32_t>(x / kBrickSide)) * 0x9e3779b97f4a7c15u;
+    for (const int x : c) h = (h ^ static_cast<std::uint32_t>(brick_layer(x))) * 0x9e3779b97f4a7c15u;
     return h ^ h >> 32;
 }
 
 VoxelBrick& VoxelBricks::brick_at(const VoxelCoord& origin) {
+    std::size_t slot = 0;
+    for (const int x : origin) slot = 4 * slot + static_cast<std::size_t>(brick_layer(x) & 3);
+    VoxelBrick*& recent = recent_[slot];
+    if (recent && recent->origin == origin) return *recent;
     auto& brick = bricks_[origin];
     if (!brick) {
         brick = std::make_unique<VoxelBrick>();
         brick->origin = origin;
     }
+    recent = brick.get();
     return *brick;
 }
 
@@ -96,6 +101,7 @@ std::vector<std::unique_ptr<VoxelBrick>> VoxelBricks::release() {
     std::vector<std::unique_ptr<VoxelBrick>> all;
     for (auto& [origin, brick] : bricks_) all.push_back(std::move(brick));
     bricks_.clear();
+    recent_ = {};
     std::ranges::sort(all, {}, [](const auto& brick) { return brick->origin; });
     return all;
 }

@@ -25,6 +25,12 @@ inline constexpr std::size_t kLeafVoxels = 512;
 inline constexpr int kBrickLeaves = 4;  // a side
 inline constexpr int kBrickSide = kBrickLeaves * kLeafSide;
 
+/// The layer of bricks that a voxel lies in, along an axis.
+[[nodiscard]] constexpr int brick_layer(int voxel) {
+    static_assert(kBrickSide == 32);
+    return voxel >> 5;  // rounds down for negative voxels too
+}
+
 /// 8³ voxels, numbered x·64 + y·8 + z.
 ///
 /// active: bit z + 8 y of word x
@@ -72,7 +78,7 @@ public:
     /// Enters a leaf of its own making. origin: its lowest voxel
     void put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf);
 
-    /// All bricks in the order of their origins; what holds them is empty afterwards.
+    /// All bricks in the order of their origins; none is left here.
     [[nodiscard]] std::vector<std::unique_ptr<VoxelBrick>> release();
 
 private:
@@ -85,6 +91,7 @@ private:
 
     std::size_t channels_;
     std::unordered_map<VoxelCoord, std::unique_ptr<VoxelBrick>, Hash> bricks_;
+    std::array<VoxelBrick*, 64> recent_{};  // of 4³ bricks next to each other: cells that follow each other lie close
     std::vector<VoxelBrick*> entered_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -39,5 +40,25 @@ struct DenseSelection {
 /// throws: Error(InvalidInput) if a cell does not exist
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
                          const std::function<void(const DenseCell&)>& visit);
+
+/// The same for one lot of cells of a mesh after the other: what is needed of the whole mesh is set up once.
+class DenseCells {
+public:
+    /// throws: as `for_each_dense_cell`
+    DenseCells(const HexMesh& mesh, const RefineOptions& options, bool on_limit);
+    ~DenseCells();
+    DenseCells(DenseCells&&) noexcept;
+    DenseCells& operator=(DenseCells&&) noexcept;
+
+    /// cells: without repetition. throws: Error(InvalidInput) if a cell does not exist; Error(Cancelled)
+    void for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const;
+
+    /// Control cells that are refined together; lots of some times as many are the fastest.
+    [[nodiscard]] std::size_t batch_size() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 }  // namespace subvol

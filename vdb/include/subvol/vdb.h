@@ -107,7 +107,7 @@ private:
 ///         its float, a level set is asked for with voxels that are no cubes or with another half width, or the voxel size is
 ///         not positive or below OpenVDB's least of 1.45e-5, makes more than 2·10⁹ voxels or voxel numbers beyond 2³⁰;
 ///         Error(Cancelled)
-/// cost:   memory: the grids, and some 20 MB, or where the mesh is refined twice as many nodes as it has points
+/// cost:   memory: the grids, and some 20 MB, or where the mesh is refined some 150 MB and twice the mesh
 [[nodiscard]] std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields,
                                              const RasterizeOptions& options = {});
 
