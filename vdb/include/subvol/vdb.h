@@ -101,7 +101,8 @@ private:
 ///
 /// A cell's tetrahedra decide what is inside (`split_cell`; those of refined cells start at the corner that is smallest in x,
 /// then y, then z), its trilinear map where in it. A centre on the boundary counts as if it lay 1e-6 voxels further up all
-/// axes: a box that fits the voxels fills its volume exactly, and boxes that touch share none. Where cells overlap, the control
+/// axes: a box that fits the voxels fills its volume exactly, and boxes that touch share none. Folded cells hold no centre that
+/// the mesh's boundary does not go round. Where cells overlap, the control
 /// cell with the smallest id counts. Parallel over bricks of leaves, the same for any number of threads. throws:
 /// Error(InvalidInput) if the mesh is not valid, a field is missing, has two or more than three channels or does not fit
 ///         its float, a level set is asked for with voxels that are no cubes or with another half width, or the voxel size is
