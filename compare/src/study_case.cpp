@@ -94,7 +94,7 @@ std::optional<StudyCase> reference_of(const StudyCase& of) {
 
 std::string to_json(const StudyCase& of) {
     detail::Json values = detail::Json::object();
-    for (const auto& [key, value] : of.values) std::visit([&](const auto& v) { values[key] = v; }, value);
+    for (const auto& [key, value] : of.values) std::visit([&, &name = key](const auto& v) { values[name] = v; }, value);
     return detail::Json{{"id", of.id}, {"name", of.name}, {"values", values}}.dump();
 }
 
