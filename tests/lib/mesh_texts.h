@@ -31,6 +31,12 @@ inline std::string cell_lines(const HexMesh& mesh, Index first, const std::strin
     return text;
 }
 
+inline std::string with_crlf(const std::string& text) {
+    std::string result;
+    for (const char c : text) result += c == '\n' ? "\r\n" : std::string(1, c);
+    return result;
+}
+
 inline std::string medit_text(const HexMesh& mesh) {
     return "MeshVersionFormatted 1\nDimension 3\nVertices\n" + std::to_string(mesh.points.size()) + "\n" +
            point_lines(mesh, " 0") + "Hexahedra\n" + std::to_string(mesh.cells.size()) + "\n" + cell_lines(mesh, 1, "", " 0") +
