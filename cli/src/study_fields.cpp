@@ -61,17 +61,14 @@ FieldSamples places_of(const StudyCase& of, const HexMesh& mesh) {
     return places;
 }
 
-void put(const FieldError& error, CaseResult& result) {
-    result.metrics["rmse"] = error.rmse;
-    result.metrics["max"] = error.max_abs;
-    result.metrics["uncovered"] = static_cast<double>(error.uncovered);
-}
-
 CaseResult field_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     RbfVolume volume = sample_rbf_points(mesh, study_sampling(of, mesh)).volume;
     if (of.flag("every_second")) volume = every_second(std::move(volume), coarse_points(of));
-    put(field_error(volume, places_of(of, mesh)), result);
+    const FieldError error = field_error(volume, places_of(of, mesh));
+    result.metrics["rmse"] = error.rmse;
+    result.metrics["max"] = error.max_abs;
+    result.metrics["uncovered"] = static_cast<double>(error.uncovered);
     result.metrics["kernels"] = static_cast<double>(volume.size());
     result.metrics["spacing"] = of.flag("every_second") ? 2 : 1 / of.number("per_edge");  // in cells
     return result;
@@ -119,21 +116,11 @@ CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     const std::vector<std::string> names{mesh.attributes.front().name};
     const auto grids =
         rasterize(mesh, names, {.voxel_size_world = voxel, .refine = {.levels = limit.level}, .half = of.flag("half")});
-    const FieldSamples places = places_of(of, mesh);
-    double squares = 0, largest = 0;
-    std::size_t covered = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto value = grids.front().value(places.points[i]);
-        if (!value) continue;
-        const double error = *value - places.values[i];
-        squares += error * error;
-        largest = std::max(largest, std::abs(error));
-        ++covered;
-    }
-    put({.rmse = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(covered, 1))),
-         .max_abs = largest,
-         .uncovered = places.size() - covered},
-        result);
+    const FieldErrors errors =
+        compare_field({.value = [&](const Vec3& x) { return grids.front().value(x); }}, places_of(of, mesh));
+    result.metrics["rmse"] = errors.l2;
+    result.metrics["max"] = errors.linf;
+    result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
     const TemporaryFile file{std::filesystem::temp_directory_path() / ("subvol_study_" + of.id + ".vdb")};
     write_vdb(file.path, grids);
     result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path));

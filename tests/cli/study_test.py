@@ -139,6 +139,17 @@ class Study(InFolder):
             self.assertLess(by["second 1"][metric], by["none 1"][metric])  # what follows the field is nearer to it
             self.assertLess(by["second 2"][metric], by["second 1"][metric])  # and so are finer kernels
 
+    def test_voxels_come_nearer_to_the_limit_as_they_shrink(self):
+        methods = [{"method": "voxels", "resolution": [20, 40], "places": 3000}]
+        self.write(SMALL | {"methods": methods, "inputs": [{"model": "ball", "resolution": 4, "density": "2 + sin(3*x)*cos(2*y)"}]})
+        self.run_ok("study", "s.json", "-o", "out")
+        coarse, fine = csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines())
+        for row in (coarse, fine):
+            self.assertLess(float(row["rmse"]), float(row["max"]))
+            self.assertLess(float(row["uncovered"]), 0.05 * 3000)
+        # Second order inside; voxels at the boundary, where one side is missing, are of first.
+        self.assertLess(float(fine["rmse"]), float(coarse["rmse"]) / 1.5)
+
     def test_jobs_change_nothing(self):
         self.write(SMALL)
         self.run_ok("study", "s.json", "-o", "one", "--jobs", 1)
