@@ -3,12 +3,14 @@
 //
 //   vdb_speed [-n cells a side = 40] [-l level = none] [voxels along the longest side = 200 400 800…]
 //
-// level: of the refined mesh, its vertices on the limit; -l limit: that which stands for the limit; none: the mesh as it is.
+// level: of the refined mesh, its vertices on the limit; -l limit: the curved cells that stand for the limit; none: the mesh as
+// it is.
 #include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -82,14 +84,19 @@ void print_writing(std::span<const VdbGrid> grids) {
     std::filesystem::remove(path);
 }
 
-int limit_level(const HexMesh& mesh, int resolution) {
+LimitCells limit_cells(const HexMesh& mesh, int resolution) {
     const Vec3 size = bounds(mesh).size();
     const double voxel_size = std::max({size.x, size.y, size.z}) / resolution;
-    LimitLevel limit;
+    LimitCells limit;
     const double seconds =
-        bench::seconds_of([&] { limit = find_limit_level(mesh, {}, {.position_world = kToleranceVoxels * voxel_size}); }, 1);
-    std::printf("  limit: level %d%s, found in %.3f s\n", limit.level, limit.converged ? "" : " (not converged)", seconds);
-    return limit.level;
+        bench::seconds_of([&] { limit = find_limit_cells(mesh, {}, {.position_world = kToleranceVoxels * voxel_size}); }, 1);
+    std::printf("  limit: level %d%s, found in %.3f s; control cells with nodes of level", limit.level,
+                limit.converged ? "" : " (not converged)", seconds);
+    for (int level = 1; level <= 5; ++level) {
+        std::printf(" %d: %td", level, std::ranges::count(limit.cell_levels, level));
+    }
+    std::printf("\n");
+    return limit;
 }
 
 void measure(int resolution, int side, int level) {
@@ -99,8 +106,11 @@ void measure(int resolution, int side, int level) {
     RasterizeOptions options{.resolution = resolution};
     const tbb::global_control both(tbb::global_control::max_allowed_parallelism, kThreads);
     const double before = bench::peak_bytes();
-    if (level == kLimit) level = limit_level(mesh, resolution);
-    if (level >= 0) {
+    LimitCells limit;
+    if (level == kLimit) {
+        limit = limit_cells(mesh, resolution);
+        options.limit = &limit;
+    } else if (level >= 0) {
         options.refine.levels = level;
         options.on_limit = true;
     }

@@ -112,10 +112,9 @@ CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const Vec3 size = bounds(mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
-    const LimitLevel limit = find_limit_level(mesh, {}, {.position_world = 0.1 * voxel});
+    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
     const std::vector<std::string> names{mesh.attributes.front().name};
-    const auto grids =
-        rasterize(mesh, names, {.voxel_size_world = voxel, .refine = {.levels = limit.level}, .half = of.flag("half")});
+    const auto grids = rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
     const FieldErrors errors =
         compare_field({.value = [&](const Vec3& x) { return grids.front().value(x); }}, places_of(of, mesh));
     result.metrics["rmse"] = errors.l2;

@@ -136,10 +136,10 @@ Image grid(const Scene& scene) {
     const Stopwatch watch;
     const Vec3 size = bounds(scene.mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / scene.of.whole("resolution");
-    const LimitLevel limit = find_limit_level(scene.mesh, {}, {.position_world = 0.1 * voxel});
+    const LimitCells limit = find_limit_cells(scene.mesh, {}, {.position_world = 0.1 * voxel});
     const std::vector<std::string> names{scene.mesh.attributes.front().name};
-    const auto grids = rasterize(scene.mesh, names,
-                                 {.voxel_size_world = voxel, .refine = {.levels = limit.level}, .half = scene.of.flag("half")});
+    const auto grids =
+        rasterize(scene.mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = scene.of.flag("half")});
     const GridReport& about = grids.front().report();
     scene.result.metrics["primitives"] = scene.result.metrics["voxels"] = static_cast<double>(about.active_voxels);
     scene.result.metrics["grid_bytes"] = static_cast<double>(about.bytes);

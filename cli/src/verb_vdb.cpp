@@ -194,12 +194,15 @@ private:
         const HexMesh first = frames.mesh(range.first);
         RasterizeOptions options = set_up(first, report);
         std::optional<RefinementTables> tables;
-        if (!refine_.crease_angle_deg && report["cells"].get<double>() <= kMostCellsOfTables) {
+        const int levels = options.limit ? limit_.level + 1 : options.refine.levels;
+        if (!refine_.crease_angle_deg && std::ldexp(first.cells.size(), 3 * levels) <= kMostCellsOfTables) {
             tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
         }
         for (int frame = range.first; frame <= range.last; ++frame) {
             HexMesh mesh = frames.mesh(frame);
-            options.tables = tables && same_cells(first, mesh) ? &*tables : nullptr;
+            const bool same = same_cells(first, mesh);
+            options.tables = tables && same ? &*tables : nullptr;
+            if (options.limit && !same) find_limit(mesh, options.refine, options.voxel_size_world, report);
             if (velocity_) add_velocity(frames.velocity(frame), mesh);
             VdbOutput output = output_;
             output.path = with_number(output_.path, frame);
@@ -233,20 +236,24 @@ private:
     [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report) {
         const double voxel_size = like_grids_.empty() ? voxel_size_world(mesh) : like_grids_.front().report().voxel_size_world;
         RefineOptions refinement = refine_.options(0, report);
-        if (!refine_.levels) refinement.levels = limit_level(mesh, refinement, voxel_size, report);
-        report["levels"] = refinement.levels;
-        report["cells"] = mesh.cells.size() << (3 * refinement.levels);
+        if (refine_.levels) {
+            report["levels"] = refinement.levels;
+            report["cells"] = mesh.cells.size() << (3 * refinement.levels);
+        } else {
+            find_limit(mesh, refinement, voxel_size, report);
+        }
         RasterizeOptions options = options_of_grids(report);
         options.voxel_size_world = voxel_size;
         options.refine = refinement;
         options.on_limit = !interpolates(refinement.scheme);
+        options.limit = refine_.levels ? nullptr : &limit_;
         options.level_set = level_set();
         if (options.level_set && mesh.find_attribute(options.level_set->name)) {
             throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
                         "--sdf with another name");
         }
         options.metadata.emplace_back("subvol_scheme", refine_.scheme);
-        options.metadata.emplace_back("subvol_level", std::to_string(refinement.levels));
+        options.metadata.emplace_back("subvol_level", std::to_string(report["levels"].get<int>()));
         return options;
     }
 
@@ -306,18 +313,25 @@ private:
         return std::max({size.x, size.y, size.z}) / resolution_;
     }
 
-    [[nodiscard]] static int limit_level(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
-                                         Report& report) {
-        const LimitLevel limit = report.timed("limit level", [&] {
-            return find_limit_level(mesh, refinement, {.position_world = kPositionTolerance_voxels * voxel_size});
+    /// levels: the finest whose vertices count; cells: those between them, 27 vertices each, or those of the mesh
+    void find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size, Report& report) {
+        limit_ = report.timed("limit level", [&] {
+            return find_limit_cells(mesh, refinement, {.position_world = kPositionTolerance_voxels * voxel_size});
         });
-        report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};
-        if (!limit.converged) {
-            report.warn(text("level ", limit.level, " was the finest within limits; the last step still moved points by ",
-                             limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range,
+        int levels = limit_.level;
+        std::size_t cells = limit_.cell_levels.empty() ? mesh.cells.size() : 0;
+        for (const int level : limit_.cell_levels) {
+            levels = std::max(levels, level);
+            cells += std::size_t{1} << (3 * (level - 1));
+        }
+        report["levels"] = levels;
+        report["cells"] = cells;
+        report["limit_deviation"] = {{"voxels", limit_.position_world / voxel_size}, {"of_range", limit_.value_of_range}};
+        if (!limit_.converged) {
+            report.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
+                             limit_.position_world / voxel_size, " voxels and values by ", limit_.value_of_range,
                              " of their range"));
         }
-        return limit.level;
     }
 
     std::string input_;
@@ -336,6 +350,7 @@ private:
     std::string frames_, to_;
     bool velocity_ = false;
     double frames_per_second_ = 1;
+    LimitCells limit_;
     RefineArguments refine_;
 };
 

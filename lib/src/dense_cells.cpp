@@ -55,10 +55,14 @@ private:
     std::vector<std::vector<double>> values_;
 };
 
-HexMesh control_mesh(const HexMesh& mesh, const RefineOptions& options) {
-    if (options.levels < 0 || options.levels > 10) {
-        throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(options.levels), {}, "0 to 10");
+void check_levels(int levels) {
+    if (levels < 0 || levels > 10) {
+        throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {}, "0 to 10");
     }
+}
+
+HexMesh control_mesh(const HexMesh& mesh, const RefineOptions& options) {
+    check_levels(options.levels);
     validate(mesh);
     HexMesh control = without_unused_points(mesh);
     if (options.crease_angle_deg && options.levels > 0) tag_creases(control, *options.crease_angle_deg);
@@ -71,15 +75,14 @@ struct DenseCells::State {
     State(const HexMesh& mesh, const RefineOptions& wanted, bool on_limit)
         : control(control_mesh(mesh, wanted)),
           source(control),
-          block(wanted.levels),
           options(wanted),
           progress(wanted.progress),
           move(on_limit && !interpolates(wanted.scheme)) {
         options.progress = nullptr;
     }
 
-    void refine_batch(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) {
-        const int levels = options.levels;
+    void refine_batch(std::span<const Index> cells, const detail::DenseBlock& block, int levels,
+                      const std::function<void(const DenseCell&)>& visit) {
         const int last_layers = move ? 1 : 0;  // a vertex's limit asks for the cells around it
         detail::Patch patch = source.cut(cells, std::min(levels + last_layers, 2));
         for (int level = 1; level <= levels; ++level) {
@@ -96,7 +99,6 @@ struct DenseCells::State {
 
     HexMesh control;
     detail::PatchSource source;
-    detail::DenseBlock block;
     RefineOptions options;
     Progress* progress;
     bool move;
@@ -110,24 +112,29 @@ DenseCells::~DenseCells() = default;
 DenseCells::DenseCells(DenseCells&&) noexcept = default;
 DenseCells& DenseCells::operator=(DenseCells&&) noexcept = default;
 
-std::size_t DenseCells::batch_size() const {
-    return subvol::batch_size(state_->options.levels);
+void DenseCells::for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const {
+    for_each(cells, state_->options.levels, visit);
 }
 
-void DenseCells::for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const {
+void DenseCells::for_each(std::span<const Index> cells, int levels, const std::function<void(const DenseCell&)>& visit) const {
+    check_levels(levels);
     const std::size_t count = state_->control.cells.size();
     for (const Index c : cells) {
         if (c < count) continue;
         throw Error(ErrorCode::InvalidInput, "there is no cell " + std::to_string(c), {},
                     "the mesh has " + std::to_string(count) + " cells");
     }
-    const std::size_t batch = batch_size(), batches = (cells.size() + batch - 1) / batch;
+    const detail::DenseBlock block(levels);
+    const std::size_t most = batch_size(levels), at_least = std::max<std::size_t>(1, (cells.size() + most - 1) / most);
+    const std::size_t batch = (cells.size() + at_least - 1) / at_least;  // of the same size, as they run side by side
+    const std::size_t batches = batch == 0 ? 0 : (cells.size() + batch - 1) / batch;
     constexpr std::size_t kTurn = 64;  // batches between two reports of progress
     for (std::size_t turn = 0; turn < batches; turn += kTurn) {
         report_progress(state_->progress, "dense cells", static_cast<double>(turn) / static_cast<double>(batches));
         tbb::parallel_for(turn, std::min(batches, turn + kTurn), [&](std::size_t b) {
-            detail::run_nested(
-                [&] { state_->refine_batch(cells.subspan(b * batch, std::min(batch, cells.size() - b * batch)), visit); });
+            detail::run_nested([&] {
+                state_->refine_batch(cells.subspan(b * batch, std::min(batch, cells.size() - b * batch)), block, levels, visit);
+            });
         });
     }
     report_progress(state_->progress, "dense cells", 1);

@@ -152,8 +152,8 @@ Errors limit_errors(HexMesh mesh, int resolution, const Density& density) {
     mesh.attributes.front().name = "f";
     const Box box = bounds(mesh);
     const double h = std::max({box.size().x, box.size().y, box.size().z}) / resolution;
-    const LimitLevel limit = find_limit_level(mesh, {}, {.position_world = 0.1 * h});
-    const VdbGrid grid = std::move(rasterize(mesh, kField, {.voxel_size_world = h, .refine = {.levels = limit.level}}).front());
+    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * h});
+    const VdbGrid grid = std::move(rasterize(mesh, kField, {.voxel_size_world = h, .limit = &limit}).front());
     const Errors errors = errors_of(grid, density);
     ::testing::Test::RecordProperty("level", limit.level);
     ::testing::Test::RecordProperty("max", std::to_string(errors.max));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "subvol/error.h"
+#include "subvol/limit_level.h"
 #include "subvol/vdb.h"
 #include "vdb/each_voxel.h"
 #include "vdb/test_meshes.h"
@@ -101,6 +102,25 @@ TEST(MeshMotion, SharedTablesGiveTheSameGrids) {
             EXPECT_EQ(alone[1].report().max, shared[1].report().max);
             EXPECT_TRUE(list(alone.back()) == list(shared.back()));
         }
+    }
+}
+
+// So are the curved cells of the limit, whose nodes are of one level then.
+TEST(MeshMotion, SharedTablesOfTheLimit) {
+    const HexMesh first = jittered_box_mesh(4);
+    const HexMesh later = with_field(turned(first, 0.3), "f", [](const Vec3& p) { return std::sin(5 * p.x) + p.z; });
+    const std::vector<std::string> field{"f"};
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
+        const LimitCells limit{.level = 1, .cell_levels = std::vector<std::uint8_t>(first.cells.size(), 2)};
+        RasterizeOptions options{
+            .voxel_size_world = 0.027, .refine = {.scheme = scheme}, .limit = &limit, .level_set = LevelSetOptions{}};
+        const auto alone = rasterize(later, field, options);
+        const RefinementTables tables = rasterization_tables(first, options);
+        options.tables = &tables;
+        const auto shared = rasterize(later, field, options);
+        EXPECT_GT(alone.front().report().active_voxels, 10000u);
+        EXPECT_TRUE(list(alone.front()) == list(shared.front()));
+        EXPECT_TRUE(list(alone.back()) == list(shared.back()));
     }
 }
 

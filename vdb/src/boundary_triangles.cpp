@@ -91,15 +91,16 @@ std::size_t lowest_corner(const Quad& quad) {
         quad.begin());
 }
 
-/// The quads of one side of a refined cell.
-void put_side(const DenseCell& cell, std::size_t side, const ToVoxels& to_voxels, bool turned, VoxelTriangle* out) {
+/// The steps² quads of one side of a refined cell.
+void put_side(const DenseCell& cell, std::size_t side, std::ptrdiff_t steps, const ToVoxels& to_voxels, bool turned,
+              VoxelTriangle* out) {
     const std::size_t last = cell.side - 1;
     const auto node = [&](int corner) {  // of the grid, in VTK's order of corners
         const std::size_t u = corner % 4 == 1 || corner % 4 == 2, v = corner % 4 >= 2, w = corner >= 4;
         return static_cast<std::ptrdiff_t>(last * (u + cell.side * (v + cell.side * w)));
     };
     const auto& corners = kCellFaces[side];
-    const std::ptrdiff_t start = node(corners[0]), steps = static_cast<std::ptrdiff_t>(last);
+    const std::ptrdiff_t start = node(corners[0]);
     const std::ptrdiff_t along = (node(corners[1]) - start) / steps, across = (node(corners[3]) - start) / steps;
     for (std::ptrdiff_t i = 0; i < steps; ++i) {
         for (std::ptrdiff_t j = 0; j < steps; ++j, out += 2) {
@@ -142,10 +143,11 @@ std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request) {
     }
     RasterizeCells without_fields = request;
     without_fields.fields.clear();
-    RefinedCells(without_fields).for_each(numbers, [&](const DenseCell& dense) {
+    RefinedCells(without_fields).for_each(numbers, request.levels(), [&](const DenseCell& dense) {
         const BoundaryCell& cell = cells[slots[dense.cell]];
         for (std::size_t k = 0; k < cell.sides.size(); ++k) {
-            put_side(dense, cell.sides[k], request.to_voxels, turned[cell.cell], place(cell, k));
+            put_side(dense, cell.sides[k], std::ptrdiff_t{1} << request.refine.levels, request.to_voxels, turned[cell.cell],
+                     place(cell, k));
         }
     });
     return triangles;

@@ -78,7 +78,12 @@ private:
     }
 
     HWY_ATTR void fill_values() {
-        if (found_.count > 0) ValueFiller(shape_, options_).fill(found_);
+        if (found_.count == 0) return;
+        if (shape_.curved) {
+            ValueFiller<Triquadratic>(shape_, options_).fill(found_);
+        } else {
+            ValueFiller<Trilinear>(shape_, options_).fill(found_);
+        }
     }
 
     const CellShape& shape_;
@@ -114,10 +119,10 @@ VoxelBox voxels_between(const Vec3& lower, const Vec3& upper) {
     return box;
 }
 
-/// Corners of the cell at node (i, j, k) of a block, in VTK order.
-std::array<std::size_t, 8> corner_nodes(std::size_t lowest, std::size_t side) {
-    const std::size_t v = side, w = side * side;
-    return {lowest, lowest + 1, lowest + v + 1, lowest + v, lowest + w, lowest + w + 1, lowest + w + v + 1, lowest + w + v};
+/// Corners of the cell at a node of a block, in VTK order.
+std::array<std::size_t, 8> corner_nodes(std::size_t lowest, const CellBlock& block) {
+    const std::size_t u = block.step, v = u * block.side, w = v * block.side;
+    return {lowest, lowest + u, lowest + v + u, lowest + v, lowest + w, lowest + w + u, lowest + w + v + u, lowest + w + v};
 }
 
 const CornerSplit& split_of(const CellBlock& block, const std::array<std::size_t, 8>& nodes) {
@@ -140,6 +145,17 @@ void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, 
         for (std::size_t d = 0; d < 3; ++d) shape.corners[d][k] = p[static_cast<int>(d)];
         for (std::size_t c = 0; c < channels; ++c) shape.values[8 * c + k] = block.values[nodes[k] * channels + c];
     }
+    shape.curved = block.curved;
+    if (!block.curved) return;
+    shape.node_values.resize(kCurvedNodes * channels);
+    for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+        const std::size_t node = nodes[0] + block.step / 2 * (n % 3 + block.side * (n / 3 % 3 + block.side * (n / 9)));
+        const Vec3 p = block.points[node] - shape.origin;
+        for (std::size_t d = 0; d < 3; ++d) shape.nodes[d][n] = p[static_cast<int>(d)];
+        for (std::size_t c = 0; c < channels; ++c) {
+            shape.node_values[kCurvedNodes * c + n] = block.values[node * channels + c];
+        }
+    }
 }
 
 }  // namespace
@@ -153,10 +169,10 @@ VoxelBox voxels_of(const CellBlock& block) {
 void fill_block(const CellBlock& block, const FillOptions& options, CellShape& shape, VoxelBrick& brick) {
     const auto fill_cell_here = HWY_DYNAMIC_DISPATCH(fill_cell);
     const VoxelBox within = brick.box();
-    for (std::size_t w = 0; w + 1 < block.side; ++w) {
-        for (std::size_t v = 0; v + 1 < block.side; ++v) {
-            for (std::size_t u = 0; u + 1 < block.side; ++u) {
-                const auto nodes = corner_nodes((w * block.side + v) * block.side + u, block.side);
+    for (std::size_t w = 0; w + 1 < block.side; w += block.step) {
+        for (std::size_t v = 0; v + 1 < block.side; v += block.step) {
+            for (std::size_t u = 0; u + 1 < block.side; u += block.step) {
+                const auto nodes = corner_nodes((w * block.side + v) * block.side + u, block);
                 Box box;
                 for (const std::size_t n : nodes) box.add(block.points[n]);
                 const VoxelBox voxels = common(voxels_between(box.lower, box.upper), within);

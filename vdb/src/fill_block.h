@@ -7,12 +7,16 @@ namespace subvol::detail {
 
 /// A cell of the control mesh as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
 ///
+/// step:   nodes from one corner of a smaller cell to the next
+/// curved: what is between its corners is triquadratic, through the nodes half way; the step is even
 /// points: in voxels: their centres have whole numbers
 /// values: node-major, so many a node as there are channels
 /// ids:    of the nodes of a grid of 8, by which the cell is split into tetrahedra; null: by the places of the nodes
 struct CellBlock {
     Index cell = 0;
     std::size_t side = 2;
+    std::size_t step = 1;
+    bool curved = false;
     const Vec3* points = nullptr;
     const double* values = nullptr;
     const Index* ids = nullptr;
@@ -34,13 +38,20 @@ struct FillOptions {
 /// a multiple of 2⁻³² it keeps the distance of two centres a whole number.
 inline const Vec3 kCentreStep = Vec3(4295, 3565, 3049) / 4294967296.0;  // about 1e-6 voxels
 
+/// The nodes of a curved cell: three along each axis, u fastest, then v, then w.
+constexpr std::size_t kCurvedNodes = 27;
+
 /// One of a block's cells, corners in VTK order, relative to the first.
 ///
 /// values: channels × 8; size: the longest side of its bounding box
+/// curved: with these nodes, relative to the first corner, and their channels × 27 values
 struct CellShape {
     Vec3 origin;
     std::array<std::array<double, 8>, 3> corners;
     std::vector<double> values;
+    bool curved = false;
+    std::array<std::array<double, kCurvedNodes>, 3> nodes;
+    std::vector<double> node_values;
     double size = 0;
     const CornerSplit* split = nullptr;
     Index cell = 0;
@@ -52,10 +63,10 @@ struct CellShape {
 /// Activates the voxels of a brick whose centres lie in the block and gives them its values; those that are active stay as they
 /// are.
 ///
-/// A cell's six tetrahedra decide what is inside, so neighbours agree; the values are trilinear, at the inverse of the cell's
-/// map, or linear in the tetrahedron where the map has no clear inverse. Left-handed, folded and flat cells are allowed;
-/// tetrahedra without volume hold nothing. Where a tetrahedron is oriented against `orientation`, what it holds may lie outside
-/// the mesh: its voxels become `doubtful`. shape: memory, from one call to the next
+/// A cell's six tetrahedra decide what is inside, so neighbours agree; the values are trilinear or triquadratic, at the inverse
+/// of the cell's map, or linear in the tetrahedron where the map has no clear inverse. Left-handed, folded and flat cells are
+/// allowed; tetrahedra without volume hold nothing. Where a tetrahedron is oriented against `orientation`, what it holds may
+/// lie outside the mesh: its voxels become `doubtful`. shape: memory, from one call to the next
 void fill_block(const CellBlock& block, const FillOptions& options, CellShape& shape, VoxelBrick& brick);
 
 // What is below is for fill_block.cpp and its vector code.

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "fill_block.h"
 #include "fill_rows-inl.h"
@@ -24,10 +25,10 @@ constexpr double kNewtonTolerance = 1e-8;  // of the cell's size: below the roun
 constexpr double kOutside = 0.25;          // how far a bent face may lie beyond its two triangles, in parameters
 
 /// The coefficients of 1, u, v, w, uv, vw, wu, uvw of what is trilinear between 8 corners.
-struct Polynomial {
+struct Trilinear {
     double c[8];
 
-    explicit Polynomial(const double* v)
+    explicit Trilinear(const double* v)
         : c{v[0],
             v[1] - v[0],
             v[3] - v[0],
@@ -43,7 +44,7 @@ struct Parameters {
     Doubles u, v, w;
 };
 
-HWY_ATTR inline Doubles value_at(const Polynomial& p, const Parameters& q) {
+HWY_ATTR inline Doubles value_at(const Trilinear& p, const Parameters& q) {
     const Lanes d;
     const auto c = [&](int k) HWY_ATTR { return hn::Set(d, p.c[k]); };
     const auto low = hn::MulAdd(hn::MulAdd(c(4), q.v, c(1)), q.u, hn::MulAdd(c(2), q.v, c(0)));
@@ -56,13 +57,67 @@ struct Residual {
     Doubles left, du, dv, dw;
 };
 
-HWY_ATTR inline Residual residual(const Polynomial& p, const Parameters& q, Doubles wanted) {
+HWY_ATTR inline Residual residual(const Trilinear& p, const Parameters& q, Doubles wanted) {
     const Lanes d;
     const auto c = [&](int k) HWY_ATTR { return hn::Set(d, p.c[k]); };
     const auto dw = hn::MulAdd(hn::MulAdd(c(7), q.v, c(6)), q.u, hn::MulAdd(c(5), q.v, c(3)));
     const auto du = hn::MulAdd(hn::MulAdd(c(7), q.v, c(6)), q.w, hn::MulAdd(c(4), q.v, c(1)));
     const auto dv = hn::MulAdd(hn::MulAdd(c(7), q.u, c(5)), q.w, hn::MulAdd(c(4), q.u, c(2)));
     const auto value = hn::MulAdd(dw, q.w, hn::MulAdd(hn::MulAdd(c(4), q.v, c(1)), q.u, hn::MulAdd(c(2), q.v, c(0))));
+    return {hn::Sub(wanted, value), du, dv, dw};
+}
+
+/// What is triquadratic through 27 nodes: the coefficient of uⁱ vʲ wᵏ at i + 3j + 9k.
+struct Triquadratic {
+    double c[kCurvedNodes];
+
+    explicit Triquadratic(const double* v) {
+        std::copy_n(v, kCurvedNodes, c);
+        for (const std::size_t stride : {1, 3, 9}) {
+            for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+                if (n / stride % 3 != 0) continue;
+                const double low = c[n], middle = c[n + stride], high = c[n + 2 * stride];
+                c[n + stride] = 4 * middle - 3 * low - high;
+                c[n + 2 * stride] = 2 * (low + high - 2 * middle);
+            }
+        }
+    }
+};
+
+HWY_ATTR inline Doubles value_at(const Triquadratic& p, const Parameters& q) {
+    const Lanes d;
+    auto along_w = hn::Zero(d);
+    for (int k = 2; k >= 0; --k) {
+        auto along_v = hn::Zero(d);
+        for (int j = 2; j >= 0; --j) {
+            const double* c = &p.c[3 * j + 9 * k];
+            const auto along_u = hn::MulAdd(hn::MulAdd(hn::Set(d, c[2]), q.u, hn::Set(d, c[1])), q.u, hn::Set(d, c[0]));
+            along_v = hn::MulAdd(along_v, q.v, along_u);
+        }
+        along_w = hn::MulAdd(along_w, q.w, along_v);
+    }
+    return along_w;
+}
+
+/// Horner's rule along each axis, with the derivatives.
+HWY_ATTR inline Residual residual(const Triquadratic& p, const Parameters& q, Doubles wanted) {
+    const Lanes d;
+    const auto twice_u = hn::Add(q.u, q.u);
+    auto value = hn::Zero(d), du = hn::Zero(d), dv = hn::Zero(d), dw = hn::Zero(d);
+    for (int k = 2; k >= 0; --k) {
+        auto x = hn::Zero(d), x_du = hn::Zero(d), x_dv = hn::Zero(d);
+        for (int j = 2; j >= 0; --j) {
+            const double* c = &p.c[3 * j + 9 * k];
+            const auto c1 = hn::Set(d, c[1]), c2 = hn::Set(d, c[2]);
+            x_dv = hn::MulAdd(x_dv, q.v, x);
+            x = hn::MulAdd(x, q.v, hn::MulAdd(hn::MulAdd(c2, q.u, c1), q.u, hn::Set(d, c[0])));
+            x_du = hn::MulAdd(x_du, q.v, hn::MulAdd(c2, twice_u, c1));
+        }
+        dw = hn::MulAdd(dw, q.w, value);
+        value = hn::MulAdd(value, q.w, x);
+        du = hn::MulAdd(du, q.w, x_du);
+        dv = hn::MulAdd(dv, q.w, x_dv);
+    }
     return {hn::Sub(wanted, value), du, dv, dw};
 }
 
@@ -74,7 +129,7 @@ inline double sum_of_sides(const std::array<double, 3>& v) {
 /// The map of a cell near its middle: the first of Newton's steps, which is the same for all centres.
 class MiddleOfCell {
 public:
-    explicit MiddleOfCell(const std::array<Polynomial, 3>& map) {
+    explicit MiddleOfCell(const std::array<Trilinear, 3>& map) {
         std::array<std::array<double, 3>, 3> d;  // by u, v, w
         for (std::size_t a = 0; a < 3; ++a) {
             const double* c = map[a].c;
@@ -114,7 +169,7 @@ public:
     [[nodiscard]] double bend() const { return bend_; }
 
 private:
-    void set_bend(const std::array<Polynomial, 3>& map, const std::array<std::array<double, 3>, 3>& d, double volume) {
+    void set_bend(const std::array<Trilinear, 3>& map, const std::array<std::array<double, 3>, 3>& d, double volume) {
         const auto term = [&](std::size_t k) { return sum_of_sides({map[0].c[k], map[1].c[k], map[2].c[k]}); };
         const double bend = term(4) + term(5) + term(6) + 8 * term(7);
         const double length = std::max({sum_of_sides(d[0]), sum_of_sides(d[1]), sum_of_sides(d[2])});
@@ -128,17 +183,30 @@ private:
     double bend_ = 0;
 };
 
+/// The nodes that a map goes through, and their values.
+template <class Map>
+inline const double* nodes_of(const CellShape& shape, std::size_t axis) {
+    return std::is_same_v<Map, Trilinear> ? shape.corners[axis].data() : shape.nodes[axis].data();
+}
+template <class Map>
+inline std::span<const double> values_of(const CellShape& shape, std::size_t channel) {
+    if constexpr (std::is_same_v<Map, Trilinear>) return std::span(shape.values).subspan(8 * channel, 8);
+    return std::span(shape.node_values).subspan(kCurvedNodes * channel, kCurvedNodes);
+}
+
 /// Gives centres in a cell the values of its channels.
+template <class Map>
 class ValueFiller {
 public:
     HWY_ATTR ValueFiller(const CellShape& shape, const FillOptions& options)
         : shape_(shape),
           options_(options),
-          map_{Polynomial(shape.corners[0].data()), Polynomial(shape.corners[1].data()), Polynomial(shape.corners[2].data())},
-          middle_(map_) {
+          map_{Map(nodes_of<Map>(shape, 0)), Map(nodes_of<Map>(shape, 1)), Map(nodes_of<Map>(shape, 2))},
+          middle_(
+              {Trilinear(shape.corners[0].data()), Trilinear(shape.corners[1].data()), Trilinear(shape.corners[2].data())}) {
         const double tolerance = kNewtonTolerance * shape.size;
         tolerance_ = tolerance * tolerance;
-        most_ = std::min(1.0, std::sqrt(tolerance / middle_.bend()));
+        if (!shape.curved) most_ = std::min(1.0, std::sqrt(tolerance / middle_.bend()));
     }
 
     /// The list is empty afterwards.
@@ -157,10 +225,13 @@ private:
         const auto good = invert(hn::Load(d, &found.places[0][first]), hn::Load(d, &found.places[1][first]),
                                  hn::Load(d, &found.places[2][first]), q);
         for (std::size_t c = 0; c < options_.channels; ++c) {
-            const double* corners = &shape_.values[8 * c];
-            const auto [lowest, highest] = std::ranges::minmax(std::span(corners, 8));
-            // The weights reach beyond [0,1] between a bent face and its two triangles; the field's values must not.
-            const auto value = hn::Clamp(value_at(Polynomial(corners), q), hn::Set(d, lowest), hn::Set(d, highest));
+            const std::span<const double> nodes = values_of<Map>(shape_, c);
+            const auto [lowest, highest] = std::ranges::minmax(nodes);
+            // The weights reach beyond [0,1] between a bent face and its two triangles; the field's values must not. A parabola
+            // goes beyond its nodes by an eighth at most.
+            const double beyond = shape_.curved ? (highest - lowest) / 8 : 0;
+            const auto value =
+                hn::Clamp(value_at(Map(nodes.data()), q), hn::Set(d, lowest - beyond), hn::Set(d, highest + beyond));
             HWY_ALIGN double values[kLanes];
             hn::Store(value, d, values);
             for (std::size_t i = 0; i < count; ++i) {
@@ -186,7 +257,7 @@ private:
         const Lanes d;
         const auto half = hn::Set(d, 0.5);
         q = middle_.parameters(px, py, pz);
-        auto arrived = is_short(hn::Sub(q.u, half), hn::Sub(q.v, half), hn::Sub(q.w, half));
+        auto arrived = is_short(hn::Sub(q.u, half), hn::Sub(q.v, half), hn::Sub(q.w, half));  // of a curved cell none
         for (int step = 1; !hn::AllTrue(d, arrived); ++step) {
             const Residual x = residual(map_[0], q, px), y = residual(map_[1], q, py), z = residual(map_[2], q, pz);
             const auto square = hn::MulAdd(x.left, x.left, hn::MulAdd(y.left, y.left, hn::Mul(z.left, z.left)));
@@ -239,10 +310,10 @@ private:
 
     const CellShape& shape_;
     const FillOptions& options_;
-    std::array<Polynomial, 3> map_;
+    std::array<Map, 3> map_;
     MiddleOfCell middle_;
     double tolerance_;
-    double most_;  // of a step, in parameters, that arrives without a further look
+    double most_ = -1;  // of a step, in parameters, that arrives without a further look
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

@@ -104,13 +104,15 @@ private:
 
     /// Without values.
     [[nodiscard]] detail::RasterizeCells request(const HexMesh& mesh, const RasterizeOptions& options) const {
-        return {.mesh = &mesh,
-                .fields = {},
-                .to_voxels = to_voxels_,
-                .refine = options.refine,
-                .on_limit = options.on_limit,
-                .tables = options.tables,
-                .progress = options.progress};
+        detail::RasterizeCells request{.mesh = &mesh,
+                                       .fields = {},
+                                       .to_voxels = to_voxels_,
+                                       .refine = options.refine,
+                                       .on_limit = options.on_limit,
+                                       .tables = options.tables,
+                                       .progress = options.progress};
+        if (options.limit) detail::set_limit(*options.limit, request);
+        return request;
     }
 
     [[nodiscard]] openvdb::GridBase::Ptr level_set(const openvdb::MaskGrid& inside,
@@ -196,7 +198,12 @@ std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string>
 }
 
 RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {
-    return detail::tables_of(mesh, options.refine, options.on_limit);
+    detail::RasterizeCells request;
+    request.refine = options.refine;
+    request.on_limit = options.on_limit;
+    if (options.limit) detail::set_limit(*options.limit, request);
+    request.refine.levels = request.levels();
+    return detail::tables_of(mesh, request.refine, request.on_limit);
 }
 
 void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,

@@ -30,17 +30,18 @@ public:
 private:
     struct Batch;
     void load(std::span<const Index> cells, Batch& batch);
+    void load_cells(Batch& batch) const;
     void load_refined(Batch& batch) const;
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
     void drop_leaks();
     [[nodiscard]] std::vector<Index> cells_of(const std::optional<VoxelBox>& part) const;
+    [[nodiscard]] std::size_t side(Index cell) const { return (std::size_t{1} << request_.levels(cell)) + 1; }
     [[nodiscard]] CellBlock block(const Batch& batch, std::size_t i) const;
     [[nodiscard]] bool refines() const { return request_.refines(); }
 
     RasterizeCells request_;
     RefinedCells refined_;
     FillOptions fill_;
-    std::size_t side_ = 2;                   // nodes of a block
     std::vector<VoxelBox> boxes_;            // of every cell, after the first run
     std::vector<VoxelBrick*> doubtful_;      // of this run
     std::optional<SurfaceColumns> columns_;  // of the boundary, once a brick was doubtful

@@ -34,6 +34,16 @@ std::vector<double> applied(const RefinementTables& tables, const std::vector<do
 
 }  // namespace
 
+void set_limit(const LimitCells& limit, RasterizeCells& request) {
+    if (request.mesh && !limit.cell_levels.empty() && limit.cell_levels.size() != request.mesh->cells.size()) {
+        throw Error(ErrorCode::InvalidInput, "the cells of the limit belong to another mesh");
+    }
+    request.refine.levels = limit.level;
+    request.curved = !limit.cell_levels.empty();
+    request.on_limit = request.curved || !interpolates(request.refine.scheme);
+    request.cell_levels = request.curved && !request.tables ? &limit.cell_levels : nullptr;
+}
+
 RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, bool on_limit) {
     validate(mesh);
     RefinementTables tables = refinement_tables(build_topology(mesh), refine);
@@ -48,20 +58,22 @@ RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, boo
 }
 
 RefinedCells::RefinedCells(const RasterizeCells& request)
-    : refine_(request.refine), tables_(request.refines() ? request.tables : nullptr) {
-    refine_.progress = nullptr;
+    : levels_(request.levels()), tables_(request.refines() ? request.tables : nullptr) {
     if (!request.refines()) return;
     const HexMesh& mesh = *request.mesh;
     for (const Attribute* field : request.fields) mesh_.attributes.push_back(*field);
     mesh_.points = mesh.points;
     if (tables_) {
-        check_tables(*tables_, mesh, refine_.levels);
+        check_tables(*tables_, mesh, levels_);
         refine_whole(*tables_);
     } else {
         mesh_.cells = mesh.cells;
         mesh_.creases = mesh.creases;
         mesh_.sharp_faces = mesh.sharp_faces;
-        dense_.emplace(mesh_, refine_, request.on_limit);
+        RefineOptions refine = request.refine;
+        refine.levels = levels_;
+        refine.progress = nullptr;
+        dense_.emplace(mesh_, refine, request.on_limit);
         mesh_ = {};
     }
 }
@@ -76,12 +88,12 @@ void RefinedCells::refine_whole(const RefinementTables& tables) {
     }
     for (Attribute& field : mesh_.attributes) field.values = applied(tables, field.values, field.channels);
 
-    const std::size_t cells = std::size_t{1} << refine_.levels, side = cells + 1;
+    const std::size_t cells = std::size_t{1} << levels_, side = cells + 1;
     nodes_.resize(side * side * side);
     for (std::size_t child = 0; child < cells * cells * cells; ++child) {
         std::array<std::size_t, 3> at{};
-        for (int level = 0; level < refine_.levels; ++level) {  // the first level's digit is the highest
-            const std::size_t octant = kOctantOfCorner[child >> (3 * (refine_.levels - 1 - level)) & 7];
+        for (int level = 0; level < levels_; ++level) {  // the first level's digit is the highest
+            const std::size_t octant = kOctantOfCorner[child >> (3 * (levels_ - 1 - level)) & 7];
             for (std::size_t d = 0; d < 3; ++d) at[d] = 2 * at[d] + (octant >> d & 1);
         }
         for (std::size_t k = 0; k < 8; ++k) {
@@ -92,19 +104,15 @@ void RefinedCells::refine_whole(const RefinementTables& tables) {
     }
 }
 
-std::size_t RefinedCells::batch_size() const {
-    constexpr std::size_t kLots = 2, kNodes = 1 << 20;
-    return dense_ ? kLots * dense_->batch_size() : std::max<std::size_t>(1, kNodes / std::max<std::size_t>(nodes_.size(), 1));
-}
-
-void RefinedCells::for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const {
+void RefinedCells::for_each(std::span<const Index> cells, int levels,
+                            const std::function<void(const DenseCell&)>& visit) const {
     if (dense_) {
-        dense_->for_each(cells, visit);
+        dense_->for_each(cells, levels, visit);
         return;
     }
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size()), [&](const auto& range) {
         DenseCell dense;
-        dense.side = (std::size_t{1} << refine_.levels) + 1;
+        dense.side = (std::size_t{1} << levels_) + 1;
         std::vector<Vec3> points(nodes_.size());
         std::vector<std::vector<double>> values;
         for (const Attribute& field : mesh_.attributes) {
@@ -122,7 +130,7 @@ void RefinedCells::for_each(std::span<const Index> cells, const std::function<vo
 void RefinedCells::gather(Index cell, DenseCell& dense, std::vector<Vec3>& points,
                           std::vector<std::vector<double>>& values) const {
     dense.cell = cell;
-    const std::size_t first = static_cast<std::size_t>(cell) << (3 * refine_.levels);
+    const std::size_t first = static_cast<std::size_t>(cell) << (3 * levels_);
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
         const Index point = tables_->cells[first + nodes_[n].cell][nodes_[n].corner];
         points[n] = mesh_.points[point];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/dense_cells.h"
+#include "subvol/limit_level.h"
 #include "subvol/refine.h"
 
 namespace subvol::detail {
@@ -19,22 +20,35 @@ struct ToVoxels {
     [[nodiscard]] Vec3 operator()(const Vec3& x) const { return (linear * x + offset) / voxel_size; }
 };
 
-/// fields:   of the mesh; their channels become those of the voxels, one after the other
-/// refine:   levels 0: the mesh as it is, unless on_limit
-/// on_limit: the refined vertices are moved to the limit
-/// tables:   null, or what `refine` and `on_limit` do to this mesh
+/// fields:      of the mesh; their channels become those of the voxels, one after the other
+/// refine:      levels 0: the mesh as it is, unless on_limit or curved
+/// on_limit:    the refined vertices are moved to the limit
+/// curved:      between the vertices of the level and those of the next one, places and values are triquadratic
+/// cell_levels: of curved cells: null, or a level above `refine.levels` for each control cell, whose vertices these are instead
+/// tables:      null, or what `refine`, with the next level if curved, and `on_limit` do to this mesh
 struct RasterizeCells {
     const HexMesh* mesh = nullptr;
     std::vector<const Attribute*> fields;
     ToVoxels to_voxels;
     RefineOptions refine{.levels = 0};
     bool on_limit = false;
+    bool curved = false;
+    const std::vector<std::uint8_t>* cell_levels = nullptr;
     const RefinementTables* tables = nullptr;
     bool cell_numbers = false;
     Progress* progress = nullptr;
 
-    [[nodiscard]] bool refines() const { return refine.levels > 0 || on_limit; }
+    [[nodiscard]] bool refines() const { return refine.levels > 0 || on_limit || curved; }
+
+    /// The level of the vertices that a cell is made of.
+    [[nodiscard]] int levels() const { return refine.levels + (curved ? 1 : 0); }
+    [[nodiscard]] int levels(Index cell) const { return cell_levels ? (*cell_levels)[cell] : levels(); }
 };
+
+/// Curved cells that stand for the limit. From tables all have nodes of one level.
+///
+/// throws: Error(InvalidInput) if they are of another mesh
+void set_limit(const LimitCells& limit, RasterizeCells& request);
 
 /// Tables that do what `refine` does, and then `on_limit`.
 [[nodiscard]] RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, bool on_limit);
@@ -46,17 +60,15 @@ public:
     /// throws: Error(InvalidInput) if the tables belong to another mesh or another level
     explicit RefinedCells(const RasterizeCells& request);
 
-    /// visit: is called from several threads at once and in no order; the spans are gone after the call
-    void for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const;
-
-    /// Control cells in a lot that is fast.
-    [[nodiscard]] std::size_t batch_size() const;
+    /// levels: of the grids; from tables there is one only. visit: is called from several threads at once and in no order; the
+    /// spans are gone after the call
+    void for_each(std::span<const Index> cells, int levels, const std::function<void(const DenseCell&)>& visit) const;
 
 private:
     void refine_whole(const RefinementTables& tables);
     void gather(Index cell, DenseCell& dense, std::vector<Vec3>& points, std::vector<std::vector<double>>& values) const;
 
-    RefineOptions refine_;
+    int levels_;                       // from tables
     std::optional<DenseCells> dense_;  // without tables
     const RefinementTables* tables_;
     HexMesh mesh_;  // from tables: refined, with nothing but the fields, without its cells

@@ -53,8 +53,8 @@ public:
     /// cells: without repetition. throws: Error(InvalidInput) if a cell does not exist; Error(Cancelled)
     void for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const;
 
-    /// Control cells that are refined together; lots of some times as many are the fastest.
-    [[nodiscard]] std::size_t batch_size() const;
+    /// To another level than that of the options.
+    void for_each(std::span<const Index> cells, int levels, const std::function<void(const DenseCell&)>& visit) const;
 
 private:
     struct State;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "subvol/hex_mesh.h"
 #include "subvol/refine.h"
 
@@ -32,5 +35,31 @@ struct LimitLevel {
 /// options.levels is not used.
 /// throws: Error(InvalidInput) as `for_each_dense_cell`
 [[nodiscard]] LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options);
+
+/// The limit as cells with 27 nodes each, triquadratic between them: they stand for the limit as well as trilinear cells of two
+/// more levels do where it is smooth.
+///
+/// level:          the level whose trilinear cells bound the volume
+/// cell_levels:    of each control cell: the level of its nodes, at least one more; empty where the mesh has too many cells
+/// even
+///                 for one level: they stay as they are
+/// position_world: how far the last new points lay from the trilinear cells; value_of_range: new values from the curved ones
+/// converged:      both are within tolerance
+struct LimitCells {
+    int level = 0;
+    std::vector<std::uint8_t> cell_levels;
+    double position_world = 0;
+    double value_of_range = 0;
+    bool converged = false;
+};
+
+/// Looks for the lowest such levels: one for all cells by the tolerance of positions, so that they fit together, and one for
+/// each by that of values. There it is what a further level would bring that has to be within tolerance, or a quarter of what the
+/// level itself brought to trilinear cells: so much their next level would leave, and quadratics leave less where the field is
+/// smooth (up to three times as much at its kinks).
+///
+/// options.levels is not used.
+/// throws: Error(InvalidInput) as `for_each_dense_cell`
+[[nodiscard]] LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options);
 
 }  // namespace subvol

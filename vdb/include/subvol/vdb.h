@@ -18,6 +18,7 @@
 namespace subvol {
 
 class VdbGrid;
+struct LimitCells;
 
 /// half_width_voxels: how far from the surface voxels are active, to both sides; 1 to 1000
 struct LevelSetOptions {
@@ -29,6 +30,8 @@ struct LevelSetOptions {
 /// like:             instead of both: a grid whose voxels are taken over, wherever they are; its transform must be linear
 /// refine, on_limit: what is rasterized: the trilinear cells of the refined mesh (levels 0: of the mesh as it is), its vertices
 ///                   where they are or moved to the limit; never more of it in memory than some control cells
+/// limit:            null, or what stands for the limit: its level and its curved cells are taken, instead of refine.levels
+///                   and on_limit
 /// tables:           what `rasterization_tables` made of a mesh of the same cells: nothing of the refinement is computed again,
 ///                   but the whole refined mesh is in memory. The grids are the same
 /// half:             floats stored as 16-bit floats
@@ -46,6 +49,7 @@ struct RasterizeOptions {
     const VdbGrid* like = nullptr;
     RefineOptions refine{.levels = 0};
     bool on_limit = false;
+    const LimitCells* limit = nullptr;
     const RefinementTables* tables = nullptr;
     bool half = false;
     bool cell_numbers = false;
@@ -115,7 +119,7 @@ private:
 /// The refinement that the options ask for, for meshes of the same cells without unused points, whose points and values differ:
 /// frames of a sequence.
 ///
-/// options: refine and on_limit count; a crease angle is not used, tag creases before
+/// options: refine, on_limit and the level of `limit` count; a crease angle is not used, tag creases before
 /// throws:  Error(InvalidInput) as `rasterize`
 [[nodiscard]] RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options);
 
