@@ -49,7 +49,7 @@ public:
         app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
         app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
         add_size_options();
-        refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the level that stands for the limit");
+        refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the limit");
         add_grid_options();
         add_file_options();
         add_frame_options();
@@ -195,7 +195,8 @@ private:
         RasterizeOptions options = set_up(first, report);
         std::optional<RefinementTables> tables;
         const int levels = options.limit ? limit_.level + 1 : options.refine.levels;
-        if (!refine_.crease_angle_deg && std::ldexp(first.cells.size(), 3 * levels) <= kMostCellsOfTables) {
+        if (!refine_.crease_angle_deg &&
+            std::ldexp(static_cast<double>(first.cells.size()), 3 * levels) <= kMostCellsOfTables) {
             tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
         }
         for (int frame = range.first; frame <= range.last; ++frame) {

@@ -1,5 +1,8 @@
 #include "subvol/hex_mesh.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -25,25 +28,41 @@ std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
     return used;
 }
 
-void validate_cells(const HexMesh& mesh) {
-    const auto where = [](std::size_t c) { return "cell " + std::to_string(c); };
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        auto corners = mesh.cells[c];
-        for (std::size_t k = 0; k < 8; ++k) {
-            if (corners[k] >= mesh.points.size()) {
-                throw Error(ErrorCode::InvalidInput,
-                            "corner " + std::to_string(k) + " is " + std::to_string(corners[k]) + "; the mesh has " +
-                                std::to_string(mesh.points.size()) + " points",
-                            where(c));
-            }
-        }
-        std::sort(corners.begin(), corners.end());
-        const auto twice = std::adjacent_find(corners.begin(), corners.end());
-        if (twice != corners.end()) {
-            throw Error(ErrorCode::InvalidInput, "point " + std::to_string(*twice) + " is listed twice", where(c),
-                        "a hexahedron needs 8 different points");
-        }
+/// Whether a cell has 8 different points below the count; without branches, as nearly all have.
+bool is_valid(const std::array<Index, 8>& cell, std::size_t points) {
+    bool wrong = false;
+    for (std::size_t k = 0; k < 8; ++k) {
+        wrong |= cell[k] >= points;
+        for (std::size_t j = 0; j < k; ++j) wrong |= cell[j] == cell[k];
     }
+    return !wrong;
+}
+
+void validate_cells(const HexMesh& mesh) {
+    const std::size_t count = mesh.cells.size(), points = mesh.points.size();
+    const std::size_t bad = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, count), count,
+        [&](const auto& range, std::size_t first) {
+            for (std::size_t c = range.begin(); c < std::min(range.end(), first); ++c) {
+                if (!is_valid(mesh.cells[c], points)) return c;
+            }
+            return first;
+        },
+        [](std::size_t a, std::size_t b) { return std::min(a, b); });
+    if (bad == count) return;
+    const std::string where = "cell " + std::to_string(bad);
+    auto corners = mesh.cells[bad];
+    for (std::size_t k = 0; k < 8; ++k) {
+        if (corners[k] < points) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "corner " + std::to_string(k) + " is " + std::to_string(corners[k]) + "; the mesh has " +
+                        std::to_string(points) + " points",
+                    where);
+    }
+    std::sort(corners.begin(), corners.end());
+    throw Error(ErrorCode::InvalidInput,
+                "point " + std::to_string(*std::adjacent_find(corners.begin(), corners.end())) + " is listed twice", where,
+                "a hexahedron needs 8 different points");
 }
 
 void validate_tags(const HexMesh& mesh, const std::vector<std::uint8_t>& used) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "subvol/limit.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -143,7 +144,10 @@ std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request) {
     }
     RasterizeCells without_fields = request;
     without_fields.fields.clear();
-    RefinedCells(without_fields).for_each(numbers, request.levels(), [&](const DenseCell& dense) {
+    // The limit of a vertex has other bits by another level, if it is not the vertex itself.
+    const bool as_tables = request.tables || !interpolates(request.refine.scheme);
+    const int levels = as_tables ? request.levels() : request.refine.levels;
+    RefinedCells(without_fields).for_each(numbers, levels, [&](const DenseCell& dense) {
         const BoundaryCell& cell = cells[slots[dense.cell]];
         for (std::size_t k = 0; k < cell.sides.size(); ++k) {
             put_side(dense, cell.sides[k], std::ptrdiff_t{1} << request.refine.levels, request.to_voxels, turned[cell.cell],

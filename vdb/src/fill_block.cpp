@@ -135,6 +135,28 @@ const CornerSplit& split_of(const CellBlock& block, const std::array<std::size_t
     });
 }
 
+/// The 27 nodes of the curved cell that holds the cell at `lowest`.
+void set_nodes(const CellBlock& block, std::size_t lowest, std::size_t channels, CellShape& shape) {
+    const std::size_t across = std::max<std::size_t>(2, block.step);
+    shape.part = static_cast<double>(block.step) / static_cast<double>(across);
+    std::size_t first = lowest, stride = 1;
+    for (double& at : shape.first_part) {
+        const std::size_t inside = lowest / stride % block.side % across;
+        at = static_cast<double>(inside) / static_cast<double>(across);
+        first -= inside * stride;
+        stride *= block.side;
+    }
+    shape.node_values.resize(kCurvedNodes * channels);
+    for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+        const std::size_t node = first + across / 2 * (n % 3 + block.side * (n / 3 % 3 + block.side * (n / 9)));
+        const Vec3 p = block.points[node] - shape.origin;
+        for (std::size_t d = 0; d < 3; ++d) shape.nodes[d][n] = p[static_cast<int>(d)];
+        for (std::size_t c = 0; c < channels; ++c) {
+            shape.node_values[kCurvedNodes * c + n] = block.values[node * channels + c];
+        }
+    }
+}
+
 void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, std::size_t channels, CellShape& shape) {
     shape.cell = block.cell;
     shape.origin = block.points[nodes[0]];
@@ -147,15 +169,7 @@ void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, 
     }
     shape.curved = block.curved;
     if (!block.curved) return;
-    shape.node_values.resize(kCurvedNodes * channels);
-    for (std::size_t n = 0; n < kCurvedNodes; ++n) {
-        const std::size_t node = nodes[0] + block.step / 2 * (n % 3 + block.side * (n / 3 % 3 + block.side * (n / 9)));
-        const Vec3 p = block.points[node] - shape.origin;
-        for (std::size_t d = 0; d < 3; ++d) shape.nodes[d][n] = p[static_cast<int>(d)];
-        for (std::size_t c = 0; c < channels; ++c) {
-            shape.node_values[kCurvedNodes * c + n] = block.values[node * channels + c];
-        }
-    }
+    set_nodes(block, nodes[0], channels, shape);
 }
 
 }  // namespace

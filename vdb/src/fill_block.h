@@ -7,8 +7,9 @@ namespace subvol::detail {
 
 /// A cell of the control mesh as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
 ///
-/// step:   nodes from one corner of a smaller cell to the next
-/// curved: what is between its corners is triquadratic, through the nodes half way; the step is even
+/// step:   nodes from one corner of a smaller cell to the next: 1 or even
+/// curved: what is inside is triquadratic through 27 nodes: those half way between the corners, or of two cells along each axis
+///         if the step is 1
 /// points: in voxels: their centres have whole numbers
 /// values: node-major, so many a node as there are channels
 /// ids:    of the nodes of a grid of 8, by which the cell is split into tetrahedra; null: by the places of the nodes
@@ -44,13 +45,17 @@ constexpr std::size_t kCurvedNodes = 27;
 /// One of a block's cells, corners in VTK order, relative to the first.
 ///
 /// values: channels × 8; size: the longest side of its bounding box
-/// curved: with these nodes, relative to the first corner, and their channels × 27 values
+/// curved: with these nodes, relative to the first corner, and their channels × 27 values; in the parameters of these nodes it
+/// is
+///         as long as `part`, from `first_part` on
 struct CellShape {
     Vec3 origin;
     std::array<std::array<double, 8>, 3> corners;
     std::vector<double> values;
     bool curved = false;
     std::array<std::array<double, kCurvedNodes>, 3> nodes;
+    double part = 1;
+    std::array<double, 3> first_part{};
     std::vector<double> node_values;
     double size = 0;
     const CornerSplit* split = nullptr;

@@ -247,6 +247,16 @@ private:
 
     static float bits_of(Index cell) { return std::bit_cast<float>(static_cast<std::uint32_t>(cell)); }
 
+    HWY_ATTR Parameters start(Doubles px, Doubles py, Doubles pz) const {
+        const Lanes d;
+        const Parameters q = middle_.parameters(px, py, pz);
+        if (!shape_.curved) return q;
+        const auto part = hn::Set(d, shape_.part);
+        const auto& first = shape_.first_part;
+        return {hn::MulAdd(q.u, part, hn::Set(d, first[0])), hn::MulAdd(q.v, part, hn::Set(d, first[1])),
+                hn::MulAdd(q.w, part, hn::Set(d, first[2]))};
+    }
+
     HWY_ATTR hn::Mask<Lanes> is_short(Doubles du, Doubles dv, Doubles dw) const {
         const auto longest = hn::Max(hn::Abs(du), hn::Max(hn::Abs(dv), hn::Abs(dw)));
         return hn::Le(longest, hn::Set(Lanes(), most_));
@@ -256,7 +266,7 @@ private:
     HWY_ATTR hn::Mask<Lanes> invert(Doubles px, Doubles py, Doubles pz, Parameters& q) const {
         const Lanes d;
         const auto half = hn::Set(d, 0.5);
-        q = middle_.parameters(px, py, pz);
+        q = start(px, py, pz);
         auto arrived = is_short(hn::Sub(q.u, half), hn::Sub(q.v, half), hn::Sub(q.w, half));  // of a curved cell none
         for (int step = 1; !hn::AllTrue(d, arrived); ++step) {
             const Residual x = residual(map_[0], q, px), y = residual(map_[1], q, py), z = residual(map_[2], q, pz);

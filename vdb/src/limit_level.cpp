@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "subvol/dense_cells.h"
+#include "subvol/limit.h"
 
 namespace subvol {
 
@@ -153,12 +154,18 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
             value = kLeft * linear.value;
             result.cell_levels[cell.cell] = static_cast<std::uint8_t>(level);
         });
-        if (!std::ranges::all_of(open, is_placed) && fit(count, level + 1, options.max_cells)) result.level = level;
+        if (!std::ranges::all_of(open, is_placed) && fit(count, level, options.max_cells)) result.level = level;
         std::erase_if(open, [&](Index c) { return is_placed(c) && has_values(c); });
     }
     result.converged = open.empty();
+    if (!interpolates(refinement.scheme)) {
+        // Two levels give the limit of one vertex other bits: cells of both would not fit together.
+        int level = std::ranges::max(result.cell_levels);
+        for (; !fit(count, level, options.max_cells); --level) result.converged = false;
+        std::ranges::fill(result.cell_levels, static_cast<std::uint8_t>(level));
+    }
     for (std::size_t c = 0; c < count; ++c) {
-        result.cell_levels[c] = std::max(result.cell_levels[c], static_cast<std::uint8_t>(result.level + 1));
+        result.cell_levels[c] = std::max(result.cell_levels[c], static_cast<std::uint8_t>(std::max(result.level, 1)));
         result.position_world = std::max(result.position_world, left[c].position);
         result.value_of_range = std::max(result.value_of_range, left[c].value);
     }

@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatchNodes = 1 << 17;         // of a mesh as it is
+constexpr std::size_t kBatchNodes = 1 << 18;         // of a mesh as it is
 constexpr std::size_t kBatchRefinedNodes = 1 << 20;  // fewer pay for their surroundings, more for memory
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {
@@ -91,7 +91,7 @@ CellBlock CellRasterizer::block(const Batch& batch, std::size_t i) const {
     const std::size_t first = batch.first[i];
     return {.cell = batch.cells[i],
             .side = side(batch.cells[i]),
-            .step = request_.curved ? std::size_t{2} : 1,
+            .step = request_.curved && request_.levels(batch.cells[i]) > request_.refine.levels ? std::size_t{2} : 1,
             .curved = request_.curved,
             .points = batch.points.data() + first,
             .values = batch.values.data() + first * fill_.channels,

@@ -23,8 +23,9 @@ struct ToVoxels {
 /// fields:      of the mesh; their channels become those of the voxels, one after the other
 /// refine:      levels 0: the mesh as it is, unless on_limit or curved
 /// on_limit:    the refined vertices are moved to the limit
-/// curved:      between the vertices of the level and those of the next one, places and values are triquadratic
-/// cell_levels: of curved cells: null, or a level above `refine.levels` for each control cell, whose vertices these are instead
+/// curved:      places and values are triquadratic between the vertices of the next level, which still bounds the volume
+/// cell_levels: null, or for each control cell the level of the vertices to take instead of the next one; not below
+///              refine.levels, nor below 1
 /// tables:      null, or what `refine`, with the next level if curved, and `on_limit` do to this mesh
 struct RasterizeCells {
     const HexMesh* mesh = nullptr;

@@ -51,7 +51,8 @@ VoxelBrick& VoxelBricks::brick_at(const VoxelCoord& origin) {
     std::size_t slot = 0;
     for (const int x : origin) slot = 4 * slot + static_cast<std::size_t>(brick_layer(x) & 3);
     VoxelBrick*& recent = recent_[slot];
-    if (recent && recent->origin == origin) return *recent;
+    const auto is_at = [&](const VoxelCoord& o) { return o[0] == origin[0] && o[1] == origin[1] && o[2] == origin[2]; };
+    if (recent && is_at(recent->origin)) return *recent;
     auto& brick = bricks_[origin];
     if (!brick) {
         brick = std::make_unique<VoxelBrick>();

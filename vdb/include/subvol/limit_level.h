@@ -40,9 +40,9 @@ struct LimitLevel {
 /// more levels do where it is smooth.
 ///
 /// level:          the level whose trilinear cells bound the volume
-/// cell_levels:    of each control cell: the level of its nodes, at least one more; empty where the mesh has too many cells
-/// even
-///                 for one level: they stay as they are
+/// cell_levels:    of each control cell: the level of its nodes, at least that and at least 1, the same for all if the scheme
+/// does
+///                 not interpolate; empty where the mesh has too many cells even for one level: they stay as they are
 /// position_world: how far the last new points lay from the trilinear cells; value_of_range: new values from the curved ones
 /// converged:      both are within tolerance
 struct LimitCells {
@@ -54,9 +54,9 @@ struct LimitCells {
 };
 
 /// Looks for the lowest such levels: one for all cells by the tolerance of positions, so that they fit together, and one for
-/// each by that of values. There it is what a further level would bring that has to be within tolerance, or a quarter of what the
-/// level itself brought to trilinear cells: so much their next level would leave, and quadratics leave less where the field is
-/// smooth (up to three times as much at its kinks).
+/// each by that of values. There it is what a further level would bring that has to be within tolerance, or a quarter of what
+/// the level itself brought to trilinear cells: so much their next level would leave, and quadratics leave less where the field
+/// is smooth (up to three times as much at its kinks).
 ///
 /// options.levels is not used.
 /// throws: Error(InvalidInput) as `for_each_dense_cell`

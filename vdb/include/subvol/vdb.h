@@ -33,15 +33,15 @@ struct LevelSetOptions {
 /// limit:            null, or what stands for the limit: its level and its curved cells are taken, instead of refine.levels
 ///                   and on_limit
 /// tables:           what `rasterization_tables` made of a mesh of the same cells: nothing of the refinement is computed again,
-///                   but the whole refined mesh is in memory. The grids are the same
+///                   but the whole refined mesh is in memory. The grids are the same; of a limit, those of cells whose
+///                   nodes are all of the level after its own
 /// half:             floats stored as 16-bit floats
 /// cell_numbers:     one more grid, whole numbers named "cell": the control cell that a voxel lies in
 /// mask:             one more grid, of bits, named "mask": where the volume is
 /// coverage:         one more grid of floats, named "coverage": the part of each voxel that the volume fills, by 4³ samples; it
 ///                   is active wherever that is above zero
 /// level_set:        one more grid of floats: the distance to the volume's boundary in world units, exact in a narrow band
-/// about
-///                   it, negative at the centres that the volume holds; beyond the band ± its half width, inactive
+///                   about it, negative at the centres that the volume holds; beyond the band ± its half width, inactive
 /// metadata:         names and texts that every grid carries
 struct RasterizeOptions {
     double voxel_size_world = 0;
