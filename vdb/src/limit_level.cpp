@@ -131,7 +131,7 @@ LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const
 }
 
 LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options) {
-    constexpr double kLeft = 0.25;  // of a linear step: by one more level of trilinear cells, and so by quadratics
+    constexpr double kLeft = 0.25;  // of a step by one level more, where the field is smooth
     const std::size_t count = mesh.cells.size();
     LimitCells result;
     if (!fit(count, 1, options.max_cells)) return result;
@@ -148,10 +148,11 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
             const Step linear = last_step(cell, ranges, spread_linear);
             left[cell.cell].position = linear.position;
             if (level > 1 && has_values(cell.cell)) return;
+            const double curved = level > 1 ? last_step(cell, ranges, spread_quadratic).value : HUGE_VAL;
             double& value = left[cell.cell].value;
-            value = level > 1 ? last_step(cell, ranges, spread_quadratic).value : HUGE_VAL;
+            value = curved;
             if (value <= options.value_of_range) return;  // by the nodes of the level before
-            value = kLeft * linear.value;
+            value = kLeft * std::min(linear.value, curved);
             result.cell_levels[cell.cell] = static_cast<std::uint8_t>(level);
         });
         if (!std::ranges::all_of(open, is_placed) && fit(count, level, options.max_cells)) result.level = level;

@@ -54,9 +54,9 @@ struct LimitCells {
 };
 
 /// Looks for the lowest such levels: one for all cells by the tolerance of positions, so that they fit together, and one for
-/// each by that of values. There it is what a further level would bring that has to be within tolerance, or a quarter of what
-/// the level itself brought to trilinear cells: so much their next level would leave, and quadratics leave less where the field
-/// is smooth (up to three times as much at its kinks).
+/// each by that of values. There, what a further level brings to the curved cells has to be within tolerance, or a quarter of
+/// what their own level brought to the cells before, curved or trilinear: where the field is smooth, no more is left (up to three
+/// times as much at its kinks).
 ///
 /// options.levels is not used.
 /// throws: Error(InvalidInput) as `for_each_dense_cell`
