@@ -148,8 +148,8 @@ RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments,
     return std::move(reduced.volume);
 }
 
-RbfVolume sample_and_warn(const HexMesh& mesh, const SampleOptions& options, Report& report) {
-    SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(mesh, options); });
+RbfVolume sample_and_warn(HexMesh mesh, const SampleOptions& options, Report& report) {
+    SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(std::move(mesh), options); });
     if (options.tolerance > 0) {
         report["largest_error"] = sampled.report.largest_error;
         if (sampled.report.largest_error > options.tolerance)
@@ -163,13 +163,12 @@ RbfVolume sample_and_warn(const HexMesh& mesh, const SampleOptions& options, Rep
 
 }  // namespace
 
-RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments, const RefineArguments& refinement,
+RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const RefineArguments& refinement,
                           const std::optional<TransferFunction>& seen, Report& report) {
     const RefineOptions refine_options = refinement.options(0, report);
     SampleOptions options = arguments.options(bounds(mesh), refine_options);
-    HexMesh level;
     if (refinement.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
-        level = refine_reported(mesh, refine_options, Vertices::OnTheLimit, report);
+        mesh = refine_reported(mesh, refine_options, Vertices::OnTheLimit, report);
         options.scheme = Scheme::Linear;
         options.boundary_levels = 0;
     }
@@ -180,9 +179,9 @@ RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
                                  .tolerance = ReduceOptions{}.limit.tolerance,
                                  .crease_angle_deg = options.crease_angle_deg,
                                  .progress = options.progress};
-        all = reduce_reported(refinement.levels ? level : mesh, arguments, limit, report);
+        all = reduce_reported(mesh, arguments, limit, report);
     } else {
-        all = sample_and_warn(refinement.levels ? level : mesh, options, report);
+        all = sample_and_warn(std::move(mesh), options, report);
     }
     RbfVolume volume = without_invisible(std::move(all), arguments, seen, report);
     report["points"] = volume.size();

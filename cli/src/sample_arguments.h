@@ -41,9 +41,8 @@ private:
 /// and with its points in the report.
 ///
 /// seen: what is shown of the first field; none: --threshold needs a value
-[[nodiscard]] RbfVolume sample_reported(const HexMesh& mesh, const SampleArguments& arguments,
-                                        const RefineArguments& refinement, const std::optional<TransferFunction>& seen,
-                                        Report& report);
+[[nodiscard]] RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const RefineArguments& refinement,
+                                        const std::optional<TransferFunction>& seen, Report& report);
 
 /// The same of a grid's voxels.
 ///

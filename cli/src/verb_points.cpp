@@ -54,8 +54,9 @@ public:
 
 private:
     [[nodiscard]] RbfVolume points_of_mesh(Report& report) {
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
-        return sample_reported(mesh, sample_, refine_, seen(field_range(mesh)), report);
+        HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        const std::optional<TransferFunction> shown = seen(field_range(mesh));
+        return sample_reported(std::move(mesh), sample_, refine_, shown, report);
     }
 
     [[nodiscard]] RbfVolume points_of_grid(Report& report) {

@@ -39,7 +39,7 @@ HexMesh cells_about_boundary(HexMesh mesh) {
     const auto& marks = mesh.attributes.front().values;
     std::erase_if(mesh.cells,
                   [&](const auto& cell) { return std::ranges::none_of(cell, [&](Index p) { return marks[p] > 0; }); });
-    return without_unused_points(mesh);
+    return without_unused_points(std::move(mesh));
 }
 
 }  // namespace

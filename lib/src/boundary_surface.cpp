@@ -76,13 +76,20 @@ Surface detail::boundary_surface_where(const HexMesh& mesh, const std::function<
     return builder.finish([&](Index p) { return mesh.points[p]; });
 }
 
-Surface detail::boundary_of_child(const HexMesh& mesh, const Topology& topology, const RefineOptions& options) {
+namespace detail {
+
+namespace {
+
+using FaceTest = std::function<bool(const std::array<Index, 4>&)>;
+
+Surface boundary_of_child_where(const HexMesh& mesh, const Topology& topology, const RefineOptions& options,
+                                const FaceTest& where) {
     const SchemeRows rows(topology, options);
     const ChildNumbering first(topology);
     SurfaceBuilder builder(first.cells);  // no cell point is on the boundary
     for (std::size_t f = 0; f < topology.faces.size(); ++f) {
         const auto face = static_cast<Index>(f);
-        if (!topology.face_on_hull(face)) continue;
+        if (!topology.face_on_hull(face) || !where(topology.faces[f])) continue;
         const auto quad = outward_quad(topology, topology.face_cells[f][0], face);
         const auto center = static_cast<Index>(first.faces + f);
         const auto edge_point = [&](std::size_t k) {  // between corners k and k + 1
@@ -108,5 +115,27 @@ Surface detail::boundary_of_child(const HexMesh& mesh, const Topology& topology,
         return position;
     });
 }
+
+}  // namespace
+
+Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const RefineOptions& options) {
+    return boundary_of_child_where(mesh, topology, options, [](const auto&) { return true; });
+}
+
+// The cut's faces, too, have a cell on one side only; none of them has a point on the hull.
+Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_hull, const RefineOptions& options) {
+    const auto at_hull = [&](const auto& entity) { return std::ranges::any_of(entity, [&](Index p) { return on_hull[p]; }); };
+    HexMesh near;
+    near.points = mesh.points;
+    near.attributes = {{"hull", 1, {on_hull.begin(), on_hull.end()}}};
+    near.creases = mesh.creases;
+    std::ranges::copy_if(mesh.cells, std::back_inserter(near.cells), at_hull);
+    std::ranges::copy_if(mesh.sharp_faces, std::back_inserter(near.sharp_faces), at_hull);
+    near = without_unused_points(std::move(near));
+    const auto& hull = near.attributes.front().values;
+    return boundary_of_child_where(near, build_topology(near), options, [&](const auto& face) { return hull[face[0]] > 0; });
+}
+
+}  // namespace detail
 
 }  // namespace subvol

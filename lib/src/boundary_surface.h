@@ -10,6 +10,10 @@ namespace subvol::detail {
 /// The boundary of the mesh's first refinement, without refining what lies inside. The scheme must interpolate.
 [[nodiscard]] Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const RefineOptions& options);
 
+/// The same, with the topology of nothing but the cells at the boundary. on_hull: a flag for each point of the mesh
+[[nodiscard]] Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_hull,
+                                        const RefineOptions& options);
+
 /// The boundary of the mesh refined options.levels times, on the limit, refining only what lies at the boundary.
 ///
 /// cost: about 20 points for each of the boundary's

@@ -128,7 +128,7 @@ private:
             auto& corners = into.corners.emplace_back();
             const std::size_t number = block.first + e;
             for (std::size_t k = 0; k < N; ++k) corners[k] = corner(nodes[e * block.nodes + k], number);
-            into.numbers.push_back(number);
+            into.numbers.push_back(static_cast<Index>(number));
             check_corners(in_, 0, corners, number, kWording, kind);
         }
     }

@@ -262,7 +262,7 @@ private:
         const std::size_t position = in_.position();
         for (std::size_t k = N; k < element.nodes; ++k) values_.integer(place, number_type());
         curved_ += element.nodes > N;
-        into.numbers.push_back(number);
+        into.numbers.push_back(static_cast<Index>(number));
         check_corners(in_, position, corners, number, wording_, kind);
     }
 

@@ -115,7 +115,7 @@ void validate(const HexMesh& mesh) {
     }
 }
 
-HexMesh without_unused_points(const HexMesh& mesh) {
+HexMesh without_unused_points(HexMesh mesh) {
     const auto used = used_points(mesh);
     std::vector<Index> renumbered(mesh.points.size(), kNone);
     Index count = 0;
@@ -137,7 +137,7 @@ HexMesh without_unused_points(const HexMesh& mesh) {
                                                first + static_cast<std::ptrdiff_t>(channels));
         }
     }
-    result.cells = mesh.cells;
+    result.cells = std::move(mesh.cells);
     for (auto& cell : result.cells) {
         for (auto& p : cell) p = renumbered[p];
     }

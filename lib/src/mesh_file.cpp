@@ -116,7 +116,7 @@ std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<doubl
 // sources:      how the mesh's points come from the file's, if they are not the same
 struct Origin {
     std::vector<std::uint8_t> used;
-    std::vector<std::size_t> cell_numbers;
+    std::vector<Index> cell_numbers;
     std::optional<IndexRows> sources;
 };
 
@@ -188,8 +188,8 @@ MixedCells take_others(MeshFile& found) {
     return {std::move(found.tets.corners), std::move(found.prisms.corners), std::move(found.pyramids.corners)};
 }
 
-std::vector<std::size_t> take_numbers(MeshFile& found) {
-    std::vector<std::size_t> numbers = std::move(found.hexes.numbers);
+std::vector<Index> take_numbers(MeshFile& found) {
+    std::vector<Index> numbers = std::move(found.hexes.numbers);
     for (const auto* more : {&found.tets.numbers, &found.prisms.numbers, &found.pyramids.numbers}) {
         numbers.insert(numbers.end(), more->begin(), more->end());
     }
@@ -217,7 +217,7 @@ void split_all(ReadResult& result, MixedCells&& others, Origin& origin) {
     mesh.points = means(split.sources, mesh.points);
     mesh.cells = std::move(split.cells);
     if (!origin.cell_numbers.empty()) {
-        std::vector<std::size_t> numbers;
+        std::vector<Index> numbers;
         numbers.reserve(mesh.cells.size());
         for (const Index parent : split.parents) numbers.push_back(origin.cell_numbers[parent]);
         origin.cell_numbers = std::move(numbers);

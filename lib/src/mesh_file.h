@@ -24,7 +24,7 @@ struct FileArray {
 template <std::size_t N>
 struct FileCells {
     std::vector<std::array<Index, N>> corners;
-    std::vector<std::size_t> numbers;
+    std::vector<Index> numbers;
 };
 
 /// What a reader found, before it becomes a mesh.

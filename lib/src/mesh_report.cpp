@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "subvol/topology.h"
+#include "mesh_parts.h"
 
 namespace subvol {
 
@@ -45,19 +45,41 @@ void add(ShapeReport& report, const CellQuality& cell) {
     report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, cell.min_scaled_jacobian);
 }
 
-void count_edges(const Topology& topology, MeshReport& report) {
-    std::vector<std::uint32_t> irregular(topology.point_count);
+/// The edges whose smaller point is the part's own.
+void count_edges(const detail::MeshPart& part, MeshReport& report) {
+    const Topology& topology = part.topology;
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
-        if (topology.edge_on_boundary[e]) continue;
-        const auto valence = topology.edge_cells[e].size();
-        ++report.interior_edges;
-        ++report.interior_edge_valence[static_cast<int>(valence)];
-        if (valence != 4) {
-            for (const Index p : topology.edges[e]) ++irregular[p];
+        if (!part.own[topology.edges[e][0]]) continue;
+        ++report.edges;
+        if (topology.edge_on_boundary[e]) {
+            report.nonmanifold_edges += topology.boundary_faces_at(static_cast<Index>(e)) != 2;
+        } else {
+            ++report.interior_edges;
+            ++report.interior_edge_valence[static_cast<int>(topology.edge_cells[e].size())];
         }
     }
+}
+
+/// The faces whose smallest point is the part's own.
+void count_faces(const detail::MeshPart& part, MeshReport& report) {
+    const Topology& topology = part.topology;
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        if (!part.own[topology.faces[f][0]]) continue;
+        ++report.faces;
+        report.boundary_faces += topology.face_on_hull(static_cast<Index>(f));
+    }
+}
+
+void count_points(const detail::MeshPart& part, MeshReport& report) {
+    const Topology& topology = part.topology;
     for (std::size_t p = 0; p < topology.point_count; ++p) {
-        report.singular_nodes += !topology.point_on_boundary[p] && irregular[p] != 0 && irregular[p] != 2;
+        if (!part.own[p]) continue;
+        ++report.points_used;
+        if (topology.point_on_boundary[p]) continue;
+        const auto irregular = std::ranges::count_if(topology.point_edges[p], [&](Index e) {
+            return !topology.edge_on_boundary[e] && topology.edge_cells[e].size() != 4;
+        });
+        report.singular_nodes += irregular != 0 && irregular != 2;
     }
 }
 
@@ -99,22 +121,21 @@ ShapeReport measure_cells(const HexMesh& mesh) {
 
 MeshReport inspect(const HexMesh& mesh) {
     validate(mesh);
-    HexMesh untagged;  // tags are the schemes' business
-    untagged.points = mesh.points;
-    untagged.cells = mesh.cells;
-    const Topology topology = build_topology(untagged);
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {  // tags are the schemes' business
+        HexMesh untagged;
+        untagged.points = mesh.points;
+        untagged.cells = mesh.cells;
+        return inspect(untagged);
+    }
     MeshReport report;
     report.points = mesh.points.size();
     report.cells = mesh.cells.size();
-    report.edges = topology.edges.size();
-    report.faces = topology.faces.size();
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) report.points_used += !topology.point_edges[p].empty();
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        report.boundary_faces += topology.face_on_hull(static_cast<Index>(f));
-    }
-    report.nonmanifold_edges = topology.nonmanifold_edges;
     report.bounds = bounds(mesh);
-    count_edges(topology, report);
+    detail::each_part(mesh, [&](const detail::MeshPart& part) {
+        count_points(part, report);
+        count_edges(part, report);
+        count_faces(part, report);
+    });
 
     const ShapeReport shape = measure_cells(mesh);
     report.inverted_cells = shape.inverted_cells;

@@ -183,12 +183,37 @@ PointLines collect(const Topology& topology, bool child) {
 
 }  // namespace
 
-PointLines lines_of_mesh(const Topology& topology) {
-    return collect(topology, false);
-}
-
 PointLines lines_of_child(const Topology& parent) {
     return collect(parent, true);
+}
+
+void LinesOfParts::add(const MeshPart& part) {
+    Part& added = parts_.emplace_back(Part{collect(part.topology, false), part.points, part.own});
+    for (Index& p : added.lines.neighbours) p = p == kNone ? kNone : part.points[p];
+}
+
+PointLines LinesOfParts::finish(std::size_t points) {
+    PointLines all;
+    all.offsets.assign(points + 1, 0);
+    for (const auto& [lines, numbers, own] : parts_) {
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            if (own[i]) all.offsets[numbers[i] + 1] = lines.offsets[i + 1] - lines.offsets[i];
+        }
+    }
+    for (std::size_t p = 0; p < points; ++p) all.offsets[p + 1] += all.offsets[p];
+    all.neighbours.resize(all.offsets.back());
+    all.cells.resize(all.offsets.back());
+    for (Part& part : parts_) {
+        const Part done = std::move(part);  // freed after its turn
+        parallel_each(done.lines.size(), [&](std::size_t i) {
+            if (!done.own[i]) return;
+            const std::size_t from = done.lines.offsets[i], to = all.offsets[done.points[i]];
+            const std::size_t count = done.lines.offsets[i + 1] - from;
+            std::copy_n(done.lines.neighbours.data() + from, count, all.neighbours.data() + to);
+            std::copy_n(done.lines.cells.data() + from, count, all.cells.data() + to);
+        });
+    }
+    return all;
 }
 
 }  // namespace subvol::detail

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "subvol/topology.h"
+#include "mesh_parts.h"
 
 namespace subvol::detail {
 
@@ -25,8 +25,24 @@ struct PointLines {
     }
 };
 
-/// Of a mesh, or of its child in the numbering of `refine`: the child's own topology is not needed.
-[[nodiscard]] PointLines lines_of_mesh(const Topology& topology);
+/// Of the child of a mesh in the numbering of `refine`: the child's own topology is not needed.
 [[nodiscard]] PointLines lines_of_child(const Topology& parent);
+
+/// Of a mesh, put together from those of its parts.
+class LinesOfParts {
+public:
+    void add(const MeshPart& part);
+
+    /// points: how many the mesh has, each of them some part's own
+    [[nodiscard]] PointLines finish(std::size_t points);
+
+private:
+    struct Part {
+        PointLines lines;
+        std::vector<Index> points;
+        std::vector<std::uint8_t> own;
+    };
+    std::vector<Part> parts_;
+};
 
 }  // namespace subvol::detail

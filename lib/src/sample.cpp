@@ -67,12 +67,14 @@ std::optional<int> level_of_samples(const SampleOptions& options) {
     return std::countr_zero(intervals);
 }
 
+/// known:     the control mesh's topology, or a flag for each of its points: whether it is on the hull
 /// intervals: the most that an edge has
-Surface boundary_of(const HexMesh& control, const Topology& topology, int intervals, const SampleOptions& options) {
+template <class Known>
+Surface boundary_of(const HexMesh& control, const Known& known, int intervals, const SampleOptions& options) {
     const int half_an_interval = std::bit_width(static_cast<unsigned>(intervals));
     const int levels = options.boundary_levels.value_or(std::min(half_an_interval, kMostDefaultBoundaryLevels));
     const RefineOptions refine_options = refinement(options, levels);
-    if (levels == 1 && interpolates(options.scheme)) return detail::boundary_of_child(control, topology, refine_options);
+    if (levels == 1 && interpolates(options.scheme)) return detail::boundary_of_child(control, known, refine_options);
     return detail::boundary_at_level(control, refine_options);
 }
 
@@ -83,28 +85,63 @@ void count_entities(SampleReport& report, const Topology& topology, std::size_t 
     report.in_cells = topology.cells.size() * (n - 1) * (n - 1) * (n - 1);
 }
 
-SampleResult sample_level(HexMesh control, int level, const SampleOptions& options) {
-    report_progress(options.progress, "topology", 0);
-    Topology topology = build_topology(control);
-    Surface boundary = boundary_of(control, topology, options.per_edge, options);
-    SampleReport counts;
-    count_entities(counts, topology, static_cast<std::size_t>(options.per_edge));
+/// A mesh whose points are the samples.
+struct SampledLevel {
+    HexMesh mesh;
     detail::PointLines lines;
-    if (level == 0) {
-        lines = detail::lines_of_mesh(topology);
-    } else {
-        detail::LastLevel last =
-            detail::refine_without_cells(std::move(control), std::move(topology), refinement(options, level));
-        lines = detail::lines_of_child(last.parent);
-        control = std::move(last.mesh);
-        if (!interpolates(options.scheme)) control.cells = detail::child_cells(last.parent);
+    Surface boundary;
+    SampleReport counts;
+};
+
+void mark_hull(const detail::MeshPart& part, std::vector<std::uint8_t>& on_hull) {
+    const Topology& topology = part.topology;
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+        for (const Index p : topology.faces[f]) on_hull[part.points[p]] |= part.own[p];
     }
-    if (!interpolates(options.scheme)) control = on_limit(std::move(control), options.scheme);
-    SampleResult result = detail::sample_at_points(std::move(control), lines, options.scheme != Scheme::Linear, options);
-    result.volume.boundary = std::move(boundary);
-    counts.points = result.report.points;
-    counts.flat_frames = result.report.flat_frames;
-    result.report = counts;
+}
+
+/// Its topology is needed part by part only.
+SampledLevel control_level(HexMesh control, const SampleOptions& options) {
+    const std::size_t points = control.points.size();
+    detail::LinesOfParts lines;
+    std::vector<std::uint8_t> on_hull(points);
+    detail::each_part(control, [&](const detail::MeshPart& part) {
+        lines.add(part);
+        mark_hull(part, on_hull);
+    });
+    SampledLevel level;
+    level.lines = lines.finish(points);
+    level.boundary = boundary_of(control, on_hull, options.per_edge, options);
+    level.counts.at_vertices = points;
+    level.mesh = std::move(control);
+    return level;
+}
+
+SampledLevel refined_level(HexMesh control, int number, const SampleOptions& options) {
+    Topology topology = build_topology(control);
+    SampledLevel level;
+    level.boundary = boundary_of(control, topology, options.per_edge, options);
+    count_entities(level.counts, topology, static_cast<std::size_t>(options.per_edge));
+    detail::LastLevel last = detail::refine_without_cells(std::move(control), std::move(topology), refinement(options, number));
+    level.lines = detail::lines_of_child(last.parent);
+    level.mesh = std::move(last.mesh);
+    if (!interpolates(options.scheme)) level.mesh.cells = detail::child_cells(last.parent);
+    return level;
+}
+
+SampleResult sample_level(HexMesh control, int number, const SampleOptions& options) {
+    report_progress(options.progress, "topology", 0);
+    SampledLevel level =
+        number == 0 ? control_level(std::move(control), options) : refined_level(std::move(control), number, options);
+    if (!interpolates(options.scheme)) level.mesh = on_limit(std::move(level.mesh), options.scheme);
+    level.mesh.cells = std::vector<std::array<Index, 8>>();
+    SampleResult result =
+        detail::sample_at_points(std::move(level.mesh), level.lines, options.scheme != Scheme::Linear, options);
+    result.volume.boundary = std::move(level.boundary);
+    level.counts.points = result.report.points;
+    level.counts.flat_frames = result.report.flat_frames;
+    result.report = level.counts;
     return result;
 }
 
@@ -134,9 +171,10 @@ Box bounds_of(const RbfVolume& volume) {
 
 }  // namespace
 
-SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options) {
+SampleResult sample_rbf_points(HexMesh mesh, const SampleOptions& options) {
     check(options);
-    HexMesh control = refine(mesh, refinement(options, 0));
+    validate(mesh);
+    HexMesh control = without_unused_points(std::move(mesh));
     if (options.crease_angle_deg) tag_creases(control, *options.crease_angle_deg);
     const auto level = level_of_samples(options);
     SampleResult result = level ? sample_level(std::move(control), *level, options) : sample_cells(control, options);

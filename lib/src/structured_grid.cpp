@@ -64,7 +64,7 @@ void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_poi
                     corners[c] = static_cast<Index>(bottom[c]);
                     corners[c + 4] = static_cast<Index>(bottom[c] + layer);
                 }
-                into.hexes.numbers.push_back(number++);
+                into.hexes.numbers.push_back(static_cast<Index>(number++));
             }
         }
     }

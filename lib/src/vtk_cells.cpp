@@ -33,53 +33,46 @@ const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
 
 }  // namespace
 
-void VtkCellSorter::take(const VtkCells& cells) {
-    for (std::size_t c = 0; c < cells.size(); ++c) take_cell(cells, c);
-    taken_ += cells.size();
-}
-
-void VtkCellSorter::take_cell(const VtkCells& cells, std::size_t cell) {
-    const auto linear = kLinear.find(cells.types[cell]);
+void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corners, std::size_t position) {
+    const auto linear = kLinear.find(type_in_file);
     const bool curved = linear != kLinear.end();
-    const std::int64_t type = curved ? linear->second : cells.types[cell];
+    const std::int64_t type = curved ? linear->second : type_in_file;
     const bool others = options_.other_cells != OtherCells::Ignore;
-    const std::size_t corners = cells.offsets[cell + 1] - cells.offsets[cell];
     // Files exist whose hexahedra are called tetrahedra: eight corners say more than the type.
-    const bool mislabelled = cells.types[cell] == kTetrahedron && corners == 8;
+    const bool mislabelled = type_in_file == kTetrahedron && corners.size() == 8;
     if (mislabelled) ++mislabelled_;
     if (type == kHexahedron || type == kVoxel || mislabelled) {
         // Others exist whose curved hexahedra have the type of linear ones.
-        take_as(found_.hexes, cells, cell, "a hexahedron", curved || corners == 20 || corners == 27);
-        if (type != kVoxel) return;
-        auto& hex = found_.hexes.corners.back();
-        std::swap(hex[2], hex[3]);
-        std::swap(hex[6], hex[7]);
+        take_as(found_.hexes, corners, position, "a hexahedron", curved || corners.size() == 20 || corners.size() == 27);
+        if (type == kVoxel) {
+            auto& hex = found_.hexes.corners.back();
+            std::swap(hex[2], hex[3]);
+            std::swap(hex[6], hex[7]);
+        }
     } else if (type == kTetrahedron && others) {
-        take_as(found_.tets, cells, cell, "a tetrahedron", curved);
+        take_as(found_.tets, corners, position, "a tetrahedron", curved);
     } else if (type == kWedge && others) {
-        take_as(found_.prisms, cells, cell, "a wedge", curved);
+        take_as(found_.prisms, corners, position, "a wedge", curved);
     } else if (type == kPyramid && others) {
-        take_as(found_.pyramids, cells, cell, "a pyramid", curved);
+        take_as(found_.pyramids, corners, position, "a pyramid", curved);
     } else {
-        ++left_out_[cells.types[cell]];
+        ++left_out_[type_in_file];
     }
+    ++next_;
 }
 
 template <std::size_t N>
-void VtkCellSorter::take_as(FileCells<N>& into, const VtkCells& cells, std::size_t cell, std::string_view kind, bool curved) {
-    const std::size_t corners = cells.offsets[cell + 1] - cells.offsets[cell];
-    const std::size_t number = taken_ + cell;
-    const auto& positions = cells.positions;
-    const std::size_t position = positions.empty() ? in_.position() : positions[std::min(cell, positions.size() - 1)];
-    if (corners > N && curved) ++curved_;
-    if (corners < N || (corners > N && !curved)) {
-        in_.fail_at(position, kVtkWording.name_cell(number) + " has " + std::to_string(corners) + " corners",
+void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, std::size_t position, std::string_view kind,
+                            bool curved) {
+    if (corners.size() > N && curved) ++curved_;
+    if (corners.size() < N || (corners.size() > N && !curved)) {
+        in_.fail_at(position, kVtkWording.name_cell(next_) + " has " + std::to_string(corners.size()) + " corners",
                     std::string(kind) + " has " + std::to_string(N));
     }
     auto& taken = into.corners.emplace_back();
-    std::copy_n(cells.connectivity.begin() + static_cast<std::ptrdiff_t>(cells.offsets[cell]), N, taken.begin());
-    into.numbers.push_back(number);
-    check_corners(in_, position, taken, number, kVtkWording, kind);
+    std::copy_n(corners.begin(), N, taken.begin());
+    into.numbers.push_back(static_cast<Index>(next_));
+    check_corners(in_, position, taken, next_, kVtkWording, kind);
 }
 
 void VtkCellSorter::report(std::string_view file) {

@@ -13,6 +13,17 @@ namespace {
 
 constexpr VtkType kInt{NumberType::Int32};
 
+/// offsets:   corners of cell c: connectivity[offsets[c] .. offsets[c + 1])
+/// positions: of each cell in the text; the last one stands for all that follow
+struct VtkCells {
+    std::vector<std::size_t> offsets{0};
+    std::vector<Index> connectivity;
+    std::vector<std::int64_t> types;
+    std::vector<std::size_t> positions;
+
+    [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+};
+
 class VtkReader {
 public:
     VtkReader(std::string_view text, std::string_view file, const ReadOptions& options)
@@ -37,7 +48,7 @@ public:
             block_->add_points(in_, found_);
             block_->add_cells(in_, found_);
         } else {
-            sorter.take(cells_);
+            sort_cells(sorter);
         }
         sorter.report(file_);
         return finish(std::move(found_), in_, file_, kVtkWording, options_);
@@ -180,6 +191,15 @@ private:
         cells_.types.reserve(count);
         for (std::size_t c = 0; c < count; ++c) {
             cells_.types.push_back(values_.integer({"type of cell", static_cast<std::int64_t>(c)}));
+        }
+    }
+
+    void sort_cells(VtkCellSorter& sorter) const {
+        const auto& [offsets, connectivity, types, positions] = cells_;
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const auto corners = std::span(connectivity).subspan(offsets[c], offsets[c + 1] - offsets[c]);
+            const std::size_t place = positions.empty() ? in_.position() : positions[std::min(c, positions.size() - 1)];
+            sorter.take(types[c], corners, place);
         }
     }
 

@@ -13,7 +13,7 @@ constexpr std::string_view kAppendedTag = "<AppendedData";
 }  // namespace
 
 VtkXml::VtkXml(std::string_view text, std::string_view file, const std::string& type, const std::string& needed)
-    : text_(text), in_(text, file, TextScanner::Comments::None), arrays_(text, file, in_, encoding_) {
+    : text_(text), in_(text, file, TextScanner::Comments::None), arrays_(text, file, in_, tags_, encoding_) {
     const pugi::xml_node root = parse(type, needed);
     read_encoding(root);
     data_set_ = root.child(type.c_str());
@@ -21,7 +21,7 @@ VtkXml::VtkXml(std::string_view text, std::string_view file, const std::string& 
 }
 
 void VtkXml::fail_at(const pugi::xml_node& node, const std::string& message, const std::string& allowed) const {
-    in_.fail_at(static_cast<std::size_t>(node.offset_debug()), message, allowed);
+    in_.fail_at(place(node), message, allowed);
 }
 
 // Appended data need not be well-formed XML: the parser is given what stands before them.
@@ -30,15 +30,16 @@ pugi::xml_node VtkXml::parse(const std::string& type, const std::string& needed)
     const std::size_t tag = text_.find(kAppendedTag);
     const std::size_t tag_end = tag == std::string_view::npos ? tag : text_.find('>', tag);
     if (tag_end == std::string_view::npos) {
-        xml_ = text_;
+        tags_ = XmlTags(text_);
     } else {
-        xml_ = text_.substr(0, tag_end + 1);
-        xml_ += text_[tag_end - 1] == '/' ? "</VTKFile>" : "</AppendedData></VTKFile>";
+        tags_ = XmlTags(text_.substr(0, tag_end + 1));
+        tags_.text() += text_[tag_end - 1] == '/' ? "</VTKFile>" : "</AppendedData></VTKFile>";
         find_appended(tag_end + 1);
     }
-    const auto result = document_.load_buffer_inplace(xml_.data(), xml_.size(), pugi::parse_default, pugi::encoding_utf8);
+    std::string& xml = tags_.text();
+    const auto result = document_.load_buffer_inplace(xml.data(), xml.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!result) {
-        const auto offset = std::min(static_cast<std::size_t>(result.offset), text_.size());
+        const auto offset = std::min(tags_.place(static_cast<std::size_t>(result.offset)), text_.size());
         in_.fail_at(offset, std::string("not well-formed XML: ") + result.description());
     }
     const pugi::xml_node root = document_.document_element();
@@ -95,12 +96,11 @@ pugi::xml_node VtkXml::array(const pugi::xml_node& parent, const char* name) con
     return array;
 }
 
-std::vector<double> VtkXml::coordinates(const pugi::xml_node& piece, std::size_t points) const {
+pugi::xml_node VtkXml::coordinates(const pugi::xml_node& piece, std::size_t points) const {
     const pugi::xml_node array = piece.child("Points").child("DataArray");
     if (!array) fail_at(piece, "the piece has no Points");
-    auto values = arrays_.reals(array);
-    expect_size(array, values.size(), 3 * points, "3 coordinates of " + std::to_string(points) + " points");
-    return values;
+    expect_size(array, arrays_.size(array), 3 * points, "3 coordinates of " + std::to_string(points) + " points");
+    return array;
 }
 
 void VtkXml::expect_size(const pugi::xml_node& array, std::size_t size, std::size_t needed, const std::string& what) const {

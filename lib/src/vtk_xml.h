@@ -7,6 +7,7 @@
 
 #include "text_scanner.h"
 #include "vtu_arrays.h"
+#include "xml_tags.h"
 
 namespace subvol {
 
@@ -30,9 +31,11 @@ public:
     [[nodiscard]] std::size_t count(const pugi::xml_node& piece, const char* name) const;
     /// The array of that name; fails if there is none.
     [[nodiscard]] pugi::xml_node array(const pugi::xml_node& parent, const char* name) const;
-    /// The values of the points' coordinates, three each.
-    [[nodiscard]] std::vector<double> coordinates(const pugi::xml_node& piece, std::size_t points) const;
+    /// The array of the points' coordinates, three each.
+    [[nodiscard]] pugi::xml_node coordinates(const pugi::xml_node& piece, std::size_t points) const;
     void expect_size(const pugi::xml_node& array, std::size_t size, std::size_t needed, const std::string& what) const;
+    /// Where an element stands in the text.
+    [[nodiscard]] std::size_t place(const pugi::xml_node& node) const { return arrays_.place(node); }
     [[noreturn]] void fail_at(const pugi::xml_node& node, const std::string& message, const std::string& allowed = {}) const;
 
 private:
@@ -42,7 +45,7 @@ private:
 
     std::string_view text_;
     TextScanner in_;
-    std::string xml_;
+    XmlTags tags_;
     pugi::xml_document document_;
     VtuEncoding encoding_;
     VtuArrays arrays_;

@@ -101,7 +101,7 @@ void add_grid_points(const VtkXml& xml, VtkGrid kind, const pugi::xml_node& piec
     if (extent.grid.point_count() > most_points(xml.most_bytes())) {
         xml.fail_at(piece, size_text(extent.grid) + " are more than the file can have values for");
     }
-    const auto position = static_cast<std::size_t>(piece.offset_debug());
+    const auto position = xml.place(piece);
     if (kind == VtkGrid::Rectilinear) {
         add_points(into, cuts(xml, piece, extent), position);
         return;

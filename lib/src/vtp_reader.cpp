@@ -23,7 +23,7 @@ public:
     [[nodiscard]] std::vector<Vec3> points() const {
         const std::size_t count = xml_.count(piece_, "NumberOfPoints");
         if (count == 0) return {};
-        const auto values = xml_.coordinates(piece_, count);
+        const auto values = xml_.arrays().reals(xml_.coordinates(piece_, count));
         std::vector<Vec3> points(count);
         for (std::size_t i = 0; i < count; ++i) points[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
         return points;

@@ -64,11 +64,17 @@ private:
             add_grid_points(xml_, kind_, piece, extent, found_);
             return;
         }
-        const auto values = xml_.coordinates(piece, count);
-        const auto position = static_cast<std::size_t>(piece.child("Points").child("DataArray").offset_debug());
-        for (std::size_t p = 0; p < count; ++p) {
-            add_point(found_, {values[3 * p], values[3 * p + 1], values[3 * p + 2]}, position);
-        }
+        const pugi::xml_node array = xml_.coordinates(piece, count);
+        const std::size_t position = xml_.place(array);
+        Vec3 point;
+        int axis = 0;
+        arrays_.each_real(array, [&](std::span<const double> values) {
+            for (const double value : values) {
+                point[axis] = value;
+                if (axis == 2) add_point(found_, point, position);
+                axis = (axis + 1) % 3;
+            }
+        });
     }
 
     pugi::xml_node cell_array(const pugi::xml_node& cells, const pugi::xml_node& piece, const char* name) const {
@@ -79,46 +85,61 @@ private:
 
     void read_cells(const pugi::xml_node& element, const pugi::xml_node& piece, std::size_t first_point, std::size_t count) {
         const pugi::xml_node connectivity = cell_array(element, piece, "connectivity");
-        VtkCells cells;
-        cells.positions = {static_cast<std::size_t>(connectivity.offset_debug())};
-        const auto corners = arrays_.integers(connectivity);
-        read_offsets(cell_array(element, piece, "offsets"), count, corners.size(), cells);
-        const pugi::xml_node types = cell_array(element, piece, "types");
-        cells.types = arrays_.integers(types);
-        xml_.expect_size(types, cells.types.size(), count, "one a cell");
-        const auto points = static_cast<std::int64_t>(found_.points.size() - first_point);
-        cells.connectivity.reserve(corners.size());
-        for (std::size_t c = 0; c < count; ++c) {
-            for (std::size_t k = cells.offsets[c]; k < cells.offsets[c + 1]; ++k) {
-                if (corners[k] < 0 || corners[k] >= points) {
-                    arrays_.fail(connectivity,
-                                 kVtkWording.name_cell(cells_before_ + c) + ": there is no point with index " +
-                                     std::to_string(corners[k]),
-                                 "there are " + std::to_string(points) + " points, counted from 0");
-                }
-                cells.connectivity.push_back(static_cast<Index>(first_point + static_cast<std::size_t>(corners[k])));
-            }
+        const auto ends = read_offsets(cell_array(element, piece, "offsets"), count, arrays_.size(connectivity));
+        const pugi::xml_node type_array = cell_array(element, piece, "types");
+        const auto types = arrays_.integers(type_array);
+        xml_.expect_size(type_array, types.size(), count, "one a cell");
+        if (found_.hexes.corners.empty()) {  // most meshes have nothing else
+            found_.hexes.corners.reserve(count);
+            found_.hexes.numbers.reserve(count);
         }
-        sorter_.take(cells);
+        const std::size_t position = xml_.place(connectivity);
+        const auto points = static_cast<std::int64_t>(found_.points.size() - first_point);
+        std::vector<Index> corners;  // of cell c, as far as they have come
+        std::size_t c = 0, end = 0;
+        const auto take_full = [&] {
+            for (; c < count && end == ends[c]; ++c) {
+                sorter_.take(types[c], corners, position);
+                corners.clear();
+            }
+        };
+        take_full();
+        arrays_.each_integer(connectivity, [&](std::span<const std::int64_t> some) {
+            for (const std::int64_t corner : some) {
+                if (corner < 0 || corner >= points) {
+                    arrays_.fail(
+                        connectivity,
+                        kVtkWording.name_cell(cells_before_ + c) + ": there is no point with index " + std::to_string(corner),
+                        "there are " + std::to_string(points) + " points, counted from 0");
+                }
+                corners.push_back(static_cast<Index>(first_point + static_cast<std::size_t>(corner)));
+                ++end;
+                take_full();
+            }
+        });
     }
 
     // Each is the end of its cell in the list of corners.
-    void read_offsets(const pugi::xml_node& array, std::size_t count, std::size_t corners, VtkCells& cells) const {
-        const auto offsets = arrays_.integers(array);
-        xml_.expect_size(array, offsets.size(), count, "one a cell");
-        cells.offsets.reserve(count + 1);
-        for (std::size_t c = 0; c < count; ++c) {
-            if (offsets[c] < static_cast<std::int64_t>(cells.offsets.back()) ||
-                offsets[c] > static_cast<std::int64_t>(corners)) {
-                arrays_.fail(array, "offset " + std::to_string(c) + " is " + std::to_string(offsets[c]),
-                             "up to " + std::to_string(corners) + ", never falling");
+    [[nodiscard]] std::vector<std::size_t> read_offsets(const pugi::xml_node& array, std::size_t count,
+                                                        std::size_t corners) const {
+        xml_.expect_size(array, arrays_.size(array), count, "one a cell");
+        std::vector<std::size_t> ends;
+        std::size_t last = 0;
+        arrays_.each_integer(array, [&](std::span<const std::int64_t> offsets) {
+            for (const std::int64_t offset : offsets) {
+                if (offset < static_cast<std::int64_t>(last) || offset > static_cast<std::int64_t>(corners)) {
+                    arrays_.fail(array, "offset " + std::to_string(ends.size()) + " is " + std::to_string(offset),
+                                 "up to " + std::to_string(corners) + ", never falling");
+                }
+                last = static_cast<std::size_t>(offset);
+                ends.push_back(last);
             }
-            cells.offsets.push_back(static_cast<std::size_t>(offsets[c]));
-        }
-        if (cells.offsets.back() != corners) {
-            arrays_.fail(array, "the last offset is " + std::to_string(cells.offsets.back()) + ", but the connectivity has " +
+        });
+        if (last != corners) {
+            arrays_.fail(array, "the last offset is " + std::to_string(last) + ", but the connectivity has " +
                                     std::to_string(corners) + " corners");
         }
+        return ends;
     }
 
     void read_arrays(const pugi::xml_node& element, bool at_cells, std::size_t before, std::size_t tuples) {
@@ -135,16 +156,16 @@ private:
             if (components < 1 || components > kMostComponents) {
                 arrays_.fail(array, "it cannot have " + std::to_string(components) + " components");
             }
-            const auto values = arrays_.reals(array);
-            xml_.expect_size(array, values.size(), tuples * components,
+            xml_.expect_size(array, arrays_.size(array), tuples * components,
                              std::to_string(components) + " a " + (at_cells ? "cell" : "point"));
-            append(name, at_cells, components, before, values);
+            std::vector<double>& values = values_of(name, at_cells, components, before);
+            arrays_.each_real(array,
+                              [&](std::span<const double> some) { values.insert(values.end(), some.begin(), some.end()); });
         }
     }
 
     // An array of a piece goes on where that of the piece before ended; one that pieces before lacked begins nowhere.
-    void append(const std::string& name, bool at_cells, std::size_t components, std::size_t before,
-                const std::vector<double>& values) {
+    std::vector<double>& values_of(const std::string& name, bool at_cells, std::size_t components, std::size_t before) {
         const auto continues = [&](const FileArray& array) {
             return array.at_cells == at_cells && array.name == name && array.values.size() == before * components &&
                    static_cast<std::size_t>(array.components) == components;
@@ -155,7 +176,7 @@ private:
             found_.arrays.push_back({name, static_cast<int>(components), at_cells, {}});
             array = found_.arrays.end() - 1;
         }
-        array->values.insert(array->values.end(), values.begin(), values.end());
+        return array->values;
     }
 
     void drop_partial_arrays() {

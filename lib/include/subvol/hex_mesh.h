@@ -53,7 +53,7 @@ struct HexMesh {
 void validate(const HexMesh& mesh);
 
 /// The mesh without the points that no cell uses; the others keep their order.
-[[nodiscard]] HexMesh without_unused_points(const HexMesh& mesh);
+[[nodiscard]] HexMesh without_unused_points(HexMesh mesh);
 
 /// Turns every left-handed cell (negative volume) into a right-handed one by exchanging its bottom and top.
 ///

@@ -72,6 +72,6 @@ struct SampleResult {
 ///
 /// throws: Error(InvalidInput) for options out of range, and as `refine`
 /// source: docs/science.md
-[[nodiscard]] SampleResult sample_rbf_points(const HexMesh& mesh, const SampleOptions& options = {});
+[[nodiscard]] SampleResult sample_rbf_points(HexMesh mesh, const SampleOptions& options = {});
 
 }  // namespace subvol

@@ -1,0 +1,123 @@
+#include "mesh_parts.h"
+
+#include <algorithm>
+
+#include "bucket_sort.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kLeastPoints = std::size_t{1} << 14, kMostPoints = std::size_t{1} << 20;  // of a part
+constexpr std::size_t kFewParts = 16, kMostParts = 250;
+
+std::size_t part_count(std::size_t points) {
+    const std::size_t size = std::clamp(points / kFewParts, kLeastPoints, kMostPoints);
+    return std::clamp<std::size_t>(points / size, 1, kMostParts);
+}
+
+/// The slab of each point, across the longest side of the box, so that each slab has as many points. Neighbours are near each
+/// other in space, however they are numbered.
+std::vector<std::uint8_t> slabs_of(const HexMesh& mesh, std::size_t count) {
+    constexpr std::size_t kBins = std::size_t{1} << 16;
+    const Box box = bounds(mesh);
+    const Vec3 size = box.size();
+    const int axis = size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
+    const auto bin_of = [&](const Vec3& x) {
+        const double along = (x[axis] - box.lower[axis]) / size[axis];
+        return along > 0 ? static_cast<std::size_t>(std::min(along, 1.0) * (kBins - 1)) : 0;  // unused points may be anywhere
+    };
+    std::vector<std::size_t> first(kBins + 1, 0);
+    for (const Vec3& x : mesh.points) ++first[bin_of(x) + 1];
+    for (std::size_t b = 0; b < kBins; ++b) first[b + 1] += first[b];
+    std::vector<std::uint8_t> slabs(mesh.points.size());
+    parallel_each(slabs.size(), [&](std::size_t p) {
+        slabs[p] = static_cast<std::uint8_t>(first[bin_of(mesh.points[p])] * count / mesh.points.size());
+    });
+    return slabs;
+}
+
+class Parts {
+public:
+    explicit Parts(const HexMesh& mesh)
+        : mesh_(mesh),
+          count_(part_count(mesh.points.size())),
+          slabs_(slabs_of(mesh, count_)),
+          reach_(mesh.cells.size()),
+          numbers_(mesh.points.size(), kNone) {
+        parallel_each(reach_.size(), [&](std::size_t c) {
+            const auto slab = [&](Index p) { return slabs_[p]; };
+            const auto [low, high] = std::ranges::minmax(mesh_.cells[c], {}, slab);
+            reach_[c] = {slabs_[low], slabs_[high]};
+        });
+    }
+
+    [[nodiscard]] std::size_t count() const { return count_; }
+
+    [[nodiscard]] MeshPart part(std::size_t slab) {
+        HexMesh cut = cells_about(slab);
+        MeshPart part;
+        for (std::size_t p = 0; p < numbers_.size(); ++p) {
+            if (numbers_[p] == kNone) continue;
+            numbers_[p] = static_cast<Index>(part.points.size());
+            part.points.push_back(static_cast<Index>(p));
+            part.own.push_back(slabs_[p] == slab);
+        }
+        renumber(cut.cells);
+        renumber(cut.creases);
+        renumber(cut.sharp_faces);
+        cut.points.resize(part.points.size());
+        for (const Index p : part.points) numbers_[p] = kNone;
+        part.topology = topology_of(cut);
+        return part;
+    }
+
+private:
+    /// Marks their points in numbers_.
+    [[nodiscard]] HexMesh cells_about(std::size_t slab) {
+        const auto about = [&](const auto& entity) {
+            return std::ranges::any_of(entity, [&](Index p) { return slabs_[p] == slab; });
+        };
+        HexMesh cut;
+        for (std::size_t c = 0; c < reach_.size(); ++c) {
+            if (slab < reach_[c][0] || slab > reach_[c][1] || !about(mesh_.cells[c])) continue;
+            cut.cells.push_back(mesh_.cells[c]);
+            for (const Index p : mesh_.cells[c]) numbers_[p] = 0;
+        }
+        std::ranges::copy_if(mesh_.creases, std::back_inserter(cut.creases), about);
+        std::ranges::copy_if(mesh_.sharp_faces, std::back_inserter(cut.sharp_faces), about);
+        return cut;
+    }
+
+    template <class Entities>
+    void renumber(Entities& entities) const {
+        for (auto& entity : entities) {
+            for (Index& p : entity) p = numbers_[p];
+        }
+    }
+
+    [[nodiscard]] Topology topology_of(const HexMesh& cut) const {
+        try {
+            return build_topology(cut);
+        } catch (const Error&) {
+            static_cast<void>(build_topology(mesh_));  // tells of it in the numbers of the whole
+            throw;
+        }
+    }
+
+    const HexMesh& mesh_;
+    std::size_t count_;
+    std::vector<std::uint8_t> slabs_;
+    std::vector<std::array<std::uint8_t, 2>> reach_;  // of each cell: its first and its last slab
+    std::vector<Index> numbers_;                      // of the points in the part that is made
+};
+
+}  // namespace
+
+void each_part(const HexMesh& mesh, const std::function<void(const MeshPart&)>& visit) {
+    Parts parts(mesh);
+    for (std::size_t slab = 0; slab < parts.count(); ++slab) visit(parts.part(slab));
+}
+
+}  // namespace subvol::detail

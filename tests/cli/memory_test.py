@@ -1,0 +1,36 @@
+"""What a cell of a large mesh costs in memory, as docs/formats.md says: 300 000 cells stand for a hundred million."""
+
+import re
+import unittest
+from pathlib import Path
+
+from command import SANITIZED, InFolder, subvol_measured
+
+FORMATS = Path(__file__).resolve().parents[2] / "docs/formats.md"
+RESOLUTION = 66  # cells along a side
+
+
+def documented(verb):
+    """Bytes a cell, of the table of large meshes."""
+    row = re.search(rf"^\| `subvol {verb} .*\| *(\d+) *\|$", FORMATS.read_text(), re.M)
+    return int(row[1])
+
+
+@unittest.skipIf(SANITIZED, "a sanitized program takes more")
+class BytesACell(InFolder):
+    def peak_bytes(self, *arguments):
+        done = subvol_measured(*arguments, "--quiet", "--threads", 2, folder=self.folder)
+        self.assertEqual(done.code, 0, done.err)
+        return done.peak_mib * 2**20
+
+    def test_as_documented(self):
+        cells = self.run_ok("model", "twist", "--resolution", RESOLUTION, "-o", "a.vtu", "--json").json()["cells"]
+        alone = self.peak_bytes("info", "model:twist:2")  # the program and its libraries
+        for verb, *options in (["info"], ["points", "-o", "a.ply"],
+                               ["vdb", "-o", "a.vdb", "--levels", 0, "--resolution", 50]):
+            with self.subTest(verb):
+                self.assertLess((self.peak_bytes(verb, "a.vtu", *options) - alone) / cells, documented(verb))
+
+
+if __name__ == "__main__":
+    unittest.main()
