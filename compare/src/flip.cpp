@@ -131,11 +131,11 @@ Seen see(const Image& image, const Band& band, const Filters& filters) {
 
 /// The colour difference mapped to [0,1]: most of that range for the smaller ones, which are what pictures have.
 double color_error(const Vec3& a, const Vec3& b) {
-    static const double largest =
+    static const double kLargest =
         std::pow(detail::hyab(detail::hunt_lab({0, 1, 0}), detail::hunt_lab({0, 0, 1})), kColorExponent);
-    const double error = std::pow(detail::hyab(a, b), kColorExponent), bend = kBend * largest;
+    const double error = std::pow(detail::hyab(a, b), kColorExponent), bend = kBend * kLargest;
     if (error < bend) return error * kTarget / bend;
-    return std::min(1.0, kTarget + (1 - kTarget) * (error - bend) / (largest - bend));
+    return std::min(1.0, kTarget + (1 - kTarget) * (error - bend) / (kLargest - bend));
 }
 
 double feature_error(const Seen& a, const Seen& b, std::size_t i) {

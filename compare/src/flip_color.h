@@ -9,17 +9,17 @@ namespace subvol::detail {
 /// Linear sRGB to XYZ, relative to the white of the screen: white is (1, 1, 1).
 inline Vec3 xyz_over_white(const Vec3& rgb) {
     // Columns: the primaries of sRGB (IEC 61966-2-1) as fractions.
-    static const Mat3 to_xyz{10135552. / 24577794, 2613072. / 12288897, 1425312. / 73733382,
+    static const Mat3 kToXyz{10135552. / 24577794, 2613072. / 12288897, 1425312. / 73733382,
                              8788810. / 24577794,  8788810. / 12288897, 8788810. / 73733382,
                              4435075. / 24577794,  887015. / 12288897,  70074185. / 73733382};
-    static const Vec3 white = to_xyz * Vec3(1.0);
-    return to_xyz * rgb / white;
+    static const Vec3 kWhite = kToXyz * Vec3(1.0);
+    return kToXyz * rgb / kWhite;
 }
 
 inline Vec3 rgb_of_xyz_over_white(const Vec3& xyz) {
-    static const Mat3 inverse =
+    static const Mat3 kInverse =
         glm::inverse(Mat3(xyz_over_white({1, 0, 0}), xyz_over_white({0, 1, 0}), xyz_over_white({0, 0, 1})));
-    return inverse * xyz;
+    return kInverse * xyz;
 }
 
 /// The opponent space YCxCz: linear in light.

@@ -129,12 +129,10 @@ private:
     /// Where the field takes the value on an edge: by the regula falsi (Illinois), to 1e-9 of the edge as a rule.
     [[nodiscard]] Vec3 crossing(Edge edge) const {
         const auto [nx, ny, nz] = grid_.count;
-        const std::uint64_t point = edge / 8, row = point / static_cast<std::uint64_t>(nx + 1);
-        const auto i = static_cast<double>(point % static_cast<std::uint64_t>(nx + 1));
-        const auto j = static_cast<double>(row % static_cast<std::uint64_t>(ny + 1));
-        const auto k = static_cast<double>(row / static_cast<std::uint64_t>(ny + 1));
-        const Vec3 d = corner(static_cast<unsigned>(edge % 8));
-        const auto place = [&](double t) { return grid_.place(i + t * d.x, j + t * d.y, k + t * d.z); };
+        const auto columns = static_cast<std::uint64_t>(nx + 1), rows = static_cast<std::uint64_t>(ny + 1);
+        const std::uint64_t point = edge / 8, row = point / columns, layer = row / rows;
+        const Vec3 lower(point % columns, row % rows, layer), d = corner(static_cast<unsigned>(edge % 8));
+        const auto place = [&](double t) { return grid_.place(lower.x + t * d.x, lower.y + t * d.y, lower.z + t * d.z); };
         const auto off = [&](double t) { return field_.value(place(t)).value_or(iso_) - iso_; };
         double a = 0, b = 1, at_a = off(a), at_b = off(b);
         double t = a;

@@ -127,6 +127,14 @@ std::string marker(std::size_t which, double x, double y) {
     }
 }
 
+// Lines beyond the number of colours are dashed.
+std::string colored_line(std::size_t index, const std::string& path, const std::string& markers) {
+    const std::string color = kColors[index % kColors.size()];
+    const std::string dash = index < kColors.size() ? "" : " stroke-dasharray=\"5 3\"";
+    return "<g stroke=\"" + color + "\" fill=\"" + color + "\"><path class=\"line\" fill=\"none\" d=\"" + path + "\"" + dash +
+           "/>" + markers + "</g>\n";
+}
+
 std::string line_svg(const Plot& plot, std::size_t index, const Axis& x, const Axis& y) {
     const PlotLine& line = plot.lines[index];
     std::string path, points;
@@ -136,22 +144,16 @@ std::string line_svg(const Plot& plot, std::size_t index, const Axis& x, const A
         path += (path.empty() ? "M" : "L") + number(px) + " " + number(py);
         points += marker(index, px, py);
     }
-    if (path.empty()) return {};
-    const std::string color = kColors[index % kColors.size()];
-    const std::string dash = index < kColors.size() ? "" : " stroke-dasharray=\"5 3\"";
-    return "<g stroke=\"" + color + "\" fill=\"" + color + "\"><path class=\"line\" fill=\"none\" d=\"" + path + "\"" + dash +
-           "/>" + points + "</g>\n";
+    return path.empty() ? std::string() : colored_line(index, path, points);
 }
 
 std::string legend(const Plot& plot, std::size_t columns) {
     std::string svg;
     for (std::size_t i = 0; i < plot.lines.size(); ++i) {
+        const std::size_t row = i / columns;
         const double x = 14 + (kWidth - 14) / static_cast<double>(columns) * static_cast<double>(i % columns);
-        const double y = kPlotHeight + 8 + kLegendLine * static_cast<double>(i / columns);
-        const std::string color = kColors[i % kColors.size()];
-        const std::string dash = i < kColors.size() ? "" : " stroke-dasharray=\"5 3\"";
-        svg += "<g stroke=\"" + color + "\" fill=\"" + color + "\"><path class=\"line\" fill=\"none\" d=\"M" + number(x) + " " +
-               number(y) + "h20\"" + dash + "/>" + marker(i, x + 10, y) + "</g>";
+        const double y = kPlotHeight + 8 + kLegendLine * static_cast<double>(row);
+        svg += colored_line(i, "M" + number(x) + " " + number(y) + "h20", marker(i, x + 10, y));
         std::string words = plot.lines[i].name;
         const auto order = plot.fit ? fitted_order(plot.lines[i]) : std::nullopt;
         if (order) words += " (" + number(*order) + ")";

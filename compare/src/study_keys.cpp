@@ -40,7 +40,7 @@ double read_number(const Json& json, const Key& key, const std::string& path) {
 std::string read_kernel(const Json& json, const std::string& path) {
     try {
         if (json.is_object()) return to_json(kernel_from_json(json.dump()));
-        const std::string name = read_text(json, path);
+        std::string name = read_text(json, path);
         (void)named_kernel(name);
         return name;
     } catch (const Error& error) {

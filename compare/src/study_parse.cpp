@@ -316,7 +316,8 @@ private:
     }
 
     static StudyCase named_case(StudyValues values, const std::vector<std::string>& swept) {
-        StudyCase made{.id = case_id(values), .name = {}, .values = std::move(values)};
+        StudyCase made{.id = {}, .name = {}, .values = std::move(values)};
+        made.id = case_id(made.values);
         for (const char* key : {"input", "input.resolution", "input.refine", "view", "tf", "label"}) {
             if (made.has(key)) made.name += (made.name.empty() ? "" : "_") + as_text(made.values[key]);
         }

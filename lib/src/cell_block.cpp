@@ -61,7 +61,7 @@ void CellBlocks::evaluate(std::size_t cell, const std::array<double, 3>& uvw, co
     jet.d_value.assign(channels_, {0, 0, 0});
     jet.dd_value.assign(channels_, {0, 0, 0});
 
-    constexpr std::array<std::size_t, 3> stride{1, 5, 25};
+    constexpr std::array<std::size_t, 3> kStride{1, 5, 25};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
         for (std::size_t j = 0; j < 5; ++j) {
@@ -70,7 +70,7 @@ void CellBlocks::evaluate(std::size_t cell, const std::array<double, 3>& uvw, co
                 const double across = basis[b].value[j] * basis[c].value[k];
                 if (across == 0) continue;
                 for (std::size_t i = 0; i < 5; ++i) {
-                    const Index p = point(cell, i * stride[axis] + j * stride[b] + k * stride[c]);
+                    const Index p = point(cell, i * kStride[axis] + j * kStride[b] + k * kStride[c]);
                     const double w = across * basis[axis].value[i], d = across * basis[axis].first[i];
                     const double dd = across * basis[axis].second[i];
                     const Vec3& x = mesh_.points[p];
@@ -95,7 +95,7 @@ void CellBlocks::evaluate_mixed(std::size_t cell, const std::array<double, 3>& u
                                              SampleStencil(uvw[2], step[2])};
     jet.mixed_position = {Vec3(0.0), Vec3(0.0), Vec3(0.0)};
     jet.mixed_value.assign(channels_, {0, 0, 0});
-    constexpr std::array<std::size_t, 3> stride{1, 5, 25};
+    constexpr std::array<std::size_t, 3> kStride{1, 5, 25};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
         for (std::size_t i = 0; i < 5; ++i) {
@@ -103,7 +103,7 @@ void CellBlocks::evaluate_mixed(std::size_t cell, const std::array<double, 3>& u
             for (std::size_t j = 0; j < 5; ++j) {
                 for (std::size_t k = 0; k < 5; ++k) {
                     const double w = basis[axis].value[i] * basis[b].first[j] * basis[c].first[k];
-                    const Index p = point(cell, i * stride[axis] + j * stride[b] + k * stride[c]);
+                    const Index p = point(cell, i * kStride[axis] + j * kStride[b] + k * kStride[c]);
                     jet.mixed_position[axis] += w * mesh_.points[p];
                     for (std::size_t ch = 0; ch < channels_; ++ch) jet.mixed_value[ch][axis] += w * channel_value(p, ch);
                 }

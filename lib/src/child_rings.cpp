@@ -101,7 +101,7 @@ private:
                 for (std::size_t i = 0; i < 4; ++i) {
                     const int a = kCellFaces[s][i], b = kCellFaces[s][(i + 1) % 4];
                     faces[i] = n_.inner[c][edge_between(a, b)];
-                    cells[i] = static_cast<Index>(8 * c + at(b));
+                    cells[i] = child_cell(c, at(b));
                 }
                 put_ring(n_.to_cell[c][s], faces, cells);
             }
@@ -114,7 +114,7 @@ private:
         faces.clear();
         cells.clear();
         for (const Index f : p_.edge_faces[e]) faces.push_back(n_.quarters[f][slot_of(p_.faces[f], v)]);
-        for (const Index c : p_.edge_cells[e]) cells.push_back(static_cast<Index>(8 * c + slot_of(p_.cells[c], v)));
+        for (const Index c : p_.edge_cells[e]) cells.push_back(child_cell(c, slot_of(p_.cells[c], v)));
         const bool single_fan = faces.size() == cells.size() + 1 && t_.face_on_hull(faces.front());
         if (p_.edge_has_ring[e]) {
             put_ring(half, faces, cells);
@@ -136,7 +136,7 @@ private:
         const Index e = p_.face_edges[f][k], v0 = p_.faces[f][k], v1 = p_.faces[f][(k + 1) % 4];
         const auto [c0, c1] = p_.face_cells[f];
         const auto inner = [&](Index c) { return n_.inner[c][slot_of(p_.cell_edges[c], e)]; };
-        const auto child = [&](Index c, Index v) { return static_cast<Index>(8 * c + slot_of(p_.cells[c], v)); };
+        const auto child = [&](Index c, Index v) { return child_cell(c, slot_of(p_.cells[c], v)); };
         const Index q0 = n_.quarters[f][k], q1 = n_.quarters[f][(k + 1) % 4];
         if (c1 == kNone) {
             put_fan(n_.to_face[f][k], std::array{q0, inner(c0), q1}, std::array{child(c0, v0), child(c0, v1)});

@@ -86,7 +86,7 @@ private:
             auto& cells = t_.face_cells[face];
             for (std::size_t i = 0; i < 2; ++i) {
                 const Index c = p_.face_cells[f][i];
-                cells[i] = c == kNone ? kNone : static_cast<Index>(8 * c + slot_of(p_.cells[c], v));
+                cells[i] = c == kNone ? kNone : child_cell(c, slot_of(p_.cells[c], v));
             }
             if (!p_.face_is_sharp.empty()) t_.face_is_sharp[face] = p_.face_is_sharp[f];
         }
@@ -101,8 +101,7 @@ private:
             t_.faces[face] = {edge_point(e), face_point(f0), cell_point(c), face_point(f1)};
             t_.face_edges[face] = {n_.to_face[f0][slot_of(p_.face_edges[f0], e)], n_.to_cell[c][side[0]],
                                    n_.to_cell[c][side[1]], n_.to_face[f1][slot_of(p_.face_edges[f1], e)]};
-            const auto c0 = static_cast<Index>(8 * c + at(kCellEdges[k][0])),
-                       c1 = static_cast<Index>(8 * c + at(kCellEdges[k][1]));
+            const Index c0 = child_cell(c, at(kCellEdges[k][0])), c1 = child_cell(c, at(kCellEdges[k][1]));
             t_.face_cells[face] = {std::min(c0, c1), std::max(c0, c1)};
         }
     }
@@ -122,7 +121,7 @@ private:
         for (std::size_t k = 0; k < 12; ++k) {
             auto low = lattice_place(child, at(kCellEdges[k][0])), high = lattice_place(child, at(kCellEdges[k][1]));
             if (high.kind < low.kind) std::swap(low, high);
-            Index& edge = t_.cell_edges[8 * c + child][k];
+            Index& edge = t_.cell_edges[child_cell(c, child)][k];
             if (low.kind == LatticePlace::Corner) {
                 const Index e = p_.cell_edges[c][high.number];
                 edge = n_.at_ends[e][end_of(e, p_.cells[c][low.number])];
@@ -136,7 +135,7 @@ private:
         for (std::size_t s = 0; s < 6; ++s) {
             // Sides that touch the child's corner of the parent are quarters of its faces, the others lie inside.
             const auto& corners = kCellFaces[s];
-            Index& face = t_.cell_faces[8 * c + child][s];
+            Index& face = t_.cell_faces[child_cell(c, child)][s];
             if (std::find(corners.begin(), corners.end(), static_cast<int>(child)) != corners.end()) {
                 face = n_.quarters[faces[s]][slot_of(p_.faces[faces[s]], p_.cells[c][child])];
             } else {

@@ -58,6 +58,7 @@ void read_gmsh_data(TextScanner& in, GmshValues& values, bool at_cells, const Gm
         const std::int64_t number = values.integer(place);
         const Index to = numbers.find(number);
         if (to == kNone) {
+            // NOLINTNEXTLINE(performance-inefficient-string-concatenation): the loop ends here
             in.fail(what + " " + std::to_string(n + 1) + ": there is no " + entity + " " + std::to_string(number));
         }
         missing[to] = 0;

@@ -8,7 +8,7 @@ namespace {
 
 // Where no parameters are given, the type's own defaults are its best fit.
 const std::vector<std::pair<std::string, Kernel>>& named() {
-    static const std::vector<std::pair<std::string, Kernel>> kernels{
+    static const std::vector<std::pair<std::string, Kernel>> kKernels{
         {"gaussian", GaussianKernel{}},
         {"compact", CompactKernel{}},
         {"bc", BcSplineKernel{}},
@@ -20,7 +20,7 @@ const std::vector<std::pair<std::string, Kernel>>& named() {
         {"separable_gaussian", SeparableGaussianKernel{}},
         {"cubic", CubicConvolutionKernel{}},
     };
-    return kernels;
+    return kKernels;
 }
 
 }  // namespace

@@ -66,9 +66,9 @@ private:
         if (version_ != 1 && version_ != 2 && version_ != 5)
             in_.fail("this version of netCDF's classic format is not supported");
         const std::int64_t records = number({"records"});
-        read_list(kDimensions, "dimensions", [&] { read_dimension(); });
-        read_list(kAttributes, "attributes", [&] { read_attribute(); });
-        read_list(kVariables, "variables", [&] { read_variable(); });
+        read_list(Tag::Dimensions, "dimensions", [&] { read_dimension(); });
+        read_list(Tag::Attributes, "attributes", [&] { read_attribute(); });
+        read_list(Tag::Variables, "variables", [&] { read_variable(); });
         find_records(records);
     }
 
@@ -84,7 +84,7 @@ private:
     }
     std::int64_t tag() { return integer_from(in_.bytes(4, {"list"}), NumberType::Int32, kOrder); }
 
-    enum Tag : std::int64_t { kDimensions = 10, kVariables = 11, kAttributes = 12 };
+    enum Tag : std::int64_t { Dimensions = 10, Variables = 11, Attributes = 12 };
 
     // Each of its elements takes some bytes of the file: the loop ends.
     template <class ReadElement>
@@ -98,7 +98,7 @@ private:
 
     std::string name() {
         const std::size_t length = count({"name"});
-        const std::string text(in_.bytes(length, {"name"}));
+        std::string text(in_.bytes(length, {"name"}));
         in_.bytes(padded(length) - length, {"name"});
         return text;
     }
@@ -138,7 +138,7 @@ private:
             if (d == 0 && dimension == unlimited_) variable.record = true;
             variable.lengths.push_back(lengths_[dimension]);
         }
-        read_list(kAttributes, "attributes", [&] {
+        read_list(Tag::Attributes, "attributes", [&] {
             const auto [key, text] = read_attribute();
             if (text) variable.texts.emplace(key, *text);
         });

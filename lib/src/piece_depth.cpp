@@ -83,10 +83,10 @@ struct LogDepth {
     double operator()(double u) const { return scale * (primitive(q_front + u * q_step) - at_front); }
 };
 
-template <double (*one_minus_exp_of)(double) = one_minus_exp, class Depth, class Rule>
+template <double (*OneMinusExp)(double) = one_minus_exp, class Depth, class Rule>
 double mean_absorbed(const Depth& depth, const Rule& rule) {
     double sum = 0;
-    for (const auto& point : rule) sum += point.weight * one_minus_exp_of(depth(point.u));
+    for (const auto& point : rule) sum += point.weight * OneMinusExp(depth(point.u));
     return sum;
 }
 

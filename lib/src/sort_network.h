@@ -25,12 +25,12 @@ constexpr void for_each_comparator(const Step& step) {
 
 template <std::size_t N>
 constexpr auto make_comparators() {
-    constexpr std::size_t count = [] {
+    constexpr std::size_t kCount = [] {
         std::size_t n = 0;
         for_each_comparator<N>([&](std::size_t, std::size_t) { ++n; });
         return n;
     }();
-    std::array<std::pair<std::size_t, std::size_t>, count> list{};
+    std::array<std::pair<std::size_t, std::size_t>, kCount> list{};
     std::size_t n = 0;
     for_each_comparator<N>([&](std::size_t a, std::size_t b) { list[n++] = {a, b}; });
     return list;

@@ -121,7 +121,8 @@ double RuleInCell::weighted_mean(const double* nodes, const Vec3& uvw) const {
     double weights = 0, sum = 0;
     for (std::size_t n = 0; n < 64; ++n) {
         if (grid_[n] == kNone) continue;
-        const Vec3 node(static_cast<double>(n % 4) - 1, static_cast<double>(n / 4 % 4) - 1, static_cast<double>(n / 16) - 1);
+        const std::size_t x = n % 4, y = n / 4 % 4, z = n / 16;
+        const Vec3 node = Vec3(x, y, z) - 1.0;
         const double w = kernel_value(kernel_, uvw - node);
         weights += w;
         sum += w * nodes[n];
@@ -159,9 +160,8 @@ std::vector<double> values_at_new_points(const HexMesh& mesh, const Attribute& a
                 const bool mine =
                     p >= first.cells || (p >= first.faces ? topology.face_cells[p - first.faces][0] == cell
                                                           : std::ranges::min(topology.edge_cells[p - first.edges]) == cell);
-                const Vec3 uvw(.5 * static_cast<double>(n % 3), .5 * static_cast<double>(n / 3 % 3),
-                               .5 * static_cast<double>(n / 9));
-                if (mine) values[p - old] = in_cell.value(0, uvw);
+                const std::size_t x = n % 3, y = n / 3 % 3, z = n / 9;
+                if (mine) values[p - old] = in_cell.value(0, .5 * Vec3(x, y, z));
             }
         }
     });

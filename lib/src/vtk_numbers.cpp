@@ -54,6 +54,7 @@ std::vector<Result> numbers_from(std::string_view bytes, NumberType type, std::e
     std::vector<Result> result(bytes.size() / size_of(type));
     with_type(type, [&]<class T>(T) {
         for (std::size_t i = 0; i < result.size(); ++i) {
+            // NOLINTNEXTLINE(bugprone-signed-char-misuse): a byte is a number here
             result[i] = static_cast<Result>(number_at<T>(bytes.data() + i * sizeof(T), order));
         }
     });

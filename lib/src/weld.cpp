@@ -56,7 +56,8 @@ private:
     [[nodiscard]] Index first_around(Index p, const Cube& home) const {
         Index first = kNone;
         for (int n = 0; n < 27; ++n) {
-            first = std::min(first, first_in(p, {home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1, home[2] + n / 9 - 1}));
+            const int x = n % 3 - 1, y = n / 3 % 3 - 1, z = n / 9 - 1;
+            first = std::min(first, first_in(p, {home[0] + x, home[1] + y, home[2] + z}));
         }
         return first;
     }

@@ -72,12 +72,12 @@ CellSplit make_split(std::size_t apex, unsigned diagonals) {
 }  // namespace
 
 const std::array<CellSplit, 64>& cell_splits() {
-    static const auto splits = [] {
+    static const auto kSplits = [] {
         std::array<CellSplit, 64> all;
         for (std::size_t s = 0; s < all.size(); ++s) all[s] = make_split(s % 8, static_cast<unsigned>(s / 8));
         return all;
     }();
-    return splits;
+    return kSplits;
 }
 
 std::uint8_t cell_split_of(const std::array<Index, 8>& cell) {
@@ -89,7 +89,7 @@ std::uint8_t cell_split_of(const std::array<Index, 8>& cell) {
         if (std::min(id(1), id(3)) < std::min(id(0), id(2))) diagonals |= 1u << count;
         ++count;
     }
-    return static_cast<std::uint8_t>(apex + 8 * diagonals);
+    return static_cast<std::uint8_t>(apex + std::size_t{8} * diagonals);
 }
 
 }  // namespace subvol

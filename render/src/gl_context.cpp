@@ -58,7 +58,7 @@ GlScope::GlScope(const GlContext& context) {
 }
 
 void check_gl(const std::string& where) {
-    const char* const kHint = "use the CPU backend, or a smaller picture";
+    constexpr const char* kHint = "use the CPU backend, or a smaller picture";
     GLenum first = glGetError();
     bool no_memory = first == GL_OUT_OF_MEMORY, lost = first == GL_CONTEXT_LOST;
     GLenum error = first;

@@ -41,9 +41,9 @@ std::string card_file(EGLDeviceEXT device, const char* extensions) {
 
 /// Epoxy ends the program where it opens a library that is not installed: ask first.
 bool opengl_installed() {
-    static const bool installed =
+    static const bool kInstalled =
         epoxy_has_egl() && (dlopen("libOpenGL.so.0", RTLD_LAZY) != nullptr || dlopen("libGL.so.1", RTLD_LAZY) != nullptr);
-    return installed;
+    return kInstalled;
 }
 
 /// Drivers end the program where they get no memory, Mesa's software with some hundred MB left: under a limit, ask first.

@@ -48,7 +48,7 @@ void GlSort::radix_sort(GlBuffer& keys, GlBuffer& values, const GlCount& count, 
 
 void GlSort::plan(const GlCount& count, int bits) {
     const std::uint32_t bins = 1U << bits, most_counts = bins * gl_blocks(count.most);
-    plan_.grow(2 * 4 * sizeof(std::uint32_t));
+    plan_.grow(sizeof(std::uint32_t) * 2 * 4);
     counts_.grow(sizeof(std::uint32_t) * (most_counts + 1));
     plan_program_.use();
     set_count(count);

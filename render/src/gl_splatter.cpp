@@ -82,11 +82,11 @@ std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& 
 class GlSplatter::State {
 public:
     State(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning)
-        : context_(device),
+        : context(device),
           scene_(scene),
           tuning_(tuning),
           bins_(common_defines(scene, tuning), GlExtras(scene).count),
-          boundary_(context_.hardware() || tuning.boundary_on_device),
+          boundary_(context.hardware() || tuning.boundary_on_device),
           draw_("splat_draw.comp", kShader_splat_draw_comp, common_defines(scene, tuning),
                 {{"gl_groups.glsl", kShader_gl_groups_glsl},
                  {"splat_frame.glsl", kShader_splat_frame_glsl},
@@ -108,8 +108,8 @@ public:
 
     Drawn draw(const View& view, const Classification& look, int sheets, Progress* progress);
 
-    GlContext context_;
-    GlSplatReport report_;
+    GlContext context;
+    GlSplatReport report;
 
 private:
     void prepare(const View& view, const Classification& look);
@@ -184,19 +184,19 @@ void GlSplatter::State::draw_pass() {
 
 Drawn GlSplatter::State::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
     report_progress(progress, "splat", 0);
-    report_ = {};
+    report = {};
     sheets_ = make_sheets(scene_, view, sheets);
     prepare(view, look);
     if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
     // Likewise for the boundary's hits.
     if (scene_.half_weight == 0 && !boundary_.found_all()) {
-        report_ = {};
+        report = {};
         find_intervals(view);
         draw_in_passes(view, 0, frame_.batches, progress);
     }
-    report_.boundary_hits = scene_.half_weight == 0 ? boundary_.hits() : 0;
+    report.boundary_hits = scene_.half_weight == 0 ? boundary_.hits() : 0;
     Drawn drawn = read(view);
-    report_.stages = stages_.times();
+    report.stages = stages_.times();
     report_progress(progress, "splat", 1);
     return drawn;
 }
@@ -209,8 +209,8 @@ bool GlSplatter::State::draw_at_once() {
     draw_pass();
     const std::size_t entries = bins_.entries();
     if (entries > room_) return false;
-    report_.bin_entries = entries;
-    report_.passes = 1;
+    report.bin_entries = entries;
+    report.passes = 1;
     return true;
 }
 
@@ -230,8 +230,8 @@ void GlSplatter::State::draw_in_passes(const View& view, int first, int end, Pro
     if (end - first < frame_.batches) states_.grow(picture_.bytes() / kPixel_bytes * kState_bytes);
     set_pass(first, end);
     draw_pass();
-    report_.bin_entries += entries;
-    ++report_.passes;
+    report.bin_entries += entries;
+    ++report.passes;
     report_progress(progress, "splat", static_cast<double>(end) / frame_.batches);
 }
 
@@ -266,7 +266,7 @@ GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const
 GlSplatter::~GlSplatter() {
     if (!state_) return;
     try {
-        const GlScope scope(state_->context_);  // what is on the device goes with it
+        const GlScope scope(state_->context);  // what is on the device goes with it
         state_.reset();
     } catch (const Error&) {
         (void)state_.release();  // a device that is in use elsewhere keeps it
@@ -280,16 +280,16 @@ GlSplatter& GlSplatter::operator=(GlSplatter&& other) noexcept {
 }
 
 Drawn GlSplatter::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
-    const GlScope scope(state_->context_);
+    const GlScope scope(state_->context);
     return state_->draw(view, look, sheets, progress);
 }
 
 const std::string& GlSplatter::renderer() const {
-    return state_->context_.renderer();
+    return state_->context.renderer();
 }
 
 const GlSplatReport& GlSplatter::report() const {
-    return state_->report_;
+    return state_->report;
 }
 
 }  // namespace subvol::detail

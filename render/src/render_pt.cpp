@@ -168,7 +168,8 @@ Image PtRenderer::State::draw_samples(const PtOptions& options, PtReport& report
     std::vector<double> sums;
     Image image;
     for (int k = 0; k < n * n; ++k) {
-        drawer->set_offset({(k % n + 0.5) / n - 0.5, (k / n + 0.5) / n - 0.5});
+        const int column = k % n, row = k / n;
+        drawer->set_offset({(column + 0.5) / n - 0.5, (row + 0.5) / n - 0.5});
         image = draw_sample(options, report, whole.part(k / pictures, 1 / pictures));
         sums.resize(image.rgba.size());
         for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += double{image.rgba[i]};

@@ -31,7 +31,7 @@ constexpr std::size_t kTile = SplatFrame::kTile_px;
 constexpr std::size_t kColumns = kTile / kBlockWidth, kRows = kTile / kBlockHeight, kBlocks = kColumns * kRows;
 
 /// What is summed for each pixel and sheet: Σw, Σwv, and where asked for Σw of the colour's v and Σw∇v.
-enum Sum : std::size_t { kWeight, kValue, kColor, kGradient, kSums = kGradient + 3 };
+constexpr std::size_t kWeight = 0, kValue = 1, kColor = 2, kGradient = 3, kSums = kGradient + 3;
 
 /// Where the pixels of a tile are: slopes of each lane, absolute, so that tiles do not matter.
 struct TilePixels {

@@ -54,7 +54,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kStride = kPlain ? 2 : std::size_t{kSums};  // sums a pixel
+    static constexpr std::size_t kStride = kPlain ? 2 : kSums;  // sums a pixel
 
     /// Memory that a thread keeps from tile to tile.
     struct Scratch {
@@ -91,7 +91,8 @@ private:
         }
         for (std::size_t row = 0; row < kRows; ++row) {
             for (std::size_t lane = 0; lane < kBlock; ++lane) {
-                const float y = tile_.top + static_cast<float>(row * kBlockHeight + lane / kBlockWidth) + 0.5f;
+                const std::size_t down = row * kBlockHeight + lane / kBlockWidth;
+                const float y = tile_.top + static_cast<float>(down) + 0.5f;
                 tile_.y[row * kBlock + lane] = (batch_.mid_y - y) * pixel;
             }
         }
@@ -162,7 +163,9 @@ private:
 
     /// Sorts the tile's kernels by batches, in their order.
     void list_batches(int tile) {
-        auto& [storage, sums, blocks, offsets, splats, wanted] = scratch();
+        auto& offsets = scratch().offsets;
+        auto& splats = scratch().splats;
+        const auto& wanted = scratch().wanted;
         const auto begin =
             frame_.tile_splats.begin() + static_cast<std::ptrdiff_t>(frame_.tile_offsets[static_cast<std::size_t>(tile)]);
         const auto end =

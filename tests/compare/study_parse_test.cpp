@@ -95,9 +95,9 @@ struct Mistake {
 class StudyMistake : public testing::TestWithParam<Mistake> {};
 
 TEST_P(StudyMistake, IsToldWithItsPlace) {
-    const auto& [part, instead, says] = GetParam();
-    const std::string message = error_of([&] { (void)parse(study_with(part, instead)); });
-    EXPECT_NE(message.find(says), std::string::npos) << message;
+    const Mistake& mistake = GetParam();
+    const std::string message = error_of([&] { (void)parse(study_with(mistake.part, mistake.instead)); });
+    EXPECT_NE(message.find(mistake.says), std::string::npos) << message;
     EXPECT_TRUE(message.starts_with("s.json")) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }

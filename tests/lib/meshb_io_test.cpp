@@ -12,7 +12,6 @@ namespace subvol::test {
 
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 // Writes files of one version, section by section.

@@ -97,6 +97,7 @@ private:
 
     Made make(const VoxelLeaf& voxels, const openvdb::Coord& origin) const {
         const float* values = voxels.values.get() + channel_ * kLeafVoxels;
+        // NOLINTNEXTLINE(bugprone-sizeof-expression): how many numbers a value is, one or three
         if (is_constant(voxels, values, sizeof(Value) / sizeof(float)))
             return {nullptr, true, origin, value_of<Value>(values, 0)};
         auto leaf = std::make_unique<Leaf>(origin, Value(0), false);

@@ -11,7 +11,7 @@ namespace subvol::detail {
 openvdb::FloatGrid::Ptr level_set(VoxelBricks band, const openvdb::MaskGrid& inside, double voxel_size,
                                   double half_width_voxels) {
     const std::vector<GridOfChannels> wanted{{"sdf", GridKind::Float, 0}};
-    const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(make_grids(std::move(band), wanted).front());
+    auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(make_grids(std::move(band), wanted).front());
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid->tree());
     leaves.foreach ([&](openvdb::FloatTree::LeafNodeType& leaf, std::size_t) {
         const openvdb::MaskGrid::ConstUnsafeAccessor mask(inside.constTree());

@@ -51,7 +51,7 @@ struct VoxelLeaf {
 /// doubtful: where folded cells lie, which may have filled voxels outside the mesh
 struct VoxelBrick {
     VoxelCoord origin{};
-    std::array<std::unique_ptr<VoxelLeaf>, kBrickLeaves * kBrickLeaves * kBrickLeaves> leaves;
+    std::array<std::unique_ptr<VoxelLeaf>, std::size_t{kBrickLeaves} * kBrickLeaves * kBrickLeaves> leaves;
     std::vector<Index> cells;
     std::vector<VoxelBox> doubtful;
 
