@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 
@@ -57,7 +58,9 @@ Report::Report(const CommonOptions& options)
 
 void Report::warn(const std::string& warning) {
     if (warning.empty()) return;
-    json_["warnings"].push_back(warning);
+    Json& warnings = json_["warnings"];
+    if (std::ranges::find(warnings, Json(warning)) != warnings.end()) return;  // said of another frame
+    warnings.push_back(warning);
     if (print_json_ || quiet_) return;
     progress_.clear();
     std::cerr << "subvol: warning: " << warning << '\n';

@@ -24,6 +24,12 @@ constexpr double kPositionTolerance_voxels = 0.1;
 constexpr double kBytesOfChannel = 5.5;     // a voxel's float in leaves that are not all full, with their masks
 constexpr double kMostCellsOfTables = 8e6;  // of refined cells, some 200 bytes each
 constexpr const char* kDefaultLevelSet = "sdf";
+constexpr const char* kVelocity = "vel";
+// How far the velocities go beyond the volume: renderers open the shutter for a frame at most, and mostly about the frame's
+// time.
+constexpr double kShutter_frames = 0.5;
+constexpr int kMostVelocityLayers =
+    64;  // of voxels: beyond, the grid of a volume 200 wide would hold more outside it than in it
 
 VdbCompression compression_named(const std::string& name) {
     return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
@@ -207,7 +213,9 @@ private:
             if (velocity_) add_velocity(frames.velocity(frame), mesh);
             VdbOutput output = output_;
             output.path = with_number(output_.path, frame);
-            write_frame(frame, grids_of(mesh, options, report), output, report);
+            std::vector<VdbGrid> grids = grids_of(mesh, options, report);
+            if (velocity_) spread_velocity(frame, grids, report);
+            write_frame(frame, grids, output, report);
         }
         report["input"] = input_;
         report["output"] = output_.path;
@@ -227,10 +235,25 @@ private:
 
     void add_velocity(Attribute velocity, HexMesh& mesh) const {
         if (mesh.find_attribute(velocity.name)) {
-            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", "vel", "--fields without it");
+            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", kVelocity, "--fields without it");
         }
         for (double& v : velocity.values) v *= frames_per_second_;
         mesh.attributes.push_back(std::move(velocity));
+    }
+
+    /// Lets the velocities reach beyond the volume, to where it is at other times while a shutter is open.
+    void spread_velocity(int frame, std::vector<VdbGrid>& grids, Report& report) const {
+        const auto velocity = std::ranges::find(grids, kVelocity, [](const VdbGrid& grid) { return grid.report().name; });
+        if (velocity == grids.end() || velocity->report().kind != "vector" || velocity->report().max == 0) return;
+        const GridReport& about = velocity->report();
+        const double way_voxels = kShutter_frames * about.max / frames_per_second_ / about.voxel_size_world;
+        if (way_voxels > kMostVelocityLayers) {
+            report.warn(text("frame ", frame, ": in half a frame something moves by ", way_voxels,
+                             " voxels; the velocities reach ", kMostVelocityLayers,
+                             " voxels beyond the volume, and blur is cut off there"));
+        }
+        const int layers = static_cast<int>(std::min(std::ceil(way_voxels) + 1, double(kMostVelocityLayers)));
+        report.timed("spread", [&] { *velocity = spread_vectors(*velocity, layers); });
     }
 
     /// What a mesh asks for, by its box and its fields.

@@ -69,9 +69,16 @@ std::string image_html(const fs::path& file, const std::string& alternative) {
     }
 }
 
+/// A case without a label of its own is told from others of its method by the options that come in lists; its name has them.
 std::string case_title(const StudyCase& of) {
     const std::string input = spaced(of.text("input")), label = of.text("label");
-    return input.empty() ? label : input + ", " + label;
+    std::string title = input.empty() ? label : input + ", " + label;
+    if (label != of.text("method")) return title;
+    for (const char* key : {"per_edge", "spacing_voxels", "levels", "sheets", "kernel", "correction", "resolution"}) {
+        const std::string value = of.has(key) ? as_text(of.values.at(key)) : "";
+        if (of.name.find("_" + std::string(key) + "-" + value) != std::string::npos) title += ", " + spaced(key) + " " + value;
+    }
+    return title;
 }
 
 std::string figures(const CaseResult& result) {

@@ -82,9 +82,19 @@ private:
         return checked_name(read_text(json["name"], in(path, "name")), in(path, "name"));
     }
 
+    /// Of a file without a name of its own: the file's, as far as that is a name.
+    static std::string name_of_file(const fs::path& file) {
+        std::string name = file.stem().string().substr(0, 64);
+        for (char& c : name) {
+            if (!is_plain(static_cast<unsigned char>(c))) c = '-';
+        }
+        return name.empty() ? "mesh" : name;
+    }
+
+    static bool is_plain(unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; }
+
     static std::string checked_name(std::string name, const std::string& path) {
-        const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
-        if (name.empty() || name.size() > 64 || !std::ranges::all_of(name, plain)) {
+        if (name.empty() || name.size() > 64 || !std::ranges::all_of(name, is_plain)) {
             refuse(path, "'" + name + "' is no name", "1 to 64 letters, digits, _ and -");
         }
         return name;
@@ -130,7 +140,8 @@ private:
                 if (read.contains("field") && read.contains("density")) refuse(path, "a density takes the place of a field");
                 StudyValues values;
                 for (const auto& [key, value] : read) values["input." + key] = value;
-                std::string name = read.contains("model") ? as_text(read.at("model")) : "mesh";
+                const std::string name =
+                    read.contains("model") ? as_text(read.at("model")) : name_of_file(as_text(read.at("file")));
                 if (read.contains("file")) {
                     const std::string file = resolved(as_text(read.at("file")));
                     const std::string content = content_of(file);

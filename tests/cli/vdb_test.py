@@ -1,6 +1,7 @@
 """Grids: what the options of `vdb` promise."""
 
 import json
+import math
 import sys
 import unittest
 
@@ -137,14 +138,24 @@ class Frames(InFolder):
             self.assertEqual(self.run_ok("compare", "a.vdb", frame["output"], "--json").json()["linf"], 0)
 
     def test_velocity_is_that_of_the_points(self):
-        for frame in range(1, 5):  # the place is a square of time: 0, 0.25, 1, 2.25
-            write_box(self.folder / f"in_{frame:03}.mesh", offset=0.25 * (frame - 1) ** 2)
+        for frame in range(1, 5):  # the place goes by the square of time: 0, 0.22, 0.88, 1.98
+            write_box(self.folder / f"in_{frame:03}.mesh", offset=0.22 * (frame - 1) ** 2)
         made = self.frames("--frames", "4", "--velocity", "--fps", "24")
-        for frame, speed in zip(made["frames"], (0.25, 0.5, 1.0, 1.25)):  # central, but for the first and the last
+        for frame, speed in zip(made["frames"], (0.22, 0.44, 0.88, 1.1)):  # central, but for the first and the last
             velocity = frame["grids"][-1]
             self.assertEqual((velocity["name"], velocity["kind"]), ("vel", "vector"))
             self.assertAlmostEqual(velocity["min"], 24 * speed, places=5)
             self.assertAlmostEqual(velocity["max"], 24 * speed, places=5)
+            self.assertEqual(frame["active_voxels"], 8 ** 3)
+            layers = math.ceil(speed / 2 / 0.125) + 1  # half a frame's way, and a voxel to interpolate with
+            self.assertEqual(velocity["active_voxels"], (8 + 2 * layers) ** 3)
+
+    def test_velocities_that_reach_too_far_are_told(self):
+        for frame in (1, 2):
+            write_box(self.folder / f"in_{frame:03}.mesh", offset=20.0 * frame)
+        made = self.frames("--frames", "2", "--velocity")
+        self.assertEqual([frame["grids"][-1]["active_voxels"] for frame in made["frames"]], [(8 + 2 * 64) ** 3] * 2)
+        self.assertEqual(sum("blur" in warning for warning in made["warnings"]), 2)
 
     def test_one_mesh_becomes_another(self):
         write_box(self.folder / "short.mesh")

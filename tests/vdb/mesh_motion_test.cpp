@@ -61,6 +61,42 @@ TEST(MeshMotion, VelocityOfATurningBallIsOfSecondOrder) {
     }
 }
 
+// The velocity of a turn about the box's corner: every layer takes means of what is there, so that nothing becomes faster.
+TEST(MeshMotion, VelocitiesReachBeyondTheVolume) {
+    HexMesh box = box_mesh(2);
+    box.attributes.push_back(velocity_between(turned(box, -0.1), turned(box, 0.1), 2));
+    const std::vector<std::string> names{"vel"};
+    const auto grids = rasterize(box, names, {.resolution = 20});
+    const GridReport& inside = grids[0].report();
+    ASSERT_EQ(inside.active_voxels, 20u * 20u * 20u);
+    const double h = inside.voxel_size_world;
+    for (const int layers : {0, 1, 5}) {
+        SCOPED_TRACE(layers);
+        const auto side = static_cast<std::size_t>(20 + 2 * layers);
+        const VdbGrid spread = spread_vectors(grids[0], layers);
+        const GridReport& outside = spread.report();
+        EXPECT_EQ(outside.name, "vel");
+        EXPECT_EQ(outside.active_voxels, side * side * side);
+        EXPECT_NEAR(glm::distance(outside.bounds.lower, inside.bounds.lower - layers * h), 0, 1e-6 * h);
+        EXPECT_NEAR(glm::distance(outside.bounds.upper, inside.bounds.upper + layers * h), 0, 1e-6 * h);
+        EXPECT_EQ(outside.max, inside.max);               // the far edge's; a mean of different vectors is shorter
+    }
+}
+
+TEST(MeshMotion, OnlyVectorsReachFurther) {
+    const auto mesh = with_field(box_mesh(2), "f", [](const Vec3&) { return 1.0; });
+    const std::vector<std::string> field{"f"};
+    const auto grids = rasterize(mesh, field, {.resolution = 10});
+    EXPECT_THROW((void)spread_vectors(grids[0], 1), Error);
+    HexMesh moved = mesh;
+    moved.attributes = {velocity_between(mesh, mesh, 1)};
+    const std::vector<std::string> velocity{"vel"};
+    const auto still = rasterize(moved, velocity, {.resolution = 10});
+    EXPECT_THROW((void)spread_vectors(still[0], -1), Error);
+    EXPECT_THROW((void)spread_vectors(still[0], 1001), Error);
+    EXPECT_EQ(spread_vectors(still[0], 2).report().max, 0);
+}
+
 TEST(MeshMotion, NeedsTheSameCells) {
     const HexMesh a = box_mesh(2), b = box_mesh(3);
     HexMesh creased = a;

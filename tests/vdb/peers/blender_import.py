@@ -1,7 +1,8 @@
 """Imports a grid of a .vdb file into Blender, checks where it lies, and renders one frame.
 
   blender -b --factory-startup --python blender_import.py -- FILE.vdb -o PICTURE.exr --grid NAME \\
-      --camera ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy --range MIN,MAX --opacity-unit D [--bounds x,y,z,x,y,z] [--size WxH]
+      --camera ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy --range MIN,MAX --opacity-unit D [--bounds x,y,z,x,y,z] [--size WxH] \\
+      [--velocity NAME [--velocity-unit SECOND|FRAME] [--fps F] [--shutter FRAMES]]
 
 The picture is linear and should be that of
 
@@ -36,6 +37,10 @@ def arguments():
     parser.add_argument("--bounds", type=numbers)
     parser.add_argument("--size", default="320x320")
     parser.add_argument("--samples", type=int, default=16)
+    parser.add_argument("--velocity", help="the grid of velocities: blur what moves")
+    parser.add_argument("--velocity-unit", choices=["SECOND", "FRAME"], default="SECOND")
+    parser.add_argument("--fps", type=int, default=24)
+    parser.add_argument("--shutter", type=float, default=0.5, help="how long it is open, in frames")
     parser.add_argument("--step-rate", type=float, default=0.5, help="a step in voxels")
     return parser.parse_args(sys.argv[sys.argv.index("--") + 1 :])
 
@@ -138,6 +143,18 @@ def add_material(volume, name, value_range, opacity_unit):
     volume.data.materials.append(material)
 
 
+def blur(volume, asked):
+    """As the panels Volume > Render > Velocity and Render > Motion Blur do."""
+    if asked.velocity not in [grid.name for grid in volume.data.grids]:
+        raise SystemExit(f"no grid {asked.velocity}: {[grid.name for grid in volume.data.grids]}")
+    volume.data.velocity_grid = asked.velocity
+    volume.data.velocity_unit = asked.velocity_unit
+    scene = bpy.context.scene
+    scene.render.fps = asked.fps
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter = asked.shutter
+
+
 def render(asked):
     scene = bpy.context.scene
     width, height = (int(side) for side in asked.size.split("x"))
@@ -168,6 +185,8 @@ def main():
     check(about, asked.grid, asked.bounds)
     add_camera(asked.camera)
     add_material(volume, asked.grid, asked.range, asked.opacity_unit)
+    if asked.velocity:
+        blur(volume, asked)
     render(asked)
 
 
