@@ -101,7 +101,7 @@ private:
                 for (std::size_t i = 0; i < 4; ++i) {
                     const int a = kCellFaces[s][i], b = kCellFaces[s][(i + 1) % 4];
                     faces[i] = n_.inner[c][edge_between(a, b)];
-                    cells[i] = child_cell(c, at(b));
+                    cells[i] = child_cell(static_cast<Index>(c), at(b));
                 }
                 put_ring(n_.to_cell[c][s], faces, cells);
             }
