@@ -79,7 +79,7 @@ TEST(MeshMotion, VelocitiesReachBeyondTheVolume) {
         EXPECT_EQ(outside.active_voxels, side * side * side);
         EXPECT_NEAR(glm::distance(outside.bounds.lower, inside.bounds.lower - layers * h), 0, 1e-6 * h);
         EXPECT_NEAR(glm::distance(outside.bounds.upper, inside.bounds.upper + layers * h), 0, 1e-6 * h);
-        EXPECT_EQ(outside.max, inside.max);               // the far edge's; a mean of different vectors is shorter
+        EXPECT_EQ(outside.max, inside.max);  // the far edge's; a mean of different vectors is shorter
     }
 }
 
