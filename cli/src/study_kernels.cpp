@@ -3,6 +3,7 @@
 #include <iomanip>
 
 #include "fit_tables.h"
+#include "kernel_shapes.h"
 #include "study_work.h"
 #include "subvol/error.h"
 #include "subvol/fit_kernel.h"
@@ -54,19 +55,6 @@ CaseResult errors_case(const StudyCase& of) {
     return result;
 }
 
-KernelShape shape_named(const std::string& name) {
-    static const std::map<std::string, KernelShape> kShapes{{"gaussian", KernelShape::Gaussian},
-                                                            {"scaled_gaussian", KernelShape::ScaledGaussian},
-                                                            {"bc", KernelShape::BcSpline},
-                                                            {"cardinal", KernelShape::CardinalSpline},
-                                                            {"wendland_c2", KernelShape::WendlandC2},
-                                                            {"wendland_c4", KernelShape::WendlandC4},
-                                                            {"gaussians", KernelShape::GaussianSum},
-                                                            {"separable_gaussian", KernelShape::SeparableGaussian},
-                                                            {"separable_table", KernelShape::SeparableTable}};
-    return kShapes.at(name);
-}
-
 CaseResult fit_case(const StudyCase& of) {
     const BasisFunction basis = sample_basis_function(Scheme::Mcq, kPaperLevel);
     const std::string& shape = of.text("shape");
@@ -82,7 +70,7 @@ CaseResult fit_case(const StudyCase& of) {
         FitOptions options{.sign_slip = of.flag("sign_slip")};
         if (of.has("extent")) options.extent = of.number("extent");
         if (of.has("terms")) options.terms = of.whole("terms");
-        const KernelFit fit = fit_kernel(basis, shape_named(shape), options);
+        const KernelFit fit = fit_kernel(basis, shape_named(shape).value(), options);
         report = fit.report;
         put_parameters(fit.kernel, result);
     }

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "fit_tables.h"
+#include "kernel_shapes.h"
 #include "refine_arguments.h"
 #include "subvol/error.h"
 #include "text.h"
@@ -11,23 +12,11 @@ namespace {
 
 constexpr int kPaperLevel = 5;
 
-const std::vector<std::pair<std::string, KernelShape>> kShapes{{"gaussian", KernelShape::Gaussian},
-                                                               {"scaled_gaussian", KernelShape::ScaledGaussian},
-                                                               {"bc", KernelShape::BcSpline},
-                                                               {"cardinal", KernelShape::CardinalSpline},
-                                                               {"wendland_c2", KernelShape::WendlandC2},
-                                                               {"wendland_c4", KernelShape::WendlandC4},
-                                                               {"two_gaussians", KernelShape::GaussianSum},
-                                                               {"gaussians", KernelShape::GaussianSum},
-                                                               {"separable_gaussian", KernelShape::SeparableGaussian},
-                                                               {"separable_table", KernelShape::SeparableTable}};
-
 /// Kernels with a name but nothing to fit: their errors are told.
 const std::vector<std::string> kFixed{"compact", "paper_bc", "cubic"};
 
 std::string kernel_choices() {
-    std::vector<std::string> names;
-    for (const auto& [name, shape] : kShapes) names.push_back(name);
+    std::vector<std::string> names = shape_names();
     names.insert(names.end(), kFixed.begin(), kFixed.end());
     return join(names);
 }
@@ -95,11 +84,10 @@ private:
         const auto known = [&](const Kernel& kernel) { return KernelFit{kernel, {.errors = kernel_errors(basis, kernel)}}; };
         if (kernel_.front() == '{') return known(kernel_from_json(kernel_));
         if (std::ranges::find(kFixed, kernel_) != kFixed.end()) return known(named_kernel(kernel_));
-        for (const auto& [name, shape] : kShapes) {
-            if (name != kernel_) continue;
+        if (const auto shape = shape_named(kernel_)) {
             FitOptions options = options_;
-            if (name == "two_gaussians") options.terms = 2;
-            return fit_kernel(basis, shape, options);
+            if (kernel_ == "two_gaussians") options.terms = 2;
+            return fit_kernel(basis, *shape, options);
         }
         throw Error(ErrorCode::InvalidInput, "'" + kernel_ + "' is unknown", "--kernel", "supported: " + kernel_choices());
     }
