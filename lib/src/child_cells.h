@@ -22,8 +22,8 @@ struct LatticePlace {
 
 /// The cells of the child: 8c + k lies at corner k of cell c and is turned as c is.
 [[nodiscard]] std::vector<std::array<Index, 8>> child_cells(const Topology& parent);
-[[nodiscard]] constexpr Index child_cell(Index c, std::size_t k) {
-    return static_cast<Index>(8 * std::size_t{c} + k);
+[[nodiscard]] constexpr Index child_cell(std::size_t c, std::size_t k) {
+    return static_cast<Index>(8 * c + k);
 }
 
 /// The 27 points of a refined cell, u fastest, in the child's numbering.
