@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <set>
 
 #include "lib/temp_folder.h"
@@ -90,6 +91,8 @@ struct Mistake {
     const char* part;
     const char* instead;
     const char* says;
+
+    friend void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.instead; }
 };
 
 class StudyMistake : public testing::TestWithParam<Mistake> {};
