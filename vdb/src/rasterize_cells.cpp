@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatchNodes = 1 << 18;         // of a mesh as it is
+constexpr std::size_t kBatchNodes = 1 << 17;         // of a mesh as it is
 constexpr std::size_t kBatchRefinedNodes = 1 << 20;  // fewer pay for their surroundings, more for memory
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {
