@@ -184,7 +184,7 @@ void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& par
 /// Orientations of the tetrahedra about a centre add up to its winding number: where it is 0, turned ones cancel the others.
 void CellRasterizer::drop_leaks() {
     std::ranges::sort(doubtful_);
-    doubtful_.erase(std::ranges::unique(doubtful_).begin(), doubtful_.end());
+    doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
     if (!doubtful_.empty() && !columns_) columns_.emplace(boundary_triangles(request_));
     tbb::parallel_for(std::size_t{0}, doubtful_.size(), [&](std::size_t i) {
         VoxelBrick& brick = *doubtful_[i];
