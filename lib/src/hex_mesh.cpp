@@ -1,9 +1,11 @@
 #include "subvol/hex_mesh.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cmath>
 
@@ -22,9 +24,11 @@ std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& 
 
 std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
     std::vector<std::uint8_t> used(mesh.points.size());
-    for (const auto& cell : mesh.cells) {
-        for (const Index p : cell) used[p] = 1;
-    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.cells.size()), [&](const auto& range) {
+        for (std::size_t c = range.begin(); c < range.end(); ++c) {
+            for (const Index p : mesh.cells[c]) std::atomic_ref(used[p]).store(1, std::memory_order_relaxed);
+        }
+    });
     return used;
 }
 

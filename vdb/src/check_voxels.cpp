@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "subvol/error.h"
-#include "subvol/tetrahedra.h"
 
 namespace subvol::detail {
 
@@ -25,20 +24,19 @@ constexpr double kMaxBrickEntries = 5e7;  // a few GB
     throw Error(ErrorCode::InvalidInput, why, where.str(), allowed.str());
 }
 
-/// all: of the tetrahedra; oriented: those of negative orientation count against it
+/// all: of the cells; oriented: those of negative orientation count against it
 struct Volume {
     double all = 0, oriented = 0;
 };
 
-Volume volume_of(const HexMesh& mesh, Index cell) {
-    Volume sum;
-    for (const auto& [a, b, c, d] : split_cell(mesh.cells[cell])) {
-        const Vec3& p = mesh.points[a];
-        const double six = glm::dot(mesh.points[b] - p, glm::cross(mesh.points[c] - p, mesh.points[d] - p));
-        sum.all += std::abs(six) / 6.0;
-        sum.oriented += six / 6.0;
-    }
-    return sum;
+/// Of the six tetrahedra about the long diagonal, two with a face in common at a time.
+Volume volume_of(const HexMesh& mesh, std::size_t cell) {
+    const auto& corners = mesh.cells[cell];
+    const auto p = [&](std::size_t k) -> const Vec3& { return mesh.points[corners[k]]; };
+    const Vec3 sum =
+        glm::cross(p(1) - p(0), p(2) - p(5)) + glm::cross(p(4) - p(0), p(5) - p(7)) + glm::cross(p(3) - p(0), p(7) - p(2));
+    const double volume = glm::dot(p(6) - p(0), sum) / 6.0;
+    return {std::abs(volume), volume};
 }
 
 Volume volume_of(const HexMesh& mesh) {
@@ -46,7 +44,7 @@ Volume volume_of(const HexMesh& mesh) {
     return tbb::parallel_deterministic_reduce(
         tbb::blocked_range<std::size_t>(0, mesh.cells.size(), 4096), Volume{},
         [&](const auto& range, Volume sum) {
-            for (std::size_t c = range.begin(); c < range.end(); ++c) sum = add(sum, volume_of(mesh, static_cast<Index>(c)));
+            for (std::size_t c = range.begin(); c < range.end(); ++c) sum = add(sum, volume_of(mesh, c));
             return sum;
         },
         add);

@@ -55,8 +55,8 @@ struct LimitCells {
 
 /// Looks for the lowest such levels: one for all cells by the tolerance of positions, so that they fit together, and one for
 /// each by that of values. There, what a further level brings to the curved cells has to be within tolerance, or a quarter of
-/// what their own level brought to the cells before, curved or trilinear: where the field is smooth, no more is left (up to three
-/// times as much at its kinks).
+/// what their own level brought to the cells before, curved or trilinear: where the field is smooth, no more is left (up to
+/// three times as much at its kinks).
 ///
 /// options.levels is not used.
 /// throws: Error(InvalidInput) as `for_each_dense_cell`
