@@ -71,7 +71,7 @@ std::optional<int> level_of_samples(const SampleOptions& options) {
 /// intervals: the most that an edge has
 template <class Known>
 Surface boundary_of(const HexMesh& control, const Known& known, int intervals, const SampleOptions& options) {
-    const int half_an_interval = std::bit_width(static_cast<unsigned>(intervals));
+    const auto half_an_interval = static_cast<int>(std::bit_width(static_cast<unsigned>(intervals)));
     const int levels = options.boundary_levels.value_or(std::min(half_an_interval, kMostDefaultBoundaryLevels));
     const RefineOptions refine_options = refinement(options, levels);
     if (levels == 1 && interpolates(options.scheme)) return detail::boundary_of_child(control, known, refine_options);

@@ -154,7 +154,7 @@ Grid::Ptr make_grid(const RbfVolume& volume, const VdbPointsOptions& options) {
     writer.add<std::int32_t>("id", [](std::size_t i) { return static_cast<std::int32_t>(i); });
     add_shapes(writer, volume);
     add_channels(writer, volume);
-    const Grid::Ptr grid = writer.grid();
+    Grid::Ptr grid = writer.grid();
     grid->setCreator(options.creator);
     grid->insertMeta(kKernel, openvdb::StringMetadata(to_json(volume.kernel)));
     grid->insertMeta(kTriangles, openvdb::Int64Metadata(static_cast<std::int64_t>(volume.boundary.triangles.size())));
