@@ -67,10 +67,10 @@ void draw_ticks(Image& image, int top, double scale) {
     }
     const std::string first = tick_text(0), middle = tick_text(scale / 2), last = tick_text(scale);
     const int text_top = top + kTickHeight;
-    const int first_end = text_width(first) + kRim;
-    const int last_start = image.width - text_width(last);
+    const int margin = kRim / 2, first_end = margin + text_width(first) + kRim;
+    const int last_start = image.width - text_width(last) - margin;
     const int middle_start = (image.width - text_width(middle)) / 2;
-    draw_text(image, first, 0, text_top);
+    draw_text(image, first, margin, text_top);
     // Numbers that would run into others are left out: a narrow image has fewer of them.
     if (last_start >= first_end) draw_text(image, last, last_start, text_top);
     const bool fits = middle_start >= first_end && middle_start + text_width(middle) + kRim <= last_start;
