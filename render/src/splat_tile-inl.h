@@ -156,8 +156,9 @@ private:
             return std::clamp((z - sheets_.first) * per_sheet, -1.0f, static_cast<float>(sheets_.count));
         };
         // Half a sheet more on each side: rounding may not lose one.
-        const int first = std::max(static_cast<int>(sheet(s.depth - reach) - 0.5f), 0);
-        const int last = std::min(static_cast<int>(sheet(s.depth + reach) + 0.5f), sheets_.count - 1);
+        constexpr float kMore = 0.5f;
+        const int first = std::max(static_cast<int>(sheet(s.depth - reach) - kMore), 0);
+        const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore), sheets_.count - 1);
         return {first / kBatch, last / kBatch};
     }
 
