@@ -73,7 +73,7 @@ struct Triquadratic {
 
     explicit Triquadratic(const double* v) {
         std::copy_n(v, kCurvedNodes, c);
-        for (const std::size_t stride : {1, 3, 9}) {
+        for (std::size_t stride = 1; stride < kCurvedNodes; stride *= 3) {
             for (std::size_t n = 0; n < kCurvedNodes; ++n) {
                 if (n / stride % 3 != 0) continue;
                 const double low = c[n], middle = c[n + stride], high = c[n + 2 * stride];
