@@ -70,7 +70,7 @@ TEST(LimitCells, StandForADeepLevel) {
         EXPECT_LE(limit.position_world, tolerance.position_world);
         EXPECT_LE(limit.value_of_range, tolerance.value_of_range);
         const RasterizeOptions by_cells{.voxel_size_world = kVoxel, .refine = {.scheme = scheme}, .limit = &limit};
-        RasterizeOptions deep{.voxel_size_world = kVoxel, .refine = {.scheme = scheme, .levels = 5}, .on_limit = true};
+        const RasterizeOptions deep{.voxel_size_world = kVoxel, .refine = {.scheme = scheme, .levels = 4}, .on_limit = true};
         const auto got = values_of(rasterize(mesh, kField, by_cells).front());
         const auto wanted = values_of(rasterize(mesh, kField, deep).front());
         double squares = 0, most = 0;
