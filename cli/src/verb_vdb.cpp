@@ -209,7 +209,11 @@ private:
             HexMesh mesh = frames.mesh(frame);
             const bool same = same_cells(first, mesh);
             options.tables = tables && same ? &*tables : nullptr;
-            if (options.limit && !same) find_limit(mesh, options.refine, options.voxel_size_world, report);
+            LimitCells of_others;  // the limit of the first serves all meshes of its cells
+            if (options.limit) {
+                if (!same) of_others = find_limit(mesh, options.refine, options.voxel_size_world, report);
+                options.limit = same ? &limit_ : &of_others;
+            }
             if (velocity_) add_velocity(frames.velocity(frame), mesh);
             VdbOutput output = output_;
             output.path = with_number(output_.path, frame);
@@ -264,7 +268,7 @@ private:
             report["levels"] = refinement.levels;
             report["cells"] = mesh.cells.size() << (3 * refinement.levels);
         } else {
-            find_limit(mesh, refinement, voxel_size, report);
+            limit_ = find_limit(mesh, refinement, voxel_size, report);
         }
         RasterizeOptions options = options_of_grids(report);
         options.voxel_size_world = voxel_size;
@@ -338,24 +342,26 @@ private:
     }
 
     /// levels: the finest whose vertices count; cells: those between them, 27 vertices each, or those of the mesh
-    void find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size, Report& report) {
-        limit_ = report.timed("limit level", [&] {
+    [[nodiscard]] static LimitCells find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
+                                               Report& report) {
+        LimitCells limit = report.timed("limit level", [&] {
             return find_limit_cells(mesh, refinement, {.position_world = kPositionTolerance_voxels * voxel_size});
         });
-        int levels = limit_.level;
-        std::size_t cells = limit_.cell_levels.empty() ? mesh.cells.size() : 0;
-        for (const int level : limit_.cell_levels) {
+        int levels = limit.level;
+        std::size_t cells = limit.cell_levels.empty() ? mesh.cells.size() : 0;
+        for (const int level : limit.cell_levels) {
             levels = std::max(levels, level);
             cells += std::size_t{1} << (3 * (level - 1));
         }
         report["levels"] = levels;
         report["cells"] = cells;
-        report["limit_deviation"] = {{"voxels", limit_.position_world / voxel_size}, {"of_range", limit_.value_of_range}};
-        if (!limit_.converged) {
+        report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};
+        if (!limit.converged) {
             report.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
-                             limit_.position_world / voxel_size, " voxels and values by ", limit_.value_of_range,
+                             limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range,
                              " of their range"));
         }
+        return limit;
     }
 
     std::string input_;

@@ -171,8 +171,9 @@ class Frames(InFolder):
     def test_cells_that_change_are_exported_without_velocity(self):
         write_box(self.folder / "in_001.mesh")
         self.run_ok("subdivide", "in_001.mesh", "-o", "in_002.mesh", "--quiet")
-        made = self.frames("--frames", "2")
-        self.assertEqual([frame["active_voxels"] for frame in made["frames"]], [512, 512])
+        write_box(self.folder / "in_003.mesh", offset=0.25)  # and back again
+        made = self.frames("--frames", "3")
+        self.assertEqual([frame["active_voxels"] for frame in made["frames"]], [512, 512, 512])
         before = self.files()
         for arguments in (("in_###.mesh", "--velocity"), ("in_001.mesh", "--to", "in_002.mesh")):
             done = subvol("vdb", *arguments, "-o", "new_#.vdb", "--frames", "2", folder=self.folder)

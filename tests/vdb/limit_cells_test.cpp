@@ -124,6 +124,14 @@ TEST(LimitCells, OfAMeshThatIsFineAlready) {
     EXPECT_EQ(values_of(rasterized(mesh, 0.04, limit)), values_of(rasterize(mesh, kField, {.voxel_size_world = 0.04}).front()));
 }
 
+TEST(LimitCells, OfNothingAreNone) {
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
+        const LimitCells limit = find_limit_cells({}, {.scheme = scheme}, {});
+        EXPECT_TRUE(limit.converged);
+        EXPECT_TRUE(limit.cell_levels.empty());
+    }
+}
+
 TEST(LimitCells, OfAnotherMeshAreRefused) {
     const HexMesh mesh = with_field(box_mesh(3), "f", [](const Vec3&) { return 1.0; });
     const LimitCells limit = find_limit_cells(with_field(box_mesh(2), "f", [](const Vec3&) { return 1.0; }), {}, {});

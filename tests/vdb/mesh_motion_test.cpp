@@ -115,28 +115,34 @@ std::vector<std::pair<Voxel, double>> list(const VdbGrid& grid) {
     return all;
 }
 
+/// Grids of a frame by itself and by the tables of the first one, first and last of them to the bit.
+void expect_same_by_tables(const HexMesh& first, const HexMesh& later, RasterizeOptions options) {
+    const std::vector<std::string> field{"f"};
+    const auto alone = rasterize(later, field, options);
+    const RefinementTables tables = rasterization_tables(first, options);
+    options.tables = &tables;
+    const auto shared = rasterize(later, field, options);
+    ASSERT_EQ(alone.size(), shared.size());
+    EXPECT_GT(alone.front().report().active_voxels, 10000u);
+    EXPECT_TRUE(list(alone.front()) == list(shared.front()));
+    EXPECT_EQ(alone[1].report().max, shared[1].report().max);
+    EXPECT_TRUE(list(alone.back()) == list(shared.back()));
+}
+
 // Frames of a sequence share the tables of the first one; the grids are those that each mesh gives by itself, to the bit.
 TEST(MeshMotion, SharedTablesGiveTheSameGrids) {
     const HexMesh first = jittered_box_mesh(4);
     const HexMesh later =
         with_field(turned(first, 0.3), "f", [](const Vec3& p) { return std::sin(5 * p.x) * std::cos(4 * p.y) + p.z; });
-    const std::vector<std::string> field{"f"};
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear}) {
         for (const int levels : {0, 1, 2}) {
             SCOPED_TRACE(levels);
-            RasterizeOptions options{.voxel_size_world = 0.027,
-                                     .refine = {.scheme = scheme, .levels = levels},
-                                     .on_limit = !interpolates(scheme),
-                                     .cell_numbers = true,
-                                     .level_set = LevelSetOptions{}};
-            const auto alone = rasterize(later, field, options);
-            const RefinementTables tables = rasterization_tables(first, options);
-            options.tables = &tables;
-            const auto shared = rasterize(later, field, options);
-            EXPECT_GT(alone.front().report().active_voxels, 10000u);
-            EXPECT_TRUE(list(alone.front()) == list(shared.front()));
-            EXPECT_EQ(alone[1].report().max, shared[1].report().max);
-            EXPECT_TRUE(list(alone.back()) == list(shared.back()));
+            expect_same_by_tables(first, later,
+                                  {.voxel_size_world = 0.027,
+                                   .refine = {.scheme = scheme, .levels = levels},
+                                   .on_limit = !interpolates(scheme),
+                                   .cell_numbers = true,
+                                   .level_set = LevelSetOptions{}});
         }
     }
 }
@@ -145,18 +151,11 @@ TEST(MeshMotion, SharedTablesGiveTheSameGrids) {
 TEST(MeshMotion, SharedTablesOfTheLimit) {
     const HexMesh first = jittered_box_mesh(4);
     const HexMesh later = with_field(turned(first, 0.3), "f", [](const Vec3& p) { return std::sin(5 * p.x) + p.z; });
-    const std::vector<std::string> field{"f"};
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
         const LimitCells limit{.level = 1, .cell_levels = std::vector<std::uint8_t>(first.cells.size(), 2)};
-        RasterizeOptions options{
-            .voxel_size_world = 0.027, .refine = {.scheme = scheme}, .limit = &limit, .level_set = LevelSetOptions{}};
-        const auto alone = rasterize(later, field, options);
-        const RefinementTables tables = rasterization_tables(first, options);
-        options.tables = &tables;
-        const auto shared = rasterize(later, field, options);
-        EXPECT_GT(alone.front().report().active_voxels, 10000u);
-        EXPECT_TRUE(list(alone.front()) == list(shared.front()));
-        EXPECT_TRUE(list(alone.back()) == list(shared.back()));
+        expect_same_by_tables(
+            first, later,
+            {.voxel_size_world = 0.027, .refine = {.scheme = scheme}, .limit = &limit, .level_set = LevelSetOptions{}});
     }
 }
 

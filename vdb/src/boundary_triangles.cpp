@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "subvol/limit.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {

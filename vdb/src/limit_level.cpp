@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "subvol/dense_cells.h"
-#include "subvol/limit.h"
 
 namespace subvol {
 
@@ -92,7 +91,7 @@ Step last_step(const DenseCell& cell, const std::vector<double>& ranges, const S
     return most;
 }
 
-bool fit(std::size_t count, int level, double most) {
+bool fits(std::size_t count, int level, double most) {
     return static_cast<double>(count) * std::pow(8.0, level) <= most;
 }
 
@@ -109,7 +108,7 @@ LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const
     refinement.progress = nullptr;
     std::vector<Index> open = all_cells(mesh);
     LimitLevel result;
-    for (int level = 1; level <= options.max_levels && fit(mesh.cells.size(), level, options.max_cells); ++level) {
+    for (int level = 1; level <= options.max_levels && fits(mesh.cells.size(), level, options.max_cells); ++level) {
         refinement.levels = level;
         result = {.level = level - 1};
         std::vector<Index> next;
@@ -133,8 +132,8 @@ LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const
 LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options) {
     constexpr double kLeft = 0.25;  // of a step by one level more, where the field is smooth
     const std::size_t count = mesh.cells.size();
-    LimitCells result;
-    if (!fit(count, 1, options.max_cells)) return result;
+    LimitCells result{.cell_levels = {}, .converged = count == 0};
+    if (count == 0 || !fits(count, 1, options.max_cells)) return result;
     const std::vector<double> ranges = ranges_of(mesh);
     refinement.progress = nullptr;
     const DenseCells dense(mesh, refinement, true);
@@ -143,7 +142,7 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
     const auto is_placed = [&](Index c) { return left[c].position <= options.position_world; };
     const auto has_values = [&](Index c) { return left[c].value <= options.value_of_range; };
     std::vector<Index> open = all_cells(mesh);
-    for (int level = 1; !open.empty() && level <= options.max_levels && fit(open.size(), level, options.max_cells); ++level) {
+    for (int level = 1; !open.empty() && level <= options.max_levels && fits(open.size(), level, options.max_cells); ++level) {
         dense.for_each(open, level, [&](const DenseCell& cell) {
             const Step linear = last_step(cell, ranges, spread_linear);
             left[cell.cell].position = linear.position;
@@ -155,14 +154,14 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
             value = kLeft * std::min(linear.value, curved);
             result.cell_levels[cell.cell] = static_cast<std::uint8_t>(level);
         });
-        if (!std::ranges::all_of(open, is_placed) && fit(count, level, options.max_cells)) result.level = level;
+        if (!std::ranges::all_of(open, is_placed) && fits(count, level, options.max_cells)) result.level = level;
         std::erase_if(open, [&](Index c) { return is_placed(c) && has_values(c); });
     }
     result.converged = open.empty();
     if (!interpolates(refinement.scheme)) {
         // Two levels give the limit of one vertex other bits: cells of both would not fit together.
         int level = std::ranges::max(result.cell_levels);
-        for (; !fit(count, level, options.max_cells); --level) result.converged = false;
+        for (; !fits(count, level, options.max_cells); --level) result.converged = false;
         std::ranges::fill(result.cell_levels, static_cast<std::uint8_t>(level));
     }
     for (std::size_t c = 0; c < count; ++c) {
