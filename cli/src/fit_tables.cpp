@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iomanip>
 
+#include "kernel_shapes.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -101,12 +102,6 @@ void say_fits(const Json& row, Report& report) {
     }
 }
 
-struct NamedShape {
-    const char* name;
-    KernelShape shape;
-    FitOptions options{};
-};
-
 void add_kernel(Report& report, const std::string& name, const Json& parameters, const FitErrors& errors, int numbers) {
     Json row{{"kernel", name}, {"numbers", numbers}, {"parameters", parameters}, {"double", to_json(errors)}};
     report.say(text(std::left, std::setw(20), name, std::right, std::setw(4), numbers ? text(numbers) : "", "  ",
@@ -146,23 +141,16 @@ void report_kernels(const BasisFunction& basis, Report& report) {
     report.say(text(std::left, std::setw(18), "kernel", "numbers RMSE     MAE       max     parameters"));
     const Kernel paper = GaussianKernel{.sigma = 0.43};
     add_kernel(report, "paper_gaussian", parameters_of(paper), kernel_errors(basis, paper), 1);
-    for (const NamedShape& named : {NamedShape{"gaussian", KernelShape::Gaussian},
-                                    {"scaled_gaussian", KernelShape::ScaledGaussian},
-                                    {"bc", KernelShape::BcSpline},
-                                    {"cardinal", KernelShape::CardinalSpline},
-                                    {"wendland_c2", KernelShape::WendlandC2},
-                                    {"wendland_c4", KernelShape::WendlandC4},
-                                    {"two_gaussians", KernelShape::GaussianSum},
-                                    {"three_gaussians", KernelShape::GaussianSum, {.terms = 3}}}) {
-        const KernelFit fit = report.timed("fit", [&] { return fit_kernel(basis, named.shape, named.options); });
-        add_kernel(report, named.name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
+    const auto add_fitted = [&](const std::string& name) {
+        const KernelFit fit = report.timed("fit", [&] { return fit_shape(basis, shape_named(name).value()); });
+        add_kernel(report, name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
+    };
+    for (const char* name :
+         {"gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "two_gaussians", "three_gaussians"}) {
+        add_fitted(name);
     }
     add_kernel(report, "radial_bound", Json::object(), radial_bound(basis), 0);
-    for (const NamedShape& named :
-         {NamedShape{"separable_gaussian", KernelShape::SeparableGaussian}, {"separable_table", KernelShape::SeparableTable}}) {
-        const KernelFit fit = report.timed("fit", [&] { return fit_kernel(basis, named.shape, named.options); });
-        add_kernel(report, named.name, parameters_of(fit.kernel), fit.report.errors, fit.report.parameters);
-    }
+    for (const char* name : {"separable_gaussian", "separable_table"}) add_fitted(name);
     for (const int rank : {2, 3, 4}) {
         const TuckerFit fit = report.timed("fit", [&] { return fit_tucker(basis, rank); });
         add_kernel(report, text("tucker_", rank), {{"rank", rank}}, fit.report.errors, fit.report.parameters);

@@ -8,10 +8,19 @@
 
 namespace subvol::cli {
 
+/// terms: of a sum of Gaussians whose name says how many
+struct NamedShape {
+    std::string name;
+    KernelShape shape;
+    std::optional<int> terms{};
+};
+
 /// The names of what can be fitted.
 [[nodiscard]] std::vector<std::string> shape_names();
 
-/// Two names are of sums of Gaussians: `gaussians`, and `two_gaussians`, which has two terms.
-[[nodiscard]] std::optional<KernelShape> shape_named(const std::string& name);
+[[nodiscard]] std::optional<NamedShape> shape_named(const std::string& name);
+
+/// options.terms: where the name does not say
+[[nodiscard]] KernelFit fit_shape(const BasisFunction& basis, const NamedShape& named, FitOptions options = {});
 
 }  // namespace subvol::cli

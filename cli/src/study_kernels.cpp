@@ -70,7 +70,7 @@ CaseResult fit_case(const StudyCase& of) {
         FitOptions options{.sign_slip = of.flag("sign_slip")};
         if (of.has("extent")) options.extent = of.number("extent");
         if (of.has("terms")) options.terms = of.whole("terms");
-        const KernelFit fit = fit_kernel(basis, shape_named(shape).value(), options);
+        const KernelFit fit = fit_shape(basis, shape_named(shape).value(), options);
         report = fit.report;
         put_parameters(fit.kernel, result);
     }

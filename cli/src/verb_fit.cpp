@@ -84,11 +84,7 @@ private:
         const auto known = [&](const Kernel& kernel) { return KernelFit{kernel, {.errors = kernel_errors(basis, kernel)}}; };
         if (kernel_.front() == '{') return known(kernel_from_json(kernel_));
         if (std::ranges::find(kFixed, kernel_) != kFixed.end()) return known(named_kernel(kernel_));
-        if (const auto shape = shape_named(kernel_)) {
-            FitOptions options = options_;
-            if (kernel_ == "two_gaussians") options.terms = 2;
-            return fit_kernel(basis, *shape, options);
-        }
+        if (const auto shape = shape_named(kernel_)) return fit_shape(basis, *shape, options_);
         throw Error(ErrorCode::InvalidInput, "'" + kernel_ + "' is unknown", "--kernel", "supported: " + kernel_choices());
     }
 

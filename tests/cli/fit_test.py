@@ -74,8 +74,8 @@ class Kernels(InFolder):
         self.assertEqual(len(fitted["definition"]["values"]), 25)
 
     def test_every_name_in_the_help_works(self):
-        for name in ("gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "two_gaussians", "gaussians",
-                     "separable_gaussian", "separable_table", "compact", "paper_bc", "cubic"):
+        for name in ("gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "two_gaussians", "three_gaussians",
+                     "gaussians", "separable_gaussian", "separable_table", "compact", "paper_bc", "cubic"):
             out = self.run_ok("fit", "--kernel", name, "--level", 2).out
             self.assertIn("RMSE", out)
             json.loads(out.splitlines()[0])
