@@ -14,8 +14,8 @@
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
-#include "subvol/render.h"
 #include "subvol/render_dense.h"
+#include "subvol/render_tets.h"
 
 namespace {
 

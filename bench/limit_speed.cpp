@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
     const std::pair<const char*, Scheme> schemes[] = {
         {"mcq", Scheme::Mcq}, {"cc", Scheme::CatmullClark}, {"bsxw", Scheme::Bsxw}, {"linear", Scheme::Linear}};
     for (const auto& [name, scheme] : schemes) {
-        const LimitOptions options{.scheme = scheme};
+        const LimitOptions options{.scheme = {scheme}};
         LimitReport report;
         const double seconds = bench::seconds_of([&] { report = evaluate_limit(mesh, queries, options).report; }, 1);
         std::printf("%-6s %8.0f queries/s  exact %zu, refined %zu, not converged %zu, deepest level %d\n", name,

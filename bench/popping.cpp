@@ -12,8 +12,9 @@
 #include "subvol/image_metrics.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"
-#include "subvol/render.h"
+#include "subvol/render_tets.h"
 #include "subvol/sample.h"
+#include "subvol/splat.h"
 
 namespace {
 
@@ -48,7 +49,7 @@ int main(int argc, char** argv) {
                              .opacity = {{low, 0}, {mid - peak, 0}, {mid, .8}, {mid + peak, .02}, {high, .1}}},
                             volume.bounds.diagonal() / 100);
         std::vector<Image> splats, tets;
-        Splatter splatter(volume, {.backend = Backend::Cpu});
+        Splatter splatter(volume, {.method = SplatMethod::Cpu});
         const Camera first = fit_turntable(fit_camera(volume.bounds, Vec3(-1, 1, -.6)), volume.bounds, count);
         for (const Camera& camera : turntable(first, volume.bounds.center(), count)) {
             const View view(camera, size, size);

@@ -10,8 +10,8 @@
 #include "measure.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
-#include "subvol/render.h"
 #include "subvol/render_pt.h"
+#include "subvol/render_tets.h"
 
 namespace {
 

@@ -50,7 +50,7 @@ void print_uniform(const std::string& model, int resolution, double rmse, const 
 
 void compare(const std::string& model, int resolution) {
     const HexMesh mesh = make_model(model, resolution);
-    const FieldSamples other = sample_cells(mesh, 30'011, {.tolerance = 1e-4, .crease_angle_deg = {}});
+    const FieldSamples other = sample_cells(mesh, 30'011, {.tolerance = 1e-4});
     std::printf("%s: %zu cells\n", model.c_str(), mesh.cells.size());
     const RbfVolume full = sample_rbf_points(mesh).volume;
     print("one a control vertex", full.size(), field_error(full, other), 0);

@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
     const int repeats = argc > 3 ? std::atoi(argv[3]) : 3;
     const HexMesh mesh = make_model("twist", side);
     const auto data = channels_of(mesh);
-    const RefineOptions mcq_options{.levels = levels}, linear_options{.scheme = Scheme::Linear, .levels = levels};
+    const RefineOptions mcq_options{.levels = levels}, linear_options{.scheme = {Scheme::Linear}, .levels = levels};
 
     const Timing mcq = measure(mesh, data, mcq_options, repeats);
     const Timing linear = measure(mesh, data, linear_options, repeats);

@@ -13,8 +13,8 @@
 #include "measure.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
-#include "subvol/render.h"
 #include "subvol/sample.h"
+#include "subvol/splat.h"
 
 namespace {
 
@@ -133,7 +133,7 @@ void cost_of_overlaps(const SplatOptions& options) {
 
 int main(int argc, char** argv) {
     const std::string backend = argc > 1 ? argv[1] : "cpu", what = argc > 2 ? argv[2] : "";
-    SplatOptions options{.backend = backend == "cpu" ? Backend::Cpu : Backend::Gl, .sheets = kSheets};
+    SplatOptions options{.method = backend == "cpu" ? SplatMethod::Cpu : SplatMethod::Gl, .sheets = kSheets};
     if (backend == "sheets") options.method = SplatMethod::Sheets;
     try {
         const auto device = backend == "cpu" ? std::nullopt : find_gl_device();

@@ -12,7 +12,7 @@
 #include "measure.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
-#include "subvol/render.h"
+#include "subvol/render_tets.h"
 
 namespace {
 

@@ -14,10 +14,11 @@
 #include "subvol/image_metrics.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"
-#include "subvol/render.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_field.h"
+#include "subvol/render_tets.h"
 #include "subvol/sample.h"
+#include "subvol/splat.h"
 
 namespace {
 
@@ -92,7 +93,7 @@ int main(int argc, char** argv) {
             for (const Correction correction : {Correction::None, Correction::Gradient, Correction::Second, Correction::Full}) {
                 const auto points = sample_rbf_points(mesh, {.per_edge = per_edge, .correction = correction});
                 const double start = cpu_seconds();
-                const auto splat = render_splats(points.volume, view, optics, {.backend = Backend::Cpu, .sheets = sheets});
+                const auto splat = render_splats(points.volume, view, optics, {.method = SplatMethod::Cpu, .sheets = sheets});
                 const std::string detail = "n=" + std::to_string(per_edge) + " " + name(correction);
                 print("splat", detail, sharp, splat.image, exact, cpu_seconds() - start,
                       splat.report.seconds_prepare + splat.report.seconds_draw);

@@ -6,7 +6,8 @@
 
 #include "measure.h"
 #include "subvol/model.h"
-#include "subvol/vdb.h"
+#include "subvol/rasterize.h"
+#include "subvol/vdb_grid.h"
 
 namespace {
 

@@ -22,7 +22,8 @@
 #include "subvol/limit_level.h"
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"
-#include "subvol/vdb.h"
+#include "subvol/rasterize.h"
+#include "subvol/vdb_grid.h"
 
 namespace {
 

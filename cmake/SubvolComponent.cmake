@@ -1,25 +1,87 @@
-# subvol_component(NAME SOURCES… PUBLIC target… PRIVATE target…): a component is one library with its own include root.
+# subvol_component(NAME PUBLIC target… PRIVATE target…): a component is one installed library with its own include root, made of
+# the objects of its rooms. include/ has the header that brings all of the component's public headers.
 #
 # Libraries are static unless BUILD_SHARED_LIBS says otherwise. Symbols keep the default visibility: hiding the private ones would
 # take an export macro at each of some three hundred functions, and the tests of private headers would not link.
 function(subvol_component name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
   set(target subvol_${name})
-  add_library(${target} ${ARG_SOURCES})
+  add_library(${target})
   add_library(subvol::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} DEFINE_SYMBOL "")
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_include_directories(${target}
-    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
-  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
-  subvol_warnings(${target})
+    PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} TBB::tbb)
   install(TARGETS ${target} EXPORT subvolTargets-${name}
     ARCHIVE COMPONENT development
     LIBRARY COMPONENT command NAMELINK_COMPONENT development)
   install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
   set_property(GLOBAL APPEND PROPERTY SUBVOL_COMPONENTS ${name})
+  set_property(GLOBAL PROPERTY SUBVOL_SEEN_BY_${name} ${ARG_PUBLIC})
+endfunction()
+
+# The targets that stand for the names under FOREIGN; cmake/foreign_walls.h has the same names in capitals.
+set(SUBVOL_CERES Ceres::ceres)
+set(SUBVOL_CLI11 CLI11::CLI11)
+set(SUBVOL_EIGEN Eigen3::Eigen)
+set(SUBVOL_EMBREE embree)
+set(SUBVOL_EPOXY PkgConfig::epoxy)
+set(SUBVOL_HIGHWAY hwy::hwy)
+set(SUBVOL_JSON nlohmann_json::nlohmann_json)
+set(SUBVOL_LZ4 PkgConfig::liblz4)
+set(SUBVOL_LZMA LibLZMA::LibLZMA)
+set(SUBVOL_MUPARSER PkgConfig::muparser)
+set(SUBVOL_NANOVDB "")
+set(SUBVOL_NETCDF_LIBRARY PkgConfig::netcdf)
+set(SUBVOL_OPENIMAGEIO OpenImageIO::OpenImageIO)
+set(SUBVOL_OPENVDB OpenVDB::openvdb)
+set(SUBVOL_PUGIXML pugixml::pugixml)
+set(SUBVOL_ZLIB ZLIB::ZLIB)
+
+# subvol_room(COMPONENT NAME SOURCES file… USES room… FOREIGN library… SHADERS file… COLD): a room is a folder of a component and
+# an object library of its own. Its include roots are its folder, its door NAME/include, and those of the rooms that it uses: an
+# include against the arrows does not compile, and neither does one of a foreign library that it does not name.
+function(subvol_room component name)
+  cmake_parse_arguments(ARG "COLD" "" "SOURCES;USES;FOREIGN;SHADERS" ${ARGN})
+  set(room subvol_${component}_${name})
+  list(TRANSFORM ARG_SOURCES PREPEND ${name}/)
+  list(TRANSFORM ARG_USES PREPEND subvol_${component}_)
+  add_library(${room} OBJECT ${ARG_SOURCES})
+  set_target_properties(${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${room} PUBLIC cxx_std_20)
+  target_include_directories(${room} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+  if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/include)
+    target_include_directories(${room} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/${name}/include)
+    target_include_directories(subvol_${component} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/${name}/include>)
+    install(DIRECTORY ${name}/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+  endif()
+  get_property(of_component GLOBAL PROPERTY SUBVOL_SEEN_BY_${component})
+  target_link_libraries(${room} PUBLIC ${ARG_USES} ${of_component} PRIVATE TBB::tbb)
+  target_compile_options(${room} PRIVATE "SHELL:-include ${PROJECT_SOURCE_DIR}/cmake/foreign_walls.h")
+  foreach(library IN LISTS ARG_FOREIGN)
+    string(TOUPPER ${library} upper)
+    target_compile_definitions(${room} PRIVATE SUBVOL_FOREIGN_${upper})
+    target_link_libraries(${room} PRIVATE ${SUBVOL_${upper}})
+  endforeach()
+  foreach(shader IN LISTS ARG_SHADERS)
+    subvol_embed_shader(${room} ${name}/${shader})
+  endforeach()
+  if(ARG_COLD)
+    target_compile_options(${room} PRIVATE ${SUBVOL_COLD})
+  endif()
+  subvol_warnings(${room})
+  target_sources(subvol_${component} PRIVATE $<TARGET_OBJECTS:${room}>)
+  set_property(GLOBAL APPEND PROPERTY SUBVOL_ROOMS_${component} ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+endfunction()
+
+# subvol_private_roots(TARGET COMPONENT…): for tests and benchmarks of what is private.
+function(subvol_private_roots target)
+  foreach(component IN LISTS ARGN)
+    get_property(rooms GLOBAL PROPERTY SUBVOL_ROOMS_${component})
+    target_include_directories(${target} PRIVATE ${rooms})
+  endforeach()
 endfunction()
 
 # For code that runs once and is made of libraries' templates: the compiler spends most of its time on optimising what is thrown away.

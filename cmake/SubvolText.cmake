@@ -1,4 +1,4 @@
-# subvol_embed_texts(TARGET HEADER FILE…): the files' texts, by their names without extension, in the generated header's
+# subvol_embed_texts(ROOM HEADER FILE…): the files' texts, by their names without extension, in the generated header's
 # `kTexts`: {name, text} in the order given.
 function(subvol_embed_texts target header)
   set(entries "")

@@ -16,7 +16,7 @@ int main() try {
     double error = 1;
     bool better = true;
     for (int levels = 0; levels <= 3; ++levels) {
-        const subvol::HexMesh fine = subvol::refine(mesh, {.scheme = subvol::Scheme::Mcq, .levels = levels});
+        const subvol::HexMesh fine = subvol::refine(mesh, {.scheme = {subvol::Scheme::Mcq}, .levels = levels});
         const double error_now = std::abs(inspect(fine).volume / ball - 1);
         std::printf("level %d: %6zu cells, the volume is %.3f %% off a ball's\n", levels, fine.cells.size(), 100 * error_now);
         better = better && error_now < error;

@@ -5,13 +5,13 @@
 #include <iostream>
 #include <regex>
 
-#include "mesh_texts.h"
+#include "lib/mesh_io/mesh_texts.h"
+#include "lib/mesh_io/vtu_texts.h"
 #include "subvol/mesh_io.h"
 #include "subvol/points_io.h"
 #include "subvol/sample.h"
-#include "vtu_texts.h"
 #ifdef SUBVOL_FUZZ_EXODUS
-#include "exodus_texts.h"
+#include "lib/mesh_io/exodus_texts.h"
 #endif
 
 namespace subvol::test {

@@ -13,14 +13,15 @@
 #include "subvol/error.h"
 #include "subvol/image_metrics.h"
 #include "subvol/model.h"
-#include "subvol/render.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_field.h"
 #include "subvol/render_pt.h"
+#include "subvol/render_tets.h"
 #include "subvol/sample.h"
+#include "subvol/splat.h"
 #ifdef SUBVOL_PEERS_VDB
+#include "subvol/rasterize.h"
 #include "subvol/render_grid.h"
-#include "subvol/vdb.h"
 #endif
 
 namespace {
@@ -77,7 +78,7 @@ void measure_all(int n, const std::string& exact_file, int size) {
 
     const auto points = sample_rbf_points(mesh, {.per_edge = 1});
     measure("subvol splat, a kernel a control vertex (CPU)", exact, [&] {
-        auto splatter = std::make_shared<Splatter>(points.volume, SplatOptions{.backend = Backend::Cpu});
+        auto splatter = std::make_shared<Splatter>(points.volume, SplatOptions{.method = SplatMethod::Cpu});
         return [&, splatter] { return splatter->draw(view, optics).image; };
     });
     for (const int level : {0, 1}) {

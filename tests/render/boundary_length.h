@@ -10,6 +10,8 @@
 
 namespace subvol::test {
 
+using namespace detail;
+
 /// Of distance², a triangle's area as seen by the ray: its sides are rounding.
 inline constexpr double kThin = 1e-14;
 

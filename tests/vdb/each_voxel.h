@@ -1,6 +1,6 @@
 #pragma once
 
-#include "subvol/vdb.h"
+#include "subvol/vdb_grid.h"
 
 namespace subvol::test {
 

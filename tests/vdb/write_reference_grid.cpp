@@ -7,8 +7,9 @@
 #include <sstream>
 
 #include "subvol/model.h"
-#include "subvol/vdb.h"
-#include "vdb/test_meshes.h"
+#include "subvol/rasterize.h"
+#include "subvol/vdb_grid.h"
+#include "test_meshes.h"
 
 namespace {
 

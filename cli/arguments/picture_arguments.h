@@ -1,0 +1,73 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "outputs.h"
+#include "report.h"
+#include "subvol/camera.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/optics.h"
+
+namespace subvol::cli {
+
+struct PictureSize {
+    int width = 512;
+    int height = 512;
+};
+
+/// "512x384", or "512" for a square.
+///
+/// throws: Error(InvalidInput)
+[[nodiscard]] PictureSize parse_size(const std::string& option, const std::string& text);
+
+/// A colour map's file, or a preset over the range.
+///
+/// stretch: a file's map too is spread over the range
+[[nodiscard]] TransferFunction find_transfer_function(const std::string& name, const Range& range, bool stretch = false);
+
+/// The box of what can be seen: the pawn fills a small part of its block.
+[[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
+
+/// What a picture shows and how.
+struct PictureArguments {
+    std::string size = "512x512";
+    std::optional<std::string> camera;
+    std::string view = "iso";
+    bool fit = false;
+    bool orthographic = false;
+    std::optional<int> turntable_frames;
+    int frames_per_second = 30;
+    std::string transfer_function = "viridis";
+    std::optional<std::string> transfer_range;
+    std::optional<std::string> opacity;
+    std::optional<double> opacity_unit_world;
+    std::optional<std::string> legend;
+    std::string background = "0,0,0";
+
+    void add_to(CLI::App& app);
+
+    /// One view, or those of the turntable.
+    [[nodiscard]] std::vector<View> make_views(const Box& box) const;
+    /// field: whose opacities, colors: whose colours are shown, often the same
+    [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
+
+    /// Refuses before any work is done what needs no mesh to be seen as wrong: size, camera, colour map, --legend.
+    ///
+    /// throws: Error(InvalidInput)
+    void check() const;
+
+    /// Writes the --legend, if one is wanted, over the range of the colours and with the field's name, the report's "field".
+    void write_legend(const Optics& optics, const Range& field, Report& report) const;
+
+private:
+    /// What --tf-range says; without it the field's range.
+    [[nodiscard]] Range shown_range(const Range& field) const;
+    void add_camera_to(CLI::App& app);
+    void add_light_to(CLI::App& app);
+    [[nodiscard]] Camera make_camera(const Box& box, double aspect) const;
+};
+
+}  // namespace subvol::cli

@@ -1,0 +1,70 @@
+#include "refine_arguments.h"
+
+#include <unistd.h>
+
+#include <cmath>
+
+#include "subvol/error.h"
+#include "subvol/limit.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+/// At the last step: the new mesh (about 70 bytes a cell with one field), and its parent with the topology (600), of which
+/// there is one for eight cells.
+constexpr double kBytesPerCell = 70 + 600.0 / 8;
+
+/// A few levels too many would fill the memory and have the system end the program without a word.
+void check_memory(std::size_t cells, int levels) {
+    const double fine_cells = static_cast<double>(cells) * std::pow(8.0, levels);
+    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (levels == 0 || fine_cells * kBytesPerCell < memory) return;
+    throw Error(ErrorCode::MissingCapability,
+                text("level ", levels, " has ", fine_cells, " cells, which need about ",
+                     std::ceil(fine_cells * kBytesPerCell / 1e9), " GB of memory; this machine has ", std::floor(memory / 1e9)),
+                "--levels");
+}
+
+}  // namespace
+
+Scheme scheme_named(const std::string& name) {
+    check_choice("--scheme", name, {"mcq", "cc", "bsxw", "linear"});
+    if (name == "cc") return Scheme::CatmullClark;
+    if (name == "bsxw") return Scheme::Bsxw;
+    return name == "linear" ? Scheme::Linear : Scheme::Mcq;
+}
+
+void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
+    app.add_option(
+           "--scheme", scheme,
+           "mcq (smooth, through the control points; the default), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), "
+           "linear")
+        ->type_name("NAME");
+    app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
+        ->type_name("W")
+        ->check(CLI::Range(0.0, 0.125));
+    app.add_option("--levels", levels, levels_help)->type_name("L")->check(CLI::Range(0, 10));
+    app.add_option("--crease-angle", crease_angle_deg, "keep boundary edges sharp that bend by more than this, in degrees")
+        ->type_name("DEG")
+        ->check(CLI::Range(0.0, 180.0));
+}
+
+RefineOptions RefineArguments::options(int default_levels, Report& report) const {
+    return {.scheme = {scheme_named(scheme), tension, crease_angle_deg},
+            .levels = levels.value_or(default_levels),
+            .progress = report.progress()};
+}
+
+HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices, Report& report) {
+    check_memory(mesh.cells.size(), options.levels);
+    HexMesh fine = report.timed("refine", [&] {
+        HexMesh refined = refine(mesh, options);
+        return vertices == Vertices::OnTheLimit ? on_limit(std::move(refined), options.scheme.kind) : refined;
+    });
+    report["levels"] = options.levels;
+    report["cells"] = fine.cells.size();
+    return fine;
+}
+
+}  // namespace subvol::cli

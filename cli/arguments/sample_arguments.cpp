@@ -1,0 +1,104 @@
+#include "sample_arguments.h"
+
+#include <algorithm>
+
+#include "picture_arguments.h"
+#include "subvol/error.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kPaperBox = 200;  // --spacing-voxels counts in 1/200 of the longest side
+
+Correction correction_named(const std::string& name) {
+    check_choice("--correction", name, {"none", "gradient", "second", "full"});
+    if (name == "full") return Correction::Full;
+    return name == "none" ? Correction::None : name == "gradient" ? Correction::Gradient : Correction::Second;
+}
+
+ValueRule rule_named(const std::string& name) {
+    check_choice("--values", name, {"scheme", "cubic", "paper"});
+    return name == "paper" ? ValueRule::Paper : name == "cubic" ? ValueRule::Cubic : ValueRule::Scheme;
+}
+
+}  // namespace
+
+Kernel kernel_from(const std::string& text, const char* fallback) {
+    if (text.empty()) return named_kernel(fallback);
+    return text.front() == '{' ? kernel_from_json(text) : named_kernel(text);
+}
+
+void SampleArguments::add_to(CLI::App& app) {
+    auto* edges = app.add_option("--per-edge", per_edge, "sample intervals per cell edge; 1 is one kernel a control point");
+    edges->type_name("N")->check(CLI::Range(1, 64));
+    auto* world = app.add_option("--spacing", spacing_world,
+                                 "distance of the samples, in world units, instead of --per-edge; of a grid's "
+                                 "kernels, to whole voxels (default: a kernel a voxel)");
+    world->type_name("H")->check(CLI::PositiveNumber)->excludes(edges);
+    app.add_option("--spacing-voxels", spacing_voxels, "the same in 1/200 of the longest side of the bounding box")
+        ->type_name("S")
+        ->check(CLI::PositiveNumber)
+        ->excludes(edges)
+        ->excludes(world);
+    app.add_option("--tolerance", tolerance,
+                   "instead: as many samples as it takes until the field errs by less, in its own unit")
+        ->type_name("E")
+        ->check(CLI::PositiveNumber)
+        ->excludes(edges)
+        ->excludes(world);
+    app.add_option("--footprint", footprint,
+                   "instead: samples at most 1.5 pixels apart as this camera sees them (numbers, a JSON file, or a side)")
+        ->type_name("CAMERA")
+        ->excludes(edges)
+        ->excludes(world);
+    app.add_option("--footprint-size", footprint_size, "the size of that camera's picture (default 512x512)")->type_name("WxH");
+    app.add_option("--values", values,
+                   "values between control points: scheme (exact, default), cubic (Catmull-Rom), paper (weighted mean)")
+        ->type_name("NAME");
+    app.add_option("--kernel", kernel, "the kernel of the points (default compact); see subvol fit --kernels")
+        ->type_name("NAME|JSON");
+    app.add_option("--value-kernel", value_kernel, "the kernel of --values paper (default paper_bc)")->type_name("NAME|JSON");
+    threshold_option = app.add_option("--threshold", threshold,
+                                      "drop points that cannot be seen: where the field is at most V; without V, where the "
+                                      "transfer function is clear")
+                           ->type_name("[V]")
+                           ->expected(0, 1);
+    app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default), full")
+        ->type_name("NAME");
+    auto* reduce = app.add_option("--reduce", reduce_rmse,
+                                  "instead: as few kernels as a root mean square error of RMSE, in units of the field, needs");
+    reduce->type_name("RMSE")
+        ->check(CLI::PositiveNumber)
+        ->excludes(edges)
+        ->excludes(world)
+        ->excludes("--spacing-voxels")
+        ->excludes("--tolerance")
+        ->excludes("--footprint");
+    app.add_flag("--refine", move_kernels,
+                 "with --reduce: move and resize the kernels too: about half as many, ten times as slow")
+        ->needs(reduce);
+}
+
+SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refinement) const {
+    const Vec3 size = box.size();
+    const double voxel = std::max({size.x, size.y, size.z}) / kPaperBox;
+    return {.scheme = refinement.scheme,
+            .per_edge = per_edge,
+            .spacing_world = spacing_voxels > 0 ? spacing_voxels * voxel : spacing_world,
+            .footprint = footprint.empty() ? std::nullopt : std::optional(footprint_of(box)),
+            .tolerance = tolerance,
+            .correction = correction_named(correction),
+            .values = rule_named(values),
+            .kernel = kernel_from(kernel, "compact"),
+            .value_kernel = kernel_from(value_kernel, "paper_bc"),
+            .progress = refinement.progress};
+}
+
+Footprint SampleArguments::footprint_of(const Box& box) const {
+    const PictureSize size = parse_size("--footprint-size", footprint_size);
+    const double aspect = static_cast<double>(size.width) / size.height;
+    return {.camera = parse_camera(footprint, box, aspect), .width_px = size.width, .height_px = size.height};
+}
+
+}  // namespace subvol::cli

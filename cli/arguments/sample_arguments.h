@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "refine_arguments.h"
+#include "subvol/sample.h"
+
+namespace subvol::cli {
+
+/// How a mesh becomes radial basis functions, as `points` and `render --method splat` ask for it.
+struct SampleArguments {
+    int per_edge = 1;
+    double spacing_world = 0;
+    double spacing_voxels = 0;
+    double tolerance = 0;
+    std::string footprint;  // a camera
+    std::string footprint_size = "512x512";
+    std::string correction = "second";
+    std::string values = "scheme";
+    std::string kernel;                       // a name or JSON; empty: the compact one
+    std::string value_kernel;                 // the same; empty: the paper's BC spline
+    std::string threshold;                    // a number
+    CLI::Option* threshold_option = nullptr;  // given without a value: the transfer function decides
+    double reduce_rmse = 0;                   // > 0: as few kernels as this error needs, instead of samples at a spacing
+    bool move_kernels = false;
+
+    void add_to(CLI::App& app);
+
+    /// throws: Error(InvalidInput) if a name is unknown
+    [[nodiscard]] SampleOptions options(const Box& box, const RefineOptions& refinement) const;
+
+private:
+    [[nodiscard]] Footprint footprint_of(const Box& box) const;
+};
+
+/// The kernel of a name or of JSON; `fallback` names the kernel of an empty text.
+[[nodiscard]] Kernel kernel_from(const std::string& text, const char* fallback);
+
+}  // namespace subvol::cli

@@ -1,0 +1,60 @@
+#include "splat_arguments.h"
+
+#include "subvol/error.h"
+#include "text.h"
+
+namespace subvol::cli {
+
+SplatMethod splat_method(const std::string& backend, bool by_sheets) {
+    if (by_sheets) return SplatMethod::Sheets;
+    return backend == "gl" ? SplatMethod::Gl : backend == "cpu" ? SplatMethod::Cpu : SplatMethod::Auto;
+}
+
+void SplatArguments::add_to(CLI::App& app) {
+    app.add_option("--backend", backend, "where to splat: auto (default: a GPU, else the CPU), gl, cpu")->type_name("NAME");
+    app.add_option("--device", device, "the OpenGL device's number in `info --gl` (default: the first GPU)")
+        ->type_name("N")
+        ->check(CLI::NonNegativeNumber);
+    app.add_option("--sheets", sheets, "splat: planes over the volume's depth (default 200)")
+        ->type_name("N")
+        ->check(CLI::Range(2, 65536));
+    app.add_flag("--shade", shade, "splat: light on surfaces of equal value, from the eye and from the upper left");
+    app.add_option("--color-field", color_field, "splat: take the colours from this field; opacities stay those of --field")
+        ->type_name("NAME");
+    app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
+    app.add_option("--seconds", seconds,
+                   "the best picture within this time: splat: coarse first, then with the mesh sampled for the view;\n"
+                   "pt: the boundary's faces first, then rising fractions of those inside")
+        ->type_name("S")
+        ->check(CLI::PositiveNumber)
+        ->excludes("--turntable")
+        ->excludes("--levels")
+        ->excludes("--reduce")
+        ->excludes("--threshold")
+        ->excludes("--footprint");
+}
+
+SplatOptions SplatArguments::options(bool by_sheets) const {
+    check_choice("--backend", backend, {"auto", "gl", "cpu"});
+    if (by_sheets && backend == "cpu") {
+        throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
+    }
+    if (device && backend == "cpu") {
+        throw Error(ErrorCode::InvalidInput, "is for OpenGL, not for --backend cpu", "--device");
+    }
+    SplatOptions options{
+        .method = splat_method(backend, by_sheets), .device = device, .sheets = sheets, .normalized = !plain_sums};
+    if (color_field) options.color_channel = 1;
+    if (shade) options.shading = Shading{};
+    return options;
+}
+
+void report_splats(const SplatReport& splats, const SplatArguments& arguments, Report& report) {
+    report.add_seconds("prepare", splats.seconds_prepare);
+    report.add_seconds("draw", splats.seconds_draw);
+    report["backend"] = splats.backend;
+    report["device"] = splats.device;
+    report["sheets"] = arguments.sheets;
+}
+
+}  // namespace subvol::cli

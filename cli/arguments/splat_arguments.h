@@ -1,0 +1,37 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "report.h"
+#include "subvol/splat.h"
+
+namespace subvol::cli {
+
+/// The method that a backend's name (auto, gl, cpu) stands for.
+[[nodiscard]] SplatMethod splat_method(const std::string& backend, bool by_sheets);
+
+/// How points are splatted.
+struct SplatArguments {
+    std::string backend = "auto";
+    std::optional<int> device;
+    int sheets = 200;
+    bool shade = false;
+    bool plain_sums = false;
+    std::optional<std::string> color_field;
+    std::optional<double> seconds;
+
+    void add_to(CLI::App& app);
+
+    /// The colours' channel, if there is one, is the second.
+    ///
+    /// by_sheets: --method sheets
+    /// throws:    Error(InvalidInput) if a name is unknown, or the backend cannot draw sheets
+    [[nodiscard]] SplatOptions options(bool by_sheets) const;
+};
+
+/// Puts what a splatted picture took into the report.
+void report_splats(const SplatReport& splats, const SplatArguments& arguments, Report& report);
+
+}  // namespace subvol::cli

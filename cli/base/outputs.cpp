@@ -1,0 +1,38 @@
+#include "outputs.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include "subvol/error.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+void check_writable(const std::filesystem::path& folder, const std::string& output) {
+    if (::access(folder.c_str(), W_OK | X_OK) == 0) return;
+    throw Error(ErrorCode::Io, "cannot be written: " + std::generic_category().message(errno), output);
+}
+
+}  // namespace
+
+void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions,
+                  const std::vector<std::string>& planned) {
+    check_choice(path.string(), path.extension().string(), extensions, planned);
+    const std::filesystem::path folder = path.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+        throw Error(ErrorCode::Io, "the folder " + folder.string() + " does not exist", path.string());
+    }
+    check_writable(folder.empty() ? "." : folder, path.string());
+}
+
+void make_folder(const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error) throw Error(ErrorCode::Io, "the folder cannot be made: " + error.message(), path.string());
+    check_writable(path, path.string());
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,85 @@
+#include "input.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "subvol/error.h"
+#include "subvol/expression.h"
+#include "subvol/model.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+const std::string kModelPrefix = "model:";
+
+OtherCells other_cells(const std::string& name) {
+    return name == "ignore" ? OtherCells::Ignore : name == "refuse" ? OtherCells::Refuse : OtherCells::Split;
+}
+
+void put_density_first(HexMesh& mesh, const std::string& expression) {
+    std::erase_if(mesh.attributes, [](const Attribute& a) { return a.name == "density"; });
+    mesh.attributes.insert(mesh.attributes.begin(), Attribute{"density", 1, evaluate_expression(expression, mesh.points)});
+}
+
+/// description: "NAME" or "NAME:RESOLUTION"
+ReadResult generate(const std::string& description) {
+    const std::size_t colon = description.find(':');
+    int resolution = 0;
+    if (colon != std::string::npos) {
+        const std::string number = description.substr(colon + 1);
+        const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), resolution);
+        if (error != std::errc() || end != number.data() + number.size() || resolution == 0) {
+            throw Error(ErrorCode::InvalidInput, "'" + number + "' is no resolution", "model:" + description, "2..512");
+        }
+    }
+    ReadResult result;
+    result.mesh = make_model(description.substr(0, colon), resolution);
+    for (const Attribute& field : result.mesh.attributes) {
+        const auto [min, max] = std::ranges::minmax(field.values);
+        result.fields.push_back({field.name, "point", field.channels, min, max});
+    }
+    return result;
+}
+
+std::optional<double> weld_distance(const CommonOptions& options) {
+    if (options.weld_distance_world) return options.weld_distance_world;
+    return options.weld ? std::optional<double>(0) : std::nullopt;
+}
+
+}  // namespace
+
+ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
+    report["input"] = input;
+    const bool model = input.starts_with(kModelPrefix);
+    ReadResult read = report.timed("read", [&] {
+        return model ? generate(input.substr(kModelPrefix.size()))
+                     : read_mesh(input, {.other_cells = other_cells(options.other_cells), .weld = weld_distance(options)});
+    });
+    for (const std::string& warning : read.warnings) report.warn(warning);
+    return read;
+}
+
+HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report) {
+    HexMesh mesh = without_unused_points(read_input(input, options, report).mesh);
+    if (options.density) put_density_first(mesh, *options.density);
+    return mesh;
+}
+
+HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
+                            const std::optional<std::string>& second) {
+    SelectedField selected = select_field(mesh, options.density ? std::optional<std::string>("density") : options.field);
+    report.warn(selected.warning);
+    report["field"] = selected.scalar.name;
+    std::vector<Attribute> chosen{std::move(selected.scalar)};
+    if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second).scalar);
+    mesh.attributes = std::move(chosen);
+    return mesh;
+}
+
+Range field_range(const HexMesh& mesh, std::size_t attribute) {
+    const auto [min, max] = std::ranges::minmax(mesh.attributes[attribute].values);
+    return {min, max};
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common_options.h"
+#include "outputs.h"
+#include "report.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/mesh_io.h"
+
+namespace subvol::cli {
+
+inline constexpr const char* kInputHelp =
+    "a mesh (.mesh, .meshb, .vtk, .vtu, .vts, .msh, .exo, .xyz), or model:NAME or model:NAME:RESOLUTION";
+
+/// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
+[[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);
+
+/// `read_input` without the unused points; --density becomes the first attribute.
+[[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
+
+/// The mesh with nothing but the field that the options select, as its first scalar, and where it is named a second one.
+[[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
+                                          const std::optional<std::string>& second = {});
+
+/// The range of one of the mesh's attributes.
+[[nodiscard]] Range field_range(const HexMesh& mesh, std::size_t attribute = 0);
+
+}  // namespace subvol::cli

@@ -1,0 +1,108 @@
+#include "sampled_points.h"
+
+#include "grid_input.h"
+#include "subvol/empty_space.h"
+#include "subvol/error.h"
+#include "subvol/reduce.h"
+#include "subvol/vdb_sample.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr std::initializer_list<const char*> kOfMeshesOnly{
+    "--density",      "--other-cells", "--per-edge",  "--scheme",         "--tension", "--levels",
+    "--crease-angle", "--tolerance",   "--footprint", "--footprint-size", "--values",  "--value-kernel",
+    "--reduce",       "--refine",      "--seconds",   "--color-field"};
+
+RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
+                            Report& report) {
+    if (arguments.threshold_option->count() == 0) return volume;
+    if (arguments.threshold.empty() && !seen) {
+        throw Error(ErrorCode::InvalidInput, "needs a value, there is no transfer function", "--threshold");
+    }
+    const TransferFunction function =
+        arguments.threshold.empty() ? *seen : above(parse_number("--threshold", arguments.threshold));
+    VisibleVolume visible = report.timed("threshold", [&] { return drop_invisible(volume, 0, function); });
+    report["dropped"] = visible.dropped;
+    if (visible.volume.size() == 0) {
+        throw Error(ErrorCode::InvalidInput, "leaves no point: nothing of the field can be seen", "--threshold");
+    }
+    return std::move(visible.volume);
+}
+
+RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments, const LimitOptions& limit, Report& report) {
+    const ReduceOptions options{.rmse = arguments.reduce_rmse,
+                                .kernel = kernel_from(arguments.kernel, "compact"),
+                                .move = arguments.move_kernels,
+                                .limit = limit,
+                                .progress = limit.progress};
+    ReduceResult reduced = report.timed("reduce", [&] { return reduce_rbf(mesh, options); });
+    report["points_before"] = mesh.points.size();
+    report["field_rmse"] = reduced.report.validation.rmse;
+    if (reduced.report.points > mesh.points.size()) {
+        report.warn("these are more kernels than control points: --per-edge 1 has fewer, maybe at no greater error");
+    }
+    if (!reduced.report.reached) {
+        report.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
+                         ": the samples of the volume are too far apart for more kernels"));
+    }
+    return std::move(reduced.volume);
+}
+
+RbfVolume sample_and_warn(HexMesh mesh, const SampleOptions& options, Report& report) {
+    SampleResult sampled = report.timed("sample", [&] { return sample_rbf_points(std::move(mesh), options); });
+    if (options.tolerance > 0) {
+        report["largest_error"] = sampled.report.largest_error;
+        if (sampled.report.largest_error > options.tolerance)
+            report.warn("the tolerance was not reached with 64 samples a cell edge");
+    }
+    if (sampled.report.flat_frames > 0) {
+        report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
+    }
+    return std::move(sampled.volume);
+}
+
+}  // namespace
+
+RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const RefineArguments& refinement,
+                          const std::optional<TransferFunction>& seen, Report& report) {
+    const RefineOptions refine_options = refinement.options(0, report);
+    SampleOptions options = arguments.options(bounds(mesh), refine_options);
+    if (refinement.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
+        mesh = refine_reported(mesh, refine_options, Vertices::OnTheLimit, report);
+        options.scheme.kind = Scheme::Linear;
+        options.boundary_levels = 0;
+    }
+    RbfVolume all;
+    if (arguments.reduce_rmse > 0) {
+        const LimitOptions limit{
+            .scheme = options.scheme, .tolerance = ReduceOptions{}.limit.tolerance, .progress = options.progress};
+        all = reduce_reported(mesh, arguments, limit, report);
+    } else {
+        all = sample_and_warn(std::move(mesh), options, report);
+    }
+    RbfVolume volume = without_invisible(std::move(all), arguments, seen, report);
+    report["points"] = volume.size();
+    return volume;
+}
+
+RbfVolume sample_reported(const VdbGrid& grid, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
+                          const CLI::App& app, Report& report) {
+    refuse_options(app, kOfMeshesOnly, "needs a mesh; this is a grid of voxels");
+    const SampleOptions options = arguments.options(box_of(grid.report()), {});
+    VoxelSampleResult sampled = report.timed("sample", [&] {
+        return sample_rbf_points(grid, {.spacing_world = options.spacing_world,
+                                        .correction = options.correction,
+                                        .kernel = options.kernel,
+                                        .progress = report.progress()});
+    });
+    report["spacing"] = sampled.report.spacing_world;
+    report["voxels_a_side"] = sampled.report.voxels_a_side;
+    if (sampled.report.left_out > 0) report["left_out_voxels"] = sampled.report.left_out;
+    RbfVolume volume = without_invisible(std::move(sampled.volume), arguments, seen, report);
+    report["points"] = volume.size();
+    return volume;
+}
+
+}  // namespace subvol::cli

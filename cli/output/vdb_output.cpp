@@ -1,0 +1,100 @@
+#include "vdb_output.h"
+
+#include <deque>
+#include <filesystem>
+#include <functional>
+
+#include "subvol/detail/atomic_file.h"
+#include "subvol/error.h"
+#include "subvol/nanovdb.h"
+#include "subvol/study_run.h"
+#include "subvol/version.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+Json about(const GridReport& grid) {
+    return {{"name", grid.name}, {"kind", grid.kind}, {"active_voxels", grid.active_voxels},
+            {"min", grid.min},   {"max", grid.max},   {"bytes", grid.bytes}};
+}
+
+Json corner(const Vec3& p) {
+    return {p.x, p.y, p.z};
+}
+
+/// name: that people know the file by
+void write_named(const std::string& name, const std::function<void()>& write) {
+    try {
+        write();
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::Io) throw;
+        throw Error(ErrorCode::Io, "cannot be written; the disk may be full", name);
+    }
+}
+
+void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
+    write_vdb(output.path, grids, output.compression);
+    if (output.nano) write_nanovdb(std::filesystem::path(output.path).replace_extension(".nvdb"), grids);
+}
+
+}  // namespace
+
+void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+    report.timed("write", [&] { write_files(grids, output); });
+    report["output"] = output.path;
+    report["active_voxels"] = grids.front().report().active_voxels;
+    report["voxel_size"] = grids.front().report().voxel_size_world;
+    for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report()));
+}
+
+void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+    report.timed("write", [&] { write_files(grids, output); });
+    const GridReport& first = grids.front().report();
+    report["voxel_size"] = first.voxel_size_world;
+    report["active_voxels"] = report.json().value("active_voxels", std::size_t{0}) + first.active_voxels;
+    Json entry{{"frame", frame}, {"output", output.path}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
+    for (const VdbGrid& grid : grids) entry["grids"].push_back(about(grid.report()));
+    report["frames"].push_back(std::move(entry));
+}
+
+void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
+                 const VdbOutput& output, Report& report) {
+    const std::filesystem::path path(output.path);
+    std::deque<detail::AtomicFile> files;  // all of them appear, or none
+    std::size_t active = 0;
+    Json parts = Json::array();
+    // The parts are written between the stages of the rasterizer, whose own time is what is left.
+    const auto start = std::chrono::steady_clock::now();
+    double writing = 0;
+    rasterize_parts(mesh, fields, options, output.memory_bytes, [&](const GridPart& part) {
+        const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
+        const GridReport& first = part.grids.front().report();
+        const auto before = std::chrono::steady_clock::now();
+        const std::filesystem::path& file = files.emplace_back(path.parent_path() / name).path();
+        write_named(name, [&] { write_vdb(file, part.grids, output.compression); });
+        writing += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+        active += first.active_voxels;
+        report["voxel_size"] = first.voxel_size_world;
+        Json entry{{"file", name}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
+        if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
+        for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report()));
+        parts.push_back(std::move(entry));
+    });
+    report.add_seconds("rasterize", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - writing);
+    report.add_seconds("write", writing);
+    const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
+    const Json json{{"input", report["input"]},
+                    {"version", SUBVOL_VERSION},
+                    {"voxel_size", report["voxel_size"]},
+                    {"active_voxels", active},
+                    {"parts", parts}};
+    files.emplace_back(manifest);
+    write_named(manifest.string(), [&] { detail::write_text_file(files.back().path(), json.dump(2) + "\n"); });
+    for (detail::AtomicFile& file : files) file.commit();
+    report["output"] = manifest.string();
+    report["active_voxels"] = active;
+    report["parts"] = parts.size();
+}
+
+}  // namespace subvol::cli

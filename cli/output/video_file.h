@@ -1,0 +1,54 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "picture_arguments.h"
+#include "subvol/detail/atomic_file.h"
+
+namespace subvol::cli {
+
+/// A file name that ends as a video: .mp4, .webm, .gif.
+[[nodiscard]] bool is_video(const std::filesystem::path& path);
+
+/// A video that the program `ffmpeg` makes of frames that go through a pipe to it. Written beside and renamed.
+class VideoFile {
+public:
+    /// Starts ffmpeg, so that its absence shows before any work is done.
+    ///
+    /// throws: Error(MissingCapability) if there is no ffmpeg
+    VideoFile(const std::filesystem::path& path, const PictureSize& size, int frames_per_second);
+    ~VideoFile();
+    VideoFile(const VideoFile&) = delete;
+    VideoFile& operator=(const VideoFile&) = delete;
+
+    /// rgb: 8-bit sRGB, 3 · width · height, rows from the top
+    ///
+    /// throws: Error(Io) with the last line of what ffmpeg said
+    void write(std::span<const std::uint8_t> rgb);
+
+    /// Waits for ffmpeg and gives the file its name.
+    ///
+    /// throws: Error(Io) as above
+    void finish();
+
+private:
+    void start(const PictureSize& size, int frames_per_second);
+    /// returns: whether ffmpeg ended well
+    bool wait();
+    [[noreturn]] void fail();
+    void close_pipe();
+
+    std::filesystem::path path_;
+    detail::AtomicFile file_;
+    std::FILE* words_;  // what ffmpeg says
+    pid_t process_ = -1;
+    int pipe_ = -1;
+};
+
+}  // namespace subvol::cli

@@ -1,0 +1,59 @@
+#include "voxels_of_points.h"
+
+#include <algorithm>
+
+#include "points_input.h"
+#include "subvol/error.h"
+#include "subvol/rbf_field.h"
+#include "subvol/sample.h"
+#include "text.h"
+
+namespace subvol::cli {
+
+std::vector<VdbGrid> kernel_sums(const HexMesh& mesh, const RasterizeOptions& options, int per_edge, Report& report) {
+    std::vector<std::string> names;
+    for (const Attribute& field : mesh.attributes) {
+        if (field.channels != 1) {
+            throw Error(ErrorCode::InvalidInput, "has three components; kernels carry one", "field " + field.name);
+        }
+        names.push_back(field.name);
+    }
+    auto grids = report.timed("rasterize", [&] { return rasterize(mesh, names, options); });
+    const SampleOptions sampling{.scheme = options.refine.scheme, .per_edge = per_edge};
+    const RbfVolume volume = report.timed("sample", [&] { return sample_rbf_points(mesh, sampling).volume; });
+    report["points"] = volume.size();
+    for (std::size_t f = 0; f < names.size(); ++f) {
+        VdbGrid sums = report.timed("kernel sums", [&] {
+            const RbfField field(volume, {.channel = f, .least_weight = 0});
+            return sample_at_voxels(grids[f], names[f], [&](std::span<const Vec3> x) { return field.evaluate(x); });
+        });
+        const GridDifference difference = compare_voxels(grids[f], sums);
+        report["against_mesh"].push_back(
+            {{"name", names[f]}, {"l2", difference.rms}, {"linf", difference.max}, {"voxels", difference.voxels}});
+        grids[f] = std::move(sums);
+    }
+    return grids;
+}
+
+std::vector<VdbGrid> grids_of_points(const std::string& input, std::vector<std::string> fields, const CommonOptions& common,
+                                     const CLI::App& app, const RasterizeOptions& options, Report& report) {
+    refuse_options(app,
+                   {"--density", "--other-cells", "--weld", "--weld-distance", "--scheme", "--tension", "--levels",
+                    "--crease-angle", "--per-edge", "--cell-ids", "--coverage", "--budget", "--memory"},
+                   "needs a mesh; these are points that have been sampled already");
+    const RbfVolume volume = read_points_input(input, report);
+    std::vector<std::string> names;
+    for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
+    if (fields.empty()) fields.push_back(common.field.value_or(names.front()));
+    std::vector<std::size_t> channels;
+    for (const std::string& field : fields) {
+        const auto found = std::ranges::find(names, field);
+        if (found == names.end()) {
+            throw Error(ErrorCode::InvalidInput, "there is no field '" + field + "'", input, "it has: " + join(names));
+        }
+        channels.push_back(static_cast<std::size_t>(found - names.begin()));
+    }
+    return report.timed("kernel sums", [&] { return rasterize_points(volume, channels, options); });
+}
+
+}  // namespace subvol::cli

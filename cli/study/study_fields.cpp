@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "study_input.h"
+#include "study_work.h"
+#include "subvol/cell.h"
+#include "subvol/error.h"
+#include "subvol/field_places.h"
+#include "subvol/limit.h"
+#include "subvol/limit_level.h"
+#include "subvol/mesh_field.h"
+#include "subvol/points_field.h"
+#include "subvol/rasterize.h"
+#include "subvol/sample.h"
+#include "subvol/vdb_grid.h"
+
+namespace subvol::cli {
+namespace {
+
+template <class T>
+void keep_first(std::vector<T>& values, std::size_t count) {
+    if (!values.empty()) values.resize(count);
+}
+
+/// The kernels of every second control point: those that the mesh before its last refinement had, which come first.
+RbfVolume every_second(RbfVolume volume, std::size_t count) {
+    keep_first(volume.centers, count);
+    keep_first(volume.frames, count);
+    for (auto& frame : volume.frames) {
+        for (float& s : frame) s *= 4;
+    }
+    for (RbfChannel& channel : volume.channels) {
+        keep_first(channel.values, count);
+        keep_first(channel.gradients, count);
+        keep_first(channel.moments, count);
+        keep_first(channel.hessians, count);
+        for (float& moment : channel.moments) moment *= 4;
+    }
+    return volume;
+}
+
+/// How many points the mesh had before its last refinement.
+std::size_t coarse_points(const StudyCase& of) {
+    if (of.whole("input.refine") < 1) {
+        throw Error(ErrorCode::InvalidInput, "needs an input that is refined", "every_second", "refine 1 or more");
+    }
+    StudyCase coarse = of;
+    coarse.values["input.refine"] = of.number("input.refine") - 1;
+    return study_mesh(coarse).points.size();
+}
+
+FieldSamples places_of(const StudyCase& of, const HexMesh& mesh) {
+    const std::string& where = of.text("where");
+    const PlaceKind kind = where == "boundary"        ? PlaceKind::Boundary
+                           : where == "extraordinary" ? PlaceKind::Extraordinary
+                                                      : PlaceKind::Anywhere;
+    FieldSamples places =
+        random_places(mesh, mesh.attributes.front().name, kind, of.number("within"),
+                      static_cast<std::size_t>(of.number("places")), static_cast<std::uint64_t>(of.number("seed")));
+    if (places.size() == 0) throw Error(ErrorCode::InvalidInput, "the mesh has no such places", where);
+    return places;
+}
+
+CaseResult field_case(const StudyCase& of, const HexMesh& mesh) {
+    CaseResult result;
+    RbfVolume volume = sample_rbf_points(mesh, study_sampling(of, mesh)).volume;
+    if (of.flag("every_second")) volume = every_second(std::move(volume), coarse_points(of));
+    const FieldError error = field_error(volume, places_of(of, mesh));
+    result.metrics["rmse"] = error.rmse;
+    result.metrics["max"] = error.max_abs;
+    result.metrics["uncovered"] = static_cast<double>(error.uncovered);
+    result.metrics["kernels"] = static_cast<double>(volume.size());
+    result.metrics["spacing"] = of.flag("every_second") ? 2 : 1 / of.number("per_edge");  // in cells
+    return result;
+}
+
+/// Kernels against the limit as whole fields: norms, gradients, the integral and an isosurface.
+CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
+    CaseResult result;
+    const std::string name = mesh.attributes.front().name;
+    const MeshField limit(on_limit(refine(mesh, {.levels = of.whole("levels")}), Scheme::Mcq), name);
+    const RbfVolume volume = sample_rbf_points(mesh, study_sampling(of, mesh)).volume;
+    const PointsField kernels(volume);
+    const FieldErrors errors = compare_fields(
+        kernels.view(), limit.view(),
+        {.samples = static_cast<std::size_t>(of.number("places")), .seed = static_cast<std::uint64_t>(of.number("seed"))});
+    const auto [low, high] = std::ranges::minmax(mesh.attributes.front().values);
+    const double iso = of.has("iso") ? of.number("iso") : .5 * (low + high);
+    const int cubes = of.whole("resolution");
+    result.metrics = {{"kernels", static_cast<double>(volume.size())},
+                      {"l1", errors.l1},
+                      {"l2", errors.l2},
+                      {"linf", errors.linf},
+                      {"gradient_rmse", errors.gradient_rmse},
+                      {"uncovered", static_cast<double>(errors.uncovered)},
+                      {"mass_error", mass_error(kernels.view(), limit.view(), cubes).relative},
+                      {"iso", iso},
+                      {"hausdorff", isosurface_distance(kernels.view(), limit.view(), iso, cubes).distance}};
+    return result;
+}
+
+/// A file that is removed again.
+struct TemporaryFile {
+    std::filesystem::path path;
+    ~TemporaryFile() {
+        std::error_code ignored;
+        std::filesystem::remove(path, ignored);
+    }
+};
+
+CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
+    CaseResult result;
+    const Vec3 size = bounds(mesh).size();
+    const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
+    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
+    const std::vector<std::string> names{mesh.attributes.front().name};
+    const auto grids = rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
+    const FieldErrors errors =
+        compare_field({.value = [&](const Vec3& x) { return grids.front().value(x); }}, places_of(of, mesh));
+    result.metrics["rmse"] = errors.l2;
+    result.metrics["max"] = errors.linf;
+    result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
+    const TemporaryFile file{std::filesystem::temp_directory_path() / ("subvol_study_" + of.id + ".vdb")};
+    write_vdb(file.path, grids);
+    result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path));
+    result.metrics["grid_bytes"] = static_cast<double>(grids.front().report().bytes);
+    result.metrics["voxels"] = static_cast<double>(grids.front().report().active_voxels);
+    result.metrics["voxel_size"] = voxel;
+    return result;
+}
+
+double rmse_between(std::span<const double> a, std::span<const double> b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+/// The paper's table 2: what a rule makes of the points that one refinement adds. Most points of a model lie in constant parts
+/// and have no error; models of other shares of solid are comparable per point of the solid.
+CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
+    CaseResult result;
+    const Attribute& density = mesh.attributes.front();
+    const auto exact = values_at_new_points(mesh, density, ValueRule::Scheme, Kernel{});
+    std::vector<double> ours;
+    if (of.text("rule") == "samples") {
+        const RbfVolume points = sample_rbf_points(mesh, {.per_edge = 2}).volume;
+        const auto& values = points.channels.front().values;
+        ours.assign(values.begin() + static_cast<std::ptrdiff_t>(mesh.points.size()), values.end());
+    } else {
+        const ValueRule rule = of.text("rule") == "cubic" ? ValueRule::Cubic : ValueRule::Paper;
+        ours = values_at_new_points(mesh, density, rule, study_kernel(of.text("kernel")));
+    }
+    // Densities are signed; what is not positive is empty, as in the paper.
+    const auto positive = [](std::span<const double> values) {
+        return std::ranges::count_if(values, [](double v) { return v > 0; });
+    };
+    const auto all = static_cast<double>(mesh.points.size() + exact.size());
+    const auto solid = static_cast<double>(positive(density.values) + positive(exact));
+    result.metrics["sampled"] = all;
+    result.metrics["rendered"] = solid;
+    result.metrics["rmse"] = rmse_between(ours, exact);
+    if (solid > 0) result.metrics["solid_rmse"] = result.metrics["rmse"] * std::sqrt(all / solid);
+    return result;
+}
+
+/// How many kernels and tetrahedra a mesh becomes at the same number of intervals a cell edge.
+CaseResult counts_case(const StudyCase& of, const HexMesh& mesh) {
+    CaseResult result;
+    const int n = of.whole("per_edge");
+    const double small = static_cast<double>(mesh.cells.size()) * n * n * n;
+    result.metrics["kernels"] = static_cast<double>(sample_rbf_points(mesh, {.per_edge = n}).report.points);
+    result.metrics["tets5"] = 5 * small;
+    result.metrics["tets6"] = 6 * small;
+    result.metrics["ratio5"] = result.metrics["kernels"] / result.metrics["tets5"];
+    result.metrics["ratio6"] = result.metrics["kernels"] / result.metrics["tets6"];
+    return result;
+}
+
+}  // namespace
+
+CaseResult run_field_case(const StudyCase& of) {
+    const HexMesh mesh = study_mesh(of);
+    const std::string& method = of.text("method");
+    CaseResult result = method == "field"    ? field_case(of, mesh)
+                        : method == "volume" ? volume_case(of, mesh)
+                        : method == "voxels" ? voxels_case(of, mesh)
+                        : method == "values" ? values_case(of, mesh)
+                                             : counts_case(of, mesh);
+    result.metrics["points"] = static_cast<double>(mesh.points.size());
+    result.metrics["cells"] = static_cast<double>(mesh.cells.size());
+    return result;
+}
+
+}  // namespace subvol::cli

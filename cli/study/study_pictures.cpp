@@ -1,0 +1,210 @@
+#include <chrono>
+#include <limits>
+
+#include "report.h"
+#include "splat_arguments.h"
+#include "study_input.h"
+#include "study_metrics.h"
+#include "study_work.h"
+#include "subvol/empty_space.h"
+#include "subvol/error.h"
+#include "subvol/image_io.h"
+#include "subvol/image_metrics.h"
+#include "subvol/limit_level.h"
+#include "subvol/rasterize.h"
+#include "subvol/render_dense.h"
+#include "subvol/render_grid.h"
+#include "subvol/render_pt.h"
+#include "subvol/render_tets.h"
+#include "subvol/splat.h"
+#include "subvol/vdb_grid.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What the methods have in common.
+struct Scene {
+    const StudyCase& of;
+    const HexMesh& mesh;
+    const View& view;
+    const Optics& optics;
+    CaseResult& result;
+
+    [[nodiscard]] std::span<const double> scalar() const { return mesh.attributes.front().values; }
+    [[nodiscard]] int repeats() const { return std::max(of.whole("repeat"), 1); }
+};
+
+class Stopwatch {
+public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Draws as often as the case says; the last picture, and the least time of one.
+template <class Draw>
+Image repeated(const Scene& scene, const Draw& draw) {
+    double least = std::numeric_limits<double>::infinity();
+    Image image;
+    for (int i = 0; i < scene.repeats(); ++i) {
+        const Stopwatch watch;
+        image = draw();
+        least = std::min(least, watch.seconds());
+    }
+    scene.result.costs["draw_seconds"] = least;
+    return image;
+}
+
+Image splat(const Scene& scene, bool by_sheets) {
+    const Stopwatch watch;
+    RbfVolume volume = sample_rbf_points(scene.mesh, study_sampling(scene.of, scene.mesh)).volume;
+    scene.result.metrics["sampled"] = static_cast<double>(volume.size());
+    if (scene.of.flag("visible_only")) volume = drop_invisible(volume, 0, scene.optics.function()).volume;
+    scene.result.metrics["kernels"] = scene.result.metrics["primitives"] = static_cast<double>(volume.size());
+    Splatter splatter(volume,
+                      {.method = splat_method(scene.of.text("backend"), by_sheets), .sheets = scene.of.whole("sheets")});
+    scene.result.costs["prepare_seconds"] = watch.seconds();
+    return repeated(scene, [&] {
+        SplatResult drawn = splatter.draw(scene.view, scene.optics);
+        scene.result.notes["device"] = drawn.report.device;
+        return std::move(drawn.image);
+    });
+}
+
+HexMesh refined(const Scene& scene) {
+    return refine(scene.mesh, {.levels = scene.of.whole("levels")});
+}
+
+Image tets(const Scene& scene) {
+    const Stopwatch watch;
+    const HexMesh fine = refined(scene);
+    const TetsRenderer renderer(fine, fine.attributes.front().values);
+    scene.result.costs["prepare_seconds"] = watch.seconds();
+    return repeated(scene, [&] {
+        TetsResult drawn = renderer.draw(scene.view, scene.optics, {.samples = scene.of.whole("samples")});
+        scene.result.metrics["tets"] = scene.result.metrics["primitives"] = static_cast<double>(drawn.report.tets);
+        scene.result.metrics["lost_rays"] = static_cast<double>(drawn.report.lost_rays);
+        return std::move(drawn.image);
+    });
+}
+
+PtOrder pt_order(const std::string& name) {
+    if (name == "lists") return PtOrder::Lists;
+    if (name == "centroid") return PtOrder::Centroid;
+    return name == "havs" ? PtOrder::Havs : PtOrder::Topological;
+}
+
+Image projected_tets(const Scene& scene) {
+    const Stopwatch watch;
+    const HexMesh fine = refined(scene);
+    PtRenderer renderer(fine, fine.attributes.front().values);
+    scene.result.costs["prepare_seconds"] = watch.seconds();
+    return repeated(scene, [&] {
+        PtResult drawn = renderer.draw(scene.view, scene.optics, {.order = pt_order(scene.of.text("order"))});
+        scene.result.metrics["tets"] = scene.result.metrics["primitives"] = static_cast<double>(drawn.report.tets);
+        scene.result.notes["device"] = drawn.report.device;
+        return std::move(drawn.image);
+    });
+}
+
+Image dense(const Scene& scene) {
+    const auto levels = scene.of.has("levels") ? std::optional(scene.of.whole("levels")) : std::nullopt;
+    return repeated(scene, [&] {
+        DenseResult drawn = render_dense(scene.mesh, scene.scalar(), scene.view, scene.optics,
+                                         {.levels = levels,
+                                          .max_levels = scene.of.whole("max_levels"),
+                                          .image_tolerance = scene.of.number("tolerance"),
+                                          .samples = scene.of.whole("samples")});
+        auto& metrics = scene.result.metrics;
+        metrics["levels_drawn"] = drawn.report.levels;
+        metrics["primitives"] = static_cast<double>(drawn.report.micro_cells);
+        metrics["lost_rays"] = static_cast<double>(drawn.report.lost_rays);
+        if (drawn.report.image_change) metrics["last_change"] = *drawn.report.image_change;
+        if (!levels) metrics["converged"] = drawn.report.converged ? 1 : 0;
+        return std::move(drawn.image);
+    });
+}
+
+Image grid(const Scene& scene) {
+    const Stopwatch watch;
+    const Vec3 size = bounds(scene.mesh).size();
+    const double voxel = std::max({size.x, size.y, size.z}) / scene.of.whole("resolution");
+    const LimitCells limit = find_limit_cells(scene.mesh, {}, {.position_world = 0.1 * voxel});
+    const std::vector<std::string> names{scene.mesh.attributes.front().name};
+    const auto grids =
+        rasterize(scene.mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = scene.of.flag("half")});
+    const GridReport& about = grids.front().report();
+    scene.result.metrics["primitives"] = scene.result.metrics["voxels"] = static_cast<double>(about.active_voxels);
+    scene.result.metrics["grid_bytes"] = static_cast<double>(about.bytes);
+    scene.result.metrics["voxel_size"] = voxel;
+    const auto voxels = grids.front().voxels();
+    scene.result.costs["prepare_seconds"] = watch.seconds();
+    return repeated(
+        scene, [&] { return render_grid(*voxels, scene.view, scene.optics, {.samples = scene.of.whole("samples")}).image; });
+}
+
+Image draw(const Scene& scene) {
+    const std::string& method = scene.of.text("method");
+    if (method == "splat") return splat(scene, false);
+    if (method == "sheets") return splat(scene, true);
+    if (method == "tets") return tets(scene);
+    if (method == "pt") return projected_tets(scene);
+    if (method == "dense") return dense(scene);
+    if (method == "grid") return grid(scene);
+    throw Error(ErrorCode::InvalidInput, "there is no method '" + method + "'", "study");
+}
+
+/// The picture, its costs and counts. The memory of the mesh is there before, and counted by itself.
+Image measured(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
+    const Optics optics = study_optics(of, mesh);
+    const View view = study_view(of, mesh, optics);
+    const auto before = static_cast<double>(peak_memory_bytes());
+    const double cpu = cpu_seconds();
+    const Stopwatch watch;
+    Image image = draw({of, mesh, view, optics, result});
+    result.costs["seconds"] = watch.seconds();
+    result.costs["cpu_seconds"] = cpu_seconds() - cpu;
+    result.costs["peak_bytes"] = static_cast<double>(peak_memory_bytes());
+    result.costs["own_bytes"] = result.costs["peak_bytes"] - before;
+    result.metrics["points"] = static_cast<double>(mesh.points.size());
+    result.metrics["cells"] = static_cast<double>(mesh.cells.size());
+    return image;
+}
+
+}  // namespace
+
+CaseResult run_picture_case(const StudyCase& of, const CasePlace& place) {
+    CaseResult result;
+    const HexMesh mesh = study_mesh(of);
+    const Image image = measured(of, mesh, result);
+    const auto reference_case = reference_of(of);
+    const Image reference = read_image(place.references / (reference_case->id + ".exr"));
+    for (const auto& [name, value] : picture_metrics(image, reference, of.text("metrics"))) result.metrics[name] = value;
+
+    const fs::path folder = place.folder / "pictures";
+    fs::create_directories(folder);
+    result.files["picture"] = "pictures/" + case_file(of, ".png");
+    result.files["difference"] = "pictures/" + case_file(of, "_difference.png");
+    write_image(place.folder / result.files["picture"], image);
+    write_image(place.folder / result.files["difference"], difference_heatmap(image, reference));
+    result.notes["reference"] = reference_case->id;
+    return result;
+}
+
+CaseResult run_reference(const StudyCase& of, const CasePlace& place) {
+    CaseResult result;
+    const HexMesh mesh = study_mesh(of);
+    const Image image = measured(of, mesh, result);
+    fs::create_directories(place.references);
+    result.files = {{"exr", of.id + ".exr"}, {"picture", of.id + ".png"}};
+    for (const auto& [kind, name] : result.files) write_image(place.references / name, image);
+    return result;
+}
+
+}  // namespace subvol::cli

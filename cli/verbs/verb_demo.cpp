@@ -1,0 +1,141 @@
+#include <sys/utsname.h>
+#include <tbb/global_control.h>
+
+#include <iomanip>
+
+#include "demo_cases.h"
+#include "input.h"
+#include "picture_arguments.h"
+#include "subvol/detail/atomic_file.h"
+#include "subvol/image_io.h"
+#include "subvol/image_metrics.h"
+#include "subvol/rasterize.h"
+#include "subvol/render_tets.h"
+#include "subvol/sample.h"
+#include "subvol/splat.h"
+#include "subvol/study_run.h"
+#include "subvol/vdb_grid.h"
+#include "subvol/version.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr std::size_t kReferenceCells = 600'000;  // 3.6 million tetrahedra: about 1 GB at the peak
+constexpr int kGridResolution = 200;
+
+/// The finest level whose cells the reference can march.
+int reference_level(std::size_t cells) {
+    int level = 0;
+    for (; 8 * cells <= kReferenceCells; cells *= 8) ++level;
+    return level;
+}
+
+Json host() {
+    utsname system{};
+    uname(&system);
+    return {{"system", text(system.sysname, " ", system.machine)},
+            {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)}};
+}
+
+class DemoVerb : public Verb {
+public:
+    explicit DemoVerb(CLI::App& program)
+        : Verb(program, "demo",
+               "Run the whole chain on generated models: grid, splats, a reference by rays, their difference, a summary.",
+               "  subvol demo -o out\n"
+               "  subvol demo -o out --size 256") {
+        app().add_option("-o,--output", folder_, "the folder for the files (made if need be)")->type_name("DIR")->required();
+        app()
+            .add_option("--resolution", resolution_, "cells along a model's main direction (default: the model's own)")
+            ->type_name("N")
+            ->check(CLI::Range(2, 512));
+        app().add_option("--size", size_, "size of the pictures (default 512x512)")->type_name("WxH");
+    }
+
+    int run(Report& report) override {
+        const PictureSize size = parse_size("--size", size_);
+        make_folder(folder_);
+        report.say("model     points  equivalent cells    splat s  reference s  PSNR dB");
+        report["cases"] = Json::array();
+        for (const std::string& name : demo_names()) {
+            report["cases"].push_back(run_case(name, size));
+            report.say(table_row(report["cases"].back()));
+        }
+        report["version"] = SUBVOL_VERSION;
+        report["host"] = host();
+        detail::write_text_file(folder_ / "summary.json", report.json().dump(2) + "\n");
+        report.say(text("Everything is in ", folder_.string()));
+        report.all_said();
+        return 0;
+    }
+
+private:
+    [[nodiscard]] Json run_case(const std::string& name, const PictureSize& size) const {
+        Report stages(common());
+        const double aspect = static_cast<double>(size.width) / size.height;
+        const DemoCase shown = stages.timed("generate", [&] { return make_demo_case(name, resolution_, aspect); });
+        const View view(shown.camera, size.width, size.height);
+        Json files = Json::object();
+        const auto file = [&](const char* key, const std::string& ending) {
+            files[key] = name + ending;
+            return folder_ / (name + ending);
+        };
+
+        const SampleResult sampled = stages.timed("sample", [&] {
+            return sample_rbf_points(shown.mesh, {.per_edge = shown.per_edge, .progress = stages.progress()});
+        });
+        const Image splat = stages.timed("splat", [&] {
+            return render_splats(sampled.volume, view, shown.optics, {.sheets = shown.sheets, .progress = stages.progress()})
+                .image;
+        });
+        write_image(file("splat", "_splat.png"), splat);
+
+        const int level = reference_level(shown.mesh.cells.size());
+        const HexMesh fine =
+            stages.timed("refine", [&] { return refine(shown.mesh, {.levels = level, .progress = stages.progress()}); });
+        write_grid(fine, file("vdb", ".vdb"), stages);
+        const Image reference = stages.timed("reference", [&] {
+            return render_tets(fine, fine.attributes.front().values, view, shown.optics, {.progress = stages.progress()}).image;
+        });
+        write_image(file("reference", "_reference.png"), reference);
+        write_image(file("difference", "_difference.png"), difference_heatmap(splat, reference));
+
+        return {{"name", name},
+                {"points", sampled.volume.size()},
+                {"equivalent_cells", fine.cells.size()},
+                {"psnr", compare_images(splat, reference).psnr},
+                {"seconds", stages["seconds"]},
+                {"files", files}};
+    }
+
+    static void write_grid(const HexMesh& mesh, const std::filesystem::path& path, Report& stages) {
+        const std::vector<std::string> field{mesh.attributes.front().name};
+        stages.timed("grid", [&] {
+            write_vdb(path, rasterize(mesh, field, {.resolution = kGridResolution, .progress = stages.progress()}));
+        });
+    }
+
+    [[nodiscard]] static std::string table_row(const Json& shown) {
+        const Json& seconds = shown["seconds"];
+        const double splat = seconds["sample"].get<double>() + seconds["splat"].get<double>();
+        const double reference = seconds["refine"].get<double>() + seconds["reference"].get<double>();
+        return text(std::left, std::setw(7), shown["name"].get<std::string>(), std::right, std::setw(9),
+                    shown["points"].get<std::size_t>(), std::setw(18), shown["equivalent_cells"].get<std::size_t>(), std::fixed,
+                    std::setprecision(2), std::setw(11), splat, std::setw(13), reference, std::setw(9),
+                    shown["psnr"].get<double>());
+    }
+
+    std::filesystem::path folder_;
+    int resolution_ = 0;
+    std::string size_ = "512x512";
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_demo_verb(CLI::App& program) {
+    return std::make_unique<DemoVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,167 @@
+#include <algorithm>
+
+#include "input.h"
+#include "points_input.h"
+#include "subvol/error.h"
+#include "subvol/mesh_report.h"
+#include "subvol/points_io.h"
+#include "subvol/splat.h"
+#include "subvol/vdb_grid.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+Json to_json(const Vec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json to_json(const GlDevice& device) {
+    return {{"index", device.index},
+            {"renderer", device.renderer},
+            {"hardware", device.hardware},
+            {"version", device.version},
+            {"max_ssbo_bytes", device.max_ssbo_bytes},
+            {"memory_bytes", device.memory_bytes > 0 ? Json(device.memory_bytes) : Json(nullptr)}};
+}
+
+Json to_json(const Box& box) {
+    return Json::array({to_json(box.lower), to_json(box.upper)});
+}
+
+void put_mesh_report(Report& report, const MeshReport& mesh) {
+    Json valences = Json::object();
+    for (const auto& [valence, count] : mesh.interior_edge_valence) valences[std::to_string(valence)] = count;
+    report["points"] = mesh.points;
+    report["points_used"] = mesh.points_used;
+    report["cells"] = mesh.cells;
+    report["edges"] = mesh.edges;
+    report["faces"] = mesh.faces;
+    report["boundary_faces"] = mesh.boundary_faces;
+    report["interior_edges"] = mesh.interior_edges;
+    report["interior_edge_valence"] = valences;
+    report["singular_nodes"] = mesh.singular_nodes;
+    report["inverted_cells"] = mesh.inverted_cells;
+    report["degenerate_cells"] = mesh.degenerate_cells;
+    report["min_scaled_jacobian"] = mesh.min_scaled_jacobian;
+    report["nonmanifold_edges"] = mesh.nonmanifold_edges;
+    report["nonmanifold_faces"] = mesh.nonmanifold_faces;
+    report["volume"] = mesh.volume;
+    report["bounds"] = to_json(mesh.bounds);
+}
+
+class InfoVerb : public Verb {
+public:
+    explicit InfoVerb(CLI::App& program)
+        : Verb(program, "info", "What is in a mesh, a .vdb file or a file of points, and is it sound?",
+               "  subvol info model:ball\n"
+               "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
+               "  subvol info --gl") {
+        app().add_option("FILE", input_, text(kInputHelp, ", or a .vdb file, or points (.ply, .vtp)"));
+        app().add_flag("--gl", gl_, "what OpenGL there is to splat with");
+        app()
+            .add_option("--at", points_, "print the value of a .vdb file's grid there (repeatable)")
+            ->type_name("X,Y,Z")
+            ->allow_extra_args(false);
+    }
+
+    int run(Report& report) override {
+        if (gl_) describe_gl(report);
+        if (input_.empty()) {
+            if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
+        } else if (holds_points(input_)) {
+            describe_points(report);
+        } else if (std::filesystem::path(input_).extension() == ".vdb") {
+            describe_grids(report);
+        } else {
+            describe_mesh(report);
+        }
+        return 0;
+    }
+
+private:
+    static void describe_gl(Report& report) {
+        const std::vector<GlDevice> devices = gl_devices();
+        report["gl"] = Json(nullptr);
+        if (!devices.empty()) report["gl"] = {{"renderer", devices.front().renderer}, {"hardware", devices.front().hardware}};
+        report["gl_devices"] = Json::array();
+        for (const GlDevice& device : devices) report["gl_devices"].push_back(to_json(device));
+    }
+
+    void refuse_at(const std::string& what) const {
+        if (points_.empty()) return;
+        throw Error(ErrorCode::InvalidInput, "reads values from grids in .vdb files only, not from " + what, "--at");
+    }
+
+    void describe_mesh(Report& report) {
+        refuse_at("a mesh");
+        const ReadResult read = read_input(input_, common(), report);
+        put_mesh_report(report, report.timed("inspect", [&] { return inspect(read.mesh); }));
+        report["fields"] = Json::array();
+        for (const FieldInfo& field : read.fields) {
+            report["fields"].push_back({{"name", field.name},
+                                        {"location", field.location},
+                                        {"components", field.components},
+                                        {"min", field.min},
+                                        {"max", field.max}});
+        }
+    }
+
+    void describe_points(Report& report) {
+        refuse_at("points");
+        const RbfVolume volume = read_points_input(input_, report);
+        report["kernel"] = Json::parse(subvol::to_json(volume.kernel));
+        report["bounds"] = to_json(volume.bounds);
+        report["boundary_triangles"] = volume.boundary.triangles.size();
+        for (const RbfChannel& channel : volume.channels) {
+            const auto [min, max] = std::ranges::minmax(channel.values);
+            report["channels"].push_back({{"name", channel.name}, {"min", min}, {"max", max}});
+        }
+    }
+
+    void describe_grids(Report& report) {
+        report["input"] = input_;
+        const std::vector<VdbGrid> grids = report.timed("read", [&] { return read_vdb(input_); });
+        for (const VdbGrid& grid : grids) {
+            const GridReport& about = grid.report();
+            report["grids"].push_back({{"name", about.name},
+                                       {"active_voxels", about.active_voxels},
+                                       {"voxel_size", about.voxel_size_world},
+                                       {"bounds", to_json(about.bounds)},
+                                       {"min", about.min},
+                                       {"max", about.max},
+                                       {"bytes", about.bytes}});
+        }
+        if (points_.empty()) return;
+        const VdbGrid& shown = selected(grids);
+        for (const std::string& point : points_) {
+            const Vec3 x = parse_vector("--at", point);
+            const std::optional<double> value = shown.value(x);
+            report["at"].push_back(
+                {{"point", to_json(x)}, {"field", shown.report().name}, {"value", value ? Json(*value) : Json(nullptr)}});
+        }
+    }
+
+    [[nodiscard]] const VdbGrid& selected(const std::vector<VdbGrid>& grids) const {
+        if (!common().field) return grids.front();
+        std::vector<std::string> names;
+        for (const VdbGrid& grid : grids) {
+            if (grid.report().name == *common().field) return grid;
+            names.push_back(grid.report().name);
+        }
+        throw Error(ErrorCode::InvalidInput, "no grid is named '" + *common().field + "'", input_, "it has: " + join(names));
+    }
+
+    std::string input_;
+    bool gl_ = false;
+    std::vector<std::string> points_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_info_verb(CLI::App& program) {
+    return std::make_unique<InfoVerb>(program);
+}
+
+}  // namespace subvol::cli

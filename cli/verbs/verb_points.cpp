@@ -1,0 +1,87 @@
+#include "grid_input.h"
+#include "input.h"
+#include "picture_arguments.h"
+#include "sampled_points.h"
+#include "subvol/detail/surface_io.h"
+#include "subvol/error.h"
+#include "subvol/points_io.h"
+#include "subvol/vdb_points.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class PointsVerb : public Verb {
+public:
+    explicit PointsVerb(CLI::App& program)
+        : Verb(program, "points", "Turn a mesh or a .vdb grid into radial basis functions.",
+               "  subvol points model:ball -o ball.ply\n"
+               "  subvol points model:ball -o ball.vtp                (ParaView; the surface is beside it: ball.boundary.vtp)\n"
+               "  subvol points model:ball -o ball.vdb                (Houdini; as well)\n"
+               "  subvol points model:ball -o dense.ply --per-edge 2 --splats\n"
+               "  subvol points smoke.vdb -o smoke.ply --threshold 0  (a kernel a voxel; --spacing for fewer)") {
+        app().add_option("FILE", input_, text(kInputHelp, "; or a .vdb grid of floats"))->required();
+        app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb)")->type_name("FILE")->required();
+        app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
+        app().add_flag("--splats", splats_, ".ply: for viewers of Gaussian splats too; the surface is then beside it");
+        sample_.add_to(app());
+        app()
+            .add_option("--tf", transfer_function_, "what --threshold goes by: a colour map as `render` takes it")
+            ->type_name("FILE|NAME");
+        refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
+    }
+
+    int run(Report& report) override {
+        check_output(output_, {".ply", ".vtp", ".vdb"});
+        const std::string extension = std::filesystem::path(output_).extension().string();
+        if (extension != ".ply" && (ascii_ || splats_)) {
+            throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
+        }
+        const RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(report);
+        report.timed("write", [&] {
+            if (extension == ".vdb") {
+                write_vdb_points(output_, volume);
+            } else {
+                write_points(output_, volume, {.ascii = ascii_, .splats = splats_});
+            }
+        });
+        report["output"] = output_;
+        const bool inside = extension == ".ply" && !splats_;
+        if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = detail::boundary_path(output_).string();
+        return 0;
+    }
+
+private:
+    [[nodiscard]] RbfVolume points_of_mesh(Report& report) {
+        HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        const std::optional<TransferFunction> shown = seen(field_range(mesh));
+        return sample_reported(std::move(mesh), sample_, refine_, shown, report);
+    }
+
+    [[nodiscard]] RbfVolume points_of_grid(Report& report) {
+        const VdbGrid grid = load_grid(input_, common(), report);
+        return sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
+    }
+
+    [[nodiscard]] std::optional<TransferFunction> seen(const Range& range) const {
+        if (transfer_function_.empty()) return std::nullopt;
+        return find_transfer_function(transfer_function_, range);
+    }
+
+    std::string input_;
+    std::string output_;
+    bool ascii_ = false;
+    bool splats_ = false;
+    std::string transfer_function_;
+    SampleArguments sample_;
+    RefineArguments refine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_points_verb(CLI::App& program) {
+    return std::make_unique<PointsVerb>(program);
+}
+
+}  // namespace subvol::cli

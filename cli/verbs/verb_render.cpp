@@ -1,0 +1,222 @@
+#include "grid_input.h"
+#include "input.h"
+#include "picture_arguments.h"
+#include "picture_output.h"
+#include "points_input.h"
+#include "reference_arguments.h"
+#include "reference_pictures.h"
+#include "sampled_points.h"
+#include "splat_arguments.h"
+#include "subvol/error.h"
+#include "subvol/progressive.h"
+#include "subvol/render_tets.h"
+#include "subvol/splat.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr int kTetsLevel = 1;
+
+class RenderVerb : public Verb {
+public:
+    explicit RenderVerb(CLI::App& program)
+        : Verb(program, "render", "Make a picture.",
+               "  subvol render model:ball -o ball.png\n"
+               "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
+               "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
+               "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2\n"
+               "  subvol render smoke.vdb -o smoke.png --method grid\n"
+               "  subvol render smoke.vdb -o smoke.png                    (its voxels as kernels)") {
+        app()
+            .add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
+            ->required();
+        app()
+            .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")
+            ->type_name("IMAGE")
+            ->required();
+        app()
+            .add_option("--method", method_,
+                        "splat (kernels, the default), sheets (the same by OpenGL sheet buffers),\n"
+                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL),\n"
+                        "dense (rays through the dense grids of the limit) or\n"
+                        "grid (rays through a .vdb file's voxels)")
+            ->type_name("NAME");
+        picture_.add_to(app());
+        reference_.add_to(app());
+        sample_.add_to(app());
+        refine_.add_to(app(), "show the refined mesh of this level (tets, pt: default 1; else: omitted shows the limit)");
+        splat_.add_to(app());
+    }
+
+    int run(Report& report) override {
+        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
+        options_ = splat_.options(method_ == "sheets");
+        options_.samples = reference_.samples;
+        check_reference();
+        picture_.check();
+        PictureOutput output(output_, picture_.turntable_frames, picture_);
+        if (method_ == "grid") {
+            draw_voxels(output, report);
+        } else if (holds_points(input_)) {
+            draw_points(output, report);
+        } else if (is_vdb_file(input_)) {
+            splat_voxels(output, report);
+        } else {
+            draw_mesh(output, report);
+        }
+        return 0;
+    }
+
+private:
+    [[nodiscard]] bool drawn_by_splats() const { return method_ == "splat" || method_ == "sheets"; }
+
+    /// The reference methods know nothing of what is the splats' own.
+    void check_reference() const {
+        (void)reference_.pt_options();
+        if (drawn_by_splats()) return;
+        if (splat_.shade || splat_.color_field) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
+                        "--shade, --color-field", "use --method splat or sheets");
+        }
+        const bool on_gpu = method_ == "pt";
+        if (splat_.seconds && !on_gpu) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " takes the time that it takes", "--seconds",
+                        "use --method splat, sheets or pt");
+        }
+        if (splat_.backend == (on_gpu ? "cpu" : "gl")) {
+            throw Error(ErrorCode::InvalidInput,
+                        text("method ", method_, " is drawn by ", on_gpu ? "OpenGL" : "the CPU", " only"),
+                        text("--backend ", splat_.backend));
+        }
+    }
+
+    void draw_mesh(PictureOutput& output, Report& report) {
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
+        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the colours' field is the field itself
+        const Box box = bounds(mesh);
+        const std::vector<View> views = picture_.make_views(box);
+        const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
+        const Optics optics = picture_.make_optics(box, range, colors);
+        if (method_ == "tets" || method_ == "pt") {
+            const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
+            draw_tetrahedra(fine, views, optics, output, report);
+        } else if (method_ == "dense") {
+            const RefineOptions refine = refine_.options(0, report);
+            const auto draw = [&](const View& view, Progress* progress) {
+                return draw_dense(mesh, refine, refine_.levels, view, optics, reference_, progress, report);
+            };
+            output.write(views, draw, report);
+        } else if (splat_.seconds) {
+            splat_in_time(mesh, views.front(), optics, output, report);
+        } else {
+            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
+        }
+        picture_.write_legend(optics, colors, report);
+    }
+
+    void draw_tetrahedra(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+                         Report& report) const {
+        const auto& values = mesh.attributes.front().values;
+        if (method_ == "pt") {
+            PtRenderer renderer(mesh, values, splat_.device);
+            report.add_seconds("prepare", renderer.seconds_build());
+            const auto draw = [&](const View& view, Progress* progress) {
+                return draw_projected_tets(renderer, view, optics, reference_, splat_.seconds, progress, report);
+            };
+            output.write(views, draw, report);
+        } else {
+            const TetsRenderer renderer(mesh, values);
+            report.add_seconds("prepare", renderer.seconds_build());
+            const auto draw = [&](const View& view, Progress* progress) {
+                return draw_tets(renderer, view, optics, reference_, progress, report);
+            };
+            output.write(views, draw, report);
+        }
+    }
+
+    void draw_voxels(PictureOutput& output, Report& report) {
+        const VdbGrid grid = load_grid(input_, common(), report);
+        const Box box = box_of(grid.report());
+        const Range range{grid.report().min, grid.report().max};
+        const Optics optics = picture_.make_optics(box, range, range);
+        const auto voxels = grid.voxels();
+        const auto draw = [&](const View& view, Progress* progress) {
+            return draw_grid(*voxels, view, optics, reference_, progress, report);
+        };
+        output.write(picture_.make_views(box), draw, report);
+        picture_.write_legend(optics, range, report);
+    }
+
+    void splat_voxels(PictureOutput& output, Report& report) {
+        if (!drawn_by_splats()) {
+            throw Error(ErrorCode::InvalidInput, "a grid has no cells", "--method " + method_, "use grid, splat or sheets");
+        }
+        const VdbGrid grid = load_grid(input_, common(), report);
+        const Box box = box_of(grid.report());
+        const Range range{grid.report().min, grid.report().max};
+        const Optics optics = picture_.make_optics(box, range, range);
+        const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
+        splat(volume, picture_.make_views(box), optics, output, report);
+        picture_.write_legend(optics, range, report);
+    }
+
+    void draw_points(PictureOutput& output, Report& report) {
+        if (!drawn_by_splats()) throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
+        if (volume.channels.size() == 1) options_.color_channel.reset();
+        const std::vector<View> views = picture_.make_views(volume.bounds);
+        const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
+        const Optics optics = picture_.make_optics(volume.bounds, range, colors);
+        splat(volume, views, optics, output, report);
+        picture_.write_legend(optics, colors, report);
+    }
+
+    void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+               Report& report) const {
+        Splatter splatter(volume, options_);
+        const auto draw = [&](const View& view, Progress* progress) {
+            SplatResult drawn = splatter.draw(view, optics, progress);
+            report["method"] = method_;
+            report_splats(drawn.report, splat_, report);
+            return Picture{std::move(drawn.image), std::move(drawn.depth)};
+        };
+        output.write(views, draw, report);
+    }
+
+    void splat_in_time(const HexMesh& mesh, const View& view, const Optics& optics, PictureOutput& output,
+                       Report& report) const {
+        const auto draw = [&](const View&, Progress* progress) {
+            const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
+            ProgressiveResult drawn = render_progressively(
+                mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
+            report["method"] = method_;
+            report_splats(drawn.splat.report, splat_, report);
+            report["points"] = drawn.splat.report.points;
+            report["steps"] = drawn.steps;
+            report["picture_scale"] = drawn.picture_scale;
+            report["footprint_px"] = drawn.footprint_px;
+            return Picture{std::move(drawn.splat.image), std::move(drawn.splat.depth)};
+        };
+        output.write({view}, draw, report);
+    }
+
+    std::string input_;
+    std::string output_;
+    std::string method_ = "splat";
+    PictureArguments picture_;
+    ReferenceArguments reference_;
+    SampleArguments sample_;
+    SplatArguments splat_;
+    SplatOptions options_;
+    RefineArguments refine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_render_verb(CLI::App& program) {
+    return std::make_unique<RenderVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,395 @@
+#include <algorithm>
+#include <cmath>
+
+#include "input.h"
+#include "mesh_frames.h"
+#include "points_input.h"
+#include "refine_arguments.h"
+#include "subvol/error.h"
+#include "subvol/limit_level.h"
+#include "subvol/mesh_motion.h"
+#include "subvol/mesh_report.h"
+#include "subvol/nanovdb.h"
+#include "subvol/rasterize.h"
+#include "subvol/spread_vectors.h"
+#include "subvol/vdb_grid.h"
+#include "subvol/version.h"
+#include "text.h"
+#include "vdb_output.h"
+#include "verb.h"
+#include "voxels_of_points.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kPositionTolerance_voxels = 0.1;
+constexpr double kBytesOfChannel = 5.5;     // a voxel's float in leaves that are not all full, with their masks
+constexpr double kMostCellsOfTables = 8e6;  // of refined cells, some 200 bytes each
+constexpr const char* kDefaultLevelSet = "sdf";
+constexpr const char* kVelocity = "vel";
+// How far the velocities go beyond the volume: renderers open the shutter for a frame at most, and mostly about the frame's
+// time.
+constexpr double kShutter_frames = 0.5;
+constexpr int kMostVelocityLayers =
+    64;  // of voxels: beyond, the grid of a volume 200 wide would hold more outside it than in it
+
+VdbCompression compression_named(const std::string& name) {
+    return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
+}
+
+std::vector<std::string> names_of(const HexMesh& mesh) {
+    std::vector<std::string> names;
+    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+    return names;
+}
+
+class VdbVerb : public Verb {
+public:
+    explicit VdbVerb(CLI::App& program)
+        : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: a grid a field.",
+               "  subvol vdb model:ball -o ball.vdb\n"
+               "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
+               "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
+               "  subvol vdb 'run_####.vtu' -o 'run_####.vdb' --frames 1-240 --velocity --fps 24\n"
+               "  subvol vdb rest.vtu --to bent.vtu -o 'bend_##.vdb' --frames 24\n"
+               "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
+               "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G") {
+        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
+        app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
+        add_size_options();
+        refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the limit");
+        add_grid_options();
+        add_file_options();
+        add_frame_options();
+    }
+
+    int run(Report& report) override {
+        check_choice("--from", from_, {"mesh", "points"});
+        if (output_.nano && !has_nanovdb()) {
+            throw Error(ErrorCode::MissingCapability, "this build has no NanoVDB", "--nano",
+                        "configure again where libnanovdb-dev is installed");
+        }
+        output_.compression = compression_named(compression_);
+        check_output(output_.path, {".vdb"});
+        if (!like_.empty()) like_grids_ = read_vdb(like_);
+        if (!frames_.empty() || !to_.empty() || has_number(input_)) {
+            run_frames(report);
+        } else if (holds_points(input_)) {
+            run_points(report);
+        } else {
+            run_one(report);
+        }
+        return 0;
+    }
+
+private:
+    void add_size_options() {
+        auto* size = app().add_option("--voxel-size", voxel_size_, "edge of a voxel in world units");
+        size->type_name("H")->check(CLI::PositiveNumber);
+        auto* resolution =
+            app().add_option("--resolution", resolution_, "voxels along the longest side of the bounding box (default 200)");
+        resolution->type_name("N")->check(CLI::Range(1, 1 << 20))->excludes(size);
+        auto* like = app().add_option("--like", like_, "a .vdb file whose first grid's transform is taken over");
+        like->type_name("FILE")->excludes(size)->excludes(resolution);
+        app()
+            .add_option("--budget", budget_bytes_, "voxels so small that the grids take about this much memory, e.g. 500M")
+            ->type_name("BYTES")
+            ->transform(CLI::AsSizeValue(false))
+            ->excludes(size)
+            ->excludes(resolution)
+            ->excludes(like);
+    }
+
+    void add_grid_options() {
+        app()
+            .add_option("--fields", fields_,
+                        "fields to write, the first as fog volume; one with three components becomes a grid of vectors, v.k is "
+                        "its component k")
+            ->type_name("A,B")
+            ->delimiter(',');
+        app().add_flag("--cell-ids", cell_numbers_, "one more grid: the number of the control cell");
+        app().add_flag("--mask", mask_, "one more grid: where the volume is");
+        app().add_flag("--coverage", coverage_, "one more grid: the part of each voxel that the volume fills");
+        level_set_option_ = app().add_option("--sdf", level_set_.name,
+                                             "one more grid, named NAME or sdf: the distance to the boundary, negative inside, "
+                                             "as a level set with a narrow band");
+        level_set_option_->type_name("[NAME]")->expected(0, 1);
+        app()
+            .add_option("--half-width", level_set_.half_width_voxels, "of that band to either side, in voxels (default 3)")
+            ->type_name("N")
+            ->check(CLI::Range(1.0, 1000.0))
+            ->needs(level_set_option_);
+        app().add_flag("--half", half_, "store floats in 16 bits");
+        app()
+            .add_option(
+                "--from", from_,
+                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; a FILE "
+                "of points (.ply, .vtp, .vdb) has its own")
+            ->type_name("WHAT");
+        app()
+            .add_option("--per-edge", per_edge_, "with --from points: sample intervals an edge")
+            ->type_name("N")
+            ->check(CLI::Range(1, 64));
+    }
+
+    void add_file_options() {
+        app()
+            .add_option("--compression", compression_, "blosc (the default), zip, none")
+            ->type_name("NAME")
+            ->check(CLI::IsMember({"blosc", "zip", "none"}));
+        app()
+            .add_option("--memory", output_.memory_bytes,
+                        "write parts whose grids take no more than this, e.g. 2G: NAME_0000.vdb and so on, and NAME.json, "
+                        "which lists them")
+            ->type_name("BYTES")
+            ->transform(CLI::AsSizeValue(false));
+        app().add_flag("--nano", output_.nano, "write a NanoVDB file beside it, NAME.nvdb; needs a build with NanoVDB");
+    }
+
+    void add_frame_options() {
+        app()
+            .add_option(
+                "--frames", frames_,
+                "a sequence: A-B, or N for 1-N. The rows of # in FILE and in --output stand for the number of the frame, "
+                "with zeros before it to that many digits")
+            ->type_name("A-B");
+        app()
+            .add_option("--to", to_,
+                        "a sequence from FILE to this mesh of the same cells: points and values go in straight lines")
+            ->type_name("FILE");
+        auto* velocity = app().add_flag("--velocity", velocity_,
+                                        "one more grid, of vectors, named vel: how the volume moves, in world units a frame");
+        app()
+            .add_option("--fps", frames_per_second_, "with --velocity: in world units a second, at so many frames a second")
+            ->type_name("F")
+            ->check(CLI::PositiveNumber)
+            ->needs(velocity);
+    }
+
+    [[nodiscard]] HexMesh load(const std::string& input, Report& report) const {
+        return with_written_fields(load_mesh(input, common(), report), report);
+    }
+
+    void run_one(Report& report) {
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        const HexMesh mesh = load(input_, report);
+        const RasterizeOptions options = set_up(mesh, report);
+        if (output_.memory_bytes > 0) {
+            refuse_with_memory();
+            write_parts(mesh, names_of(mesh), options, output_, report);
+        } else {
+            write_reported(grids_of(mesh, options, report), output_, report);
+        }
+    }
+
+    void run_points(Report& report) {
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        from_ = "points";
+        RasterizeOptions options = options_of_grids(report);
+        options.voxel_size_world = voxel_size_;
+        options.resolution = resolution_;
+        options.level_set = level_set();
+        write_reported(grids_of_points(input_, fields_, common(), app(), options, report), output_, report);
+    }
+
+    /// All frames have the voxels and the level that the first one asks for.
+    void run_frames(Report& report) {
+        if (output_.memory_bytes > 0) throw Error(ErrorCode::InvalidInput, "goes with one mesh only, no frames", "--memory");
+        check_frame_names();
+        const FrameRange range = parse_frames(frames_);
+        MeshFrames frames(input_, to_.empty() ? std::nullopt : std::optional(to_), range,
+                          [&](const std::string& name) { return load(name, report); });
+        const HexMesh first = frames.mesh(range.first);
+        RasterizeOptions options = set_up(first, report);
+        std::optional<RefinementTables> tables;
+        const int levels = options.limit ? limit_.level + 1 : options.refine.levels;
+        if (!refine_.crease_angle_deg &&
+            std::ldexp(static_cast<double>(first.cells.size()), 3 * levels) <= kMostCellsOfTables) {
+            tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
+        }
+        for (int frame = range.first; frame <= range.last; ++frame) {
+            HexMesh mesh = frames.mesh(frame);
+            const bool same = same_cells(first, mesh);
+            options.tables = tables && same ? &*tables : nullptr;
+            LimitCells of_others;  // the limit of the first serves all meshes of its cells
+            if (options.limit) {
+                if (!same) of_others = find_limit(mesh, options.refine, options.voxel_size_world, report);
+                options.limit = same ? &limit_ : &of_others;
+            }
+            if (velocity_) add_velocity(frames.velocity(frame), mesh);
+            VdbOutput output = output_;
+            output.path = with_number(output_.path, frame);
+            std::vector<VdbGrid> grids = grids_of(mesh, options, report);
+            if (velocity_) spread_velocity(frame, grids, report);
+            write_frame(frame, grids, output, report);
+        }
+        report["input"] = input_;
+        report["output"] = output_.path;
+    }
+
+    void check_frame_names() const {
+        if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "which frames?", "--frames", "1-10");
+        if (!has_number(output_.path)) {
+            throw Error(ErrorCode::InvalidInput, "has no place for the number of a frame", output_.path, "out_####.vdb");
+        }
+        if (to_.empty() != has_number(input_)) {
+            throw Error(ErrorCode::InvalidInput,
+                        to_.empty() ? "has no place for the number of a frame" : "has a place for a number, and --to is given",
+                        input_, "in_####.vtu, or one mesh and --to another");
+        }
+    }
+
+    void add_velocity(Attribute velocity, HexMesh& mesh) const {
+        if (mesh.find_attribute(velocity.name)) {
+            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", kVelocity, "--fields without it");
+        }
+        for (double& v : velocity.values) v *= frames_per_second_;
+        mesh.attributes.push_back(std::move(velocity));
+    }
+
+    /// Lets the velocities reach beyond the volume, to where it is at other times while a shutter is open.
+    void spread_velocity(int frame, std::vector<VdbGrid>& grids, Report& report) const {
+        const auto velocity = std::ranges::find(grids, kVelocity, [](const VdbGrid& grid) { return grid.report().name; });
+        if (velocity == grids.end() || velocity->report().kind != "vector" || velocity->report().max == 0) return;
+        const GridReport& about = velocity->report();
+        const double way_voxels = kShutter_frames * about.max / frames_per_second_ / about.voxel_size_world;
+        if (way_voxels > kMostVelocityLayers) {
+            report.warn(text("frame ", frame, ": in half a frame something moves by ", way_voxels,
+                             " voxels; the velocities reach ", kMostVelocityLayers,
+                             " voxels beyond the volume, and blur is cut off there"));
+        }
+        const int layers = static_cast<int>(std::min(std::ceil(way_voxels) + 1, double(kMostVelocityLayers)));
+        report.timed("spread", [&] { *velocity = spread_vectors(*velocity, layers); });
+    }
+
+    /// What a mesh asks for, by its box and its fields.
+    [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report) {
+        const double voxel_size = like_grids_.empty() ? voxel_size_world(mesh) : like_grids_.front().report().voxel_size_world;
+        RefineOptions refinement = refine_.options(0, report);
+        if (refine_.levels) {
+            report["levels"] = refinement.levels;
+            report["cells"] = mesh.cells.size() << (3 * refinement.levels);
+        } else {
+            limit_ = find_limit(mesh, refinement, voxel_size, report);
+        }
+        RasterizeOptions options = options_of_grids(report);
+        options.voxel_size_world = voxel_size;
+        options.refine = refinement;
+        options.on_limit = !interpolates(refinement.scheme.kind);
+        options.limit = refine_.levels ? nullptr : &limit_;
+        options.level_set = level_set();
+        if (options.level_set && mesh.find_attribute(options.level_set->name)) {
+            throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
+                        "--sdf with another name");
+        }
+        options.metadata.emplace_back("subvol_scheme", refine_.scheme);
+        options.metadata.emplace_back("subvol_level", std::to_string(report["levels"].get<int>()));
+        return options;
+    }
+
+    /// What does not depend on the mesh.
+    [[nodiscard]] RasterizeOptions options_of_grids(Report& report) const {
+        return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
+                .half = half_,
+                .cell_numbers = cell_numbers_,
+                .mask = mask_,
+                .coverage = coverage_,
+                .metadata = {{"subvol_input", input_}, {"subvol_from", from_}, {"subvol_version", SUBVOL_VERSION}},
+                .progress = report.progress()};
+    }
+
+    [[nodiscard]] std::optional<LevelSetOptions> level_set() const {
+        if (level_set_option_->count() == 0) return std::nullopt;
+        LevelSetOptions options = level_set_;
+        if (options.name.empty()) options.name = kDefaultLevelSet;
+        return options;
+    }
+
+    [[nodiscard]] std::vector<VdbGrid> grids_of(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const {
+        if (from_ == "points") return kernel_sums(mesh, options, per_edge_, report);
+        return report.timed("rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
+    }
+
+    void refuse_with_memory() const {
+        if (from_ == "points") throw Error(ErrorCode::InvalidInput, "goes with a mesh only", "--memory");
+        if (output_.nano) throw Error(ErrorCode::InvalidInput, "goes with one file only, no parts", "--nano");
+    }
+
+    [[nodiscard]] HexMesh with_written_fields(HexMesh mesh, Report& report) const {
+        if (fields_.empty()) return with_selected_field(std::move(mesh), common(), report);
+        std::vector<Attribute> chosen;
+        for (const std::string& name : fields_) {
+            if (const Attribute* vector = mesh.find_attribute(name); vector && vector->channels == 3) {
+                chosen.push_back(*vector);
+                continue;
+            }
+            SelectedField selected = select_field(mesh, name);
+            report.warn(selected.warning);
+            chosen.push_back(std::move(selected.scalar));
+        }
+        mesh.attributes = std::move(chosen);
+        return mesh;
+    }
+
+    [[nodiscard]] double voxel_size_world(const HexMesh& mesh) const {
+        if (voxel_size_ > 0) return voxel_size_;
+        if (budget_bytes_ > 0) {
+            double channels = cell_numbers_ ? 1 : 0;
+            for (const Attribute& attribute : mesh.attributes) channels += attribute.channels;
+            return std::cbrt(std::abs(measure_cells(mesh).volume) * kBytesOfChannel * channels /
+                             static_cast<double>(budget_bytes_));
+        }
+        const Vec3 size = bounds(mesh).size();
+        return std::max({size.x, size.y, size.z}) / resolution_;
+    }
+
+    /// levels: the finest whose vertices count; cells: those between them, 27 vertices each, or those of the mesh
+    [[nodiscard]] static LimitCells find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
+                                               Report& report) {
+        LimitCells limit = report.timed("limit level", [&] {
+            return find_limit_cells(mesh, refinement, {.position_world = kPositionTolerance_voxels * voxel_size});
+        });
+        int levels = limit.level;
+        std::size_t cells = limit.cell_levels.empty() ? mesh.cells.size() : 0;
+        for (const int level : limit.cell_levels) {
+            levels = std::max(levels, level);
+            cells += std::size_t{1} << (3 * (level - 1));
+        }
+        report["levels"] = levels;
+        report["cells"] = cells;
+        report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};
+        if (!limit.converged) {
+            report.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
+                             limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range,
+                             " of their range"));
+        }
+        return limit;
+    }
+
+    std::string input_;
+    VdbOutput output_;
+    double voxel_size_ = 0;
+    int resolution_ = 200;
+    std::uint64_t budget_bytes_ = 0;
+    std::string like_;
+    std::vector<VdbGrid> like_grids_;
+    std::vector<std::string> fields_;
+    bool half_ = false, cell_numbers_ = false, mask_ = false, coverage_ = false;
+    LevelSetOptions level_set_{.name = {}};
+    CLI::Option* level_set_option_ = nullptr;
+    std::string from_ = "mesh", compression_ = "blosc";
+    int per_edge_ = 1;
+    std::string frames_, to_;
+    bool velocity_ = false;
+    double frames_per_second_ = 1;
+    LimitCells limit_;
+    RefineArguments refine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_vdb_verb(CLI::App& program) {
+    return std::make_unique<VdbVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,102 @@
+#include "subvol/field_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "subvol/error.h"
+#include "subvol/limit.h"
+#include "subvol/topology.h"
+
+namespace subvol {
+
+namespace {
+
+constexpr int kLevels = 6;
+constexpr std::array<std::array<int, 3>, 8> kCorners{
+    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
+
+/// A part of a cell: along each axis all of it, or what is near one end.
+struct CellPart {
+    enum Extent : std::uint8_t { All, NearLow, NearHigh };
+    Index cell = 0;
+    std::array<Extent, 3> extents{All, All, All};
+};
+
+std::vector<CellPart> parts_of(const HexMesh& mesh, PlaceKind kind) {
+    std::vector<CellPart> parts;
+    const Topology topology = build_topology(mesh);
+    for (Index c = 0; c < topology.cells.size(); ++c) {
+        if (kind == PlaceKind::Anywhere) parts.push_back({c});
+        for (std::size_t s = 0; kind == PlaceKind::Boundary && s < 6; ++s) {
+            if (!topology.face_on_hull(topology.cell_faces[c][s])) continue;
+            parts.push_back({c});
+            parts.back().extents[s / 2] = s % 2 == 0 ? CellPart::NearLow : CellPart::NearHigh;
+        }
+        for (std::size_t k = 0; kind == PlaceKind::Extraordinary && k < 12; ++k) {
+            const Index e = topology.cell_edges[c][k];
+            if (topology.edge_on_boundary[e] || topology.edge_cells[e].size() == 4) continue;
+            parts.push_back({c});
+            for (std::size_t a = 0; a < 3; ++a) {
+                if (a == k / 4) continue;
+                const bool high = kCorners[static_cast<std::size_t>(kCellEdges[k][0])][a] == 1;
+                parts.back().extents[a] = high ? CellPart::NearHigh : CellPart::NearLow;
+            }
+        }
+    }
+    return parts;
+}
+
+/// std::uniform_real_distribution differs between libraries; this does not.
+double unit(std::mt19937_64& random) {
+    return static_cast<double>(random() >> 11) * 0x1p-53;
+}
+
+std::vector<LimitQuery> random_queries(const std::vector<CellPart>& parts, double within, std::size_t count,
+                                       std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<LimitQuery> queries(count);
+    for (LimitQuery& query : queries) {
+        const CellPart& part = parts[random() % parts.size()];
+        query.cell = part.cell;
+        for (int a = 0; a < 3; ++a) {
+            const double t = unit(random);
+            const auto extent = part.extents[static_cast<std::size_t>(a)];
+            query.uvw[a] = extent == CellPart::All ? t : extent == CellPart::NearLow ? within * t : 1 - within * t;
+        }
+    }
+    return queries;
+}
+
+/// The mesh with this attribute alone.
+HexMesh with_only(const HexMesh& mesh, std::string_view attribute) {
+    const Attribute* field = mesh.find_attribute(attribute);
+    if (field == nullptr || field->channels != 1) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has no field '" + std::string(attribute) + "' of one channel");
+    }
+    return {mesh.points, mesh.cells, {*field}, mesh.creases, mesh.sharp_faces};
+}
+
+}  // namespace
+
+FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, PlaceKind kind, double within, std::size_t count,
+                           std::uint64_t seed, Scheme scheme) {
+    const HexMesh bare = with_only(mesh, attribute);
+    const auto parts = parts_of(bare, kind);
+    if (parts.empty()) return {};
+    LimitSamples limit = evaluate_limit(bare, random_queries(parts, within, count, seed),
+                                        {.scheme = {scheme}, .tolerance = 1e-9, .max_levels = kLevels});
+    return {std::move(limit.positions), std::move(limit.attributes.front().values), std::vector<double>(count, 1.0)};
+}
+
+FieldSamples new_vertices(const HexMesh& mesh, std::string_view attribute, int level, Scheme scheme) {
+    HexMesh coarse = refine(with_only(mesh, attribute), {.scheme = {scheme}, .levels = level});
+    const auto old = static_cast<std::ptrdiff_t>(coarse.points.size());  // they keep their numbers
+    const HexMesh fine = refine(coarse, {.scheme = {scheme}, .levels = 1});
+    const auto& values = fine.attributes.front().values;
+    FieldSamples places{{fine.points.begin() + old, fine.points.end()}, {values.begin() + old, values.end()}, {}};
+    places.weights.assign(places.size(), 1.0);
+    return places;
+}
+
+}  // namespace subvol

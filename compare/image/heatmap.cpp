@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "pixel_text.h"
+#include "subvol/error.h"
+#include "subvol/image_metrics.h"
+#include "subvol/srgb.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+// inferno by N. J. Smith and S. van der Walt (matplotlib 1.5, CC0) at ninths of its range, in 8-bit sRGB.
+constexpr std::array<std::array<int, 3>, 10> kInferno{{{0, 0, 4},
+                                                       {27, 12, 65},
+                                                       {74, 12, 107},
+                                                       {120, 28, 109},
+                                                       {165, 44, 96},
+                                                       {207, 68, 70},
+                                                       {237, 105, 37},
+                                                       {251, 155, 6},
+                                                       {247, 209, 61},
+                                                       {252, 255, 164}}};
+
+// The legend, from the top: the bar, ticks under it, numbers, a rim.
+constexpr int kBarHeight = 12, kTickHeight = 4, kRim = 4;
+constexpr int kLegendHeight = kBarHeight + kTickHeight + kTextHeight + kRim;
+
+std::array<float, 4> heat_color(double fraction) {
+    const double place = (kInferno.size() - 1) * (std::isnan(fraction) ? 1.0 : std::clamp(fraction, 0.0, 1.0));
+    const auto knot = std::min(static_cast<std::size_t>(place), kInferno.size() - 2);
+    const double beyond = place - static_cast<double>(knot);
+    std::array<float, 4> rgba{0, 0, 0, 1};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double encoded = (1 - beyond) * kInferno[knot][c] + beyond * kInferno[knot + 1][c];
+        rgba[c] = static_cast<float>(linear_from_srgb(encoded / 255));
+    }
+    return rgba;
+}
+
+void set_pixel(Image& image, int x, int y, const std::array<float, 4>& rgba) {
+    std::copy(rgba.begin(), rgba.end(), image.pixel(x, y).begin());
+}
+
+std::string tick_text(double value) {
+    std::array<char, 32> text;
+    std::snprintf(text.data(), text.size(), "%.3g", value);
+    return text.data();
+}
+
+void draw_bar(Image& image, int top) {
+    const double last = std::max(image.width - 1, 1);
+    for (int y = top; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            set_pixel(image, x, y, y < top + kBarHeight ? heat_color(x / last) : std::array<float, 4>{0, 0, 0, 1});
+        }
+    }
+}
+
+void draw_ticks(Image& image, int top, double scale) {
+    for (const double tick : {0.0, 0.5, 1.0}) {
+        const int x = static_cast<int>(std::lround(tick * (image.width - 1)));
+        for (int y = top; y < top + kTickHeight - 1; ++y) set_pixel(image, x, y, {1, 1, 1, 1});
+    }
+    const std::string first = tick_text(0), middle = tick_text(scale / 2), last = tick_text(scale);
+    const int text_top = top + kTickHeight;
+    const int margin = kRim / 2, first_end = margin + text_width(first) + kRim;
+    const int last_start = image.width - text_width(last) - margin;
+    const int middle_start = (image.width - text_width(middle)) / 2;
+    draw_text(image, first, margin, text_top);
+    // Numbers that would run into others are left out: a narrow image has fewer of them.
+    if (last_start >= first_end) draw_text(image, last, last_start, text_top);
+    const bool fits = middle_start >= first_end && middle_start + text_width(middle) + kRim <= last_start;
+    if (fits) draw_text(image, middle, middle_start, text_top);
+}
+
+}  // namespace
+
+Image heatmap(const MetricMap& map, double scale) {
+    if (map.width < 1 || map.height < 1) throw Error(ErrorCode::InvalidInput, "a map without pixels cannot be drawn");
+    if (!(scale >= 0) || !std::isfinite(scale))
+        throw Error(ErrorCode::InvalidInput, "the full scale is negative or not finite");
+    if (scale == 0) {
+        for (const float value : map.values) scale = std::fmax(scale, static_cast<double>(value));
+    }
+    Image heat(map.width, map.height + kLegendHeight);
+    for (int y = 0; y < map.height; ++y) {
+        const float* row = map.values.data() + static_cast<std::ptrdiff_t>(y) * map.width;
+        for (int x = 0; x < map.width; ++x) {
+            const auto value = static_cast<double>(row[x]);
+            set_pixel(heat, x, y, heat_color(value == 0 ? 0 : value / scale));
+        }
+    }
+    draw_bar(heat, map.height);
+    draw_ticks(heat, map.height + kBarHeight, scale);
+    return heat;
+}
+
+Image difference_heatmap(const Image& a, const Image& b, double scale) {
+    return heatmap(difference_map(a, b), scale);
+}
+
+}  // namespace subvol

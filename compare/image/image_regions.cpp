@@ -1,0 +1,101 @@
+#include "subvol/image_regions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "image_difference.h"
+#include "subvol/error.h"
+#include "subvol/srgb.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+constexpr double kOneStep = 1.0 / 255;
+
+double encoded(double linear) {
+    return srgb_from_linear(std::clamp(linear, 0.0, 1.0));
+}
+
+PixelMask coverage(const Image& image, const Vec3& background) {
+    PixelMask mask(image.rgba.size() / 4);
+    bool opaque = true;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) opaque = opaque && image.rgba[i] >= 1.0f;
+    for (std::size_t p = 0; p < mask.size(); ++p) {
+        const float* rgba = image.rgba.data() + 4 * p;
+        bool covered = !opaque && rgba[3] > 0;
+        for (int c = 0; opaque && c < 3; ++c) {
+            const double difference = encoded(static_cast<double>(rgba[c])) - encoded(background[c]);
+            covered = covered || std::abs(difference) > kOneStep;
+        }
+        mask[p] = covered ? 1 : 0;
+    }
+    return mask;
+}
+
+/// Sets, of `count` places that lie `stride` apart, what is within `reach` of one that is set.
+void widen_line(std::uint8_t* line, std::size_t count, std::size_t stride, std::size_t reach) {
+    std::vector<std::uint8_t> before(count);
+    for (std::size_t i = 0; i < count; ++i) before[i] = line[i * stride];
+    std::size_t next = 0;  // places before it are done
+    for (std::size_t i = 0; i < count; ++i) {
+        if (before[i] == 0) continue;
+        next = std::max(next, i - std::min(i, reach));
+        for (; next < std::min(count, i + reach + 1); ++next) line[next * stride] = 1;
+    }
+}
+
+PixelMask widened(PixelMask mask, int width, int height, int reach) {
+    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height), r = static_cast<std::size_t>(reach);
+    for (std::size_t y = 0; y < h; ++y) widen_line(mask.data() + y * w, w, 1, r);
+    for (std::size_t x = 0; x < w; ++x) widen_line(mask.data() + x, h, w, r);
+    return mask;
+}
+
+PixelMask inverse(PixelMask mask) {
+    for (std::uint8_t& pixel : mask) pixel = pixel == 0 ? 1 : 0;
+    return mask;
+}
+
+}  // namespace
+
+ImageRegions silhouette_regions(const Image& reference, int band_px, const Vec3& background) {
+    check_comparable(reference, reference);
+    if (band_px < 1) throw Error(ErrorCode::InvalidInput, "a band of " + std::to_string(band_px) + " pixels", {}, "1 or more");
+    const PixelMask covered = coverage(reference, background);
+    const PixelMask around = widened(covered, reference.width, reference.height, band_px);
+    // What is covered and farther than the band from all that is not.
+    ImageRegions regions{inverse(widened(inverse(covered), reference.width, reference.height, band_px)), around};
+    for (std::size_t i = 0; i < around.size(); ++i) {
+        if (regions.interior[i] != 0) regions.edge[i] = 0;
+    }
+    return regions;
+}
+
+OpticalDepth optical_depth(const Image& image) {
+    check_finite(image, image);
+    constexpr double kLeast = 0x1p-24;  // half the step of floats below 1
+    constexpr double kFew = 1e-4;
+    OpticalDepth depth;
+    const auto row = static_cast<std::size_t>(image.width) * 4;
+    for (std::size_t first = 0; first < image.rgba.size(); first += row) {
+        double sum = 0;
+        for (std::size_t i = first + 3; i < first + row; i += 4) {
+            const double through = 1 - static_cast<double>(image.rgba[i]);
+            if (through < kFew) ++depth.saturated;
+            sum -= std::log(std::max(through, kLeast));
+        }
+        depth.sum += sum;
+    }
+    return depth;
+}
+
+double optical_depth_error(const Image& a, const Image& reference) {
+    check_comparable(a, reference);
+    const double difference = std::abs(optical_depth(a).sum - optical_depth(reference).sum);
+    return difference == 0 ? 0 : difference / std::abs(optical_depth(reference).sum);
+}
+
+}  // namespace subvol

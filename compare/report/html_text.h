@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace subvol::detail {
+
+/// Text as it stands in HTML and SVG, within quotes too.
+[[nodiscard]] std::string escaped(std::string_view text);
+
+/// A PNG as a data URI.
+///
+/// throws: Error(Io) if it cannot be read, Error(InvalidInput) if it is larger than 16 MiB
+[[nodiscard]] std::string png_uri(const std::filesystem::path& file);
+
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+}  // namespace subvol::detail

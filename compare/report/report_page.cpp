@@ -1,0 +1,145 @@
+#include <algorithm>
+#include <cmath>
+
+#include "html_text.h"
+#include "report_parts.h"
+#include "report_texts.h"
+#include "subvol/study_report.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+std::string_view embedded(std::string_view name) {
+    return std::ranges::find(kTexts, name, &EmbeddedText::name)->text;
+}
+
+std::string heading(const Study& study, const std::string& key) {
+    for (const StudyTableSpec& table : study.tables) {
+        if (const auto found = table.headings.find(key); found != table.headings.end()) return found->second;
+    }
+    return key;
+}
+
+Judgement judged(const StudyResults& results, const StudyDemand& demand) {
+    Judgement judgement;
+    std::optional<double> worst;
+    double worst_excess = -INFINITY;
+    std::string worst_case;
+    for (std::size_t i = 0; i < results.results.size(); ++i) {
+        const StudyCase& of = results.study.cases[i];
+        if (!matches(of, results.results[i], demand.where)) continue;
+        const auto found = results.results[i].metrics.find(demand.metric);
+        if (found == results.results[i].metrics.end() && results.results[i].failure.empty()) continue;
+        ++judgement.cases;
+        const double value = found == results.results[i].metrics.end() ? NAN : found->second;
+        double excess = std::isnan(value) ? INFINITY : -INFINITY;
+        if (demand.least) excess = std::max(excess, *demand.least - value);
+        if (demand.most) excess = std::max(excess, value - *demand.most);
+        if (excess <= 0) ++judgement.met;
+        if (!worst || excess > worst_excess) {
+            worst = value;
+            worst_excess = excess;
+            worst_case = of.has("input") ? spaced(of.text("input")) : of.text("label");
+        }
+    }
+    judgement.words = heading(results.study, demand.metric);
+    if (demand.least) judgement.words += " at least " + as_text(*demand.least);
+    if (demand.most) judgement.words += (demand.least ? " and at most " : " at most ") + as_text(*demand.most);
+    for (const auto& [key, value] : demand.where) judgement.words += ", " + value;
+    judgement.words += ": " + std::to_string(judgement.met) + " of " + std::to_string(judgement.cases);
+    if (worst && judgement.cases > 1) judgement.words += "; worst is " + worst_case + " with " + readable(*worst);
+    if (worst && judgement.cases == 1) judgement.words += "; it is " + readable(*worst);
+    return judgement;
+}
+
+std::string demands_html(const StudyResults& results) {
+    const auto judgements = judge(results);
+    if (judgements.empty()) return {};
+    std::string html = "<ul class=\"demands\">\n";
+    for (const Judgement& judgement : judgements) {
+        html += judgement.all_met() ? "<li><span class=\"met\">✓</span>" : "<li><span class=\"unmet\">✗</span>";
+        html += escaped(judgement.words) + "</li>\n";
+    }
+    return html + "</ul>\n";
+}
+
+std::string count(std::size_t number, const std::string& one, const std::string& many) {
+    return std::to_string(number) + " " + (number == 1 ? one : many);
+}
+
+std::string summary_html(std::span<const StudyResults> studies) {
+    std::size_t cases = 0, failed = 0, demands = 0, met = 0;
+    std::string rows;
+    for (const StudyResults& results : studies) {
+        cases += results.results.size();
+        failed += results.failed;
+        std::size_t own = 0, own_met = 0;
+        for (const Judgement& judgement : judge(results)) {
+            ++own;
+            own_met += judgement.all_met() ? 1 : 0;
+        }
+        demands += own;
+        met += own_met;
+        rows += "<tr><td class=\"words\"><a href=\"#" + escaped(results.study.name) + "\">" + escaped(results.study.title) +
+                "</a>" + demands_html(results) + "</td><td>" + std::to_string(results.results.size()) + "</td><td>" +
+                std::to_string(results.failed) + "</td><td>" +
+                (own == 0 ? "–" : std::to_string(own_met) + " of " + std::to_string(own)) + "</td></tr>\n";
+    }
+    std::string verdict = count(studies.size(), "study", "studies") + ", " + count(cases, "case", "cases") + ": ";
+    verdict += failed == 0 ? "all done" : count(failed, "case", "cases") + " failed";
+    if (demands > 0) verdict += "; " + std::to_string(met) + " of " + count(demands, "demand", "demands") + " met";
+    std::string html = "<p class=\"verdict\">" + escaped(verdict) + ".</p>\n";
+    return html +
+           "<div class=\"wide\"><table>\n<thead><tr><th class=\"words\">study</th><th>cases</th><th>failed</th><th>demands met"
+           "</th></tr></thead>\n<tbody>\n" +
+           rows + "</tbody></table></div>\n";
+}
+
+std::string study_html(const StudyResults& results, const std::filesystem::path& folder) {
+    const Study& study = results.study;
+    std::string html = "<section id=\"" + escaped(study.name) + "\">\n<h2>" + escaped(study.title) + "</h2>\n";
+    if (!study.about.empty()) html += "<p>" + escaped(study.about) + "</p>\n";
+    html += demands_html(results) + failures_html(results);
+    for (const StudyTable& table : make_tables(results)) html += table_html(table);
+    for (const StudyPlotSpec& plot : study.plots) html += plots_html(results, plot);
+    if (study.pictures) html += pictures_html(results, folder);
+    return html + "<p class=\"soft\">All figures: <code>" + escaped(study.name) + "/results.csv</code>, <code>" +
+           escaped(study.name) + "/costs.csv</code>.</p>\n</section>\n";
+}
+
+std::string facts_html(const ReportFacts& facts) {
+    std::string html = "<dl>\n";
+    for (const auto& [name, value] : facts) html += "<dt>" + escaped(name) + "</dt><dd>" + escaped(value) + "</dd>\n";
+    return html + "</dl>\n";
+}
+
+}  // namespace
+
+std::vector<Judgement> judge(const StudyResults& results) {
+    std::vector<Judgement> all;
+    for (const StudyDemand& demand : results.study.demands) all.push_back(judged(results, demand));
+    return all;
+}
+
+std::string report_html(std::span<const StudyResults> studies, const std::filesystem::path& folder,
+                        const ReportOptions& options) {
+    std::string html =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<link rel=\"icon\" href=\"data:,\">\n<title>Error studies of subdivision volumes</title>\n<style>\n";
+    html +=
+        std::string(embedded("style")) + "</style>\n</head>\n<body>\n<header>\n<h1>Error studies of subdivision volumes</h1>\n";
+    html += summary_html(studies) + "</header>\n<main>\n";
+    for (const StudyResults& results : studies) html += study_html(results, folder);
+    html += "<section id=\"machine\">\n<h2>Machine, versions, and how to run this again</h2>\n<h3>Machine</h3>\n";
+    html += facts_html(options.host) + "<h3>Versions</h3>\n" + facts_html(options.versions);
+    html +=
+        "<h3>Run it again</h3>\n<pre>" + escaped(options.command) +
+        "</pre>\n<p class=\"soft\">In the same folder only what is not finished is run; <code>--fresh</code> runs all.</p>\n";
+    return html + "</section>\n</main>\n<script>\n" + std::string(embedded("slider")) + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace subvol

@@ -1,0 +1,186 @@
+#include "report_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "html_text.h"
+#include "subvol/error.h"
+#include "subvol/plot.h"
+
+namespace subvol::detail {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string heading(const StudyPlotSpec& spec, const std::string& key) {
+    const auto found = spec.headings.find(key);
+    if (found != spec.headings.end()) return found->second;
+    return spaced(key);
+}
+
+std::optional<double> number_of(const StudyCase& of, const CaseResult& result, const std::string& key) {
+    const auto value = find_value(of, result, key);
+    const double* number = value ? std::get_if<double>(&*value) : nullptr;
+    return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
+}
+
+/// The place of a name, at the end if it is new.
+template <class T>
+T& named(std::vector<std::pair<std::string, T>>& all, const std::string& name) {
+    for (auto& [known, value] : all) {
+        if (known == name) return value;
+    }
+    return all.emplace_back(name, T{}).second;
+}
+
+struct Point {
+    double x, y;
+};
+using Series = std::vector<std::pair<std::string, std::vector<Point>>>;
+
+Plot plot_of(const StudyPlotSpec& spec, const std::string& panel, const Series& series) {
+    Plot plot{.title = spec.title + (panel.empty() ? "" : ": " + panel),
+              .x_label = heading(spec, spec.x),
+              .y_label = heading(spec, spec.y),
+              .log_x = spec.log_x,
+              .log_y = spec.log_y,
+              .fit = spec.fit,
+              .lines = {}};
+    for (const auto& [name, points] : series) {
+        auto sorted = points;
+        std::ranges::stable_sort(sorted, {}, &Point::x);
+        PlotLine& line = plot.lines.emplace_back();
+        line.name = name;
+        for (const Point& point : sorted) {
+            line.x.push_back(point.x);
+            line.y.push_back(point.y);
+        }
+    }
+    return plot;
+}
+
+/// An image, or what to say where there is none.
+std::string image_html(const fs::path& file, const std::string& alternative) {
+    try {
+        return "<img alt=\"" + escaped(alternative) + "\" src=\"" + png_uri(file) + "\">";
+    } catch (const Error&) {
+        return "<p>The picture is missing: " + escaped(file.filename().string()) + "</p>";
+    }
+}
+
+/// A case without a label of its own is told from others of its method by the options that come in lists; its name has them.
+std::string case_title(const StudyCase& of) {
+    const std::string input = spaced(of.text("input")), label = of.text("label");
+    std::string title = input.empty() ? label : input + ", " + label;
+    if (label != of.text("method")) return title;
+    for (const char* key : {"per_edge", "spacing_voxels", "levels", "sheets", "kernel", "correction", "resolution"}) {
+        const std::string value = of.has(key) ? as_text(of.values.at(key)) : "";
+        if (of.name.find("_" + std::string(key) + "-" + value) != std::string::npos) title += ", " + spaced(key) + " " + value;
+    }
+    return title;
+}
+
+std::string figures(const CaseResult& result) {
+    std::string words;
+    for (const auto& [key, name] :
+         {std::pair{"psnr", "PSNR"}, {"psnr_interior", "interior"}, {"flip", "FLIP"}, {"rmse", "RMSE"}}) {
+        const auto found = result.metrics.find(key);
+        if (found == result.metrics.end()) continue;
+        const std::string unit = std::string_view(key).starts_with("psnr") ? " dB" : "";
+        words += (words.empty() ? "" : ", ") + std::string(name) + " " + readable(found->second) + unit;
+    }
+    return words;
+}
+
+std::string triple_html(const fs::path& ours, const fs::path& reference, const fs::path& difference, const std::string& title) {
+    return "<div class=\"triple\">\n<figure class=\"both ours\">" + image_html(ours, title) +
+           "<figcaption>ours</figcaption></figure>\n" + "<figure class=\"both reference\">" +
+           image_html(reference, title + ", reference") + "<figcaption>reference</figcaption></figure>\n" +
+           "<div class=\"slide\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" "
+           "aria-label=\"How much of ours is shown, from the "
+           "left\"><label><span>ours</span><span>reference</span></label></div>\n" +
+           "<figure class=\"difference\">" + image_html(difference, title + ", difference") +
+           "<figcaption>difference (largest channel)</figcaption></figure>\n</div>\n";
+}
+
+}  // namespace
+
+std::string table_html(const StudyTable& table) {
+    std::vector<bool> words(table.columns.size(), false);
+    for (const auto& row : table.rows) {
+        for (std::size_t c = 0; c < row.size(); ++c) words[c] = words[c] || std::holds_alternative<std::string>(row[c]);
+    }
+    const auto cell = [&](const char* tag, std::size_t c, const std::string& text) {
+        return std::string("<") + tag + (words[c] ? " class=\"words\">" : ">") + escaped(text) + "</" + tag + ">";
+    };
+    std::string html = "<h3>" + escaped(table.title) + "</h3>\n";
+    if (!table.caption.empty()) html += "<p class=\"soft\">" + escaped(table.caption) + "</p>\n";
+    html += "<div class=\"wide\"><table>\n<thead><tr>";
+    for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell("th", c, table.columns[c]);
+    html += "</tr></thead>\n<tbody>\n";
+    for (const auto& row : table.rows) {
+        html += "<tr>";
+        for (std::size_t c = 0; c < row.size(); ++c) html += cell("td", c, readable(row[c], table.digits));
+        html += "</tr>\n";
+    }
+    return html + "</tbody></table></div>\n";
+}
+
+std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec) {
+    std::vector<std::pair<std::string, Series>> panels;
+    for (std::size_t i = 0; i < results.results.size(); ++i) {
+        const StudyCase& of = results.study.cases[i];
+        const CaseResult& result = results.results[i];
+        const auto x = number_of(of, result, spec.x), y = number_of(of, result, spec.y);
+        if (!x || !y || !matches(of, result, spec.where)) continue;
+        std::string name;
+        for (const std::string& key : spec.series) name += (name.empty() ? "" : ", ") + value_text(of, result, key);
+        Series& series = named(panels, spec.panels.empty() ? "" : spaced(value_text(of, result, spec.panels)));
+        named(series, name).push_back({*x, *y});
+    }
+    std::string html = "<h3>" + escaped(spec.title) + "</h3>\n";
+    if (!spec.caption.empty()) html += "<p class=\"soft\">" + escaped(spec.caption) + "</p>\n";
+    html += "<div class=\"plots\">\n";
+    for (const auto& [panel, series] : panels) {
+        html += "<figure>" + plot_svg(plot_of(spec, panel, series));
+        if (!panel.empty()) html += "<figcaption>" + escaped(panel) + "</figcaption>";
+        html += "</figure>\n";
+    }
+    return html + "</div>\n";
+}
+
+std::string pictures_html(const StudyResults& results, const fs::path& folder) {
+    std::string html;
+    for (std::size_t i = 0; i < results.results.size(); ++i) {
+        const StudyCase& of = results.study.cases[i];
+        const CaseResult& result = results.results[i];
+        if (!result.files.contains("picture") || !matches(of, result, results.study.pictures_where)) continue;
+        const fs::path own = folder / results.study.name;
+        const fs::path ours = own / result.files.at("picture");
+        const std::string title = case_title(of);
+        html += "<div class=\"case\"><h4>" + escaped(title) + "</h4>\n";
+        if (!result.files.contains("difference")) {
+            html += "<div class=\"single\">" + image_html(ours, title) + "</div></div>\n";
+            continue;
+        }
+        const fs::path reference = result.files.contains("reference")
+                                       ? own / result.files.at("reference")
+                                       : folder / "references" / (result.notes.at("reference") + ".png");
+        html += triple_html(ours, reference, own / result.files.at("difference"), title);
+        html += "<p class=\"soft\">" + escaped(figures(result)) + "</p></div>\n";
+    }
+    return html.empty() ? html : "<h3>Pictures</h3>\n<div class=\"cases\">\n" + html + "</div>\n";
+}
+
+std::string failures_html(const StudyResults& results) {
+    if (results.failed == 0) return {};
+    std::string html = "<h3>Cases that failed</h3>\n<ul>\n";
+    for (std::size_t i = 0; i < results.results.size(); ++i) {
+        if (results.results[i].failure.empty()) continue;
+        html += "<li>" + escaped(results.study.cases[i].name) + ": " + escaped(results.results[i].failure) + "</li>\n";
+    }
+    return html + "</ul>\n";
+}
+
+}  // namespace subvol::detail

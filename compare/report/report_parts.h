@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "subvol/study_run.h"
+#include "subvol/study_table.h"
+
+namespace subvol::detail {
+
+// Parts of the report as HTML.
+
+[[nodiscard]] std::string table_html(const StudyTable& table);
+
+/// All panels of a plot.
+[[nodiscard]] std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec);
+
+/// The pictures of all cases that have some, each beside its reference and their difference.
+[[nodiscard]] std::string pictures_html(const StudyResults& results, const std::filesystem::path& folder);
+
+/// What failed, with its message.
+[[nodiscard]] std::string failures_html(const StudyResults& results);
+
+}  // namespace subvol::detail

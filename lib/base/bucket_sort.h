@@ -1,0 +1,71 @@
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+#include "subvol/detail/flat_array.h"
+
+namespace subvol::detail {
+
+/// Calls body(i) for every i in [0, count), in parallel.
+template <class Body>
+void parallel_each(std::size_t count, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+    });
+}
+
+/// Records sorted by a key whose leading part is a small integer: bucket b is records[offsets[b] .. offsets[b+1]).
+template <class Record>
+struct Buckets {
+    FlatArray<std::size_t> offsets;
+    FlatArray<Record> records;
+};
+
+/// Sorts what `emit(i, sink)` gives for i in [0, count): into buckets by `bucket(record)`, each bucket by operator<.
+///
+/// emit is called twice for every i and must give the same records both times. Records must differ from each other, so that the
+/// result does not depend on the number of threads.
+template <class Record, class Emit, class Bucket>
+Buckets<Record> bucket_sort(std::size_t count, std::size_t bucket_count, const Emit& emit, const Bucket& bucket) {
+    Buckets<Record> result;
+    auto& offsets = result.offsets;
+    offsets.assign(bucket_count + 1, 0);
+    parallel_each(count, [&](std::size_t i) {
+        emit(i, [&](const Record& record) {
+            std::atomic_ref(offsets[bucket(record) + 1]).fetch_add(1, std::memory_order_relaxed);
+        });
+    });
+    for (std::size_t b = 0; b < bucket_count; ++b) offsets[b + 1] += offsets[b];
+
+    result.records.resize(offsets.back());
+    auto next = offsets;
+    parallel_each(count, [&](std::size_t i) {
+        emit(i, [&](const Record& record) {
+            result.records[std::atomic_ref(next[bucket(record)]).fetch_add(1, std::memory_order_relaxed)] = record;
+        });
+    });
+    const auto begin = result.records.begin();
+    parallel_each(bucket_count, [&](std::size_t b) {
+        std::sort(begin + static_cast<std::ptrdiff_t>(offsets[b]), begin + static_cast<std::ptrdiff_t>(offsets[b + 1]));
+    });
+    return result;
+}
+
+/// Starts of the groups of equal keys in sorted records, plus the end.
+template <class Record, class Same>
+FlatArray<std::size_t> group_starts(const FlatArray<Record>& records, const Same& same) {
+    FlatArray<std::size_t> starts;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        if (i == 0 || !same(records[i - 1], records[i])) starts.push_back(i);
+    }
+    starts.push_back(records.size());
+    return starts;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace subvol {
+
+/// A number of a point, cell, edge or face. 32 bits reach to 4 billion of each; the build option SUBVOL_INDEX64 makes them 64.
+#ifdef SUBVOL_INDEX64
+using Index = std::uint64_t;
+#else
+using Index = std::uint32_t;
+#endif
+inline constexpr Index kNone = std::numeric_limits<Index>::max();
+
+}  // namespace subvol

@@ -1,0 +1,76 @@
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+#include "knots.h"
+#include "subvol/error.h"
+#include "subvol/transfer_function.h"
+#include "value_range.h"
+
+namespace subvol {
+
+using namespace detail;
+namespace {
+
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
+std::optional<double> number_in(std::string_view text) {
+    text = trimmed(text);
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+    return number;
+}
+
+class Entry {
+public:
+    Entry(std::string_view text, std::size_t index) : text_(text), index_(index) {}
+
+    [[nodiscard]] TransferFunction::OpacityKnot read(const ValueRange& range) const {
+        constexpr const char* kForm = "value:opacity or part%:opacity, such as 0%:0,50%:.2,100%:.9";
+        const std::size_t colon = text_.find(':');
+        if (colon == std::string_view::npos) refuse("is not a value and an opacity", kForm);
+        std::string_view place = trimmed(text_.substr(0, colon));
+        const bool part = !place.empty() && place.back() == '%';
+        if (part) place.remove_suffix(1);
+        const auto value = number_in(place), alpha = number_in(text_.substr(colon + 1));
+        if (!value || !alpha) refuse(value ? "the opacity is no number" : "the value is no number", kForm);
+        if (!(*alpha >= 0 && *alpha <= 1)) refuse("the opacity is out of range", "[0,1]");
+        return {part ? range.at(*value / 100) : *value, *alpha};
+    }
+
+    [[noreturn]] void refuse(const char* message, const char* allowed = "") const {
+        throw Error(ErrorCode::InvalidInput, message,
+                    "opacity entry " + std::to_string(index_) + ", '" + std::string(trimmed(text_)) + "'", allowed);
+    }
+
+private:
+    std::string_view text_;
+    std::size_t index_;
+};
+
+}  // namespace
+
+std::vector<TransferFunction::OpacityKnot> parse_opacity(const std::string& text, double min, double max) {
+    const ValueRange range = usable_range(min, max);
+    std::vector<TransferFunction::OpacityKnot> knots;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const Entry entry(std::string_view(text).substr(begin, end - begin), knots.size());
+        const auto knot = entry.read(range);
+        if (!knots.empty() && knot.value < knots.back().value) entry.refuse("the value is below the one before it");
+        knots.push_back(knot);
+        begin = end + 1;
+    }
+    part_equal_values(knots);
+    return knots;
+}
+
+}  // namespace subvol

@@ -1,0 +1,61 @@
+#include "subvol/transfer_function.h"
+
+#include <cmath>
+
+#include "knots.h"
+#include "subvol/error.h"
+#include "value_range.h"
+
+namespace subvol {
+
+using namespace detail;
+namespace {
+
+[[noreturn]] void refuse(const char* list, std::size_t knot, const char* message, const char* allowed = "") {
+    throw Error(ErrorCode::InvalidInput, message, std::string("transfer function, ") + list + " knot " + std::to_string(knot),
+                allowed);
+}
+
+template <class Knot>
+void check_values(const std::vector<Knot>& knots, const char* list) {
+    if (knots.empty()) throw Error(ErrorCode::InvalidInput, std::string("has no ") + list + " knot", "transfer function");
+    for (std::size_t i = 0; i < knots.size(); ++i) {
+        if (!std::isfinite(knots[i].value)) refuse(list, i, "the value is not finite");
+        if (i > 0 && !(knots[i - 1].value < knots[i].value)) refuse(list, i, "the values do not ascend");
+    }
+}
+
+bool in_unit(double x) {
+    return x >= 0 && x <= 1;
+}
+
+}  // namespace
+
+TransferFunction stretched(const TransferFunction& function, double min, double max) {
+    validate(function);
+    const ValueRange to = usable_range(min, max);
+    const double first = function.color.front().value, width = function.color.back().value - first;
+    TransferFunction result = function;
+    if (!(width > 0)) return result;
+    for (auto& knot : result.color) knot.value = to.at((knot.value - first) / width);
+    for (auto& knot : result.opacity) knot.value = to.at((knot.value - first) / width);
+    // Where the new range is narrow for its distance from 0, neighbours may have become one.
+    part_equal_values(result.color);
+    part_equal_values(result.opacity);
+    validate(result);
+    return result;
+}
+
+void validate(const TransferFunction& function) {
+    check_values(function.color, "colour");
+    check_values(function.opacity, "opacity");
+    for (std::size_t i = 0; i < function.color.size(); ++i) {
+        const Vec3& rgb = function.color[i].rgb;
+        if (!in_unit(rgb.x) || !in_unit(rgb.y) || !in_unit(rgb.z)) refuse("colour", i, "the colour is out of range", "[0,1]");
+    }
+    for (std::size_t i = 0; i < function.opacity.size(); ++i) {
+        if (!in_unit(function.opacity[i].alpha)) refuse("opacity", i, "the opacity is out of range", "[0,1]");
+    }
+}
+
+}  // namespace subvol

@@ -1,0 +1,143 @@
+#include <fstream>
+#include <ios>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "color_curve.h"
+#include "knots.h"
+#include "sharp_curve.h"
+#include "subvol/error.h"
+#include "subvol/transfer_function.h"
+
+namespace subvol {
+
+using namespace detail;
+namespace {
+
+using nlohmann::json;
+using ColorKnots = std::vector<TransferFunction::ColorKnot>;
+using OpacityKnots = std::vector<TransferFunction::OpacityKnot>;
+
+[[noreturn]] void refuse(const std::string& file, const std::string& message, const std::string& allowed = {}) {
+    throw Error(ErrorCode::InvalidInput, message, file, allowed);
+}
+
+std::string name_of(const json& map) {
+    const auto found = map.is_object() ? map.find("Name") : map.end();
+    return map.is_object() && found != map.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+json map_named(const json& maps, const std::string& name, const std::string& file) {
+    constexpr std::size_t kShown = 8;
+    std::string names;
+    std::size_t others = 0;
+    for (const json& map : maps) {
+        if (name_of(map) == name) return map;
+        if (++others <= kShown) names += (names.empty() ? "" : ", ") + name_of(map);
+    }
+    refuse(file, "holds no colour map '" + name + "'", names + (others > kShown ? ", …" : ""));
+}
+
+json read_color_map(const std::string& file, const std::string& name) {
+    std::ifstream stream(file);
+    if (!stream) throw Error(ErrorCode::Io, "cannot be opened", file);
+    json document;
+    try {
+        document = json::parse(stream);
+    } catch (const json::exception& e) {
+        refuse(file, e.what());
+    } catch (const std::ios_base::failure&) {  // a folder, for one
+        throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
+    }
+    // ParaView writes an array of colour maps; a bare one is as clear.
+    if (document.is_object()) document = json::array({std::move(document)});
+    if (!document.is_array() || document.empty() || !document.front().is_object()) {
+        refuse(file, "holds no colour map", "an array with one object that has RGBPoints");
+    }
+    return name.empty() ? json(document.front()) : map_named(document, name, file);
+}
+
+/// The numbers at a key, four of them a knot.
+std::vector<double> read_quadruples(const json& map, const std::string& file, const std::string& key) {
+    const auto found = map.find(key);
+    if (found == map.end()) refuse(file, "key '" + key + "' is missing");
+    if (!found->is_array() || found->empty() || found->size() % 4 != 0) {
+        refuse(file, "key '" + key + "' is not an array of four numbers a knot");
+    }
+    std::vector<double> numbers;
+    numbers.reserve(found->size());
+    for (const json& item : *found) {
+        if (!item.is_number()) refuse(file, "key '" + key + "', entry " + std::to_string(numbers.size()) + " is not a number");
+        numbers.push_back(item.get<double>());
+    }
+    return numbers;
+}
+
+ColorSpace read_color_space(const json& map, const std::string& file) {
+    const auto found = map.find("ColorSpace");
+    if (found == map.end()) return ColorSpace::Rgb;
+    const auto space = found->is_string() ? color_space_named(found->get<std::string>()) : std::nullopt;
+    if (!space) refuse(file, "key 'ColorSpace' is " + found->dump(), "RGB, HSV, Lab, Lab/CIELAB, Diverging or Step");
+    return *space;
+}
+
+/// As in the file: encoded, and values may repeat.
+ColorKnots read_colors(const json& map, const std::string& file) {
+    const std::vector<double> n = read_quadruples(map, file, "RGBPoints");
+    ColorKnots knots;
+    for (std::size_t i = 0; i < n.size(); i += 4) knots.push_back({n[i], {n[i + 1], n[i + 2], n[i + 3]}});
+    return knots;
+}
+
+std::vector<SharpKnot> read_opacities(const json& map, const std::string& file) {
+    const std::vector<double> n = read_quadruples(map, file, "Points");
+    std::vector<SharpKnot> knots;
+    for (std::size_t i = 0; i < n.size(); i += 4) {
+        for (std::size_t k : {i + 2, i + 3}) {
+            if (n[k] >= 0 && n[k] <= 1) continue;
+            refuse(file, "key 'Points', knot " + std::to_string(i / 4) + ": the midpoint or the sharpness is out of range",
+                   "[0,1]");
+        }
+        knots.push_back({n[i], n[i + 1], n[i + 2], n[i + 3]});
+    }
+    return knots;
+}
+
+OpacityKnots default_opacity(const ColorKnots& colors) {
+    const double first = colors.front().value, last = colors.back().value;
+    if (first < last) return {{first, 0}, {last, 0.5}};
+    return {{first, 0.5}};
+}
+
+/// Refuses what the file's knots have wrong, by their numbers in the file.
+void check(const ColorKnots& colors, const OpacityKnots& opacities, const std::string& file) {
+    TransferFunction function{colors, opacities};
+    part_equal_values(function.color);
+    part_equal_values(function.opacity);
+    try {
+        validate(function);
+    } catch (const Error& e) {
+        refuse(file, e.what());
+    }
+}
+
+}  // namespace
+
+TransferFunction read_transfer_function(const std::filesystem::path& path, const std::string& name) {
+    const std::string file = path.string();
+    const json map = read_color_map(file, name);
+    const ColorKnots colors = read_colors(map, file);
+    const ColorSpace space = read_color_space(map, file);
+    if (const auto points = map.find("Points"); points == map.end() || points->is_null()) {
+        const OpacityKnots ramp = default_opacity(colors);
+        check(colors, ramp, file);
+        return {straight_pieces(colors, space), ramp};
+    }
+    const std::vector<SharpKnot> points = read_opacities(map, file);
+    OpacityKnots corners;
+    for (const SharpKnot& p : points) corners.push_back({p.value, p.alpha});
+    check(colors, corners, file);
+    return {straight_pieces(colors, space), straight_pieces(points)};
+}
+
+}  // namespace subvol

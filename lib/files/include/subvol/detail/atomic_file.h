@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace subvol::detail {
+
+/// A file that appears whole or not at all: write to `path()`, then `commit()` renames it to its final name. Without a commit
+/// the destructor removes it. The temporary name keeps the extension, for libraries that look at it.
+class AtomicFile {
+public:
+    /// throws: Error(Io) if the folder of `target` does not exist
+    explicit AtomicFile(std::filesystem::path target);
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+
+    /// throws: Error(Io) if the rename fails
+    void commit();
+
+private:
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;
+    bool committed_ = false;
+};
+
+/// Writes a text beside and renames it.
+///
+/// throws: Error(Io)
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+}  // namespace subvol::detail

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace subvol::detail {
+
+/// How a number lies in a binary file.
+enum class NumberType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
+
+[[nodiscard]] std::size_t size_of(NumberType type);
+[[nodiscard]] bool is_integer(NumberType type);
+
+/// The number that `bytes` begins with.
+[[nodiscard]] double real_from(std::string_view bytes, NumberType type, std::endian order);
+/// The same for integer types; a number beyond 2^63 comes out negative, which no count or index may be.
+[[nodiscard]] std::int64_t integer_from(std::string_view bytes, NumberType type, std::endian order);
+
+/// All numbers of a block of bytes.
+[[nodiscard]] std::vector<double> reals_from(std::string_view bytes, NumberType type, std::endian order);
+[[nodiscard]] std::vector<std::int64_t> integers_from(std::string_view bytes, NumberType type, std::endian order);
+
+}  // namespace subvol::detail

@@ -1,0 +1,128 @@
+#include "vtk_xml_writer.h"
+
+#include <tbb/parallel_for.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <vector>
+
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kBlock = 1 << 17;  // bytes that are compressed by themselves
+constexpr std::size_t kAtOnce = 32;      // blocks, by all threads
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const std::size_t whole = bytes.size() / 3 * 3;
+    std::string text((bytes.size() + 2) / 3 * 4, '=');
+    const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
+    const auto put = [&](std::size_t i, unsigned characters) {
+        const unsigned bits = (byte(i) << 16) | (byte(i + 1) << 8) | byte(i + 2);
+        for (unsigned k = 0; k < characters; ++k) text[i / 3 * 4 + k] = kDigits[(bits >> (18 - 6 * k)) & 63];
+    };
+    for (std::size_t i = 0; i < whole; i += 3) put(i, 4);
+    if (whole < bytes.size()) put(whole, static_cast<unsigned>(bytes.size() - whole) + 1);
+    return text;
+}
+
+std::string zipped(std::span<const std::byte> bytes) {
+    uLongf size = compressBound(bytes.size());
+    std::string result(size, '\0');
+    // The fastest level: a higher one gains some percent of numbers that are mostly noise.
+    [[maybe_unused]] const int done = compress2(reinterpret_cast<Bytef*>(result.data()), &size,
+                                                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_SPEED);
+    assert(done == Z_OK);
+    result.resize(size);
+    return result;
+}
+
+}  // namespace
+
+std::string xml_escaped(std::string_view text) {
+    std::string result;
+    for (const char c : without_controls(text)) {  // XML has none
+        switch (c) {
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            default:
+                result += c;
+        }
+    }
+    return result;
+}
+
+VtkXmlWriter::VtkXmlWriter(OutputFile& out, const std::string& data_set) : out_(out), data_set_(data_set) {
+    const std::string order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
+    line("<?xml version=\"1.0\"?>");
+    line("<VTKFile type=\"" + data_set + "\" version=\"1.0\" byte_order=\"" + order +
+         "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<" + data_set + ">");
+}
+
+// The header: how many blocks, their size, that of the last one if it is not full, and the compressed size of each, which is
+// known when all are written. So no more than some blocks are in memory.
+void VtkXmlWriter::write_array(const char* type, std::string_view name, std::size_t components, std::size_t bytes,
+                               const Fill& fill) {
+    line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
+         std::to_string(components) + "\" format=\"binary\">");
+    const std::size_t count = (bytes + kBlock - 1) / kBlock;
+    std::vector<std::uint64_t> header{count, kBlock, bytes % kBlock};
+    header.resize(3 + count);
+    const auto header_text = [&] {
+        return base64({reinterpret_cast<const char*>(header.data()), header.size() * sizeof(std::uint64_t)});
+    };
+    const std::uint64_t place = out_.position();
+    out_.write(header_text());
+    std::string data;  // what is not written yet: groups of three bytes go together
+    for (std::size_t first = 0; first < count; first += kAtOnce) {
+        std::vector<std::string> blocks(std::min(kAtOnce, count - first));
+        tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+            const std::size_t begin = (first + b) * kBlock;
+            std::vector<std::byte> block(std::min(kBlock, bytes - begin));
+            fill(begin, block);
+            blocks[b] = zipped(block);
+        });
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            header[3 + first + b] = blocks[b].size();
+            data += blocks[b];
+            const std::size_t whole = data.size() / 3 * 3;
+            out_.write(base64(std::string_view(data).substr(0, whole)));
+            data.erase(0, whole);
+        }
+    }
+    out_.write(base64(data));
+    out_.overwrite(place, header_text());
+    line("\n</DataArray>");
+}
+
+// VTK's form: the characters' numbers, a 0 behind each string.
+void VtkXmlWriter::strings(std::string_view name, std::span<const std::string> values) {
+    std::string text = "<Array type=\"String\" Name=\"" + xml_escaped(name) + "\" NumberOfTuples=\"" +
+                       std::to_string(values.size()) + "\" format=\"ascii\">\n";
+    for (const auto& value : values) {
+        for (const char c : value) text += std::to_string(int{static_cast<signed char>(c)}) + " ";
+        text += "0\n";
+    }
+    line(text + "</Array>");
+}
+
+void VtkXmlWriter::end() {
+    line("</" + data_set_ + ">\n</VTKFile>");
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <pugixml.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "number_type.h"
+#include "text_scanner.h"
+#include "vtu_bytes.h"
+#include "xml_tags.h"
+
+namespace subvol::detail {
+
+/// How a VTK XML file stores its arrays.
+///
+/// appended: what follows the underscore of AppendedData; empty if there is none
+struct VtuEncoding {
+    std::endian order = std::endian::little;
+    NumberType header = NumberType::UInt32;
+    Compressor compressor = Compressor::None;
+    std::string_view appended;
+    bool appended_base64 = false;
+};
+
+/// Reads the values of DataArray elements, however they are stored. in: over the whole file, for the places of failures
+class VtuArrays {
+public:
+    VtuArrays(std::string_view text, std::string_view file, const TextScanner& in, const XmlTags& tags,
+              const VtuEncoding& encoding)
+        : text_(text), file_(file), in_(in), tags_(tags), encoding_(encoding) {}
+
+    /// How many values an array has by its own account. The caller knows how many there should be.
+    [[nodiscard]] std::size_t size(const pugi::xml_node& array) const;
+
+    /// Calls take(values) for some values of an array after the other, until it was all of them: never is it all in memory.
+    void each_real(const pugi::xml_node& array, const std::function<void(std::span<const double>)>& take) const;
+    void each_integer(const pugi::xml_node& array, const std::function<void(std::span<const std::int64_t>)>& take) const;
+
+    /// All values of an array.
+    [[nodiscard]] std::vector<double> reals(const pugi::xml_node& array) const;
+    [[nodiscard]] std::vector<std::int64_t> integers(const pugi::xml_node& array) const;
+
+    /// Where an element stands in the text.
+    [[nodiscard]] std::size_t place(const pugi::xml_node& node) const;
+    [[noreturn]] void fail(const pugi::xml_node& array, const std::string& message, const std::string& allowed = {}) const;
+
+private:
+    /// bytes:      of all values
+    /// block, last: bytes of a compressed block, and of the last one, when they are decompressed
+    /// compressed: bytes of each compressed block
+    struct Layout {
+        std::uint64_t bytes = 0, block = 0, last = 0;
+        std::vector<std::uint64_t> compressed = {};
+    };
+    using TakeBytes = std::function<void(std::string_view)>;
+
+    [[nodiscard]] NumberType type_of(const pugi::xml_node& array) const;
+    [[nodiscard]] std::string_view content(const pugi::xml_node& array) const;
+    [[nodiscard]] TextScanner words(const pugi::xml_node& array) const;
+    [[nodiscard]] ByteSource source(const pugi::xml_node& array) const;
+    [[nodiscard]] std::uint64_t header_number(const pugi::xml_node& array, ByteSource& from) const;
+    [[nodiscard]] Layout layout(const pugi::xml_node& array, ByteSource& from) const;
+    [[noreturn]] void fail_bytes(const pugi::xml_node& array, std::uint64_t bytes, const ByteSource& from) const;
+    void each_block(const pugi::xml_node& array, const TakeBytes& take) const;
+    void plain_blocks(const pugi::xml_node& array, std::uint64_t size, ByteSource from, const TakeBytes& take) const;
+    void compressed_blocks(const pugi::xml_node& array, const Layout& layout, ByteSource from, const TakeBytes& take) const;
+
+    std::string_view text_;
+    std::string_view file_;
+    const TextScanner& in_;
+    const XmlTags& tags_;
+    const VtuEncoding& encoding_;
+};
+
+/// An attribute that is a count or an offset; white space around it is VTK's habit. nothing: it is missing or no such number
+[[nodiscard]] std::optional<std::uint64_t> number_attribute(const pugi::xml_node& node, const char* name);
+
+/// The name of a DataArray for messages, in quotes.
+[[nodiscard]] std::string name_of(const pugi::xml_node& array);
+
+}  // namespace subvol::detail

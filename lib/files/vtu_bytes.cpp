@@ -1,0 +1,139 @@
+#include "vtu_bytes.h"
+
+#include <lz4.h>
+#include <lzma.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr unsigned char kNoDigit = 64;
+
+constexpr auto kDigitOf = [] {
+    std::array<unsigned char, 256> table{};
+    table.fill(kNoDigit);
+    for (std::size_t d = 0; d < kDigits.size(); ++d)
+        table[static_cast<unsigned char>(kDigits[d])] = static_cast<unsigned char>(d);
+    return table;
+}();
+
+bool unzip(std::string_view bytes, std::string& into) {
+    uLongf size = into.size();
+    const auto* from = reinterpret_cast<const Bytef*>(bytes.data());
+    return uncompress(reinterpret_cast<Bytef*>(into.data()), &size, from, bytes.size()) == Z_OK && size == into.size();
+}
+
+bool unpack_lzma(std::string_view bytes, std::string& into) {
+    std::uint64_t dictionary_limit = std::uint64_t{128} << 20;  // twice what the strongest preset needs
+    std::size_t read = 0;
+    std::size_t written = 0;
+    const auto result =
+        lzma_stream_buffer_decode(&dictionary_limit, 0, nullptr, reinterpret_cast<const std::uint8_t*>(bytes.data()), &read,
+                                  bytes.size(), reinterpret_cast<std::uint8_t*>(into.data()), &written, into.size());
+    return result == LZMA_OK && written == into.size();
+}
+
+bool unpack_lz4(std::string_view bytes, std::string& into) {
+    constexpr std::size_t kMost = std::numeric_limits<int>::max();
+    if (bytes.size() > kMost || into.size() > kMost) return false;
+    const int size = static_cast<int>(into.size());
+    return LZ4_decompress_safe(bytes.data(), into.data(), static_cast<int>(bytes.size()), size) == size;
+}
+
+}  // namespace
+
+std::optional<std::string> ByteSource::take(std::size_t count) {
+    if (count > left()) return std::nullopt;
+    if (!base64_) {
+        std::string bytes(text_.substr(0, count));
+        text_.remove_prefix(count);
+        return bytes;
+    }
+    std::string bytes;
+    bytes.reserve(count);
+    while (bytes.size() < count) {
+        if (decoded_.empty()) take_whole_groups(bytes, count);
+        if (bytes.size() == count) break;
+        if (decoded_.empty() && !decode_group()) return std::nullopt;
+        const std::size_t some = std::min(count - bytes.size(), decoded_.size());
+        bytes.append(decoded_, 0, some);
+        decoded_.erase(0, some);
+    }
+    return bytes;
+}
+
+std::size_t ByteSource::left() const {
+    return base64_ ? decoded_.size() + text_.size() / 4 * 3 : text_.size();
+}
+
+// The most of it: groups without white space or padding, as many as are wanted whole.
+void ByteSource::take_whole_groups(std::string& bytes, std::size_t count) {
+    const auto digit = [&](std::size_t i) { return kDigitOf[static_cast<unsigned char>(text_[i])]; };
+    std::size_t next = 0;
+    for (; count - bytes.size() >= 3 && text_.size() - next >= 4; next += 4) {
+        const unsigned a = digit(next), b = digit(next + 1), c = digit(next + 2), d = digit(next + 3);
+        if (((a | b | c | d) & kNoDigit) != 0) break;
+        const unsigned bits = (a << 18) | (b << 12) | (c << 6) | d;
+        for (const unsigned shift : {16u, 8u, 0u}) bytes += static_cast<char>((bits >> shift) & 0xFF);
+    }
+    text_.remove_prefix(next);
+}
+
+// Four characters are three bytes; each = at the end is one fewer.
+bool ByteSource::decode_group() {
+    unsigned bits = 0;
+    int digits = 0;
+    int padding = 0;
+    while (digits + padding < 4) {
+        if (text_.empty()) return false;
+        const char c = text_.front();
+        text_.remove_prefix(1);
+        if (c == ' ' || (c >= '\t' && c <= '\r')) continue;
+        const unsigned char digit = kDigitOf[static_cast<unsigned char>(c)];
+        if (c == '=') {
+            ++padding;
+        } else if (digit == kNoDigit || padding > 0) {
+            return false;
+        } else {
+            ++digits;
+        }
+        bits = (bits << 6) | (c == '=' ? 0u : digit);
+    }
+    if (padding > 2) return false;
+    for (int shift = 16; shift >= 8 * padding; shift -= 8) decoded_ += static_cast<char>((bits >> shift) & 0xFF);
+    return true;
+}
+
+std::optional<Compressor> compressor_named(std::string_view name) {
+    if (name.empty()) return Compressor::None;
+    if (name == "vtkZLibDataCompressor") return Compressor::Zlib;
+    if (name == "vtkLZMADataCompressor") return Compressor::Lzma;
+    if (name == "vtkLZ4DataCompressor") return Compressor::Lz4;
+    return std::nullopt;
+}
+
+std::size_t largest_size(Compressor compressor, std::size_t compressed) {
+    // What one bit or byte of each format can stand for at most, rounded up: deflate 258 bytes by 2 bits, LZMA 273 by some 0.3
+    // bits, LZ4 255 by a byte.
+    constexpr std::array<std::size_t, 4> kMostByOne{1, 1040, 8192, 256};
+    constexpr std::size_t kAtLeast = 64;
+    return (compressed + kAtLeast) * kMostByOne[static_cast<std::size_t>(compressor)];
+}
+
+std::optional<std::string> decompressed(Compressor compressor, std::string_view bytes, std::size_t size) {
+    if (size > largest_size(compressor, bytes.size())) return std::nullopt;
+    std::string result(size, '\0');
+    const bool good = compressor == Compressor::Zlib   ? unzip(bytes, result)
+                      : compressor == Compressor::Lzma ? unpack_lzma(bytes, result)
+                                                       : unpack_lz4(bytes, result);
+    if (!good) return std::nullopt;
+    return result;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,116 @@
+#include <Eigen/Eigenvalues>
+
+#include "fit_samples.h"
+#include "fit_shapes.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kMostRounds = 500;
+constexpr int kMaxLevel = 6;  // 193³ values, 58 MB
+
+/// The samples of an octant as a matrix, x down and (y, z) along: entry times √ of how many samples it stands for, so that
+/// least squares over it are those over all.
+struct Octant {
+    VectorXd roots;  // √1, √2, √2, …
+    MatrixXd values;
+};
+
+Octant octant_of(const BasisFunction& basis) {
+    if (basis.level > kMaxLevel) {
+        throw Error(ErrorCode::InvalidInput, "a table cannot be fitted at level " + std::to_string(basis.level), {}, "0 to 6");
+    }
+    const auto n = static_cast<Eigen::Index>(detail::fit_last(basis)) + 1;
+    Octant octant{VectorXd::Constant(n, std::sqrt(2.0)), MatrixXd(n, n * n)};
+    octant.roots[0] = 1;
+    for (Eigen::Index z = 0; z < n; ++z) {
+        for (Eigen::Index y = 0; y < n; ++y) {
+            for (Eigen::Index x = 0; x < n; ++x) {
+                const double value = basis.at(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
+                octant.values(x, y + n * z) = value * octant.roots[x] * octant.roots[y] * octant.roots[z];
+            }
+        }
+    }
+    return octant;
+}
+
+/// The symmetric tensor with two of its three axes projected on the factors' columns: x by rank².
+MatrixXd project(const MatrixXd& values, const MatrixXd& factors) {
+    const Eigen::Index n = factors.rows(), rank = factors.cols();
+    const MatrixXd first = factors.transpose() * values;  // p by (y, z): p may stand for any axis
+    MatrixXd result(n, rank * rank);
+    for (Eigen::Index z = 0; z < n; ++z) {
+        const MatrixXd second = first.middleCols(n * z, n) * factors;  // p by q
+        result.row(z) = Eigen::Map<const VectorXd>(second.data(), rank * rank);
+    }
+    return result;
+}
+
+/// The directions that carry most of the matrix' rows.
+MatrixXd leading(const MatrixXd& matrix, Eigen::Index rank) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix * matrix.transpose());
+    return solver.eigenvectors().rightCols(rank).rowwise().reverse();
+}
+
+struct Decomposition {
+    MatrixXd factors;  // orthonormal columns
+    MatrixXd core;     // rank by rank²
+    int rounds = 0;
+    bool converged = false;
+};
+
+Decomposition decompose(const MatrixXd& values, Eigen::Index rank) {
+    Decomposition result{leading(values, rank), {}, 0, false};
+    double norm = 0;
+    for (; result.rounds < kMostRounds && !result.converged; ++result.rounds) {
+        const MatrixXd projected = project(values, result.factors);
+        result.core = result.factors.transpose() * projected;
+        result.converged = std::abs(result.core.norm() - norm) <= 1e-14 * norm;
+        norm = result.core.norm();
+        if (!result.converged) result.factors = leading(projected, rank);
+    }
+    return result;
+}
+
+std::vector<double> to_vector(const MatrixXd& matrix) {
+    return {matrix.data(), matrix.data() + matrix.size()};
+}
+
+}  // namespace
+
+TuckerFit fit_tucker(const BasisFunction& basis, int rank) {
+    if (rank < 1 || rank > 16) {
+        throw Error(ErrorCode::InvalidInput, "a rank of " + std::to_string(rank) + " was asked for", {}, "1 to 16");
+    }
+    const Octant octant = octant_of(basis);
+    if (rank > octant.roots.size()) throw Error(ErrorCode::InvalidInput, "the rank is above the number of samples");
+    const Decomposition found = decompose(octant.values, rank);
+    const MatrixXd factors = octant.roots.cwiseInverse().asDiagonal() * found.factors;
+    const MatrixXd lines = found.core.transpose() * factors.transpose();  // (q, r) by x
+    TuckerFit fit{.rank = rank, .factors = to_vector(factors), .core = to_vector(found.core), .report = {}};
+    fit.report = {
+        .errors = {}, .parameters = static_cast<int>(factors.size()), .iterations = found.rounds, .converged = found.converged};
+    fit.report.errors = detail::wedge_errors(basis, [&](std::size_t i, std::size_t j, std::size_t k) {
+        const VectorXd line = lines.col(static_cast<Eigen::Index>(i));
+        const Eigen::Map<const MatrixXd> square(line.data(), rank, rank);
+        return (factors.row(static_cast<Eigen::Index>(j)) * square * factors.row(static_cast<Eigen::Index>(k)).transpose())
+            .value();
+    });
+    return fit;
+}
+
+KernelFit detail::fit_separable_table(const BasisFunction& basis) {
+    TuckerFit tucker = fit_tucker(basis, 1);
+    const double factor = std::cbrt(tucker.core[0]);
+    for (double& value : tucker.factors) value *= factor;
+    return {SeparableTableKernel{.radius = kFitReach, .values = tucker.factors}, tucker.report};
+}
+
+}  // namespace subvol

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "subvol/optics.h"
+
+namespace subvol::detail {
+
+/// Prefix integrals of extinction τ and emission τ·c over the value, for pre-integrated classification: what the renderers that
+/// sample planes take for an interval on which the value is linear. Values are counted in cells: x = (value − min)·kCells/(max
+/// − min). Cell i has row i + 1; rows 0 and kCells + 1 stand for all values below and above, where τ and c stay as they are.
+///
+/// Each row has four channels: τ, τr, τg, τb. In it, with s = x − i, the integral from the cell's lower end is s·(mean −
+/// (1−s)·bend): exact over the cell, and where the channel is linear in it. Between two places x₀, x₁ the mean extinction is
+///
+///     (unit·(prefix₁ − prefix₀) + s₁·(mean₁ − (1−s₁)·bend₁) − s₀·(mean₀ − (1−s₀)·bend₀)) / (x₁ − x₀).
+///
+/// Prefixes are whole numbers, so that small differences of large integrals keep all their digits.
+struct PreintegratedTable {
+    static constexpr int kCells = 4096;
+    struct Row {
+        std::array<std::int32_t, 4> prefix;
+        std::array<float, 4> mean;
+        std::array<float, 4> bend;
+    };
+    double min = 0;
+    double max = 1;
+    std::array<float, 4> unit{};        // τ · cells that a count of `prefix` stands for
+    std::vector<Row> rows;              // kCells + 2
+    std::vector<std::int32_t> visible;  // visible[i]: how many rows before i are not transparent; kCells + 3
+
+    /// Whether all values between x0 and x1 (cells) are wholly transparent.
+    [[nodiscard]] bool transparent(double x0, double x1) const;
+};
+
+/// min and max span all knots of the function.
+[[nodiscard]] PreintegratedTable make_preintegrated_table(const Optics& optics);
+
+}  // namespace subvol::detail

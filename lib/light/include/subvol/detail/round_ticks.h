@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace subvol::detail {
+
+/// A round value of an axis and its text: as many digits as the step between ticks needs.
+struct Tick {
+    double value;
+    std::string label;
+};
+
+/// Multiples of 1, 2 or 5 times a power of ten in [min, max]: at most `most`, and at least two.
+///
+/// min, max: finite, min < max; most: 5 or more
+[[nodiscard]] std::vector<Tick> round_ticks(double min, double max, int most = 7);
+
+}  // namespace subvol::detail

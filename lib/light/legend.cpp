@@ -1,0 +1,171 @@
+#include "subvol/legend.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <pugixml.hpp>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "output_file.h"
+#include "subvol/detail/round_ticks.h"
+#include "subvol/error.h"
+#include "subvol/optics.h"
+#include "subvol/srgb.h"
+#include "value_range.h"
+
+namespace subvol {
+
+using namespace detail;
+namespace {
+
+// Pixels. Room for half a label on either side of the bar, and for the opacity's own labels on its left.
+constexpr int kLeft = 56, kRight = 36, kTop = 34, kCurve = 64, kGap = 6, kBar = 18, kBottom = 30;
+constexpr int kBarTop = kTop + kCurve + kGap, kBarEnd = kBarTop + kBar;
+constexpr int kColors = 128;  // along the bar, besides the knots
+constexpr const char* kInk = "#222";
+constexpr const char* kColorsUrl = "url(#colors)";
+
+std::string number(double x) {
+    std::array<char, 32> digits{};
+    return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), x, std::chars_format::fixed, 2).ptr};
+}
+
+std::string hex(const Vec3& linear) {
+    std::string text = "#";
+    for (const double c : {linear.x, linear.y, linear.z}) {
+        const auto byte = static_cast<std::size_t>(std::lround(255 * srgb_from_linear(std::clamp(c, 0.0, 1.0))));
+        text += "0123456789abcdef"[byte / 16];
+        text += "0123456789abcdef"[byte % 16];
+    }
+    return text;
+}
+
+using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
+
+pugi::xml_node append(pugi::xml_node parent, const char* name, Attributes attributes) {
+    pugi::xml_node node = parent.append_child(name);
+    for (const auto& [key, value] : attributes) node.append_attribute(key).set_value(value.c_str());
+    return node;
+}
+
+class Legend {
+public:
+    Legend(const TransferFunction& function, const LegendOptions& options)
+        : optics_(function, 1),
+          options_(options),
+          range_(usable_range(options.min, options.max)),
+          end_(kLeft + options.width_px) {}
+
+    [[nodiscard]] std::string svg() const {
+        const std::string width = std::to_string(end_ + kRight), height = std::to_string(kBarEnd + kBottom);
+        pugi::xml_document document;
+        const pugi::xml_node svg = append(document, "svg",
+                                          {{"xmlns", "http://www.w3.org/2000/svg"},
+                                           {"width", width},
+                                           {"height", height},
+                                           {"viewBox", "0 0 " + width + " " + height},
+                                           {"font-family", "sans-serif"},
+                                           {"font-size", "12"},
+                                           {"fill", kInk}});
+        append(svg, "rect", {{"width", "100%"}, {"height", "100%"}, {"fill", "#fff"}});
+        append_colors(svg);
+        append_text(svg, 0.5 * (kLeft + end_), 20, "middle", options_.title)
+            .append_attribute("style")
+            .set_value("font-size:14px;font-weight:bold");
+        append_opacity(svg);
+        append_bar(svg);
+        std::ostringstream text;
+        document.save(text, " ", pugi::format_default | pugi::format_no_declaration);
+        return text.str();
+    }
+
+private:
+    [[nodiscard]] double part(double value) const { return (value - range_.min) / (range_.max - range_.min); }
+    [[nodiscard]] double x(double value) const { return kLeft + part(value) * options_.width_px; }
+    [[nodiscard]] static double y(double alpha) { return kTop + (1 - alpha) * kCurve; }
+    [[nodiscard]] bool inside(double value) const { return value > range_.min && value < range_.max; }
+
+    /// SVG mixes the colours of stops in sRGB: with enough of them it does not matter.
+    void append_colors(pugi::xml_node svg) const {
+        std::set<double> values;
+        for (int i = 0; i <= kColors; ++i) values.insert(range_.at(static_cast<double>(i) / kColors));
+        for (const auto& knot : optics_.function().color) {
+            if (inside(knot.value)) values.insert(knot.value);
+        }
+        const auto gradient =
+            append(svg, "linearGradient",
+                   {{"id", "colors"}, {"gradientUnits", "userSpaceOnUse"}, {"x1", number(kLeft)}, {"x2", number(end_)}});
+        for (const double value : values) {
+            append(gradient, "stop", {{"offset", number(100 * part(value)) + "%"}, {"stop-color", hex(optics_.color(value))}});
+        }
+    }
+
+    static pugi::xml_node append_text(pugi::xml_node svg, double x, double y, const char* anchor, const std::string& text) {
+        pugi::xml_node node = append(svg, "text", {{"x", number(x)}, {"y", number(y)}, {"text-anchor", anchor}});
+        node.text().set(text.c_str());
+        return node;
+    }
+
+    void append_opacity(pugi::xml_node svg) const {
+        std::string line = "M" + curve_point(range_.min);
+        for (const auto& knot : optics_.function().opacity) {
+            if (inside(knot.value)) line += " L" + curve_point(knot.value);
+        }
+        line += " L" + curve_point(range_.max);
+        append(svg, "path", {{"fill", kColorsUrl}, {"d", line + " V" + number(y(0)) + " H" + number(kLeft) + " Z"}});
+        for (const int alpha : {0, 1}) {
+            append(svg, "path",
+                   {{"stroke", "#999"}, {"d", "M" + number(kLeft) + " " + number(y(alpha)) + " H" + number(end_)}});
+            append_text(svg, kLeft - 6, y(alpha) + 4, "end", std::to_string(alpha));
+        }
+        append(svg, "path",
+               {{"fill", "none"}, {"stroke", kInk}, {"stroke-width", "1.5"}, {"stroke-linejoin", "round"}, {"d", line}});
+        const std::string turned = "translate(" + number(kLeft - 26) + " " + number(y(0.5)) + ") rotate(-90)";
+        append_text(svg, 0, 0, "middle", "opacity").append_attribute("transform").set_value(turned.c_str());
+    }
+
+    [[nodiscard]] std::string curve_point(double value) const {
+        return number(x(value)) + " " + number(y(-std::expm1(-optics_.extinction(value))));
+    }
+
+    void append_bar(pugi::xml_node svg) const {
+        append(svg, "rect",
+               {{"x", number(kLeft)},
+                {"y", number(kBarTop)},
+                {"width", number(options_.width_px)},
+                {"height", number(kBar)},
+                {"fill", kColorsUrl},
+                {"stroke", kInk}});
+        const int most = std::clamp(options_.width_px / 50, 5, 11);
+        for (const auto& [value, label] : round_ticks(range_.min, range_.max, most)) {
+            append(svg, "path", {{"stroke", kInk}, {"d", "M" + number(x(value)) + " " + number(kBarEnd) + " v5"}});
+            append_text(svg, x(value), kBarEnd + 19, "middle", label);
+        }
+    }
+
+    Optics optics_;
+    LegendOptions options_;
+    ValueRange range_;
+    int end_;  // of the bar, in pixels
+};
+
+}  // namespace
+
+std::string legend_svg(const TransferFunction& function, const LegendOptions& options) {
+    if (options.width_px < 50 || options.width_px > 10000) {
+        throw Error(ErrorCode::InvalidInput, "the width is out of range", "legend", "50..10000 pixels");
+    }
+    return Legend(function, options).svg();
+}
+
+void write_legend(const std::filesystem::path& path, const TransferFunction& function, const LegendOptions& options) {
+    OutputFile file(path);
+    file.write(legend_svg(function, options));
+    file.commit();
+}
+
+}  // namespace subvol

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "mcq_grid.h"
+#include "patch.h"
+#include "regular_grid.h"
+#include "subvol/limit.h"
+
+namespace subvol::detail {
+
+/// Value and derivatives of all channels at one place: entry 4c is channel c, followed by its derivatives by u, v, w. Channels
+/// 0 to 2 are the position.
+using Jet = std::vector<double>;
+
+/// A query that has not converged yet.
+///
+/// cell:   which of the patch's wanted cells it lies in; uvw: where in that cell
+/// last:   its jet at the level before
+/// agreed: levels in a row whose jets agreed within the tolerance
+struct OpenQuery {
+    std::size_t query;
+    Index cell;
+    Vec3 uvw;
+    Jet last;
+    int agreed = 0;
+};
+
+/// Evaluates the queries of a few control cells.
+///
+/// A query whose cell lies in a regular grid is evaluated there, by B-splines or by cubic interpolation; one whose grid is wide
+/// enough is refined inside the grid, without topology. All others wait for the refinement of the patch about their cells,
+/// level by level, until two levels agree.
+class BatchEvaluator {
+public:
+    /// scales: what tolerances are relative to, a channel. All references are kept.
+    BatchEvaluator(const LimitOptions& options, const std::vector<double>& scales, LimitSamples& samples);
+
+    /// Evaluates the queries that need no patch; the others stay in `open`.
+    void begin(const HexMesh& control, const Topology& topology, std::vector<OpenQuery>& open);
+
+    /// Evaluates the others, refining the cells about them.
+    void finish(const PatchSource& source, std::vector<OpenQuery> open);
+
+    [[nodiscard]] const LimitReport& report() const { return report_; }
+
+private:
+    void evaluate_level(const HexMesh& mesh, const Topology& topology, int level, std::vector<OpenQuery>& open);
+    [[nodiscard]] bool settle(OpenQuery& at, const Jet& jet, int level, bool regular, bool exact);
+    void load(const HexMesh& mesh, const WideGridPoints& points);
+    void refine_in_grid(OpenQuery& at, int level);
+    [[nodiscard]] bool is_close(const Jet& a, const Jet& b, int level) const;
+    void write(std::size_t query, const Jet& jet);
+
+    const LimitOptions& options_;
+    const std::vector<double>& scales_;
+    LimitSamples& samples_;
+    LimitReport report_;
+    McqGrid grid_rule_;
+    std::vector<double> wide_data_;
+};
+
+}  // namespace subvol::detail

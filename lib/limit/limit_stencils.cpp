@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <mutex>
+
+#include "child_topology.h"
+#include "incident.h"
+#include "regular_grid.h"
+#include "run_nested.h"
+#include "scheme_rows.h"
+#include "subvol/limit.h"
+
+namespace subvol {
+
+namespace {
+
+using detail::SchemeRows;
+using detail::StencilBuilder;
+
+/// A vertex with the points of the cells about it, and what one refinement makes of them: its edge neighbours become its edge
+/// points, and so on, so that the same few points are transformed into themselves.
+class LocalMatrix {
+public:
+    LocalMatrix(const Topology& topology, const SchemeRows& rows) : topology_(topology), rows_(rows), first_(topology) {}
+
+    /// The left eigenvector of eigenvalue 1 as a stencil over the mesh's points.
+    ///
+    /// returns: false, and nothing written, if a point stands in several places about the vertex
+    bool limit_of(Index vertex, StencilBuilder& row) {
+        if (detail::is_grid_point(topology_, vertex)) return spline_limit(vertex, row), true;
+        if (!collect(vertex)) return false;
+        fill_matrix();
+        const auto weights = dominant_left_eigenvector();
+        for (std::size_t i = 0; i < points_.size(); ++i) row.add(points_[i], weights[i]);
+        return true;
+    }
+
+private:
+    /// (1,4,1)/6 along each of the three axes; on the side of a box along two, on its edge along one.
+    void spline_limit(Index vertex, StencilBuilder& row) const {
+        const bool inside = !topology_.point_on_boundary[vertex];
+        const auto edges = topology_.point_edges[vertex];
+        const auto creases = std::count_if(edges.begin(), edges.end(), [&](Index e) { return topology_.edge_is_crease[e]; });
+        if (creases > 2) return row.add(vertex, 1);
+        const double unit = inside ? 1. / 216 : creases == 2 ? 1. / 6 : 1. / 36;
+        row.add(vertex, unit * (inside ? 64 : creases == 2 ? 4 : 16));
+        for (const Index e : edges) {
+            if (inside || (creases == 2 ? topology_.edge_is_crease[e] : topology_.edge_on_boundary[e])) {
+                row.add(detail::other_end(topology_, e, vertex), unit * (inside ? 16 : creases == 2 ? 1 : 4));
+            }
+        }
+        if (creases == 2) return;
+        detail::each_face_at(topology_, vertex, [&](Index face, std::size_t k) {
+            if (inside || topology_.face_on_boundary(face))
+                row.add(topology_.faces[face][(k + 2) % 4], unit * (inside ? 4 : 1));
+        });
+        if (!inside) return;
+        detail::each_cell_at(topology_, vertex,
+                             [&](Index cell, std::size_t) { row.add(detail::across_cell(topology_, cell, vertex), unit); });
+    }
+
+    struct Entry {
+        std::uint32_t row, column;
+        double weight;
+    };
+
+    /// points_[i] of the parent becomes child_points_[i]. False if points repeat: two cells that share two faces, say.
+    bool collect(Index vertex) {
+        points_.assign(1, vertex);
+        child_points_.assign(1, vertex);
+        const auto add = [&](Index point, std::size_t child) {
+            points_.push_back(point);
+            child_points_.push_back(child);
+        };
+        for (const Index e : topology_.point_edges[vertex]) add(detail::other_end(topology_, e, vertex), first_.edges + e);
+        detail::each_face_at(topology_, vertex,
+                             [&](Index face, std::size_t k) { add(topology_.faces[face][(k + 2) % 4], first_.faces + face); });
+        detail::each_cell_at(topology_, vertex, [&](Index cell, std::size_t) {
+            add(detail::across_cell(topology_, cell, vertex), first_.cells + topology_.cell_rank[cell]);
+        });
+        order_.resize(points_.size());
+        for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
+        std::sort(order_.begin(), order_.end(), [&](auto a, auto b) { return points_[a] < points_[b]; });
+        return std::adjacent_find(order_.begin(), order_.end(), [&](auto a, auto b) { return points_[a] == points_[b]; }) ==
+               order_.end();
+    }
+
+    void fill_matrix() {
+        matrix_.clear();
+        for (std::uint32_t i = 0; i < points_.size(); ++i) {
+            row_.clear();
+            rows_.write_row(child_points_[i], row_);
+            const auto [terms, runs] = row_.finish();
+            std::size_t next = 0;
+            for (const auto& run : runs) {
+                for (std::uint32_t k = 0; k < run.count; ++k) matrix_.push_back({i, column_of(terms[next++]), run.weight});
+            }
+        }
+    }
+
+    /// The rules of these schemes reach no further than the cells about the vertex.
+    [[nodiscard]] std::uint32_t column_of(Index point) const {
+        return *std::lower_bound(order_.begin(), order_.end(), point, [&](auto i, Index p) { return points_[i] < p; });
+    }
+
+    /// By repeated multiplication: the next eigenvalue is at most about .7, so 1e-17 takes a hundred steps.
+    [[nodiscard]] std::vector<double> dominant_left_eigenvector() const {
+        std::vector<double> weights(points_.size(), 0.0), next;
+        weights[0] = 1;
+        for (int step = 0; step < 400; ++step) {
+            next.assign(weights.size(), 0.0);
+            for (const auto& [row, column, weight] : matrix_) next[column] += weights[row] * weight;
+            double change = 0;
+            for (std::size_t i = 0; i < weights.size(); ++i) change = std::max(change, std::abs(next[i] - weights[i]));
+            weights.swap(next);
+            if (change < 1e-17) break;
+        }
+        return weights;
+    }
+
+    const Topology& topology_;
+    const SchemeRows& rows_;
+    detail::ChildNumbering first_;
+    StencilBuilder row_;
+    std::vector<Index> points_;
+    std::vector<std::size_t> child_points_;
+    std::vector<std::uint32_t> order_;  // of points_, by id
+    std::vector<Entry> matrix_;
+};
+
+/// The limits of vertices about which points repeat, by way of the next level, where they no longer do.
+class RefinedLimits {
+public:
+    RefinedLimits(const Topology& topology, Scheme scheme) : topology_(topology), scheme_(scheme) {}
+
+    void limit_of(Index vertex, const SchemeRows& rows, StencilBuilder& row) const {
+        // What this runs in parallel must not take up another block, which could come here again.
+        std::call_once(built_, [&] {
+            detail::run_nested([&] {
+                child_ = detail::child_topology(topology_);
+                child_rows_ = std::make_unique<SchemeRows>(child_, SchemeOptions{scheme_});
+            });
+        });
+        StencilBuilder over_child, step;
+        LocalMatrix(child_, *child_rows_).limit_of(vertex, over_child);
+        for_each_term(over_child.finish(), [&](Index middle, double weight) {
+            step.clear();
+            rows.write_row(middle, step);
+            for_each_term(step.finish(), [&](Index point, double w) { row.add(point, weight * w); });
+        });
+    }
+
+private:
+    template <class Visit>
+    static void for_each_term(const detail::StencilRuns& row, const Visit& visit) {
+        std::size_t next = 0;
+        for (const auto& run : row.runs) {
+            for (std::uint32_t k = 0; k < run.count; ++k) visit(row.points[next++], run.weight);
+        }
+    }
+
+    const Topology& topology_;
+    Scheme scheme_;
+    mutable std::once_flag built_;
+    mutable Topology child_;
+    mutable std::unique_ptr<SchemeRows> child_rows_;
+};
+
+}  // namespace
+
+StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
+    if (interpolates(scheme)) return {topology.point_count, topology.point_count, {}};
+    const SchemeRows rows(topology, {scheme});
+    const RefinedLimits refined(topology, scheme);
+    std::vector<StencilTable::Block> blocks((topology.point_count + detail::kBlockRows - 1) / detail::kBlockRows);
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+        LocalMatrix local(topology, rows);
+        StencilBuilder row;
+        detail::StencilBlockWriter block;
+        const std::size_t begin = b * detail::kBlockRows, end = std::min(topology.point_count, begin + detail::kBlockRows);
+        block.start(begin);
+        for (std::size_t p = begin; p < end; ++p) {
+            row.clear();
+            const auto vertex = static_cast<Index>(p);
+            if (topology.point_edges[p].empty()) {
+                row.add(vertex, 1);
+            } else if (!local.limit_of(vertex, row)) {
+                refined.limit_of(vertex, rows, row);
+            }
+            block.push(row.finish());
+        }
+        blocks[b] = block.block();
+    });
+    return {topology.point_count, 0, std::move(blocks)};
+}
+
+HexMesh on_limit(HexMesh mesh, Scheme scheme) {
+    if (interpolates(scheme)) return mesh;
+    validate(mesh);
+    const StencilTable table = limit_stencils(build_topology(mesh), scheme);
+    std::vector<Vec3> points(mesh.points.size());
+    table.apply(std::span<const double>(&mesh.points[0].x, 3 * points.size()), 3,
+                std::span<double>(&points[0].x, 3 * points.size()));
+    mesh.points = std::move(points);
+    for (auto& attribute : mesh.attributes) {
+        std::vector<double> values(attribute.values.size());
+        table.apply(std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels),
+                    std::span<double>(values));
+        attribute.values = std::move(values);
+    }
+    return mesh;
+}
+
+}  // namespace subvol

@@ -1,0 +1,243 @@
+#include "subvol/hex_mesh.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <cmath>
+
+#include "subvol/error.h"
+
+namespace subvol {
+
+namespace {
+
+std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
+    std::array<Vec3, 8> corners;
+    for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[cell[k]];
+    return corners;
+}
+
+std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.cells.size()), [&](const auto& range) {
+        for (std::size_t c = range.begin(); c < range.end(); ++c) {
+            for (const Index p : mesh.cells[c]) std::atomic_ref(used[p]).store(1, std::memory_order_relaxed);
+        }
+    });
+    return used;
+}
+
+/// Whether a cell has 8 different points below the count; without branches, as nearly all have.
+bool is_valid(const std::array<Index, 8>& cell, std::size_t points) {
+    bool wrong = false;
+    for (std::size_t k = 0; k < 8; ++k) {
+        wrong |= cell[k] >= points;
+        for (std::size_t j = 0; j < k; ++j) wrong |= cell[j] == cell[k];
+    }
+    return !wrong;
+}
+
+void validate_cells(const HexMesh& mesh) {
+    const std::size_t count = mesh.cells.size(), points = mesh.points.size();
+    const std::size_t bad = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, count), count,
+        [&](const auto& range, std::size_t first) {
+            for (std::size_t c = range.begin(); c < std::min(range.end(), first); ++c) {
+                if (!is_valid(mesh.cells[c], points)) return c;
+            }
+            return first;
+        },
+        [](std::size_t a, std::size_t b) { return std::min(a, b); });
+    if (bad == count) return;
+    const std::string where = "cell " + std::to_string(bad);
+    auto corners = mesh.cells[bad];
+    for (std::size_t k = 0; k < 8; ++k) {
+        if (corners[k] < points) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "corner " + std::to_string(k) + " is " + std::to_string(corners[k]) + "; the mesh has " +
+                        std::to_string(points) + " points",
+                    where);
+    }
+    std::sort(corners.begin(), corners.end());
+    throw Error(ErrorCode::InvalidInput,
+                "point " + std::to_string(*std::adjacent_find(corners.begin(), corners.end())) + " is listed twice", where,
+                "a hexahedron needs 8 different points");
+}
+
+void validate_tags(const HexMesh& mesh, const std::vector<std::uint8_t>& used) {
+    const auto check = [&](const auto& points, const std::string& where) {
+        for (const Index p : points) {
+            if (p >= mesh.points.size()) {
+                throw Error(
+                    ErrorCode::InvalidInput,
+                    "point " + std::to_string(p) + " does not exist; the mesh has " + std::to_string(mesh.points.size()),
+                    where);
+            }
+            if (!used[p]) throw Error(ErrorCode::InvalidInput, "point " + std::to_string(p) + " belongs to no cell", where);
+        }
+    };
+    for (std::size_t i = 0; i < mesh.creases.size(); ++i) check(mesh.creases[i], "crease " + std::to_string(i));
+    for (std::size_t i = 0; i < mesh.sharp_faces.size(); ++i) check(mesh.sharp_faces[i], "sharp face " + std::to_string(i));
+}
+
+}  // namespace
+
+const Attribute* HexMesh::find_attribute(std::string_view name) const {
+    const auto found = std::find_if(attributes.begin(), attributes.end(), [&](const auto& a) { return a.name == name; });
+    return found == attributes.end() ? nullptr : &*found;
+}
+
+void validate(const HexMesh& mesh) {
+    if (mesh.cells.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra");
+    validate_cells(mesh);
+    const auto used = used_points(mesh);
+    validate_tags(mesh, used);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const Vec3& x = mesh.points[p];
+        if (used[p] && !(std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z))) {
+            throw Error(ErrorCode::InvalidInput, "a coordinate is not finite", "point " + std::to_string(p));
+        }
+    }
+    for (const auto& attribute : mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        if (attribute.channels < 1 || attribute.values.size() != channels * mesh.points.size()) {
+            throw Error(ErrorCode::InvalidInput, "has " + std::to_string(attribute.values.size()) + " values",
+                        "attribute \"" + attribute.name + "\"",
+                        std::to_string(mesh.points.size()) + " points of " + std::to_string(attribute.channels) + " channels");
+        }
+        for (std::size_t i = 0; i < attribute.values.size(); ++i) {
+            if (used[i / channels] && !std::isfinite(attribute.values[i])) {
+                throw Error(ErrorCode::InvalidInput, "the value at point " + std::to_string(i / channels) + " is not finite",
+                            "attribute \"" + attribute.name + "\"");
+            }
+        }
+    }
+}
+
+HexMesh without_unused_points(HexMesh mesh) {
+    const auto used = used_points(mesh);
+    std::vector<Index> renumbered(mesh.points.size(), kNone);
+    Index count = 0;
+    for (std::size_t p = 0; p < used.size(); ++p) {
+        if (used[p]) renumbered[p] = count++;
+    }
+    if (count == mesh.points.size()) return mesh;
+
+    HexMesh result;
+    result.points.reserve(count);
+    for (const auto& attribute : mesh.attributes) result.attributes.push_back({attribute.name, attribute.channels, {}});
+    for (std::size_t p = 0; p < used.size(); ++p) {
+        if (!used[p]) continue;
+        result.points.push_back(mesh.points[p]);
+        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+            const auto channels = static_cast<std::size_t>(mesh.attributes[a].channels);
+            const auto first = mesh.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
+            result.attributes[a].values.insert(result.attributes[a].values.end(), first,
+                                               first + static_cast<std::ptrdiff_t>(channels));
+        }
+    }
+    result.cells = std::move(mesh.cells);
+    for (auto& cell : result.cells) {
+        for (auto& p : cell) p = renumbered[p];
+    }
+    for (const auto& [a, b] : mesh.creases) {
+        if (used[a] && used[b]) result.creases.push_back({renumbered[a], renumbered[b]});
+    }
+    for (auto face : mesh.sharp_faces) {
+        if (!std::ranges::all_of(face, [&](Index p) { return used[p]; })) continue;
+        for (auto& p : face) p = renumbered[p];
+        result.sharp_faces.push_back(face);
+    }
+    return result;
+}
+
+double cell_volume(const std::array<Vec3, 8>& c) {
+    const double g = 0.5 / std::sqrt(3.0);
+    double volume = 0;
+    for (int point = 0; point < 8; ++point) {
+        const double u = 0.5 + ((point & 1) ? g : -g), v = 0.5 + ((point & 2) ? g : -g), w = 0.5 + ((point & 4) ? g : -g);
+        const auto mix = [](const Vec3& a, const Vec3& b, double t) { return (1 - t) * a + t * b; };
+        const Vec3 du = mix(mix(c[1] - c[0], c[2] - c[3], v), mix(c[5] - c[4], c[6] - c[7], v), w);
+        const Vec3 dv = mix(mix(c[3] - c[0], c[2] - c[1], u), mix(c[7] - c[4], c[6] - c[5], u), w);
+        const Vec3 dw = mix(mix(c[4] - c[0], c[5] - c[1], u), mix(c[7] - c[3], c[6] - c[2], u), v);
+        volume += glm::dot(du, glm::cross(dv, dw)) / 8;
+    }
+    return volume;
+}
+
+std::size_t orient_cells(HexMesh& mesh) {
+    std::size_t turned = 0;
+    for (auto& cell : mesh.cells) {
+        if (cell_volume(corners_of(mesh, cell)) >= 0) continue;
+        std::swap_ranges(cell.begin(), cell.begin() + 4, cell.begin() + 4);
+        ++turned;
+    }
+    return turned;
+}
+
+Box bounds(const HexMesh& mesh) {
+    const auto used = used_points(mesh);
+    Box box;
+    for (std::size_t p = 0; p < used.size(); ++p) {
+        if (used[p]) box.add(mesh.points[p]);
+    }
+    return box;
+}
+
+namespace {
+
+Attribute length_of(const Attribute& vector) {
+    const auto channels = static_cast<std::size_t>(vector.channels);
+    Attribute result{vector.name, 1, std::vector<double>(vector.values.size() / channels)};
+    for (std::size_t p = 0; p < result.values.size(); ++p) {
+        double sum = 0;
+        for (std::size_t c = 0; c < channels; ++c) sum += vector.values[p * channels + c] * vector.values[p * channels + c];
+        result.values[p] = std::sqrt(sum);
+    }
+    return result;
+}
+
+std::optional<Attribute> channel_of(const HexMesh& mesh, const std::string& name) {
+    const auto dot = name.rfind('.');
+    if (dot == std::string::npos) return std::nullopt;
+    const Attribute* vector = mesh.find_attribute(std::string_view(name).substr(0, dot));
+    int channel = -1;
+    std::from_chars(name.data() + dot + 1, name.data() + name.size(), channel);
+    if (!vector || channel < 0 || channel >= vector->channels) return std::nullopt;
+    const auto channels = static_cast<std::size_t>(vector->channels);
+    Attribute result{name, 1, std::vector<double>(vector->values.size() / channels)};
+    for (std::size_t p = 0; p < result.values.size(); ++p) {
+        result.values[p] = vector->values[p * channels + static_cast<std::size_t>(channel)];
+    }
+    return result;
+}
+
+}  // namespace
+
+SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name) {
+    if (name) {
+        if (const Attribute* found = mesh.find_attribute(*name)) {
+            if (found->channels == 1) return {*found, {}};
+            return {length_of(*found), "field \"" + *name + "\" is a vector: its length is taken"};
+        }
+        if (auto channel = channel_of(mesh, *name)) return {std::move(*channel), {}};
+        std::string known;
+        for (const auto& attribute : mesh.attributes) known += (known.empty() ? "" : ", ") + attribute.name;
+        throw Error(ErrorCode::InvalidInput, "there is no field \"" + *name + "\"", {},
+                    known.empty() ? "the mesh has no fields" : "the mesh has: " + known);
+    }
+    for (const auto& attribute : mesh.attributes) {
+        if (attribute.channels == 1) return {attribute, {}};
+    }
+    if (!mesh.attributes.empty()) {
+        const auto& first = mesh.attributes.front();
+        return {length_of(first), "no scalar field: the length of \"" + first.name + "\" is taken"};
+    }
+    return {{"density", 1, std::vector<double>(mesh.points.size(), 1.0)}, "no field: density 1 everywhere"};
+}
+
+}  // namespace subvol

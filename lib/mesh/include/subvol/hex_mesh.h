@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "subvol/index.h"
+#include "subvol/vec.h"
+
+namespace subvol {
+
+/// A named array at the points of a mesh.
+///
+/// values: point-major, `channels` numbers a point: channel c of point p is values[p * channels + c]
+struct Attribute {
+    std::string name;
+    int channels = 1;
+    std::vector<double> values;
+};
+
+/// A hexahedral control mesh with attributes at its points.
+///
+/// cells:   8 point ids in VTK corner order: 0-3 the bottom counter-clockwise, 4-7 above them; parameters u along 0→1,
+///          v along 0→3, w along 0→4
+/// creases: point-id pairs (smaller first) of boundary edges to be kept sharp besides those that the default rule finds
+/// sharp_faces: four point ids in cyclic order of interior faces that schemes treat as a boundary from both sides
+struct HexMesh {
+    std::vector<Vec3> points;
+    std::vector<std::array<Index, 8>> cells;
+    std::vector<Attribute> attributes;
+    std::vector<std::array<Index, 2>> creases;
+    std::vector<std::array<Index, 4>> sharp_faces;
+
+    [[nodiscard]] const Attribute* find_attribute(std::string_view name) const;
+};
+
+/// Checks what every later stage relies on.
+///
+/// throws: Error(InvalidInput) if there is no cell, a corner is out of range or listed twice in a cell, a used point is not
+///         finite, an attribute has the wrong length, or its value at a used point is not finite; names the cell or point
+///         (counted from 0)
+void validate(const HexMesh& mesh);
+
+/// The mesh without the points that no cell uses; the others keep their order.
+[[nodiscard]] HexMesh without_unused_points(HexMesh mesh);
+
+/// Turns every left-handed cell (negative volume) into a right-handed one by exchanging its bottom and top.
+///
+/// returns: how many were turned
+std::size_t orient_cells(HexMesh& mesh);
+
+/// The signed volume of a trilinear cell, exact (2³ Gauss points). corners: 8 points in VTK order
+[[nodiscard]] double cell_volume(const std::array<Vec3, 8>& corners);
+
+/// The box of the points that cells use.
+[[nodiscard]] Box bounds(const HexMesh& mesh);
+
+/// The scalar that is shown, exported or splatted.
+struct SelectedField {
+    Attribute scalar;     // one channel
+    std::string warning;  // what was decided for the user; empty when nothing was
+};
+
+/// Chooses a scalar: `name`, else the first one-channel attribute, else the length of the first vector, else density 1.
+///
+/// name:   may name a vector, whose length is taken; "name.k" takes channel k
+/// throws: Error(InvalidInput) if no attribute has that name; lists those that exist
+[[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name);
+
+}  // namespace subvol

@@ -1,0 +1,224 @@
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "exodus_file.h"
+#include "mesh_file.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr Wording kWording{"node", "element", 1};
+
+// A block of elements of one type. number: as its variables are named, from 1; first: its first element among all
+struct Block {
+    std::size_t number, first, size, nodes;
+    std::string type;
+    bool taken = false;
+};
+
+struct Variable {
+    std::string name;
+    std::vector<std::size_t> numbers;  // of its components, from 1
+};
+
+bool is_axis(std::string_view name, char axis) {
+    return !name.empty() && (name.back() == axis || name.back() == axis - 'A' + 'a');
+}
+
+// Exodus has scalars alone: three in a row that end in X, Y and Z are one vector.
+std::vector<Variable> with_vectors(const std::vector<std::string>& names) {
+    std::vector<Variable> variables;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        std::string stem = names[i].substr(0, names[i].empty() ? 0 : names[i].size() - 1);
+        const auto follows = [&](std::size_t k, char axis) {
+            return i + k < names.size() && is_axis(names[i + k], axis) &&
+                   names[i + k].substr(0, names[i + k].size() - 1) == stem;
+        };
+        const bool vector = !stem.empty() && follows(0, 'X') && follows(1, 'Y') && follows(2, 'Z');
+        if (!vector) {
+            variables.push_back({names[i], {i + 1}});
+            continue;
+        }
+        if (stem.size() > 1 && stem.back() == '_') stem.pop_back();
+        variables.push_back({stem, {i + 1, i + 2, i + 3}});
+        i += 2;
+    }
+    return variables;
+}
+
+class ExodusReader {
+public:
+    ExodusReader(std::string_view bytes, std::string_view file, const ReadOptions& options)
+        : in_(std::string_view(), file, TextScanner::Comments::None), file_(file), options_(options), exodus_(bytes, file) {
+        in_.name_no_place();
+    }
+
+    ReadResult read() {
+        read_points();
+        find_blocks();
+        for (Block& block : blocks_) take(block);
+        list_left_out();
+        read_variables();
+        return finish(std::move(found_), in_, file_, kWording, options_);
+    }
+
+private:
+    void read_points() {
+        const std::size_t count = exodus_.dimension("num_nodes"), dimension = exodus_.dimension("num_dim");
+        if (count == 0) exodus_.fail("not an Exodus II file, or it has no nodes");
+        if (dimension != 3) exodus_.fail("dimension " + std::to_string(dimension) + " is not supported", "it has to be 3");
+        if (count >= kNone) exodus_.fail("count out of range: " + std::to_string(count) + " nodes");
+        std::vector<std::vector<double>> axes;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::string name = std::string("coord") + "xyz"[a];
+            // In the first versions all are one variable.
+            axes.push_back(exodus_.has(name) ? exodus_.reals(name, {}, count) : exodus_.reals("coord", {a}, count));
+        }
+        found_.points.reserve(count);
+        for (std::size_t p = 0; p < count; ++p) add_point(found_, {axes[0][p], axes[1][p], axes[2][p]}, 0);
+    }
+
+    void find_blocks() {
+        const std::size_t count = exodus_.dimension("num_el_blk");
+        exodus_.expect_room(count, sizeof(std::int32_t), "num_el_blk");
+        for (std::size_t b = 1; b <= count; ++b) {
+            const std::string number = std::to_string(b);
+            const std::size_t size = exodus_.dimension("num_el_in_blk" + number);
+            if (size == 0) continue;
+            exodus_.expect_room(size, 1, "block " + number);
+            if (size >= kNone - elements_) exodus_.fail("there are too many elements");
+            blocks_.push_back({b, elements_, size, exodus_.dimension("num_nod_per_el" + number),
+                               upper_case(exodus_.attribute("connect" + number, "elem_type"))});
+            elements_ += size;
+        }
+    }
+
+    void take(Block& block) {
+        const std::string& type = block.type;
+        const bool others = options_.other_cells != OtherCells::Ignore;
+        if (type.starts_with("HEX") && type != "HEXSHELL") {
+            take_as(found_.hexes, block, "a hexahedron");
+        } else if (others && type.starts_with("TET")) {
+            take_as(found_.tets, block, "a tetrahedron");
+        } else if (others && type.starts_with("WEDGE")) {
+            take_as(found_.prisms, block, "a wedge");
+        } else if (others && type.starts_with("PYR")) {
+            take_as(found_.pyramids, block, "a pyramid");
+        } else {
+            left_out_[type] += block.size;
+        }
+    }
+
+    // The nodes in the middle of edges, faces and the element come behind the corners.
+    template <std::size_t N>
+    void take_as(FileCells<N>& into, Block& block, std::string_view kind) {
+        block.taken = true;
+        if (block.nodes < N) {
+            exodus_.fail("block " + std::to_string(block.number) + " of type " + in_quotes(block.type) + " has " +
+                             std::to_string(block.nodes) + " nodes an element",
+                         std::string(kind) + " has " + std::to_string(N));
+        }
+        exodus_.expect_room(block.size, block.nodes, "block " + std::to_string(block.number));
+        if (block.nodes > N) curved_ += block.size;
+        const auto nodes = exodus_.integers("connect" + std::to_string(block.number), block.size * block.nodes);
+        for (std::size_t e = 0; e < block.size; ++e) {
+            auto& corners = into.corners.emplace_back();
+            const std::size_t number = block.first + e;
+            for (std::size_t k = 0; k < N; ++k) corners[k] = corner(nodes[e * block.nodes + k], number);
+            into.numbers.push_back(static_cast<Index>(number));
+            check_corners(in_, 0, corners, number, kWording, kind);
+        }
+    }
+
+    [[nodiscard]] Index corner(std::int64_t node, std::size_t element) const {
+        const std::size_t count = found_.points.size();
+        if (node < 1 || static_cast<std::uint64_t>(node) > count) {
+            exodus_.fail(kWording.name_cell(element) + ": there is no node " + std::to_string(node),
+                         "nodes are 1 to " + std::to_string(count));
+        }
+        return static_cast<Index>(node - 1);
+    }
+
+    void list_left_out() {
+        if (curved_ > 0) {
+            found_.warnings.push_back(counted(curved_, "element has", "elements have") +
+                                      " more nodes than corners: the corners alone are taken");
+        }
+        std::string list;
+        for (const auto& [type, count] : left_out_) {
+            list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + in_quotes(type);
+        }
+        report_left_out(found_, list, file_);
+    }
+
+    void read_variables() {
+        const std::size_t steps = exodus_.dimension("time_step");
+        if (steps == 0) return;
+        step_ = steps - 1;
+        const auto of_nodes = exodus_.names("name_nod_var", exodus_.dimension("num_nod_var"));
+        const auto of_elements = exodus_.names("name_elem_var", exodus_.dimension("num_elem_var"));
+        for (const Variable& variable : with_vectors(of_nodes)) add_array(variable, false);
+        for (const Variable& variable : with_vectors(of_elements)) add_array(variable, true);
+        if (steps == 1 || found_.arrays.empty()) return;
+        found_.warnings.push_back("of " + std::to_string(steps) + " time steps the last one is taken");
+    }
+
+    void add_array(const Variable& variable, bool at_cells) {
+        const std::size_t components = variable.numbers.size();
+        FileArray array{variable.name, static_cast<int>(components), at_cells, {}};
+        array.values.resize((at_cells ? elements_ : found_.points.size()) * components);
+        for (std::size_t c = 0; c < components; ++c) {
+            const std::size_t number = variable.numbers[c];
+            const auto values = at_cells ? element_values(number) : node_values(number);
+            if (values.empty()) {
+                found_.warnings.push_back("array \"" + variable.name + "\" is not in every block: ignored");
+                return;
+            }
+            for (std::size_t i = 0; i < values.size(); ++i) array.values[i * components + c] = values[i];
+        }
+        found_.arrays.push_back(std::move(array));
+    }
+
+    [[nodiscard]] std::vector<double> node_values(std::size_t variable) const {
+        const std::string name = "vals_nod_var" + std::to_string(variable);
+        const std::size_t nodes = found_.points.size();
+        if (exodus_.has(name)) return exodus_.reals(name, {step_}, nodes);
+        return exodus_.reals("vals_nod_var", {step_, variable - 1}, nodes);  // as in the first versions
+    }
+
+    // One an element of the file, not a number where a block that is left out has none; nothing if one that is taken has none.
+    [[nodiscard]] std::vector<double> element_values(std::size_t variable) const {
+        std::vector<double> values(elements_, std::numeric_limits<double>::quiet_NaN());
+        for (const Block& block : blocks_) {
+            const std::string name = "vals_elem_var" + std::to_string(variable) + "eb" + std::to_string(block.number);
+            const bool has = exodus_.has(name);
+            if (!has && block.taken) return {};
+            if (!has) continue;
+            const auto of_block = exodus_.reals(name, {step_}, block.size);
+            std::copy(of_block.begin(), of_block.end(), values.begin() + static_cast<std::ptrdiff_t>(block.first));
+        }
+        return values;
+    }
+
+    TextScanner in_;
+    std::string_view file_;
+    ReadOptions options_;
+    ExodusFile exodus_;
+    MeshFile found_;
+    std::vector<Block> blocks_;
+    std::size_t elements_ = 0;
+    std::size_t curved_ = 0;
+    std::size_t step_ = 0;
+    std::map<std::string, std::size_t> left_out_;
+};
+
+}  // namespace
+
+ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return ExodusReader(text, file, options).read();
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,132 @@
+#include <netcdf.h>
+#include <netcdf_mem.h>
+
+#include <algorithm>
+#include <array>
+#include <mutex>
+#include <utility>
+
+#include "netcdf_source.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kMostOfDeflate = 1040;  // 1032 and what blocks need
+
+// The library is not thread-safe: of two files in two threads one waits for the other.
+std::mutex& library_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+constexpr std::array<std::pair<nc_type, NumberType>, 11> kTypes{{{NC_BYTE, NumberType::Int8},
+                                                                 {NC_CHAR, NumberType::UInt8},
+                                                                 {NC_SHORT, NumberType::Int16},
+                                                                 {NC_INT, NumberType::Int32},
+                                                                 {NC_FLOAT, NumberType::Float32},
+                                                                 {NC_DOUBLE, NumberType::Float64},
+                                                                 {NC_UBYTE, NumberType::UInt8},
+                                                                 {NC_USHORT, NumberType::UInt16},
+                                                                 {NC_UINT, NumberType::UInt32},
+                                                                 {NC_INT64, NumberType::Int64},
+                                                                 {NC_UINT64, NumberType::UInt64}}};
+
+class Netcdf4 : public NetcdfSource {
+public:
+    Netcdf4(std::string_view bytes, std::string_view file) : lock_(library_mutex()), file_(file) {
+        // The library asks for a pointer to what may be changed, and does not change what is opened to be read.
+        void* memory = const_cast<char*>(bytes.data());
+        check(nc_open_mem(std::string(file).c_str(), NC_NOWRITE, bytes.size(), memory, &id_));
+        try {
+            read_catalog();
+        } catch (...) {
+            nc_close(id_);
+            throw;
+        }
+    }
+    ~Netcdf4() override { nc_close(id_); }
+    Netcdf4(const Netcdf4&) = delete;
+    Netcdf4& operator=(const Netcdf4&) = delete;
+
+    [[nodiscard]] std::string values(const NetcdfVariable& variable, std::span<const std::size_t> places) const override {
+        std::vector<std::size_t> start(variable.lengths.size()), counts = variable.lengths;
+        std::size_t count = size_of(variable.type);
+        for (std::size_t d = 0; d < counts.size(); ++d) {
+            if (d < places.size()) {
+                start[d] = places[d];
+                counts[d] = 1;
+            }
+            count *= counts[d];
+        }
+        std::string bytes(count, '\0');
+        if (count > 0) check(nc_get_vara(id_, variable.number, start.data(), counts.data(), bytes.data()));
+        return bytes;
+    }
+
+    [[nodiscard]] std::size_t growth() const override { return kMostOfDeflate; }
+
+private:
+    void read_catalog() {
+        int count = 0;
+        check(nc_inq_nvars(id_, &count));
+        for (int number = 0; number < count; ++number) read_variable(number);
+        check(nc_inq_ndims(id_, &count));
+        std::vector<int> ids(static_cast<std::size_t>(count));
+        check(nc_inq_dimids(id_, &count, ids.data(), 0));
+        for (const int dimension : ids) {
+            std::array<char, NC_MAX_NAME + 1> name{};
+            std::size_t length = 0;
+            check(nc_inq_dim(id_, dimension, name.data(), &length));
+            dimensions.emplace(name.data(), length);
+        }
+    }
+
+    // Those of types that users define are left out.
+    void read_variable(int number) {
+        std::array<char, NC_MAX_NAME + 1> name{};
+        nc_type type = NC_NAT;
+        int rank = 0, attributes = 0;
+        std::array<int, NC_MAX_VAR_DIMS> ids{};
+        check(nc_inq_var(id_, number, name.data(), &type, &rank, ids.data(), &attributes));
+        const auto known = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& pair) { return pair.first == type; });
+        if (known == kTypes.end()) return;
+        NetcdfVariable variable{.type = known->second, .characters = type == NC_CHAR, .number = number};
+        for (int d = 0; d < rank; ++d) {
+            check(nc_inq_dimlen(id_, ids[static_cast<std::size_t>(d)], &variable.lengths.emplace_back()));
+        }
+        for (int a = 0; a < attributes; ++a) read_attribute(variable, a);
+        variables.emplace(name.data(), std::move(variable));
+    }
+
+    void read_attribute(NetcdfVariable& variable, int number) const {
+        std::array<char, NC_MAX_NAME + 1> name{};
+        nc_type type = NC_NAT;
+        std::size_t length = 0;
+        constexpr std::size_t kLongest = 1 << 16;  // HDF5's own limit
+        check(nc_inq_attname(id_, variable.number, number, name.data()));
+        check(nc_inq_att(id_, variable.number, name.data(), &type, &length));
+        if (type != NC_CHAR || length > kLongest) return;
+        std::string text(length, '\0');
+        check(nc_get_att_text(id_, variable.number, name.data(), text.data()));
+        variable.texts.emplace(name.data(), text);
+    }
+
+    void check(int status) const {
+        if (status == NC_NOERR) return;
+        throw Error(ErrorCode::InvalidInput, "cannot be read: " + std::string(nc_strerror(status)), std::string(file_));
+    }
+
+    std::scoped_lock<std::mutex> lock_;
+    std::string_view file_;
+    int id_ = -1;
+};
+
+}  // namespace
+
+std::unique_ptr<NetcdfSource> open_netcdf4(std::string_view bytes, std::string_view file) {
+    return std::make_unique<Netcdf4>(bytes, file);
+}
+
+}  // namespace subvol::detail

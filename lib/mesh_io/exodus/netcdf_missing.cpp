@@ -1,0 +1,11 @@
+#include "netcdf_source.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+std::unique_ptr<NetcdfSource> open_netcdf4(std::string_view, std::string_view file) {
+    throw Error(ErrorCode::MissingCapability, "this build cannot read files of HDF5", std::string(file),
+                "it takes netCDF's library and the build option SUBVOL_NETCDF; nccopy -6 converts to what it can read");
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,69 @@
+#include "ghost_cells.h"
+
+#include <algorithm>
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::string_view kArray = "vtkGhostType";
+// Bits of the array: of cells a duplicate, one that is refined, a hidden one; of points a hidden one.
+constexpr unsigned kLeftOutCell = 1 | 8 | 32;
+constexpr unsigned kHiddenPoint = 2;
+
+bool is_ghosts(const FileArray& array) {
+    return array.name == kArray && array.components == 1;
+}
+
+bool has_bit(double value, unsigned bits) {
+    return value >= 1 && value < 256 && (static_cast<unsigned>(value) & bits) != 0;
+}
+
+// Keeps the cells of one kind that `keeps` says of their place in the list.
+template <std::size_t N, class Keeps>
+std::size_t filter(FileCells<N>& cells, const Keeps& keeps) {
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < cells.corners.size(); ++c) {
+        if (!keeps(cells, c)) continue;
+        cells.corners[kept] = cells.corners[c];
+        if (!cells.numbers.empty()) cells.numbers[kept] = cells.numbers[c];
+        ++kept;
+    }
+    const std::size_t dropped = cells.corners.size() - kept;
+    cells.corners.resize(kept);
+    if (!cells.numbers.empty()) cells.numbers.resize(kept);
+    return dropped;
+}
+
+template <class Keeps>
+std::size_t filter_all(MeshFile& found, const Keeps& keeps) {
+    return filter(found.hexes, keeps) + filter(found.tets, keeps) + filter(found.prisms, keeps) + filter(found.pyramids, keeps);
+}
+
+void drop_by_cells(MeshFile& found, const std::vector<double>& ghosts) {
+    const std::size_t dropped = filter_all(found, [&](const auto& cells, std::size_t c) {
+        return cells.numbers.empty() || !has_bit(ghosts[cells.numbers[c]], kLeftOutCell);
+    });
+    if (dropped == 0) return;
+    found.warnings.push_back(counted(dropped, "ghost cell (duplicate or hidden)", "ghost cells (duplicate or hidden)") +
+                             " left out");
+}
+
+void drop_by_points(MeshFile& found, const std::vector<double>& ghosts) {
+    const std::size_t dropped = filter_all(found, [&](const auto& cells, std::size_t c) {
+        const auto& corners = cells.corners[c];
+        return std::none_of(corners.begin(), corners.end(), [&](Index p) { return has_bit(ghosts[p], kHiddenPoint); });
+    });
+    if (dropped > 0) found.warnings.push_back(counted(dropped, "cell", "cells") + " with hidden points left out");
+}
+
+}  // namespace
+
+void drop_ghosts(MeshFile& found) {
+    for (const FileArray& array : found.arrays) {
+        if (is_ghosts(array)) array.at_cells ? drop_by_cells(found, array.values) : drop_by_points(found, array.values);
+    }
+    std::erase_if(found.arrays, is_ghosts);
+}
+
+}  // namespace subvol::detail

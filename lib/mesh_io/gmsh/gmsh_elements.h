@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string_view>
+
+namespace subvol::detail {
+
+/// What an element of Gmsh is taken for.
+enum class GmshShape { Other, Hexahedron, Tetrahedron, Prism, Pyramid };
+
+/// nodes: those in the middle of edges, faces and the element come behind the corners
+struct GmshElement {
+    std::size_t nodes;
+    std::string_view one, many;
+    GmshShape shape = GmshShape::Other;
+};
+
+/// By the number that Gmsh gives to a type.
+inline const std::map<std::int64_t, GmshElement> kGmshElements{
+    {1, {2, "line", "lines"}},
+    {2, {3, "triangle", "triangles"}},
+    {3, {4, "quad", "quads"}},
+    {4, {4, "tetrahedron", "tetrahedra", GmshShape::Tetrahedron}},
+    {5, {8, "hexahedron", "hexahedra", GmshShape::Hexahedron}},
+    {6, {6, "prism", "prisms", GmshShape::Prism}},
+    {7, {5, "pyramid", "pyramids", GmshShape::Pyramid}},
+    {8, {3, "quadratic line", "quadratic lines"}},
+    {9, {6, "quadratic triangle", "quadratic triangles"}},
+    {10, {9, "quadratic quad", "quadratic quads"}},
+    {11, {10, "quadratic tetrahedron", "quadratic tetrahedra", GmshShape::Tetrahedron}},
+    {12, {27, "quadratic hexahedron", "quadratic hexahedra", GmshShape::Hexahedron}},
+    {13, {18, "quadratic prism", "quadratic prisms", GmshShape::Prism}},
+    {14, {14, "quadratic pyramid", "quadratic pyramids", GmshShape::Pyramid}},
+    {15, {1, "point", "points"}},
+    {16, {8, "quadratic quad", "quadratic quads"}},
+    {17, {20, "quadratic hexahedron", "quadratic hexahedra", GmshShape::Hexahedron}},
+    {18, {15, "quadratic prism", "quadratic prisms", GmshShape::Prism}},
+    {19, {13, "quadratic pyramid", "quadratic pyramids", GmshShape::Pyramid}},
+    {21, {10, "cubic triangle", "cubic triangles"}},
+    {26, {4, "cubic line", "cubic lines"}},
+    {29, {20, "cubic tetrahedron", "cubic tetrahedra", GmshShape::Tetrahedron}},
+    {36, {16, "cubic quad", "cubic quads"}},
+    {92, {64, "cubic hexahedron", "cubic hexahedra", GmshShape::Hexahedron}}};
+
+}  // namespace subvol::detail

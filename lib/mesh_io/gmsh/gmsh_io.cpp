@@ -1,0 +1,302 @@
+#include <map>
+
+#include "gmsh_data.h"
+#include "gmsh_elements.h"
+#include "mesh_file.h"
+
+namespace subvol::detail {
+
+namespace {
+
+// How nodes and elements are laid out: 2 one by one; 4.0 and 4.1 in blocks, one for each entity of the geometry.
+enum class Layout { V2, V40, V41 };
+
+class GmshReader {
+public:
+    GmshReader(std::string_view text, std::string_view file, const ReadOptions& options)
+        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options), values_(in_) {}
+
+    ReadResult read() {
+        read_format();
+        while (!in_.at_end()) {
+            const std::string_view keyword = in_.word();
+            if (!keyword.starts_with('$')) in_.fail_word({"section"}, "a keyword that begins with $", keyword);
+            read_section(keyword);
+        }
+        if (found_.points.empty()) in_.fail("there is no $Nodes section, or it is empty");
+        list_left_out();
+        return finish(std::move(found_), in_, file_, wording_, options_);
+    }
+
+private:
+    void read_format() {
+        if (in_.at_end()) in_.fail("the file is empty");
+        const std::string_view first = in_.word();
+        if (first != "$MeshFormat") in_.fail("not a Gmsh file: it begins with " + in_quotes(first), "$MeshFormat is missing");
+        const double version = in_.real({"version"});
+        if (!(version >= 2 && version < 3) && !(version >= 4 && version < 5)) {
+            in_.fail("version " + number_word() + " of Gmsh's format is not supported", "2 and 4 are: gmsh -save -format msh4");
+        }
+        layout_ = version < 3 ? Layout::V2 : version < 4.1 ? Layout::V40 : Layout::V41;
+        const bool binary = in_.integer({"file type"}) != 0;
+        const std::int64_t data_size = in_.integer({"data size"});
+        if (binary) read_order(data_size);
+        read_end("$MeshFormat");
+    }
+
+    // A binary file tells the order of its bytes by the number 1.
+    void read_order(std::int64_t data_size) {
+        if (data_size != 8) in_.fail("numbers of " + std::to_string(data_size) + " bytes are not supported", "8 are");
+        in_.line();
+        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"order of bytes"});
+        for (const std::endian order : {std::endian::little, std::endian::big}) {
+            if (integer_from(one, NumberType::Int32, order) == 1) values_.set_binary(order);
+        }
+        if (!values_.binary()) in_.fail("the order of bytes cannot be told", "the number 1 is expected behind the format");
+    }
+
+    // The word that was read last, as it stands there.
+    [[nodiscard]] std::string number_word() const {
+        TextScanner again = in_;
+        again.seek(in_.position());
+        return std::string(again.word().substr(0, 8));
+    }
+
+    void read_end(std::string_view keyword) {
+        const std::string end = "$End" + std::string(keyword.substr(1));
+        const std::string_view word = in_.word();
+        if (word != end) in_.fail_word({keyword}, end, word);
+    }
+
+    void read_section(std::string_view keyword) {
+        if (keyword == "$Nodes") {
+            read_nodes();
+        } else if (keyword == "$Elements") {
+            read_elements();
+        } else if (keyword == "$NodeData") {
+            if (found_.points.empty()) in_.fail("$NodeData come before $Nodes");
+            read_gmsh_data(in_, values_, false, nodes_, std::vector<std::uint8_t>(nodes_.size(), 1), found_);
+        } else if (keyword == "$ElementData") {
+            if (!has_elements_) in_.fail("$ElementData come before $Elements");
+            read_gmsh_data(in_, values_, true, elements_, taken_, found_);
+        } else {
+            skip_section(keyword);
+            return;
+        }
+        read_end(keyword);
+    }
+
+    // Names of physical groups, entities of the geometry and remarks are not worth a word, data are.
+    void skip_section(std::string_view keyword) {
+        const std::string end = "$End" + std::string(keyword.substr(1));
+        while (!in_.at_end()) {
+            if (in_.word() != end) continue;
+            if (keyword.ends_with("Data")) found_.warnings.push_back("section " + std::string(keyword) + " ignored");
+            return;
+        }
+        in_.fail_word({keyword}, end, "");
+    }
+
+    // In a binary file of version 4.1 numbers of nodes and elements, and how many there are, take 8 bytes.
+    [[nodiscard]] NumberType number_type() const { return layout_ == Layout::V41 ? NumberType::UInt64 : NumberType::Int32; }
+
+    // How many in all, then block by block. read_block(count) reads one, of so many in all
+    template <class ReadBlock>
+    void read_blocks(const std::string& section, const GmshNumbers& numbers, const ReadBlock& read_block) {
+        values_.begin();
+        const std::size_t blocks = values_.count({section}, NumberType::UInt64);
+        const std::size_t count = values_.count({section}, NumberType::UInt64);
+        if (layout_ == Layout::V41) {
+            for (const std::string_view end : {"smallest number", "largest number"}) values_.integer({end}, NumberType::UInt64);
+        }
+        for (std::size_t b = 0; b < blocks; ++b) read_block(count);
+        if (numbers.size() == count) return;
+        in_.fail(section + ": its blocks have " + std::to_string(numbers.size()) + ", but it announces " +
+                 std::to_string(count));
+    }
+
+    void read_nodes() {
+        if (nodes_.size() > 0) in_.fail("there is a second $Nodes section");
+        if (layout_ == Layout::V2) {
+            const std::size_t count = in_.count({"$Nodes"});
+            values_.begin();
+            reserve_nodes(count);
+            for (std::size_t n = 0; n < count; ++n) {
+                read_node_number(count, NumberType::Int32);
+                read_point(values_, found_, wording_, count);
+            }
+        } else {
+            read_blocks("$Nodes", nodes_, [&](std::size_t count) { read_node_block(count); });
+        }
+        wording_.point_numbers = nodes_.all();
+        if (const auto twice = nodes_.sort()) in_.fail("there are two nodes " + std::to_string(*twice));
+    }
+
+    void reserve_nodes(std::size_t count) {
+        const std::size_t room = std::min(count, values_.room() / 4);
+        found_.points.reserve(room);
+        nodes_.reserve(room);
+    }
+
+    void read_node_number(std::size_t of, NumberType type) {
+        nodes_.add(values_.integer({"number of node", static_cast<std::int64_t>(nodes_.size() + 1), of}, type));
+    }
+
+    // 4.1: all numbers, then all places; 4.0: each number with its place. A place may have parameters on its curve or surface.
+    void read_node_block(std::size_t of) {
+        const std::int64_t first = values_.integer({"block of $Nodes"});
+        const std::int64_t second = values_.integer({"block of $Nodes"});
+        const std::int64_t dimension = layout_ == Layout::V41 ? first : second;
+        const bool parametric = values_.integer({"block of $Nodes"}) != 0;
+        if (dimension < 0 || dimension > 3) in_.fail("a block of $Nodes is of dimension " + std::to_string(dimension));
+        const std::size_t count = values_.count({"block of $Nodes"}, NumberType::UInt64);
+        if (count > of - nodes_.size()) in_.fail("$Nodes: its blocks have more than the " + std::to_string(of) + " announced");
+        if (nodes_.size() == 0) reserve_nodes(of);
+        for (std::size_t n = 0; layout_ == Layout::V41 && n < count; ++n) read_node_number(of, number_type());
+        for (std::size_t n = 0; n < count; ++n) {
+            if (layout_ == Layout::V40) read_node_number(of, number_type());
+            read_point(values_, found_, wording_, of);
+            for (std::int64_t k = 0; parametric && k < dimension; ++k) values_.real({"parameter of a node"});
+        }
+    }
+
+    Index read_corner(const Place& place, NumberType type) {
+        const std::int64_t number = values_.integer(place, type);
+        const Index node = nodes_.find(number);
+        if (node == kNone) {
+            in_.fail(std::string(place.what) + " " + std::to_string(place.number) + ": there is no node " +
+                     std::to_string(number));
+        }
+        return node;
+    }
+
+    void read_elements() {
+        if (has_elements_) in_.fail("there is a second $Elements section");
+        if (found_.points.empty()) in_.fail("$Elements come before $Nodes");
+        has_elements_ = true;
+        if (layout_ == Layout::V2) {
+            const std::size_t count = in_.count({"$Elements"});
+            values_.begin();
+            while (elements_.size() < count) values_.binary() ? read_element_run(count) : read_element_line(count);
+        } else {
+            read_blocks("$Elements", elements_, [&](std::size_t count) { read_element_block(count); });
+        }
+        static_cast<void>(elements_.sort());  // numbers that are there twice matter to no one but to data
+    }
+
+    [[nodiscard]] Place next_element(std::size_t of) const {
+        return {"element", static_cast<std::int64_t>(elements_.size() + 1), of};
+    }
+
+    [[nodiscard]] const GmshElement& element_of(std::int64_t type) const {
+        const auto element = kGmshElements.find(type);
+        if (element == kGmshElements.end()) {
+            in_.fail("element " + std::to_string(elements_.size() + 1) + " is of the unknown type " + std::to_string(type));
+        }
+        return element->second;
+    }
+
+    // Number, type, tags and nodes.
+    void read_element_line(std::size_t of) {
+        const Place place = next_element(of);
+        const std::int64_t number = in_.integer(place);
+        const GmshElement& element = element_of(in_.integer(place));
+        const std::size_t tags = in_.count(place);
+        for (std::size_t t = 0; t < tags; ++t) in_.integer(place);
+        take(element, number, place);
+    }
+
+    // Elements of one type and with equally many tags.
+    void read_element_run(std::size_t of) {
+        const GmshElement& element = element_of(values_.integer(next_element(of)));
+        const std::size_t count = values_.count(next_element(of));
+        const std::size_t tags = values_.count(next_element(of));
+        if (count == 0 || count > of - elements_.size()) in_.fail("there are not as many elements as announced");
+        for (std::size_t e = 0; e < count; ++e) {
+            const Place place = next_element(of);
+            const std::int64_t number = values_.integer(place);
+            for (std::size_t t = 0; t < tags; ++t) values_.integer(place);
+            take(element, number, place);
+        }
+    }
+
+    // Elements of one type on one entity of the geometry.
+    void read_element_block(std::size_t of) {
+        values_.integer({"block of $Elements"});
+        values_.integer({"block of $Elements"});
+        const GmshElement& element = element_of(values_.integer({"block of $Elements"}));
+        const std::size_t count = values_.count({"block of $Elements"}, NumberType::UInt64);
+        if (count > of - elements_.size()) {
+            in_.fail("$Elements: its blocks have more than the " + std::to_string(of) + " announced");
+        }
+        for (std::size_t e = 0; e < count; ++e) {
+            const Place place = next_element(of);
+            take(element, values_.integer(place, number_type()), place);
+        }
+    }
+
+    // Reads the nodes of an element.
+    void take(const GmshElement& element, std::int64_t number, const Place& place) {
+        const bool others = options_.other_cells != OtherCells::Ignore;
+        const std::size_t before = elements_.size();
+        elements_.add(number);
+        taken_.push_back(1);
+        if (element.shape == GmshShape::Hexahedron) return take_as(found_.hexes, element, before, place, "a hexahedron");
+        if (element.shape == GmshShape::Tetrahedron && others) {
+            return take_as(found_.tets, element, before, place, "a tetrahedron");
+        }
+        if (element.shape == GmshShape::Prism && others) return take_as(found_.prisms, element, before, place, "a prism");
+        if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, before, place, "a pyramid");
+        taken_.back() = 0;
+        for (std::size_t k = 0; k < element.nodes; ++k) values_.integer(place, number_type());
+        auto& [count, many] = left_out_[element.one];
+        ++count;
+        many = element.many;
+    }
+
+    template <std::size_t N>
+    void take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, const Place& place,
+                 std::string_view kind) {
+        auto& corners = into.corners.emplace_back();
+        for (Index& corner : corners) corner = read_corner(place, number_type());
+        const std::size_t position = in_.position();
+        for (std::size_t k = N; k < element.nodes; ++k) values_.integer(place, number_type());
+        curved_ += element.nodes > N;
+        into.numbers.push_back(static_cast<Index>(number));
+        check_corners(in_, position, corners, number, wording_, kind);
+    }
+
+    void list_left_out() {
+        if (curved_ > 0) {
+            found_.warnings.push_back(counted(curved_, "element has", "elements have") +
+                                      " more nodes than corners: the corners alone are taken");
+        }
+        std::string list;
+        for (const auto& [one, rest] : left_out_) {
+            list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);
+        }
+        report_left_out(found_, list, file_);
+    }
+
+    TextScanner in_;
+    std::string_view file_;
+    ReadOptions options_;
+    GmshValues values_;
+    Layout layout_ = Layout::V2;
+    MeshFile found_;
+    Wording wording_{"node", "element", 1};
+    GmshNumbers nodes_;
+    GmshNumbers elements_;
+    std::vector<std::uint8_t> taken_;  // of each element whether it is a cell
+    std::size_t curved_ = 0;
+    std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;
+    bool has_elements_ = false;
+};
+
+}  // namespace
+
+ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return GmshReader(text, file, options).read();
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol::detail {
+
+/// The numbers that a file gives to its nodes, or to its elements: any, but each once. Most often they are 1, 2, 3…
+class GmshNumbers {
+public:
+    void add(std::int64_t number) { numbers_.push_back(number); }
+    void reserve(std::size_t count) { numbers_.reserve(count); }
+    [[nodiscard]] std::size_t size() const { return numbers_.size(); }
+    /// In the order in which they came.
+    [[nodiscard]] std::span<const std::int64_t> all() const { return numbers_; }
+
+    /// Behind the last one, before any is looked for. returns: a number that is there twice
+    std::optional<std::int64_t> sort() {
+        places_.reserve(numbers_.size());
+        for (Index n = 0; n < numbers_.size(); ++n) places_.emplace_back(numbers_[n], n);
+        std::sort(places_.begin(), places_.end());
+        const auto same = [](const auto& a, const auto& b) { return a.first == b.first; };
+        const auto twice = std::adjacent_find(places_.begin(), places_.end(), same);
+        return twice == places_.end() ? std::nullopt : std::optional(twice->first);
+    }
+
+    /// The place of a number in the order in which they came; kNone if it is none of them.
+    [[nodiscard]] Index find(std::int64_t number) const {
+        const auto guess = static_cast<std::uint64_t>(number) - 1;
+        if (guess < places_.size() && places_[guess].first == number) return places_[guess].second;
+        const auto found = std::lower_bound(places_.begin(), places_.end(), std::pair{number, Index{0}});
+        return found == places_.end() || found->first != number ? kNone : found->second;
+    }
+
+private:
+    std::vector<std::int64_t> numbers_;
+    std::vector<std::pair<std::int64_t, Index>> places_;  // sorted by number
+};
+
+}  // namespace subvol::detail

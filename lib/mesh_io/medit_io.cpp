@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+
+#include "mesh_file.h"
+#include "output_file.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr Wording kWording{"vertex", "hex", 1};
+
+bool is_keyword(std::string_view word) {
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    return !word.empty() && is_letter(word[0]) &&
+           std::all_of(word.begin(), word.end(), [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+// Cells other than hexahedra: singular and plural.
+const std::map<std::string_view, std::array<std::string_view, 2>> kVolumeCells{{"Tetrahedra", {"tetrahedron", "tetrahedra"}},
+                                                                               {"Prisms", {"prism", "prisms"}},
+                                                                               {"Pentahedra", {"prism", "prisms"}},
+                                                                               {"Wedges", {"wedge", "wedges"}},
+                                                                               {"Pyramids", {"pyramid", "pyramids"}}};
+
+class MeditReader {
+public:
+    MeditReader(std::string_view text, std::string_view file, const ReadOptions& options)
+        : in_(text, file, TextScanner::Comments::Hash), file_(file), options_(options) {}
+
+    ReadResult read() {
+        read_header();
+        while (!in_.at_end()) {
+            const std::string_view keyword = in_.word();
+            if (keyword == "End") break;
+            if (!is_keyword(keyword)) in_.fail_word({"section"}, "a keyword", keyword);
+            read_section(keyword);
+        }
+        if (!has_vertices_) in_.fail("there is no Vertices section");
+        // The format lets cells come before the vertices; their indices can be checked only now.
+        for (const auto& [keyword, place] : early_cells_) {
+            in_ = place;
+            read_cells(keyword);
+        }
+        list_left_out();
+        return finish(std::move(found_), in_, file_, kWording, options_);
+    }
+
+private:
+    void read_header() {
+        if (in_.at_end()) in_.fail("the file is empty");
+        const std::string_view first = in_.word();
+        if (first != "MeshVersionFormatted") {
+            in_.fail("not a MEDIT file: it begins with " + in_quotes(first), "MeshVersionFormatted is missing");
+        }
+        in_.integer({"MeshVersionFormatted"});
+    }
+
+    void read_section(std::string_view keyword) {
+        if (keyword == "Dimension") {
+            read_dimension();
+        } else if (keyword == "Vertices") {
+            read_vertices();
+        } else if (keyword == "Hexahedra" || (kVolumeCells.contains(keyword) && options_.other_cells != OtherCells::Ignore)) {
+            if (!cell_sections_.insert(keyword).second) in_.fail("there is a second " + std::string(keyword) + " section");
+            if (has_vertices_) {
+                read_cells(keyword);
+            } else {
+                early_cells_.emplace_back(keyword, in_);
+                skip_numbers();
+            }
+        } else {
+            left_out_[std::string(keyword)] += count_of_left_out(keyword);
+            skip_numbers();
+        }
+    }
+
+    void read_dimension() {
+        const std::int64_t dimension = in_.integer({"Dimension"});
+        if (dimension != 3) in_.fail("dimension " + std::to_string(dimension) + " is not supported", "it has to be 3");
+        has_dimension_ = true;
+    }
+
+    void read_vertices() {
+        if (!has_dimension_) in_.fail("Vertices come before Dimension");
+        if (has_vertices_) in_.fail("there is a second Vertices section");
+        has_vertices_ = true;
+        const std::size_t count = in_.count({"Vertices"});
+        found_.points.reserve(std::min(count, in_.room_for(4)));
+        for (std::size_t v = 0; v < count; ++v) {
+            read_point(in_, found_, kWording, count);
+            in_.integer({"reference of vertex", static_cast<std::int64_t>(v + 1), count});
+        }
+    }
+
+    void read_cells(std::string_view keyword) {
+        if (keyword == "Hexahedra") {
+            read_cells(keyword, kWording, "a hexahedron", found_.hexes.corners);
+        } else if (keyword == "Tetrahedra") {
+            read_cells(keyword, {"vertex", "tetrahedron", 1}, "a tetrahedron", found_.tets.corners);
+        } else if (keyword == "Pyramids") {
+            read_cells(keyword, {"vertex", "pyramid", 1}, "a pyramid", found_.pyramids.corners);
+        } else {
+            read_cells(keyword, {"vertex", "prism", 1}, "a prism", found_.prisms.corners);
+        }
+    }
+
+    template <std::size_t N>
+    void read_cells(std::string_view keyword, const Wording& wording, std::string_view kind,
+                    std::vector<std::array<Index, N>>& cells) {
+        const std::size_t count = in_.count({keyword});
+        const std::string reference = "reference of " + std::string(wording.cell);
+        cells.reserve(cells.size() + std::min(count, in_.room_for(N + 1)));
+        for (std::size_t c = 0; c < count; ++c) {
+            const auto number = static_cast<std::int64_t>(c + 1);
+            auto& cell = cells.emplace_back();
+            std::size_t position = 0;
+            for (std::size_t k = 0; k < N; ++k) {
+                cell[k] = read_vertex_index({wording.cell, number, count});
+                if (k == 0) position = in_.position();
+            }
+            in_.integer({reference, number, count});
+            check_corners(in_, position, cell, c, wording, kind);
+        }
+    }
+
+    Index read_vertex_index(const Place& place) {
+        const std::int64_t index = in_.integer(place);
+        const std::size_t count = found_.points.size();
+        if (index < 1 || index > static_cast<std::int64_t>(count)) {
+            in_.fail(std::string(place.what) + " " + std::to_string(place.number) + ": there is no vertex with index " +
+                         std::to_string(index),
+                     "indices are 1 to " + std::to_string(count));
+        }
+        return static_cast<Index>(index - 1);
+    }
+
+    // A section of another program may begin with anything; of the cells that are left out the count is told.
+    std::size_t count_of_left_out(std::string_view keyword) {
+        if (kVolumeCells.contains(keyword)) return in_.count({keyword});
+        std::size_t count = 0;
+        const std::string_view first = in_.peek();
+        std::from_chars(first.data(), first.data() + first.size(), count);
+        return count;
+    }
+
+    void skip_numbers() {
+        while (!in_.at_end() && !is_keyword(in_.peek())) in_.word();
+    }
+
+    // How the cells that are no hexes are called, and the other sections; a section that is empty is not worth a word.
+    void list_left_out() {
+        std::string cells;
+        std::string sections;
+        for (const auto& [keyword, count] : left_out_) {
+            if (count == 0) continue;
+            const auto volume = kVolumeCells.find(keyword);
+            std::string& list = volume == kVolumeCells.end() ? sections : cells;
+            list += list.empty() ? "" : ", ";
+            if (volume == kVolumeCells.end()) {
+                list += keyword + " (" + std::to_string(count) + ")";
+            } else {
+                list += counted(count, volume->second[0], volume->second[1]);
+            }
+        }
+        report_left_out(found_, cells, file_);
+        if (!sections.empty()) found_.warnings.push_back("sections ignored: " + sections);
+    }
+
+    TextScanner in_;
+    std::string_view file_;
+    ReadOptions options_;
+    MeshFile found_;
+    std::vector<std::pair<std::string_view, TextScanner>> early_cells_;
+    std::set<std::string_view> cell_sections_;
+    std::map<std::string, std::size_t> left_out_;
+    bool has_dimension_ = false;
+    bool has_vertices_ = false;
+};
+
+void append_number(std::string& text, double value) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    text.append(digits, end);
+    text += ' ';
+}
+
+}  // namespace
+
+ReadResult read_medit(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return MeditReader(text, file, options).read();
+}
+
+std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh) {
+    OutputFile out(path);
+    out.write("MeshVersionFormatted 2\nDimension 3\nVertices\n" + std::to_string(mesh.points.size()) + "\n");
+    std::string line;
+    for (const Vec3& x : mesh.points) {
+        line.clear();
+        for (int i = 0; i < 3; ++i) append_number(line, x[i]);
+        out.write(line += "0\n");
+    }
+    out.write("Hexahedra\n" + std::to_string(mesh.cells.size()) + "\n");
+    for (const auto& cell : mesh.cells) {
+        line.clear();
+        for (const Index p : cell) line += std::to_string(std::size_t{p} + 1) + ' ';
+        out.write(line += "0\n");
+    }
+    out.write("End\n");
+    out.commit();
+
+    std::vector<std::string> warnings;
+    std::string names;
+    for (const auto& attribute : mesh.attributes) names += (names.empty() ? "\"" : ", \"") + attribute.name + "\"";
+    if (!names.empty()) warnings.push_back(".mesh holds no attributes: " + names + " not written");
+    if (!mesh.creases.empty()) warnings.push_back(counted(mesh.creases.size(), "crease", "creases") + " not written");
+    return warnings;
+}
+
+}  // namespace subvol::detail

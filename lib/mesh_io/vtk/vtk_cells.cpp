@@ -1,0 +1,98 @@
+#include "vtk_cells.h"
+
+#include <algorithm>
+
+namespace subvol::detail {
+
+namespace {
+
+enum CellType : std::int64_t { kTetrahedron = 10, kVoxel = 11, kHexahedron = 12, kWedge = 13, kPyramid = 14 };
+
+// The linear type of each that has points in the middle of edges, faces or the cell: they come behind the corners.
+const std::map<std::int64_t, std::int64_t> kLinear{
+    {24, kTetrahedron}, {71, kTetrahedron}, {78, kTetrahedron}, {25, kHexahedron}, {29, kHexahedron}, {33, kHexahedron},
+    {72, kHexahedron},  {79, kHexahedron},  {26, kWedge},       {31, kWedge},      {32, kWedge},      {73, kWedge},
+    {80, kWedge},       {27, kPyramid},     {37, kPyramid},     {74, kPyramid},    {81, kPyramid}};
+
+const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
+    {1, {"vertex", "vertices"}},
+    {2, {"vertex cell", "vertex cells"}},
+    {3, {"line", "lines"}},
+    {4, {"polyline", "polylines"}},
+    {5, {"triangle", "triangles"}},
+    {7, {"polygon", "polygons"}},
+    {8, {"pixel", "pixels"}},
+    {9, {"quad", "quads"}},
+    {10, {"tetrahedron", "tetrahedra"}},
+    {13, {"wedge", "wedges"}},
+    {14, {"pyramid", "pyramids"}},
+    {24, {"quadratic tetrahedron", "quadratic tetrahedra"}},
+    {26, {"quadratic wedge", "quadratic wedges"}},
+    {27, {"quadratic pyramid", "quadratic pyramids"}},
+    {42, {"polyhedron", "polyhedra"}}};
+
+}  // namespace
+
+void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corners, std::size_t position) {
+    const auto linear = kLinear.find(type_in_file);
+    const bool curved = linear != kLinear.end();
+    const std::int64_t type = curved ? linear->second : type_in_file;
+    const bool others = options_.other_cells != OtherCells::Ignore;
+    // Files exist whose hexahedra are called tetrahedra: eight corners say more than the type.
+    const bool mislabelled = type_in_file == kTetrahedron && corners.size() == 8;
+    if (mislabelled) ++mislabelled_;
+    if (type == kHexahedron || type == kVoxel || mislabelled) {
+        // Others exist whose curved hexahedra have the type of linear ones.
+        take_as(found_.hexes, corners, position, "a hexahedron", curved || corners.size() == 20 || corners.size() == 27);
+        if (type == kVoxel) {
+            auto& hex = found_.hexes.corners.back();
+            std::swap(hex[2], hex[3]);
+            std::swap(hex[6], hex[7]);
+        }
+    } else if (type == kTetrahedron && others) {
+        take_as(found_.tets, corners, position, "a tetrahedron", curved);
+    } else if (type == kWedge && others) {
+        take_as(found_.prisms, corners, position, "a wedge", curved);
+    } else if (type == kPyramid && others) {
+        take_as(found_.pyramids, corners, position, "a pyramid", curved);
+    } else {
+        ++left_out_[type_in_file];
+    }
+    ++next_;
+}
+
+template <std::size_t N>
+void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, std::size_t position, std::string_view kind,
+                            bool curved) {
+    if (corners.size() > N && curved) ++curved_;
+    if (corners.size() < N || (corners.size() > N && !curved)) {
+        in_.fail_at(position, kVtkWording.name_cell(next_) + " has " + std::to_string(corners.size()) + " corners",
+                    std::string(kind) + " has " + std::to_string(N));
+    }
+    auto& taken = into.corners.emplace_back();
+    std::copy_n(corners.begin(), N, taken.begin());
+    into.numbers.push_back(static_cast<Index>(next_));
+    check_corners(in_, position, taken, next_, kVtkWording, kind);
+}
+
+void VtkCellSorter::report(std::string_view file) {
+    if (mislabelled_ > 0) {
+        found_.warnings.push_back(counted(mislabelled_, "cell", "cells") +
+                                  " with 8 corners but the type of a tetrahedron (10) taken as hexahedra");
+    }
+    if (curved_ > 0) {
+        found_.warnings.push_back(counted(curved_, "cell has", "cells have") +
+                                  " more points than corners: the corners alone are taken");
+    }
+    std::string list;
+    for (const auto& [type, count] : left_out_) {
+        const auto names = kCellNames.find(type);
+        const bool known = names != kCellNames.end();
+        list += (list.empty() ? "" : ", ") +
+                counted(count, known ? names->second[0] : "cell", known ? names->second[1] : "cells") + " (VTK type " +
+                std::to_string(type) + ")";
+    }
+    report_left_out(found_, list, file);
+}
+
+}  // namespace subvol::detail

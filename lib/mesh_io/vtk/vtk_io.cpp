@@ -1,0 +1,231 @@
+#include <algorithm>
+#include <optional>
+
+#include "mesh_file.h"
+#include "vtk_arrays.h"
+#include "vtk_blocks.h"
+#include "vtk_cells.h"
+#include "vtk_values.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr VtkType kInt{NumberType::Int32};
+
+/// offsets:   corners of cell c: connectivity[offsets[c] .. offsets[c + 1])
+/// positions: of each cell in the text; the last one stands for all that follow
+struct VtkCells {
+    std::vector<std::size_t> offsets{0};
+    std::vector<Index> connectivity;
+    std::vector<std::int64_t> types;
+    std::vector<std::size_t> positions;
+
+    [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+};
+
+class VtkReader {
+public:
+    VtkReader(std::string_view text, std::string_view file, const ReadOptions& options)
+        : in_(text, file, TextScanner::Comments::None),
+          file_(file),
+          options_(options),
+          values_(in_),
+          arrays_(in_, values_, found_) {}
+
+    ReadResult read() {
+        read_header();
+        while (!in_.at_end()) {
+            const std::string_view word = in_.word();
+            const std::string keyword = upper_case(word);
+            if (!read_section(keyword) && !arrays_.read_section(keyword)) {
+                in_.fail("a keyword is expected, not " + in_quotes(word));
+            }
+        }
+        if (cells_.types.size() != cells_.size()) in_.fail("CELLS without CELL_TYPES");
+        VtkCellSorter sorter(in_, found_, options_);
+        if (block_) {
+            block_->add_points(in_, found_);
+            block_->add_cells(in_, found_);
+        } else {
+            sort_cells(sorter);
+        }
+        sorter.report(file_);
+        return finish(std::move(found_), in_, file_, kVtkWording, options_);
+    }
+
+private:
+    void read_header() {
+        TextScanner whole = in_;
+        if (whole.at_end()) in_.fail("the file is empty");
+        const std::string_view first = in_.line();
+        if (!upper_case(first).starts_with("# VTK DATAFILE VERSION")) {
+            in_.fail("not a legacy VTK file: it begins with " + in_quotes(first), "# vtk DataFile Version is missing");
+        }
+        in_.line();  // the title may be anything, in any encoding
+        const std::string encoding = upper_case(in_.word());
+        if (encoding == "BINARY") values_.set_binary();
+        if (encoding != "BINARY" && encoding != "ASCII") in_.fail_word({"encoding"}, "ASCII or BINARY", encoding);
+        if (upper_case(in_.peek()) == "FIELD") {
+            in_.word();
+            arrays_.read_section("FIELD");
+        }
+        const std::string_view dataset = in_.word();
+        if (upper_case(dataset) != "DATASET") in_.fail_word({"dataset"}, "DATASET", dataset);
+        const std::string type = upper_case(in_.word());
+        constexpr const char* kAllowed = "UNSTRUCTURED_GRID, STRUCTURED_GRID, RECTILINEAR_GRID and STRUCTURED_POINTS are";
+        if (type == "POLYDATA") in_.fail("POLYDATA is not a volume mesh", kAllowed);
+        block_ = VtkBlock::of(type);
+        if (!block_ && type != "UNSTRUCTURED_GRID") in_.fail("DATASET " + in_quotes(type) + " is not supported", kAllowed);
+    }
+
+    bool read_section(const std::string& keyword) {
+        if (keyword == "POINTS" && (!block_ || block_->lists_points())) {
+            read_points();
+        } else if (block_ && block_->read_section(keyword, in_, values_)) {
+            return true;
+        } else if (keyword == "CELLS" && !block_) {
+            read_cells();
+        } else if (keyword == "CELL_TYPES" && !block_) {
+            read_cell_types();
+        } else if (keyword == "POINT_DATA") {
+            if (block_) block_->add_points(in_, found_);
+            start_data(false, found_.points.size(), "points");
+        } else if (keyword == "CELL_DATA") {
+            start_data(true, block_ ? block_->grid().cell_count() : cells_.size(), "cells");
+        } else if (keyword == "METADATA") {
+            skip_metadata(in_);
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    void read_points() {
+        if (!found_.points.empty()) in_.fail("there is a second POINTS section");
+        const std::size_t count = in_.count({"POINTS"});
+        values_.begin(values_.read_type("POINTS"));
+        found_.points.reserve(std::min(count, values_.room() / 3));
+        for (std::size_t p = 0; p < count; ++p) read_point(values_, found_, kVtkWording, 0);
+    }
+
+    void read_cells() {
+        if (cells_.size() > 0) in_.fail("there is a second CELLS section");
+        const std::size_t first = in_.count({"CELLS"});
+        const std::size_t second = in_.count({"CELLS"});
+        if (upper_case(in_.peek()) == "OFFSETS") {
+            read_offsets_and_connectivity(first, second);
+        } else {
+            read_counted_cells(first, second);
+        }
+    }
+
+    // Up to version 4: each cell as the number of its corners and the corners. size: how many numbers these are in all
+    void read_counted_cells(std::size_t count, std::size_t size) {
+        values_.begin(kInt);
+        cells_.offsets.reserve(std::min(count, values_.room()) + 1);
+        cells_.connectivity.reserve(std::min(size, values_.room()));
+        std::size_t left = size;
+        for (std::size_t c = 0; c < count; ++c) {
+            const auto number = static_cast<std::int64_t>(c);
+            const std::size_t corners = values_.count({"corners of cell", number});
+            if (corners >= left) {
+                in_.fail("cell " + std::to_string(c) + " does not fit into the " + std::to_string(size) +
+                             " numbers that CELLS announces",
+                         "it would have " + std::to_string(corners) + " corners" +
+                             (values_.binary() ? "; BINARY numbers have to be big-endian" : ""));
+            }
+            left -= corners + 1;
+            for (std::size_t k = 0; k < corners; ++k) read_corner(c, k == 0);
+            cells_.offsets.push_back(cells_.connectivity.size());
+        }
+        if (left > 0) {
+            in_.fail("CELLS announces " + std::to_string(size) + " numbers, " + std::to_string(left) +
+                     " more than its cells have");
+        }
+    }
+
+    // From version 5 on: where each cell begins in the list of corners, and the list.
+    void read_offsets_and_connectivity(std::size_t offset_count, std::size_t size) {
+        in_.word();
+        values_.begin_integers(values_.read_type("OFFSETS"), "OFFSETS");
+        std::vector<std::size_t> offsets;
+        offsets.reserve(std::min(offset_count, values_.room()));
+        for (std::size_t c = 0; c < offset_count; ++c) {
+            const std::size_t offset = values_.count({"offset", static_cast<std::int64_t>(c)});
+            if (offset < (offsets.empty() ? 0 : offsets.back()) || offset > size || (offsets.empty() && offset > 0)) {
+                in_.fail("offset " + std::to_string(c) + " is " + std::to_string(offset),
+                         "from 0 to " + std::to_string(size) + ", never falling");
+            }
+            offsets.push_back(offset);
+        }
+        if ((offsets.empty() ? 0 : offsets.back()) != size) in_.fail("the offsets do not end at " + std::to_string(size));
+        const std::string_view word = in_.word();
+        if (upper_case(word) != "CONNECTIVITY") in_.fail_word({"CELLS"}, "CONNECTIVITY", word);
+        values_.begin_integers(values_.read_type("CONNECTIVITY"), "CONNECTIVITY");
+        cells_.connectivity.reserve(std::min(size, values_.room()));
+        for (std::size_t c = 0; c + 1 < offsets.size(); ++c) {
+            for (std::size_t k = offsets[c]; k < offsets[c + 1]; ++k) read_corner(c, k == offsets[c]);
+        }
+        if (!offsets.empty()) cells_.offsets = std::move(offsets);
+    }
+
+    void read_corner(std::size_t cell, bool first) {
+        const std::int64_t index = values_.integer({"cell", static_cast<std::int64_t>(cell)});
+        if (first) cells_.positions.resize(cell + 1, in_.position());
+        if (index < 0 || index >= static_cast<std::int64_t>(found_.points.size())) {
+            const std::string points = std::to_string(found_.points.size());
+            in_.fail("cell " + std::to_string(cell) + ": there is no point with index " + std::to_string(index),
+                     "there are " + points + " points, counted from 0");
+        }
+        cells_.connectivity.push_back(static_cast<Index>(index));
+    }
+
+    void read_cell_types() {
+        if (!cells_.types.empty()) in_.fail("there is a second CELL_TYPES section");
+        const std::size_t count = in_.count({"CELL_TYPES"});
+        if (count != cells_.size()) {
+            in_.fail("there are " + std::to_string(count) + " CELL_TYPES for " + std::to_string(cells_.size()) + " CELLS");
+        }
+        values_.begin(kInt);
+        cells_.types.reserve(count);
+        for (std::size_t c = 0; c < count; ++c) {
+            cells_.types.push_back(values_.integer({"type of cell", static_cast<std::int64_t>(c)}));
+        }
+    }
+
+    void sort_cells(VtkCellSorter& sorter) const {
+        const auto& [offsets, connectivity, types, positions] = cells_;
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const auto corners = std::span(connectivity).subspan(offsets[c], offsets[c + 1] - offsets[c]);
+            const std::size_t place = positions.empty() ? in_.position() : positions[std::min(c, positions.size() - 1)];
+            sorter.take(types[c], corners, place);
+        }
+    }
+
+    void start_data(bool at_cells, std::size_t tuples, const std::string& what) {
+        const std::size_t count = in_.count({at_cells ? "CELL_DATA" : "POINT_DATA"});
+        if (count != tuples) {
+            in_.fail((at_cells ? "CELL_DATA is for " : "POINT_DATA is for ") + std::to_string(count) + " " + what +
+                     ", but there are " + std::to_string(tuples));
+        }
+        arrays_.start_data(at_cells, tuples);
+    }
+
+    TextScanner in_;
+    std::string_view file_;
+    ReadOptions options_;
+    MeshFile found_;
+    VtkValues values_;
+    VtkArrayReader arrays_;
+    VtkCells cells_;
+    std::optional<VtkBlock> block_;  // of a structured data set
+};
+
+}  // namespace
+
+ReadResult read_legacy_vtk(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtkReader(text, file, options).read();
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+
+#include "subvol/vec.h"
+
+namespace subvol::detail {
+
+/// The ellipsoid (x−μ)ᵀ S⁻¹ (x−μ) = 1 of a frame.
+///
+/// half_axes:  world, longest first; none is below 10⁻⁶ of the longest, however flat the frame
+/// directions: unit columns, right-handed
+struct PrincipalAxes {
+    Vec3 half_axes{1.0};
+    Mat3 directions{1.0};
+};
+
+/// frame: as in RbfVolume
+[[nodiscard]] PrincipalAxes principal_axes(const std::array<float, 6>& frame);
+
+/// A rotation as a unit quaternion w x y z, w not negative.
+[[nodiscard]] std::array<double, 4> quaternion(const Mat3& rotation);
+
+}  // namespace subvol::detail

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "subvol/rbf_volume.h"
+
+namespace subvol::detail {
+
+/// The properties of a Gaussian splat, in the order of `PlySplat`.
+inline constexpr std::array<std::string_view, 11> kSplatProperties{"scale_0", "scale_1", "scale_2", "rot_0",  "rot_1", "rot_2",
+                                                                   "rot_3",   "opacity", "f_dc_0",  "f_dc_1", "f_dc_2"};
+
+using PlySplat = std::array<float, kSplatProperties.size()>;
+
+/// σ of the Gaussian that has the kernel's height and integral, as a part of the support radius.
+[[nodiscard]] double gaussian_width(const Kernel& kernel);
+
+/// What viewers of Gaussian splats draw for each kernel: logarithms of its axes, its turn w x y z, the logit of its opacity and
+/// the constant term of its colour, of the first channel.
+[[nodiscard]] std::vector<PlySplat> ply_splats(const RbfVolume& volume);
+
+}  // namespace subvol::detail

@@ -1,0 +1,159 @@
+#include <bit>
+#include <charconv>
+#include <cstdint>
+
+#include "output_file.h"
+#include "ply_splats.h"
+#include "points_file.h"
+#include "subvol/detail/surface_io.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+namespace {
+
+const char* const kBinary = std::endian::native == std::endian::little ? "binary_little_endian" : "binary_big_endian";
+
+/// Puts numbers one after the other in either encoding; as text each with as few digits as give it back exactly.
+class NumberWriter {
+public:
+    NumberWriter(OutputFile& out, bool ascii) : out_(out), ascii_(ascii) {}
+
+    template <class Number>
+    void put(Number number) {
+        if (!ascii_) {
+            buffer_.append(reinterpret_cast<const char*>(&number), sizeof number);
+            return;
+        }
+        std::array<char, 32> digits;
+        buffer_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+        buffer_ += ' ';
+    }
+
+    template <class Numbers>
+    void put_all(const Numbers& numbers) {
+        for (const auto number : numbers) put(number);
+    }
+
+    template <class Number>
+    void put_point(const Vec3& p) {
+        for (int k = 0; k < 3; ++k) put(static_cast<Number>(p[k]));
+    }
+
+    void end_row() {
+        if (ascii_) buffer_.back() = '\n';
+        if (buffer_.size() > kFlush) flush();
+    }
+
+    void flush() {
+        out_.write(buffer_);
+        buffer_.clear();
+    }
+
+private:
+    static constexpr std::size_t kFlush = 1 << 16;
+    OutputFile& out_;
+    bool ascii_;
+    std::string buffer_;
+};
+
+/// Header and rows of the vertices, the same properties in the same order.
+class VertexElement {
+public:
+    VertexElement(const RbfVolume& volume, bool splats) : volume_(volume), with_splats_(splats) {
+        if (splats) splats_ = ply_splats(volume);
+    }
+
+    [[nodiscard]] std::string header() const {
+        std::string text = "element vertex " + std::to_string(volume_.size()) + "\n";
+        const auto properties = [&](const char* type, const auto& names, const std::string& suffix = {}) {
+            for (const auto name : names) text += std::string("property ") + type + " " + std::string(name) + suffix + "\n";
+        };
+        using Names = std::initializer_list<const char*>;
+        properties(with_splats_ ? "float" : "double", Names{"x", "y", "z"});
+        if (with_splats_) {
+            properties("float", kSplatProperties);
+            properties("double", Names{"cx", "cy", "cz"});
+        }
+        for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
+            const std::string suffix = c == 0 ? "" : "_" + std::to_string(c);
+            properties("float", Names{"value", "gx", "gy", "gz", "moment"}, suffix);
+            if (volume_.channels[c].hessians.empty()) continue;
+            properties("float", Names{"hxx", "hxy", "hxz", "hyy", "hyz", "hzz"}, suffix);
+        }
+        properties("float", Names{"sxx", "sxy", "sxz", "syy", "syz", "szz"});
+        return text;
+    }
+
+    void write(NumberWriter& out) const {
+        for (std::size_t i = 0; i < volume_.size(); ++i) {
+            if (with_splats_) {
+                out.put_point<float>(volume_.centers[i]);
+                out.put_all(splats_[i]);
+            }
+            out.put_point<double>(volume_.centers[i]);
+            for (const RbfChannel& channel : volume_.channels) {
+                out.put(channel.values[i]);
+                out.put_all(channel.gradients[i]);
+                out.put(channel.moments[i]);
+                if (!channel.hessians.empty()) out.put_all(channel.hessians[i]);
+            }
+            out.put_all(volume_.frames[i]);
+            out.end_row();
+        }
+    }
+
+private:
+    const RbfVolume& volume_;
+    bool with_splats_;
+    std::vector<PlySplat> splats_;
+};
+
+std::string comments(const RbfVolume& volume) {
+    std::string text =
+        "comment OpenSubVol points: with d = x - centre and e = d.inverse(S).d a point stands for value + g.d + moment*e\n"
+        "comment + d.H.d/2, H being 0 where it is left out;\n"
+        "comment the field is their mean inside the boundary, weighted by the kernel at (its support radius)*sqrt(e)\n"
+        "comment kernel " +
+        to_json(volume.kernel) + "\n";
+    for (const RbfChannel& channel : volume.channels) {
+        text += "comment channel " + without_controls(channel.name) + "\n";
+    }
+    return text + "comment boundary_triangles " + std::to_string(volume.boundary.triangles.size()) + "\n";
+}
+
+std::string boundary_header(const Surface& boundary) {
+    return "element boundary_vertex " + std::to_string(boundary.points.size()) +
+           "\nproperty double x\nproperty double y\nproperty double z\nelement boundary_triangle " +
+           std::to_string(boundary.triangles.size()) + "\nproperty list uchar uint vertex_indices\n";
+}
+
+void write_boundary(NumberWriter& out, const Surface& boundary) {
+    for (const Vec3& p : boundary.points) {
+        out.put_point<double>(p);
+        out.end_row();
+    }
+    for (const auto& triangle : boundary.triangles) {
+        out.put(std::uint8_t{3});
+        for (const Index p : triangle) out.put(static_cast<std::uint32_t>(p));
+        out.end_row();
+    }
+}
+
+}  // namespace
+
+void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
+    const VertexElement vertices(volume, options.splats);
+    OutputFile out(path);
+    out.write(std::string("ply\nformat ") + (options.ascii ? "ascii" : kBinary) + " 1.0\n" + comments(volume) +
+              vertices.header() + (options.splats ? "" : boundary_header(volume.boundary)) + "end_header\n");
+    NumberWriter numbers(out, options.ascii);
+    vertices.write(numbers);
+    if (!options.splats) write_boundary(numbers, volume.boundary);
+    numbers.flush();
+    out.close();
+    if (options.splats) BoundaryFile(path, volume.boundary).commit();
+    out.commit();
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "subvol/points_io.h"
+
+namespace subvol::detail {
+
+/// One format each; volumes are valid before they are written, and checked after they are read.
+void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options);
+void write_vtp(const std::filesystem::path& path, const RbfVolume& volume);
+[[nodiscard]] RbfVolume read_ply(std::string_view text, const std::filesystem::path& path);
+[[nodiscard]] RbfVolume read_vtp(std::string_view text, const std::filesystem::path& path);
+
+}  // namespace subvol::detail

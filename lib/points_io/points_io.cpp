@@ -1,0 +1,51 @@
+#include "subvol/points_io.h"
+
+#include "points_file.h"
+#include "subvol/detail/surface_io.h"
+#include "subvol/error.h"
+#include "text_scanner.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+constexpr const char* kFormats = ".ply or .vtp";
+
+std::string format_of(const std::filesystem::path& path) {
+    return upper_case(path.extension().string());
+}
+
+}  // namespace
+
+bool is_points_file(const std::filesystem::path& path) {
+    return format_of(path) == ".PLY" || format_of(path) == ".VTP";
+}
+
+void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
+    if (!is_points_file(path)) throw Error(ErrorCode::InvalidInput, "points cannot be written so", path.string(), kFormats);
+    validate(volume);
+    if (format_of(path) == ".PLY") {
+        write_ply(path, volume, options);
+    } else {
+        write_vtp(path, volume);
+    }
+}
+
+RbfVolume read_points(const std::filesystem::path& path) {
+    if (!is_points_file(path)) throw Error(ErrorCode::InvalidInput, "points cannot be read so", path.string(), kFormats);
+    const std::string text = read_text(path);
+    try {
+        RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path) : read_vtp(text, path);
+        validate(volume);
+        volume.bounds = box_of(volume);
+        return volume;
+    } catch (const Error& error) {
+        const std::string_view said(error.what());
+        if (said.starts_with(path.string()) || said.starts_with(boundary_path(path).string())) throw;
+        throw Error(error.code(), error.what(), path.string());
+    }
+}
+
+}  // namespace subvol

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace subvol::detail {
+
+// The arrays of a .vtp of points, beside those of the channels.
+inline constexpr const char* kVtpKernel = "kernel";
+inline constexpr const char* kVtpChannels = "channels";
+inline constexpr const char* kVtpTriangles = "boundary_triangles";
+inline constexpr const char* kVtpFrame = "frame";
+inline constexpr const char* kVtpEllipsoid = "ellipsoid";
+inline constexpr const char* kVtpSize = "pscale";
+
+// Behind the name of a channel.
+inline constexpr const char* kVtpGradient = ".gradient";
+inline constexpr const char* kVtpMoment = ".moment";
+inline constexpr const char* kVtpHessian = ".hessian";
+
+/// VTK's symmetric tensors are xx yy zz xy yz xz: which of ours each of them is.
+inline constexpr std::array<std::size_t, 6> kVtpTensorOrder{0, 3, 5, 1, 4, 2};
+
+}  // namespace subvol::detail

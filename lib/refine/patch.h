@@ -1,0 +1,55 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "subvol/scheme.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// Some cells of a mesh with the layers of cells around them: all that the rules need for the next level of these cells.
+///
+/// Points stand in the order of the whole mesh, so that every rule sums in the same order as there. Cells: first those that are
+/// wanted, then those that share a point with them, then those that share a point with these.
+struct Patch {
+    HexMesh mesh;
+    std::size_t wanted = 0;       // cells [0, wanted)
+    std::size_t first_layer = 0;  // cells [wanted, first_layer)
+};
+
+/// Cuts patches out of a mesh.
+class PatchSource {
+public:
+    /// The mesh must be valid; it is kept by reference.
+    explicit PatchSource(const HexMesh& mesh);
+
+    /// layers: 1 if the patch is refined once, else 2
+    [[nodiscard]] Patch cut(std::span<const Index> cells, int layers) const;
+
+private:
+    /// Those that share a point with some cells, and these: sorted.
+    [[nodiscard]] std::vector<Index> cells_about(std::span<const Index> cells) const;
+
+    const HexMesh& mesh_;
+    std::vector<std::array<Index, 2>> creases_;      // sorted
+    std::vector<std::array<Index, 4>> sharp_faces_;  // their points sorted, sorted
+    FlatArray<std::size_t> offsets_;                 // cells_[offsets_[p] .. offsets_[p+1]) have point p
+    std::vector<Index> cells_;
+};
+
+/// The next level of a patch: child 8k + j of its wanted cell k.
+///
+/// layers: how many the child needs: 0 if it is not refined further, 1 if once, else 2
+[[nodiscard]] Patch refine_patch(const Patch& patch, const SchemeOptions& scheme, int layers);
+
+/// The level-`levels` patch of some cells: descendants k·8^levels … of cells[k] are its wanted cells.
+///
+/// layers: how many the result needs, as above
+[[nodiscard]] Patch refine_patch(const PatchSource& source, std::span<const Index> cells, const SchemeOptions& scheme,
+                                 int levels, int layers);
+
+/// The patch for some of the wanted cells of another, which must have as many layers.
+[[nodiscard]] Patch sub_patch(const Patch& patch, std::span<const Index> wanted, int layers);
+
+}  // namespace subvol::detail

@@ -1,0 +1,167 @@
+#include "subvol/refine.h"
+
+#include "child_topology.h"
+#include "control_mesh.h"
+#include "last_level.h"
+#include "patch.h"
+#include "scheme_rows.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using detail::SchemeRows;
+
+namespace {
+
+std::string stage_of(int level) {
+    return "refine to level " + std::to_string(level);
+}
+
+/// Points and attributes of the child; the stencils are applied as they come and are not kept.
+HexMesh child_data(const HexMesh& parent, const SchemeRows& rows, Progress* progress, int level) {
+    HexMesh child;
+    child.points.resize(rows.rows());
+    std::copy_n(parent.points.begin(), rows.kept(), child.points.begin());
+    for (const auto& attribute : parent.attributes) {
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        auto& values = child.attributes.emplace_back(Attribute{attribute.name, attribute.channels, {}}).values;
+        values.resize(rows.rows() * channels);
+        std::copy_n(attribute.values.begin(), rows.kept() * channels, values.begin());
+    }
+    rows.for_each_block(progress, stage_of(level), [&](std::size_t, const StencilTable::Block& block) {
+        detail::apply_block(block, &parent.points[0].x, 3, &child.points[block.first_row].x);
+        for (std::size_t a = 0; a < parent.attributes.size(); ++a) {
+            const auto channels = static_cast<std::size_t>(parent.attributes[a].channels);
+            detail::apply_block(block, parent.attributes[a].values.data(), channels,
+                                child.attributes[a].values.data() + block.first_row * channels);
+        }
+    });
+    return child;
+}
+
+StencilTable make_table(const SchemeRows& rows, Progress* progress, int level) {
+    std::vector<StencilTable::Block> blocks(rows.block_count());
+    rows.for_each_block(progress, stage_of(level),
+                        [&](std::size_t number, const StencilTable::Block& block) { blocks[number] = block; });
+    return {rows.columns(), rows.kept(), std::move(blocks)};
+}
+
+template <class T>
+void apply_levels(const RefinementTables& tables, std::span<const T> control, std::size_t channels, std::span<T> fine) {
+    const StencilTable none(tables.control_points, tables.control_points, {});
+    FlatArray<T> values;  // of the level before
+    std::span<const T> coarse = control;
+    for (std::size_t l = 0; l + 1 < tables.levels.size(); ++l) {
+        FlatArray<T> finer(tables.levels[l].rows() * channels);
+        tables.levels[l].apply(coarse, channels, std::span<T>(finer));
+        values = std::move(finer);
+        coarse = values;
+    }
+    (tables.levels.empty() ? none : tables.levels.back()).apply(coarse, channels, fine);
+}
+
+template <class T>
+std::vector<T> apply_levels(const RefinementTables& tables, std::span<const T> control, std::size_t channels) {
+    std::vector<T> fine(tables.points() * channels);
+    apply_levels(tables, control, channels, std::span<T>(fine));
+    return fine;
+}
+
+void check_cells(const HexMesh& mesh, std::span<const Index> cells) {
+    std::vector<std::uint8_t> named(mesh.cells.size(), 0);
+    for (const Index c : cells) {
+        if (c >= mesh.cells.size()) {
+            throw Error(ErrorCode::InvalidInput, "there is no cell " + std::to_string(c), {},
+                        "the mesh has " + std::to_string(mesh.cells.size()) + " cells");
+        }
+        if (named[c]) throw Error(ErrorCode::InvalidInput, "cell " + std::to_string(c) + " is named twice");
+        named[c] = 1;
+    }
+}
+
+}  // namespace
+
+detail::LastLevel detail::refine_without_cells(HexMesh control, Topology topology, const RefineOptions& options) {
+    LastLevel last{std::move(control), std::move(topology)};
+    for (int level = 1; level <= options.levels; ++level) {
+        if (level > 1) last.parent = child_topology(last.parent);
+        HexMesh child = child_data(last.mesh, SchemeRows(last.parent, options.scheme), options.progress, level);
+        child.creases = child_creases(last.parent);
+        child.sharp_faces = child_sharp_faces(last.parent);
+        last.mesh = std::move(child);
+    }
+    return last;
+}
+
+HexMesh refine(const HexMesh& mesh, const RefineOptions& options) {
+    HexMesh control = detail::control_mesh(mesh, options.scheme, options.levels);
+    if (options.levels == 0) return control;
+    report_progress(options.progress, "topology", 0);
+    Topology topology = build_topology(control);
+    detail::LastLevel last = detail::refine_without_cells(std::move(control), std::move(topology), options);
+    last.mesh.cells = detail::child_cells(last.parent);
+    return std::move(last.mesh);
+}
+
+HexMesh refine_cells(const HexMesh& mesh, std::span<const Index> cells, const RefineOptions& options) {
+    const HexMesh control = detail::control_mesh(mesh, options.scheme, options.levels);
+    check_cells(mesh, cells);
+    if (cells.empty()) return {};
+    return detail::refine_patch(detail::PatchSource(control), cells, options.scheme, options.levels, 0).mesh;
+}
+
+RefinementTables refinement_tables(const Topology& control, const RefineOptions& options) {
+    detail::check_levels(options.levels);
+    RefinementTables tables;
+    tables.control_points = control.point_count;
+    tables.cells = control.cells;
+    tables.creases = control.creases;
+    for (std::size_t f = 0; f < control.face_is_sharp.size(); ++f) {
+        if (control.face_is_sharp[f]) tables.sharp_faces.push_back(control.faces[f]);
+    }
+    const Topology* parent = &control;
+    Topology current;
+    for (int level = 1; level <= options.levels; ++level) {
+        tables.levels.push_back(make_table(SchemeRows(*parent, options.scheme), options.progress, level));
+        tables.creases = detail::child_creases(*parent);
+        tables.sharp_faces = detail::child_sharp_faces(*parent);
+        if (level == options.levels) {
+            tables.cells = detail::child_cells(*parent);
+        } else {
+            current = detail::child_topology(*parent);
+            parent = &current;
+        }
+    }
+    return tables;
+}
+
+void RefinementTables::apply(std::span<const double> control, std::size_t channels, std::span<double> fine) const {
+    apply_levels(*this, control, channels, fine);
+}
+
+void RefinementTables::apply(std::span<const float> control, std::size_t channels, std::span<float> fine) const {
+    apply_levels(*this, control, channels, fine);
+}
+
+std::vector<double> RefinementTables::apply(std::span<const double> control, std::size_t channels) const {
+    return apply_levels(*this, control, channels);
+}
+
+std::vector<float> RefinementTables::apply(std::span<const float> control, std::size_t channels) const {
+    return apply_levels(*this, control, channels);
+}
+
+StencilTable RefinementTables::over_control_points() const {
+    if (levels.empty()) return {control_points, control_points, {}};
+    StencilTable table = levels.front();
+    for (std::size_t l = 1; l < levels.size(); ++l) table = levels[l].after(table);
+    return table;
+}
+
+std::size_t RefinementTables::bytes() const {
+    std::size_t bytes = cells.capacity() * sizeof(cells[0]);
+    for (const StencilTable& level : levels) bytes += level.bytes();
+    return bytes;
+}
+
+}  // namespace subvol

@@ -1,0 +1,34 @@
+#include "scheme_rows.h"
+
+#include "bucket_sort.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+SchemeRows::SchemeRows(const Topology& topology, const SchemeOptions& scheme)
+    : topology_(topology),
+      first_(topology),
+      rules_(make_rules(topology, scheme)),
+      kept_(rules_->interpolates() ? topology.point_count : 0),
+      cell_of_rank_(topology.cells.size()) {
+    if (first_.end >= kNone) {
+        throw Error(ErrorCode::InvalidInput, "the refined mesh needs " + std::to_string(first_.end) + " points", {},
+                    "at most " + std::to_string(kNone - 1) + ": use fewer levels");
+    }
+    parallel_each(topology.cells.size(), [&](std::size_t c) { cell_of_rank_[topology.cell_rank[c]] = static_cast<Index>(c); });
+}
+
+void SchemeRows::write_row(std::size_t point, StencilBuilder& row) const {
+    if (point < first_.edges) {
+        const bool used = !topology_.point_edges[point].empty();
+        used ? rules_->vertex_point(static_cast<Index>(point), row) : row.add(static_cast<Index>(point), 1);
+    } else if (point < first_.faces) {
+        rules_->edge_point(static_cast<Index>(point - first_.edges), row);
+    } else if (point < first_.cells) {
+        rules_->face_point(static_cast<Index>(point - first_.faces), row);
+    } else {
+        rules_->cell_point(cell_of_rank_[point - first_.cells], row);
+    }
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+#include <string>
+
+#include "child_cells.h"
+#include "schemes.h"
+#include "stencil_block.h"
+#include "subvol/progress.h"
+
+namespace subvol::detail {
+
+/// The rows of one refinement step, cut into blocks.
+class SchemeRows {
+public:
+    /// Keeps a reference to the topology.
+    SchemeRows(const Topology& topology, const SchemeOptions& scheme);
+
+    [[nodiscard]] std::size_t columns() const { return topology_.point_count; }
+    [[nodiscard]] std::size_t rows() const { return first_.end; }
+
+    /// How many leading points stay as they are.
+    [[nodiscard]] std::size_t kept() const { return kept_; }
+    [[nodiscard]] std::size_t block_count() const { return (rows() - kept_ + kBlockRows - 1) / kBlockRows; }
+
+    /// The terms of child point `point`.
+    void write_row(std::size_t point, StencilBuilder& row) const;
+
+    /// Calls visit(number, block) for every block, in parallel; the block is gone after the call.
+    template <class Visit>
+    void for_each_block(Progress* progress, const std::string& stage, const Visit& visit) const;
+
+private:
+    const Topology& topology_;
+    ChildNumbering first_;
+    std::unique_ptr<SchemeRules> rules_;
+    std::size_t kept_;
+    std::vector<Index> cell_of_rank_;
+};
+
+template <class Visit>
+void SchemeRows::for_each_block(Progress* progress, const std::string& stage, const Visit& visit) const {
+    struct Scratch {
+        StencilBuilder row;
+        StencilBlockWriter block;
+    };
+    tbb::enumerable_thread_specific<Scratch> scratch;
+    constexpr std::size_t kTurn = 256;  // blocks between two reports of progress
+    for (std::size_t turn = 0; turn < block_count(); turn += kTurn) {
+        report_progress(progress, stage, static_cast<double>(turn) / static_cast<double>(block_count()));
+        tbb::parallel_for(turn, std::min(block_count(), turn + kTurn), [&](std::size_t b) {
+            auto& [row, block] = scratch.local();
+            const std::size_t begin = kept_ + b * kBlockRows, end = std::min(rows(), begin + kBlockRows);
+            block.start(begin);
+            for (std::size_t point = begin; point < end; ++point) {
+                row.clear();
+                write_row(point, row);
+                block.push(row.finish());
+            }
+            visit(b, block.block());
+        });
+    }
+    report_progress(progress, stage, 1);
+}
+
+}  // namespace subvol::detail

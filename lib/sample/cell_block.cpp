@@ -1,0 +1,115 @@
+#include "cell_block.h"
+
+#include "subvol/cell.h"
+
+namespace subvol::detail {
+
+CellBlocks::CellBlocks(const HexMesh& twice_refined) : mesh_(twice_refined) {
+    for (std::size_t a = 0; a < mesh_.attributes.size(); ++a) {
+        for (std::size_t c = 0; c < static_cast<std::size_t>(mesh_.attributes[a].channels); ++c) source_.emplace_back(a, c);
+    }
+    channels_ = source_.size();
+}
+
+namespace {
+
+/// Where a node of the 5×5×5 block stands in the twice refined mesh: in which of the 64 descendants of its cell, at which
+/// corner.
+struct NodePlace {
+    std::uint8_t descendant, corner;
+};
+
+constexpr std::array<NodePlace, 125> make_node_places() {
+    std::array<NodePlace, 125> places{};
+    for (std::size_t child = 0; child < 8; ++child) {
+        for (std::size_t grandchild = 0; grandchild < 8; ++grandchild) {
+            for (std::size_t k = 0; k < 8; ++k) {
+                std::size_t node = 0, stride = 1;
+                for (std::size_t a = 0; a < 3; ++a, stride *= 5) {
+                    node += stride * static_cast<std::size_t>(2 * kCornerParameters[child][a] +
+                                                              kCornerParameters[grandchild][a] + kCornerParameters[k][a]);
+                }
+                places[node] = {static_cast<std::uint8_t>(8 * child + grandchild), static_cast<std::uint8_t>(k)};
+            }
+        }
+    }
+    return places;
+}
+
+constexpr auto kNodePlaces = make_node_places();
+
+}  // namespace
+
+Index CellBlocks::point(std::size_t cell, std::size_t node) const {
+    const auto [descendant, corner] = kNodePlaces[node];
+    return mesh_.cells[64 * cell + descendant][corner];
+}
+
+double CellBlocks::channel_value(Index point, std::size_t channel) const {
+    const auto [attribute, c] = source_[channel];
+    const auto& values = mesh_.attributes[attribute];
+    return values.values[point * static_cast<std::size_t>(values.channels) + c];
+}
+
+void CellBlocks::evaluate(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+                          Jet& jet) const {
+    const std::array<SampleStencil, 3> basis{SampleStencil(uvw[0], step[0]), SampleStencil(uvw[1], step[1]),
+                                             SampleStencil(uvw[2], step[2])};
+    jet.position = Vec3(0.0);
+    jet.d_position = jet.dd_position = {Vec3(0.0), Vec3(0.0), Vec3(0.0)};
+    jet.value.assign(channels_, 0);
+    jet.d_value.assign(channels_, {0, 0, 0});
+    jet.dd_value.assign(channels_, {0, 0, 0});
+
+    constexpr std::array<std::size_t, 3> kStride{1, 5, 25};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
+        for (std::size_t j = 0; j < 5; ++j) {
+            if (basis[b].value[j] == 0) continue;  // on corners, edges and faces most weights vanish
+            for (std::size_t k = 0; k < 5; ++k) {
+                const double across = basis[b].value[j] * basis[c].value[k];
+                if (across == 0) continue;
+                for (std::size_t i = 0; i < 5; ++i) {
+                    const Index p = point(cell, i * kStride[axis] + j * kStride[b] + k * kStride[c]);
+                    const double w = across * basis[axis].value[i], d = across * basis[axis].first[i];
+                    const double dd = across * basis[axis].second[i];
+                    const Vec3& x = mesh_.points[p];
+                    jet.d_position[axis] += d * x;
+                    jet.dd_position[axis] += dd * x;
+                    if (axis == 0) jet.position += w * x;
+                    for (std::size_t ch = 0; ch < channels_; ++ch) {
+                        const double f = channel_value(p, ch);
+                        jet.d_value[ch][axis] += d * f;
+                        jet.dd_value[ch][axis] += dd * f;
+                        if (axis == 0) jet.value[ch] += w * f;
+                    }
+                }
+            }
+        }
+    }
+}
+
+void CellBlocks::evaluate_mixed(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+                                Jet& jet) const {
+    const std::array<SampleStencil, 3> basis{SampleStencil(uvw[0], step[0]), SampleStencil(uvw[1], step[1]),
+                                             SampleStencil(uvw[2], step[2])};
+    jet.mixed_position = {Vec3(0.0), Vec3(0.0), Vec3(0.0)};
+    jet.mixed_value.assign(channels_, {0, 0, 0});
+    constexpr std::array<std::size_t, 3> kStride{1, 5, 25};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
+        for (std::size_t i = 0; i < 5; ++i) {
+            if (basis[axis].value[i] == 0) continue;
+            for (std::size_t j = 0; j < 5; ++j) {
+                for (std::size_t k = 0; k < 5; ++k) {
+                    const double w = basis[axis].value[i] * basis[b].first[j] * basis[c].first[k];
+                    const Index p = point(cell, i * kStride[axis] + j * kStride[b] + k * kStride[c]);
+                    jet.mixed_position[axis] += w * mesh_.points[p];
+                    for (std::size_t ch = 0; ch < channels_; ++ch) jet.mixed_value[ch][axis] += w * channel_value(p, ch);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace subvol::detail

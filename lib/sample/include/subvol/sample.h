@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+
+#include "subvol/camera.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/progress.h"
+#include "subvol/rbf_volume.h"
+#include "subvol/refine.h"
+
+namespace subvol {
+
+/// How far a kernel follows the field: not at all, linearly, with the mean of its second derivatives, or with all of them.
+enum class Correction { None, Gradient, Second, Full };
+
+/// Where the value of a sample between control points comes from.
+///
+/// Scheme: the subdivision scheme itself
+/// Cubic:  Catmull-Rom in the cell's parameters over the 4×4×4 control points about it
+/// Paper:  Σ w f / Σ w over the control points within a kernel's extent, in the cell's parameters [mnmq2007]
+///
+/// Where the surroundings are no grid, `Cubic` extrapolates the points that are missing and `Paper` does without them.
+enum class ValueRule { Scheme, Cubic, Paper };
+
+/// Samples for a picture: a distance of `spacing_px` pixels at most between neighbours, where the camera sees them.
+///
+/// least_cell_px: cells whose projected box is smaller than this both ways keep one interval
+struct Footprint {
+    Camera camera;
+    int width_px = 512;
+    int height_px = 512;
+    double spacing_px = 1.5;
+    double least_cell_px = 1.5;
+};
+
+/// per_edge:        sample intervals a cell edge, 1 to 64; 1 is one kernel a control vertex
+/// spacing_world:   > 0: instead of per_edge, each edge gets ⌈length / spacing⌉ intervals
+/// footprint:       instead of both, each edge gets ⌈length in pixels / spacing⌉ intervals
+/// tolerance:       > 0: instead of these, as many intervals as it takes until the first channel errs by less, in its own unit,
+///                  at the points of the second refinement
+/// values:          where values between control points come from; gradients and moments come from the scheme
+/// value_kernel:    of the rule `Paper`
+/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many that a quad of it is half a sample interval
+/// wide,
+///                  4 at most
+struct SampleOptions {
+    SchemeOptions scheme{};
+    int per_edge = 1;
+    double spacing_world = 0;
+    std::optional<Footprint> footprint{};
+    double tolerance = 0;
+    Correction correction = Correction::Second;
+    ValueRule values = ValueRule::Scheme;
+    Kernel kernel{};
+    Kernel value_kernel = BcSplineKernel{.b = 0.039579, .c = 0.028746, .extent = 2};
+    std::optional<int> boundary_levels{};
+    Progress* progress = nullptr;
+};
+
+struct SampleReport {
+    std::size_t points = 0;
+    std::size_t at_vertices = 0, on_edges = 0, on_faces = 0, in_cells = 0;
+    std::size_t flat_frames = 0;  // points whose Jacobian was singular and was thickened
+    double largest_error = 0;     // with a tolerance: of the first channel, at the points of the second refinement
+};
+
+struct SampleResult {
+    RbfVolume volume;
+    SampleReport report;
+};
+
+/// Samples a subdivision volume into radial basis functions, each mesh entity by itself, so that shared points come once:
+/// N = V + Σ(nₑ−1) + Σ(n_u−1)(n_v−1) + Σ(n_u−1)(n_v−1)(n_w−1).
+///
+/// A face takes, along each direction, the larger count of its two opposite edges, a cell the largest of its four. Geometry and
+/// values come from the scheme itself: exact if all edges have the same power of two of intervals, or where the sample is a
+/// vertex of the second refinement (moved to the limit), else interpolated in-cell by quartics through those vertices.
+///
+/// throws: Error(InvalidInput) for options out of range, and as `refine`
+/// source: docs/science.md
+[[nodiscard]] SampleResult sample_rbf_points(HexMesh mesh, const SampleOptions& options = {});
+
+/// What a rule makes of the first refinement's new points: the error of a rule is its difference from the scheme there.
+///
+/// attribute: of `mesh`, one channel
+/// kernel:    of the rule `Paper`
+/// returns:   a value for each point that `refine` adds to those of the mesh, in its order
+/// throws:    Error(InvalidInput) as `refine`, or if the attribute has several channels
+[[nodiscard]] std::vector<double> values_at_new_points(const HexMesh& mesh, const Attribute& attribute, ValueRule rule,
+                                                       const Kernel& kernel);
+
+}  // namespace subvol

@@ -1,0 +1,183 @@
+#include "subvol/sample.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "boundary_of_child.h"
+#include "child_cells.h"
+#include "control_mesh.h"
+#include "last_level.h"
+#include "sample_counts.h"
+#include "sample_ways.h"
+#include "subvol/error.h"
+#include "subvol/limit.h"
+
+namespace subvol {
+
+namespace {
+
+constexpr int kMostBoundaryLevels = 6;
+constexpr int kMostDefaultBoundaryLevels = 4;
+
+void check(const SampleOptions& options) {
+    if (options.per_edge < 1 || options.per_edge > 64) {
+        throw Error(ErrorCode::InvalidInput, "sample intervals per edge: " + std::to_string(options.per_edge), {}, "1 to 64");
+    }
+    if (!(options.spacing_world >= 0 && std::isfinite(options.spacing_world))) {
+        throw Error(ErrorCode::InvalidInput, "the spacing is " + std::to_string(options.spacing_world), {},
+                    "a positive length");
+    }
+    if (!(options.tolerance >= 0 && std::isfinite(options.tolerance))) {
+        throw Error(ErrorCode::InvalidInput, "the tolerance is " + std::to_string(options.tolerance), {}, "a positive number");
+    }
+    if (options.footprint && !(options.footprint->spacing_px > 0 && options.footprint->least_cell_px >= 0)) {
+        throw Error(ErrorCode::InvalidInput, "the footprint's spacing is not positive");
+    }
+    validate(options.kernel);
+    validate(options.value_kernel);
+    if (!is_radial(options.kernel)) {
+        throw Error(ErrorCode::InvalidInput, "points need a radial kernel: their frames have no axes");
+    }
+    const double radius = support_radius(options.kernel);
+    if (!(radius >= 1.2 && radius <= 4)) {
+        throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(radius), {},
+                    "1.2 to 4 sample intervals: smaller kernels leave holes");
+    }
+    const int boundary_levels = options.boundary_levels.value_or(0);
+    if (boundary_levels < 0 || boundary_levels > kMostBoundaryLevels) {
+        throw Error(ErrorCode::InvalidInput, "boundary levels: " + std::to_string(boundary_levels), {}, "0 to 6");
+    }
+}
+
+/// Creases have been tagged.
+RefineOptions refinement(const SampleOptions& options, int levels) {
+    SchemeOptions scheme = options.scheme;
+    scheme.crease_angle_deg.reset();
+    return {.scheme = scheme, .levels = levels, .progress = options.progress};
+}
+
+/// The level whose points are just the samples, if there is one.
+std::optional<int> level_of_samples(const SampleOptions& options) {
+    const auto intervals = static_cast<unsigned>(options.per_edge);
+    const bool graded = options.spacing_world > 0 || options.footprint || options.tolerance > 0;
+    if (graded || options.values != ValueRule::Scheme || !std::has_single_bit(intervals)) return std::nullopt;
+    return std::countr_zero(intervals);
+}
+
+/// known:     the control mesh's topology, or a flag for each of its points: whether it is on the hull
+/// intervals: the most that an edge has
+template <class Known>
+Surface boundary_of(const HexMesh& control, const Known& known, int intervals, const SampleOptions& options) {
+    const auto half_an_interval = static_cast<int>(std::bit_width(static_cast<unsigned>(intervals)));
+    const int levels = options.boundary_levels.value_or(std::min(half_an_interval, kMostDefaultBoundaryLevels));
+    const RefineOptions refine_options = refinement(options, levels);
+    if (levels == 1 && interpolates(options.scheme.kind)) return detail::boundary_of_child(control, known, options.scheme);
+    return detail::boundary_at_level(control, refine_options);
+}
+
+void count_entities(SampleReport& report, const Topology& topology, std::size_t n) {
+    report.at_vertices = topology.point_count;
+    report.on_edges = topology.edges.size() * (n - 1);
+    report.on_faces = topology.faces.size() * (n - 1) * (n - 1);
+    report.in_cells = topology.cells.size() * (n - 1) * (n - 1) * (n - 1);
+}
+
+/// A mesh whose points are the samples.
+struct SampledLevel {
+    HexMesh mesh;
+    detail::PointLines lines;
+    Surface boundary;
+    SampleReport counts;
+};
+
+void mark_hull(const detail::MeshPart& part, std::vector<std::uint8_t>& on_hull) {
+    const Topology& topology = part.topology;
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+        for (const Index p : topology.faces[f]) on_hull[part.points[p]] |= part.own[p];
+    }
+}
+
+/// Its topology is needed part by part only.
+SampledLevel control_level(HexMesh control, const SampleOptions& options) {
+    const std::size_t points = control.points.size();
+    detail::LinesOfParts lines;
+    std::vector<std::uint8_t> on_hull(points);
+    detail::each_part(control, [&](const detail::MeshPart& part) {
+        lines.add(part);
+        mark_hull(part, on_hull);
+    });
+    SampledLevel level;
+    level.lines = lines.finish(points);
+    level.boundary = boundary_of(control, on_hull, options.per_edge, options);
+    level.counts.at_vertices = points;
+    level.mesh = std::move(control);
+    return level;
+}
+
+SampledLevel refined_level(HexMesh control, int number, const SampleOptions& options) {
+    Topology topology = build_topology(control);
+    SampledLevel level;
+    level.boundary = boundary_of(control, topology, options.per_edge, options);
+    count_entities(level.counts, topology, static_cast<std::size_t>(options.per_edge));
+    detail::LastLevel last = detail::refine_without_cells(std::move(control), std::move(topology), refinement(options, number));
+    level.lines = detail::lines_of_child(last.parent);
+    level.mesh = std::move(last.mesh);
+    if (!interpolates(options.scheme.kind)) level.mesh.cells = detail::child_cells(last.parent);
+    return level;
+}
+
+SampleResult sample_level(HexMesh control, int number, const SampleOptions& options) {
+    report_progress(options.progress, "topology", 0);
+    SampledLevel level =
+        number == 0 ? control_level(std::move(control), options) : refined_level(std::move(control), number, options);
+    if (!interpolates(options.scheme.kind)) level.mesh = on_limit(std::move(level.mesh), options.scheme.kind);
+    level.mesh.cells = std::vector<std::array<Index, 8>>();
+    SampleResult result =
+        detail::sample_at_points(std::move(level.mesh), level.lines, options.scheme.kind != Scheme::Linear, options);
+    result.volume.boundary = std::move(level.boundary);
+    level.counts.points = result.report.points;
+    level.counts.flat_frames = result.report.flat_frames;
+    result.report = level.counts;
+    return result;
+}
+
+/// At counts that differ from edge to edge, or values that are not the scheme's.
+SampleResult sample_graded(const HexMesh& control, const SampleOptions& options) {
+    const Topology topology = build_topology(control);
+    detail::LastLevel last = detail::refine_without_cells(control, topology, refinement(options, 2));
+    last.mesh.cells = detail::child_cells(last.parent);
+    const HexMesh twice = on_limit(std::move(last.mesh), options.scheme.kind);
+    SampleResult result;
+    int most = 1;
+    if (options.tolerance > 0) {
+        result = detail::sample_to_tolerance(control, twice, topology, options);
+    } else {
+        std::vector<int> intervals = detail::edge_intervals(control, topology, options);
+        most = std::ranges::max(intervals);
+        result = detail::sample_in_cells(control, twice, topology, std::move(intervals), options);
+    }
+    result.volume.boundary = boundary_of(control, topology, most, options);
+    return result;
+}
+
+Box bounds_of(const RbfVolume& volume) {
+    Box box;
+    for (const Vec3& p : volume.centers) box.add(p);
+    for (const Vec3& p : volume.boundary.points) box.add(p);
+    return box;
+}
+
+}  // namespace
+
+SampleResult sample_rbf_points(HexMesh mesh, const SampleOptions& options) {
+    check(options);
+    HexMesh control = detail::control_mesh(std::move(mesh), options.scheme);
+    const auto level = level_of_samples(options);
+    SampleResult result = level ? sample_level(std::move(control), *level, options) : sample_graded(control, options);
+    result.volume.bounds = bounds_of(result.volume);
+    return result;
+}
+
+}  // namespace subvol

@@ -1,0 +1,279 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "boundary_rings.h"
+#include "bucket_sort.h"
+#include "cell_block.h"
+#include "kernel_sums.h"
+#include "sample_counts.h"
+#include "sample_ways.h"
+#include "subvol/cell.h"
+#include "value_rules.h"
+
+namespace subvol::detail {
+
+namespace {
+
+Buckets<std::pair<Index, Index>> cells_of_points(const Topology& topology) {
+    return bucket_sort<std::pair<Index, Index>>(
+        topology.cells.size(), topology.point_count,
+        [&](std::size_t c, const auto& sink) {
+            for (const Index p : topology.cells[c]) sink({p, static_cast<Index>(c)});
+        },
+        [](const auto& record) { return record.first; });
+}
+
+/// Where a point of an edge or face (one or two parameters from its first corner) lies in one of the cells about it.
+template <std::size_t N>
+std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, const std::array<Index, N>& ends,
+                              const std::array<double, N>& parameters) {
+    const auto& o = kCornerParameters[slot_of(cell, origin)];
+    std::array<double, 3> uvw{double(o[0]), double(o[1]), double(o[2])};
+    for (std::size_t n = 0; n < N; ++n) {
+        const auto& e = kCornerParameters[slot_of(cell, ends[n])];
+        for (std::size_t a = 0; a < 3; ++a) uvw[a] += parameters[n] * (e[a] - o[a]);
+    }
+    return uvw;
+}
+
+/// Writes one kernel from the jets of the cells about its point.
+class KernelWriter {
+public:
+    KernelWriter(const Topology& topology, const SampleCounts& counts, const CellBlocks& blocks,
+                 std::span<const ChannelView> control, const SampleOptions& options, RbfVolume& volume)
+        : counts_(counts),
+          blocks_(blocks),
+          options_(options),
+          volume_(volume),
+          sums_(options, volume),
+          rule_(topology, control, options.values, options.value_kernel),
+          d_(blocks.channels()),
+          dd_(blocks.channels()) {}
+
+    void begin(std::size_t point) {
+        point_ = point;
+        cells_ = 0;
+        sums_.begin(point);
+    }
+
+    void add_cell(std::size_t cell, const std::array<double, 3>& uvw) {
+        const std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
+                                         1.0 / counts_.near(cell, 2, uvw)};
+        blocks_.evaluate(cell, uvw, step, jet_);
+        if (cells_++ == 0) {
+            volume_.centers[point_] = jet_.position;
+            write_values(static_cast<Index>(cell), uvw);
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (std::size_t c = 0; c < jet_.value.size(); ++c) {
+                d_[c] = jet_.d_value[c][a];
+                dd_[c] = jet_.dd_value[c][a];
+            }
+            sums_.add(1, jet_.d_position[a], jet_.dd_position[a], d_.data(), dd_.data());
+        }
+        if (options_.correction != Correction::Full) return;
+        blocks_.evaluate_mixed(cell, uvw, step, jet_);
+        jets_.push_back(jet_);
+    }
+
+    /// Returns whether the frame was flat and had to be thickened.
+    bool finish() {
+        const bool flat = sums_.finish(cells_);
+        for (std::size_t c = 0; c < volume_.channels.size() && options_.correction == Correction::Full; ++c) {
+            auto& channel = volume_.channels[c];
+            if (flat) {
+                channel.hessians[point_] = {};
+                continue;
+            }
+            const auto& g = channel.gradients[point_];
+            Mat3 mean(0.0);
+            for (const auto& jet : jets_) mean += hessian_in(jet, c, {g[0], g[1], g[2]}) / double(cells_);
+            channel.hessians[point_] = without_moment(mean, volume_.frames[point_]);
+        }
+        jets_.clear();
+        return flat;
+    }
+
+private:
+    /// J⁻ᵀ (∂²f − g·∂²x) J⁻¹, nothing where the cell is flat.
+    [[nodiscard]] static Mat3 hessian_in(const CellBlocks::Jet& jet, std::size_t channel, const Vec3& g) {
+        const Mat3 jacobian(jet.d_position[0], jet.d_position[1], jet.d_position[2]);
+        const double size = glm::length(jacobian[0]) * glm::length(jacobian[1]) * glm::length(jacobian[2]);
+        if (!(std::abs(glm::determinant(jacobian)) > 1e-6 * size)) return Mat3(0.0);
+        Mat3 second;
+        for (int a = 0; a < 3; ++a) {
+            const auto n = static_cast<std::size_t>(a);
+            second[a][a] = jet.dd_value[channel][n] - glm::dot(g, jet.dd_position[n]);
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            second[b][c] = second[c][b] = jet.mixed_value[channel][n] - glm::dot(g, jet.mixed_position[n]);
+        }
+        const Mat3 inverse = glm::inverse(jacobian);
+        return glm::transpose(inverse) * second * inverse;
+    }
+
+    /// Control points keep their values whatever the rule.
+    void write_values(Index cell, const std::array<double, 3>& uvw) {
+        const auto at_end = [](double t) { return t == 0 || t == 1; };
+        const bool by_rule = options_.values != ValueRule::Scheme && !std::all_of(uvw.begin(), uvw.end(), at_end);
+        if (by_rule) rule_.enter(cell);
+        for (std::size_t c = 0; c < jet_.value.size(); ++c) {
+            const double value = by_rule ? rule_.value(c, {uvw[0], uvw[1], uvw[2]}) : jet_.value[c];
+            volume_.channels[c].values[point_] = static_cast<float>(value);
+        }
+    }
+
+    const SampleCounts& counts_;
+    const CellBlocks& blocks_;
+    const SampleOptions& options_;
+    RbfVolume& volume_;
+    KernelSums sums_;
+    RuleInCell rule_;
+    CellBlocks::Jet jet_;
+    std::size_t point_ = 0;
+    int cells_ = 0;
+    std::vector<double> d_, dd_;
+    std::vector<CellBlocks::Jet> jets_;  // of the point's cells
+};
+
+/// Samples all entities of a mesh.
+class Sampler {
+public:
+    Sampler(const HexMesh& mesh, const HexMesh& twice_refined, const Topology& topology, std::vector<int> intervals,
+            const SampleOptions& options)
+        : options_(options),
+          topology_(topology),
+          counts_(topology, std::move(intervals)),
+          blocks_(twice_refined),
+          control_(channels_of(mesh)),
+          point_cells_(cells_of_points(topology_)) {}
+
+    SampleResult run(const HexMesh& mesh) {
+        const auto first_edge = prefix(topology_.point_count, topology_.edges.size(),
+                                       [&](std::size_t e) { return std::size_t(counts_.edge(e)) - 1; });
+        const auto first_face = prefix(first_edge.back(), topology_.faces.size(), [&](std::size_t f) {
+            const auto n = counts_.face(f);
+            return std::size_t(n[0] - 1) * std::size_t(n[1] - 1);
+        });
+        const auto first_cell = prefix(first_face.back(), topology_.cells.size(), [&](std::size_t c) {
+            const auto n = counts_.cell(c);
+            return std::size_t(n[0] - 1) * std::size_t(n[1] - 1) * std::size_t(n[2] - 1);
+        });
+        auto& report = result_.report;
+        report.at_vertices = topology_.point_count;
+        report.on_edges = first_edge.back() - topology_.point_count;
+        report.on_faces = first_face.back() - first_edge.back();
+        report.in_cells = first_cell.back() - first_face.back();
+        report.points = first_cell.back();
+        result_.volume = empty_volume(mesh, report.points, options_);
+        result_.volume.centers.resize(report.points);
+
+        each(topology_.point_count, "sample vertices", [&](std::size_t p, auto& writer) { return sample_vertex(p, writer); });
+        each(topology_.edges.size(), "sample edges",
+             [&](std::size_t e, auto& writer) { return sample_edge(e, first_edge[e], writer); });
+        each(topology_.faces.size(), "sample faces",
+             [&](std::size_t f, auto& writer) { return sample_face(f, first_face[f], writer); });
+        each(topology_.cells.size(), "sample cells",
+             [&](std::size_t c, auto& writer) { return sample_cell(c, first_cell[c], writer); });
+        return std::move(result_);
+    }
+
+private:
+    template <class Count>
+    static std::vector<std::size_t> prefix(std::size_t start, std::size_t count, const Count& entries) {
+        std::vector<std::size_t> first(count + 1, start);
+        for (std::size_t i = 0; i < count; ++i) first[i + 1] = first[i] + entries(i);
+        return first;
+    }
+
+    template <class Sample>
+    void each(std::size_t count, const char* stage, const Sample& sample) {
+        report_progress(options_.progress, stage, 0);
+        std::atomic<std::size_t> flat{0};
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
+            KernelWriter writer(topology_, counts_, blocks_, control_, options_, result_.volume);
+            std::size_t flat_here = 0;
+            for (std::size_t i = range.begin(); i != range.end(); ++i) flat_here += sample(i, writer);
+            flat += flat_here;
+        });
+        result_.report.flat_frames += flat;
+        report_progress(options_.progress, stage, 1);
+    }
+
+    std::size_t sample_vertex(std::size_t p, KernelWriter& writer) const {
+        writer.begin(p);
+        for (std::size_t i = point_cells_.offsets[p]; i < point_cells_.offsets[p + 1]; ++i) {
+            const Index cell = point_cells_.records[i].second;
+            writer.add_cell(cell, in_cell<0>(topology_.cells[cell], static_cast<Index>(p), {}, {}));
+        }
+        return writer.finish();
+    }
+
+    std::size_t sample_edge(std::size_t e, std::size_t first, KernelWriter& writer) const {
+        const int n = counts_.edge(e);
+        const auto [a, b] = topology_.edges[e];
+        std::size_t flat = 0;
+        for (int i = 1; i < n; ++i) {
+            writer.begin(first++);
+            for (const Index cell : topology_.edge_cells[e]) {
+                writer.add_cell(cell, in_cell<1>(topology_.cells[cell], a, {b}, {double(i) / n}));
+            }
+            flat += writer.finish();
+        }
+        return flat;
+    }
+
+    std::size_t sample_face(std::size_t f, std::size_t first, KernelWriter& writer) const {
+        const auto n = counts_.face(f);
+        const auto& quad = topology_.faces[f];
+        std::size_t flat = 0;
+        for (int j = 1; j < n[1]; ++j) {
+            for (int i = 1; i < n[0]; ++i) {
+                writer.begin(first++);
+                for (const Index cell : topology_.face_cells[f]) {
+                    if (cell == kNone) continue;
+                    writer.add_cell(cell, in_cell<2>(topology_.cells[cell], quad[0], {quad[1], quad[3]},
+                                                     {double(i) / n[0], double(j) / n[1]}));
+                }
+                flat += writer.finish();
+            }
+        }
+        return flat;
+    }
+
+    std::size_t sample_cell(std::size_t c, std::size_t first, KernelWriter& writer) const {
+        const auto n = counts_.cell(c);
+        std::size_t flat = 0;
+        if (n[0] == 1 || n[1] == 1 || n[2] == 1) return flat;
+        for (int k = 1; k < n[2]; ++k) {
+            for (int j = 1; j < n[1]; ++j) {
+                for (int i = 1; i < n[0]; ++i) {
+                    writer.begin(first++);
+                    writer.add_cell(c, {double(i) / n[0], double(j) / n[1], double(k) / n[2]});
+                    flat += writer.finish();
+                }
+            }
+        }
+        return flat;
+    }
+
+    const SampleOptions& options_;
+    const Topology& topology_;
+    SampleCounts counts_;
+    CellBlocks blocks_;
+    std::vector<ChannelView> control_;
+    Buckets<std::pair<Index, Index>> point_cells_;
+    SampleResult result_;
+};
+
+}  // namespace
+
+SampleResult sample_in_cells(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
+                             std::vector<int> intervals, const SampleOptions& options) {
+    return Sampler(control, twice_refined, topology, std::move(intervals), options).run(control);
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,392 @@
+// MCQ-G: interpolatory subdivision of hexahedral meshes, MCQ inside and a generalisation of ours at irregular edges, boundaries
+// and creases. Terms that would lie beyond the boundary are replaced by quadratic extrapolation from their partner term.
+#include <algorithm>
+
+#include "antipode.h"
+#include "incident.h"
+#include "schemes.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Pair = std::array<Index, 2>;
+
+class McqRules final : public SchemeRules {
+public:
+    McqRules(const Topology& topology, double tension)
+        : topology_(topology), omega_(tension), kinds_(classify_points(topology)), regular_(regular_points(topology)) {}
+
+    void edge_point(Index edge, StencilBuilder& row) const override {
+        const auto [a, b] = topology_.edges[edge];
+        if (regular_[a] && regular_[b]) {
+            regular_edge(edge, row);
+        } else if (!topology_.edge_on_boundary[edge]) {
+            interior_edge(edge, row);
+        } else if (topology_.edge_is_crease[edge]) {
+            crease_edge(edge, row);
+        } else {
+            surface_edge(edge, row);
+        }
+    }
+
+    void face_point(Index face, StencilBuilder& row) const override {
+        const auto& [a, b, c, d] = topology_.faces[face];
+        if (regular_[a] && regular_[b] && regular_[c] && regular_[d]) {
+            regular_face(face, row);
+        } else if (topology_.face_on_boundary(face)) {
+            surface_face(face, row);
+        } else {
+            interior_face(face, row);
+        }
+    }
+
+    void cell_point(Index cell, StencilBuilder& row) const override {
+        const auto& sides = topology_.cell_faces[cell];
+        if (std::none_of(sides.begin(), sides.end(), [&](Index f) { return topology_.face_on_boundary(f); })) {
+            regular_cell(cell, row);
+        } else {
+            interior_cell(cell, row);
+        }
+    }
+
+private:
+    // --- the regular masks, as runs
+    // --------------------------------------------------------------------------------------------------------
+
+    void regular_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        std::array<Index, 8> q, r;
+        std::size_t k = 0;
+        for (const Index face : topology_.edge_faces[edge]) {
+            q[k++] = across_face(topology_, face, a);
+            q[k++] = across_face(topology_, face, b);
+        }
+        k = 0;
+        for (const Index end : {a, b}) {  // beyond an end, the faces about the edge that goes on there
+            for (const Index face : topology_.edge_faces[continuation(edge, end)]) r[k++] = across_face(topology_, face, end);
+        }
+        row.add_run(topology_.edges[edge], 0.5);
+        row.add_run(q, omega_ / 4);
+        row.add_run(r, -omega_ / 4);
+    }
+
+    void regular_face(Index face, StencilBuilder& row) const {
+        std::array<Index, 8> q, r;
+        std::array<Index, 16> s;
+        std::size_t k = 0;
+        const auto& corners = topology_.faces[face];
+        for (const Index cell : topology_.face_cells[face]) {
+            for (const Index p : corners) q[k++] = across_cell(topology_, cell, p);
+        }
+        std::size_t in_r = 0, in_s = 0;
+        for (std::size_t side = 0; side < 4; ++side) {
+            const Index g = topology_.face_edges[face][side];
+            const auto ring = topology_.edge_faces[g];
+            const auto cells = topology_.edge_cells[g];
+            const std::size_t start = slot_of(ring, face);
+            for (const Index p : {corners[side], corners[(side + 1) % 4]}) {
+                r[in_r++] = across_face(topology_, ring[(start + 2) % 4], p);
+                s[in_s++] = across_cell(topology_, cells[(start + 1) % 4], p);
+                s[in_s++] = across_cell(topology_, cells[(start + 2) % 4], p);
+            }
+        }
+        row.add_run(topology_.faces[face], (1 + 2 * omega_) / 4);
+        row.add_run(q, omega_ / 4);
+        row.add_run(r, -omega_ / 4);
+        row.add_run(s, -omega_ / 8);
+    }
+
+    void regular_cell(Index cell, StencilBuilder& row) const {
+        std::array<Index, 24> q;
+        std::size_t k = 0;
+        for (std::size_t side = 0; side < 6; ++side) {
+            const auto [c0, c1] = topology_.face_cells[topology_.cell_faces[cell][side]];
+            for (const Index p : side_points(cell, side)) q[k++] = across_cell(topology_, c0 == cell ? c1 : c0, p);
+        }
+        row.add_run(topology_.cells[cell], (1 + 6 * omega_) / 8);
+        row.add_run(q, -omega_ / 4);
+    }
+
+    /// The edge that goes on beyond a regular end of an edge: the one of the six that shares no face with it.
+    Index continuation(Index edge, Index end) const {
+        Index left = edge;
+        for (const Index e : topology_.point_edges[end]) left ^= e;
+        for (const Index face : topology_.edge_faces[edge]) {
+            const auto& quad = topology_.faces[face];
+            const std::size_t k = slot_of(quad, end);
+            const Index before = topology_.face_edges[face][(k + 3) % 4], after = topology_.face_edges[face][k];
+            left ^= before == edge ? after : before;
+        }
+        return left;
+    }
+
+    // The terms of the rules are functions: they add themselves with a weight, or add nothing and return false where the mesh
+    // ends.
+
+    template <class Points>
+    static void add(StencilBuilder& row, const Points& points, double weight) {
+        for (const Index p : points) row.add(p, weight);
+    }
+
+    /// weight · term, or its ghost: 3 near − 3 far + partner, without a known partner 2 near − far.
+    template <class Points, class Term, class Partner>
+    static void extrapolated(StencilBuilder& row, double weight, const Points& near, const Points& far, const Term& term,
+                             const Partner& partner) {
+        if (term(row, weight)) return;
+        const bool quadratic = partner(row, weight);
+        add(row, near, quadratic ? 3 * weight : 2 * weight);
+        add(row, far, quadratic ? -3 * weight : -weight);
+    }
+
+    /// A pair of terms at the two ends of a line, each the other's partner.
+    template <class TermA, class TermB>
+    static void both_ways(StencilBuilder& row, double weight, Index near_a, Index near_b, const TermA& beyond_a,
+                          const TermB& beyond_b) {
+        const std::array<Index, 1> a{near_a}, b{near_b};
+        extrapolated(row, weight, a, b, beyond_a, beyond_b);
+        extrapolated(row, weight, b, a, beyond_b, beyond_a);
+    }
+
+    // --- terms
+    // -----------------------------------------------------------------------------------------------------------------
+
+    /// R^A: over the ring of faces about edge (a,d), the neighbours of d other than a, antipodally weighted.
+    [[nodiscard]] auto across_edge(Index face, Index a, Index d) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            const Index edge = edge_in_face(face, a, d);
+            if (!topology_.edge_has_ring[edge]) return false;
+            const auto ring = topology_.edge_faces[edge];
+            const std::size_t m = ring.size(), start = slot_of(ring, face);
+            for (std::size_t j = 0; j < m; ++j) {
+                const double c = antipodal_(m, j);
+                if (c != 0) row.add(beside(ring[(start + j) % m], d, a), c * weight);
+            }
+            return true;
+        };
+    }
+
+    /// R_g: over the ring of faces about an edge, their two points not on it, antipodally weighted.
+    [[nodiscard]] auto in_plane(Index face, Index edge) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (!topology_.edge_has_ring[edge]) return false;
+            const auto ring = topology_.edge_faces[edge];
+            const std::size_t m = ring.size(), start = slot_of(ring, face);
+            for (std::size_t j = 0; j < m; ++j) {
+                const double c = antipodal_(m, j);
+                if (c == 0) continue;
+                for (const Index p : far_side(ring[(start + j) % m], edge)) row.add(p, c * weight);
+            }
+            return true;
+        };
+    }
+
+    /// S_g: in the cells next to those of the face, the two points diagonally opposite the edge.
+    [[nodiscard]] auto diagonal(Index face, Index edge) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (!topology_.edge_has_ring[edge]) return false;
+            const auto faces = topology_.edge_faces[edge];
+            const auto cells = topology_.edge_cells[edge];
+            const std::size_t m = faces.size(), start = slot_of(faces, face);
+            for (const std::size_t j : {std::size_t{1}, m - 2}) {
+                for (const Index p : opposite_edge(cells[(start + j) % m], edge)) row.add(p, weight);
+            }
+            return true;
+        };
+    }
+
+    /// Across a side of a cell, the far points of its neighbour.
+    [[nodiscard]] auto far_points(Index cell, std::size_t side) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            const Index face = topology_.cell_faces[cell][side];
+            if (topology_.face_on_boundary(face)) return false;
+            const auto [c0, c1] = topology_.face_cells[face];
+            add(row, opposite_points(c0 == cell ? c1 : c0, face), weight);
+            return true;
+        };
+    }
+
+    /// A': the far end of the other crease edge at a.
+    [[nodiscard]] auto along_crease(Index edge, Index a) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (kinds_[a] != PointKind::Crease) return false;
+            for (const Index e : topology_.point_edges[a]) {
+                if (e == edge || !topology_.edge_is_crease[e]) continue;
+                row.add(other_end(topology_, e, a), weight);
+            }
+            return true;
+        };
+    }
+
+    /// A*: over the ring of boundary edges at a smooth point, their far ends, antipodally weighted.
+    [[nodiscard]] auto across_spokes(Index edge, Index a) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (kinds_[a] != PointKind::Smooth) return false;
+            std::vector<Index> ring;
+            ring_of_spokes(topology_, a, edge, ring);
+            if (ring.size() < 3) return false;
+            for (std::size_t j = 0; j < ring.size(); ++j) {
+                const double c = antipodal_(ring.size(), j);
+                if (c != 0) row.add(other_end(topology_, ring[j], a), c * weight);
+            }
+            return true;
+        };
+    }
+
+    [[nodiscard]] auto across_surface_edge(Index face, Index a, Index d) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            const Index edge = edge_in_face(face, a, d);
+            if (topology_.edge_is_crease[edge]) return false;
+            row.add(beside(other_boundary_face(topology_, edge, face), d, a), weight);
+            return true;
+        };
+    }
+
+    [[nodiscard]] auto over_surface(Index face, Index edge) const {
+        return [=, this](StencilBuilder& row, double weight) {
+            if (topology_.edge_is_crease[edge]) return false;
+            for (const Index p : far_side(other_boundary_face(topology_, edge, face), edge)) row.add(p, weight);
+            return true;
+        };
+    }
+
+    // --- inside -------------------------------------------------------------------------------------------------------------
+
+    void interior_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        add(row, topology_.edges[edge], 0.5);
+        const auto faces = topology_.edge_faces[edge];
+        if (!topology_.edge_has_ring[edge]) return;
+        const double weight = omega_ / static_cast<double>(faces.size());
+        for (const Index face : faces) {
+            const Index d = beside(face, a, b), c = beside(face, b, a);
+            add(row, Pair{c, d}, weight);
+            both_ways(row, -weight, d, c, across_edge(face, a, d), across_edge(face, b, c));
+        }
+    }
+
+    void interior_face(Index face, StencilBuilder& row) const {
+        add(row, topology_.faces[face], (1 + 2 * omega_) / 4);
+        for (const Index cell : topology_.face_cells[face]) add(row, opposite_points(cell, face), omega_ / 4);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Pair g{topology_.faces[face][k], topology_.faces[face][(k + 1) % 4]};
+            const Pair h{topology_.faces[face][(k + 3) % 4], topology_.faces[face][(k + 2) % 4]};
+            const Index edge_g = topology_.face_edges[face][k], edge_h = topology_.face_edges[face][(k + 2) % 4];
+            extrapolated(row, -omega_ / 4, g, h, in_plane(face, edge_g), in_plane(face, edge_h));
+            extrapolated(row, -omega_ / 8, lifted(face, g), lifted(face, h), diagonal(face, edge_g), diagonal(face, edge_h));
+        }
+    }
+
+    void interior_cell(Index cell, StencilBuilder& row) const {
+        add(row, topology_.cells[cell], (1 + 6 * omega_) / 8);
+        for (std::size_t side = 0; side < 6; ++side) {
+            const auto near = side_points(cell, side), far = side_points(cell, side ^ 1);
+            extrapolated(row, -omega_ / 4, near, far, far_points(cell, side), far_points(cell, side ^ 1));
+        }
+    }
+
+    // --- on the boundary
+    // ------------------------------------------------------------------------------------------------------
+
+    void crease_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        add(row, topology_.edges[edge], 0.5 + omega_);
+        both_ways(row, -omega_, a, b, along_crease(edge, a), along_crease(edge, b));
+    }
+
+    void surface_edge(Index edge, StencilBuilder& row) const {
+        const auto [a, b] = topology_.edges[edge];
+        add(row, topology_.edges[edge], 0.5 + omega_ / 2);
+        both_ways(row, -omega_ / 2, a, b, across_spokes(edge, a), across_spokes(edge, b));
+        const auto [f0, f1] = boundary_faces_of(topology_, edge);
+        for (const Index face : {f0, f1}) {
+            const Index d = beside(face, a, b), c = beside(face, b, a);
+            add(row, Pair{c, d}, omega_ / 4);
+            both_ways(row, -omega_ / 4, d, c, across_surface_edge(face, a, d), across_surface_edge(face, b, c));
+        }
+    }
+
+    void surface_face(Index face, StencilBuilder& row) const {
+        add(row, topology_.faces[face], (1 + 4 * omega_) / 4);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Pair g{topology_.faces[face][k], topology_.faces[face][(k + 1) % 4]};
+            const Pair h{topology_.faces[face][(k + 3) % 4], topology_.faces[face][(k + 2) % 4]};
+            const Index edge_g = topology_.face_edges[face][k], edge_h = topology_.face_edges[face][(k + 2) % 4];
+            extrapolated(row, -omega_ / 2, g, h, over_surface(face, edge_g), over_surface(face, edge_h));
+        }
+    }
+
+    // --- neighbours within a face or a cell
+    // -----------------------------------------------------------------------------------
+
+    /// The neighbour of `point` in a face, other than `not_this` (which must be its other neighbour).
+    Index beside(Index face, Index point, Index not_this) const {
+        const auto& quad = topology_.faces[face];
+        const std::size_t k = slot_of(quad, point);
+        const Index next = quad[(k + 1) % 4];
+        return next == not_this ? quad[(k + 3) % 4] : next;
+    }
+
+    Index edge_in_face(Index face, Index a, Index b) const {
+        const auto& quad = topology_.faces[face];
+        const std::size_t k = slot_of(quad, a);
+        return topology_.face_edges[face][quad[(k + 1) % 4] == b ? k : (k + 3) % 4];
+    }
+
+    /// The two points of a face that are not on one of its edges, in the order of the edge's ends.
+    Pair far_side(Index face, Index edge) const {
+        const auto [a, b] = topology_.edges[edge];
+        return {beside(face, a, b), beside(face, b, a)};
+    }
+
+    Pair opposite_edge(Index cell, Index edge) const {
+        const std::size_t k = slot_of(topology_.cell_edges[cell], edge);
+        // The four edges along an axis are listed 00, 10, 01, 11 over the other two axes: the opposite one is 3 − i.
+        return topology_.edges[topology_.cell_edges[cell][k / 4 * 4 + 3 - k % 4]];
+    }
+
+    std::array<Index, 4> side_points(Index cell, std::size_t side) const {
+        std::array<Index, 4> points;
+        for (std::size_t k = 0; k < 4; ++k) points[k] = topology_.cells[cell][static_cast<std::size_t>(kCellFaces[side][k])];
+        return points;
+    }
+
+    /// The four points of a cell that are not on one of its faces.
+    std::array<Index, 4> opposite_points(Index cell, Index face) const {
+        return side_points(cell, slot_of(topology_.cell_faces[cell], face) ^ 1);
+    }
+
+    /// In both cells of a face, the points over two of its points.
+    std::array<Index, 4> lifted(Index face, const Pair& points) const {
+        std::array<Index, 4> result{};
+        std::size_t count = 0;
+        for (const Index cell : topology_.face_cells[face]) {
+            const std::size_t side = slot_of(topology_.cell_faces[cell], face);
+            const auto axis = static_cast<std::size_t>(side / 2);
+            for (const Index p : points) {
+                for (std::size_t k = 4 * axis; k < 4 * axis + 4; ++k) {
+                    const auto& edge = kCellEdges[k];
+                    const Index a = topology_.cells[cell][static_cast<std::size_t>(edge[0])];
+                    const Index b = topology_.cells[cell][static_cast<std::size_t>(edge[1])];
+                    if (a == p) result[count++] = b;
+                    if (b == p) result[count++] = a;
+                }
+            }
+        }
+        return result;
+    }
+
+    const Topology& topology_;
+    double omega_;
+    std::vector<PointKind> kinds_;
+    std::vector<std::uint8_t> regular_;
+    AntipodalWeights antipodal_;
+};
+
+}  // namespace
+
+std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double tension) {
+    return std::make_unique<McqRules>(topology, tension);
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,32 @@
+#include "schemes.h"
+
+#include <cmath>
+
+#include "subvol/error.h"
+
+namespace subvol {
+
+bool interpolates(Scheme scheme) {
+    return scheme == Scheme::Mcq || scheme == Scheme::Linear;
+}
+
+namespace detail {
+
+std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme) {
+    switch (scheme.kind) {
+        case Scheme::Linear:
+            return make_linear_rules(topology);
+        case Scheme::Mcq:
+            if (!std::isfinite(scheme.tension)) throw Error(ErrorCode::InvalidInput, "the tension is not a finite number");
+            return make_mcq_rules(topology, scheme.tension);
+        case Scheme::CatmullClark:
+            return make_catmull_clark_rules(topology);
+        case Scheme::Bsxw:
+            return make_bsxw_rules(topology);
+    }
+    throw Error(ErrorCode::InvalidInput, "unknown subdivision scheme");
+}
+
+}  // namespace detail
+
+}  // namespace subvol

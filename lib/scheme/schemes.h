@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+
+#include "stencil_row.h"
+#include "subvol/scheme.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// The rules of a scheme over one topology: each writes the terms of one point of the next level.
+///
+/// Thread-safe: the rules only read.
+class SchemeRules {
+public:
+    virtual ~SchemeRules() = default;
+
+    /// Whether old points stay where they are; `vertex_point` is asked only if they do not.
+    [[nodiscard]] virtual bool interpolates() const { return true; }
+    virtual void vertex_point(Index point, StencilBuilder& row) const { row.add(point, 1); }
+    virtual void edge_point(Index edge, StencilBuilder& row) const = 0;
+    virtual void face_point(Index face, StencilBuilder& row) const = 0;
+    virtual void cell_point(Index cell, StencilBuilder& row) const = 0;
+};
+
+/// All keep a reference to the topology.
+std::unique_ptr<SchemeRules> make_linear_rules(const Topology& topology);
+std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double tension);
+std::unique_ptr<SchemeRules> make_catmull_clark_rules(const Topology& topology);
+std::unique_ptr<SchemeRules> make_bsxw_rules(const Topology& topology);
+
+/// The rules that the options name.
+///
+/// throws: Error(InvalidInput) if the tension is not finite
+[[nodiscard]] std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme);
+
+}  // namespace subvol::detail

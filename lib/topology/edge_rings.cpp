@@ -1,0 +1,103 @@
+#include "topology_parts.h"
+
+#include <algorithm>
+
+#include "bucket_sort.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// The faces about one edge, walked from cell to cell.
+class RingWalk {
+public:
+    RingWalk(const Topology& topology, std::span<const Index> faces) : topology_(topology), left_(faces.begin(), faces.end()) {}
+
+    /// Fans from hull face to hull face, then closed rings; appends to `faces` and `cells`. Returns the closed rings.
+    int run(std::vector<Index>& faces, std::vector<Index>& cells) {
+        while (const auto start = next_start(true)) walk(*start, topology_.face_cells[*start][0], faces, cells);
+        int rings = 0;
+        while (const auto start = next_start(false)) {
+            walk(*start, first_cell(*start), faces, cells);
+            ++rings;
+        }
+        return rings;
+    }
+
+private:
+    [[nodiscard]] std::optional<Index> next_start(bool on_hull) const {
+        for (const Index f : left_) {
+            if (f != kNone && topology_.face_on_hull(f) == on_hull) return f;
+        }
+        return std::nullopt;
+    }
+
+    /// The other face of `cell` about this edge; a cell has exactly two.
+    [[nodiscard]] Index other_face(Index cell, Index face) const {
+        for (const Index f : topology_.cell_faces[cell]) {
+            if (f != face && std::find(all_.begin(), all_.end(), f) != all_.end()) return f;
+        }
+        return kNone;
+    }
+
+    /// The cell through which a closed ring goes to the smaller of the start's two neighbours.
+    [[nodiscard]] Index first_cell(Index start) const {
+        const auto [c0, c1] = topology_.face_cells[start];
+        const Index f0 = other_face(c0, start), f1 = other_face(c1, start);
+        return f0 <= f1 ? c0 : c1;
+    }
+
+    void take(Index face) { *std::find(left_.begin(), left_.end(), face) = kNone; }
+
+    void walk(Index start, Index cell, std::vector<Index>& faces, std::vector<Index>& cells) {
+        Index face = start;
+        while (true) {
+            faces.push_back(face);
+            take(face);
+            if (cell == kNone) return;
+            cells.push_back(cell);
+            face = other_face(cell, face);
+            if (face == start) return;
+            const auto [c0, c1] = topology_.face_cells[face];
+            cell = c0 == cell ? c1 : c0;
+        }
+    }
+
+    const Topology& topology_;
+    std::vector<Index> left_;
+    std::vector<Index> all_ = left_;
+};
+
+}  // namespace
+
+int walk_edge_ring(const Topology& topology, std::span<const Index> edge_faces, std::vector<Index>& ring_faces,
+                   std::vector<Index>& ring_cells) {
+    ring_faces.clear();
+    ring_cells.clear();
+    return RingWalk(topology, edge_faces).run(ring_faces, ring_cells);
+}
+
+void order_edge_rings(Topology& topology) {
+    const std::size_t count = topology.edges.size();
+    auto& cells = topology.edge_cells;
+    cells.offsets.assign(count + 1, 0);
+    parallel_each(count, [&](std::size_t e) {
+        std::size_t sides = 0;  // each cell about the edge has two of its faces
+        for (const Index f : topology.edge_faces[e]) sides += topology.face_on_hull(f) ? 1 : 2;
+        cells.offsets[e + 1] = sides / 2;
+    });
+    for (std::size_t e = 0; e < count; ++e) cells.offsets[e + 1] += cells.offsets[e];
+    cells.values.resize(cells.offsets.back());
+    topology.edge_has_ring.assign(count, 0);
+
+    parallel_each(count, [&](std::size_t e) {
+        thread_local std::vector<Index> ring_faces, ring_cells;
+        const int rings = walk_edge_ring(topology, topology.edge_faces[e], ring_faces, ring_cells);
+        topology.edge_has_ring[e] = !topology.edge_on_boundary[e] && rings == 1 && ring_cells.size() >= 3;
+        const auto face_offset = static_cast<std::ptrdiff_t>(topology.edge_faces.offsets[e]);
+        std::copy(ring_faces.begin(), ring_faces.end(), topology.edge_faces.values.begin() + face_offset);
+        std::copy(ring_cells.begin(), ring_cells.end(), cells.values.begin() + static_cast<std::ptrdiff_t>(cells.offsets[e]));
+    });
+}
+
+}  // namespace subvol::detail

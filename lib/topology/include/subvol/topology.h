@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/cell.h"
+#include "subvol/detail/flat_array.h"
+#include "subvol/hex_mesh.h"
+
+namespace subvol {
+
+/// The edges and faces of a hexahedral mesh and who meets whom, as flat arrays.
+///
+/// Edges and faces are numbered in the order of their point ids, so they do not depend on the order of the cells.
+/// edges:      two point ids, smaller first; those of smaller point p are edge_offsets[p] to edge_offsets[p+1]
+/// faces:      four point ids in cyclic order, the smallest first and then the smaller of its two neighbours
+/// face_edges: edge k of a face joins its points k and k+1
+/// face_cells: one or two cells (smaller first); the second is kNone on the boundary
+/// edge_faces: the ring about an edge. About an interior edge cyclic, starting at the smallest face and going on to the
+///             smaller of its two neighbours; about a boundary edge fan by fan, each from hull face to hull face
+/// edge_cells: cell j of an interior ring lies between faces j and j+1; on a boundary edge the cells of the fans in order
+/// hull:       the faces with one cell
+/// boundary:   the hull and the faces tagged as sharp, their edges, their points: what a scheme's surface rules see
+/// creases:    the mesh's tags, besides those that the default rule finds
+/// face_is_sharp: a flag a face, empty if none is tagged
+struct Topology {
+    std::size_t point_count = 0;
+    std::vector<std::array<Index, 8>> cells;
+    FlatArray<std::array<Index, 2>> edges;
+    FlatArray<Index> edge_offsets;
+    FlatArray<std::array<Index, 4>> faces;
+    FlatArray<std::array<Index, 12>> cell_edges;
+    FlatArray<std::array<Index, 6>> cell_faces;
+    FlatArray<std::array<Index, 4>> face_edges;
+    FlatArray<std::array<Index, 2>> face_cells;
+    IndexRows edge_faces;
+    IndexRows edge_cells;
+    IndexRows point_edges;
+    std::vector<std::uint8_t> edge_on_boundary;
+    std::vector<std::uint8_t> point_on_boundary;
+    std::vector<std::uint8_t> edge_has_ring;   // interior edges whose cells form one ring of at least three
+    std::vector<std::uint8_t> edge_is_crease;  // boundary edges kept sharp: one cell, non-manifold, or tagged
+    FlatArray<Index> cell_rank;                // a number for each cell that does not depend on the order of the cells
+    std::vector<std::uint8_t> face_is_sharp;
+    std::vector<std::array<Index, 2>> creases;
+    std::size_t nonmanifold_edges = 0;  // boundary edges with other than two boundary faces
+
+    [[nodiscard]] bool face_on_hull(Index face) const { return face_cells[face][1] == kNone; }
+    [[nodiscard]] bool face_on_boundary(Index face) const {
+        return face_on_hull(face) || (!face_is_sharp.empty() && face_is_sharp[face] != 0);
+    }
+    [[nodiscard]] std::size_t boundary_faces_at(Index edge) const;
+    [[nodiscard]] std::optional<Index> find_edge(Index a, Index b) const;
+    [[nodiscard]] std::optional<Index> find_face(const std::array<Index, 4>& points) const;
+};
+
+/// Builds the topology of a mesh, in parallel; the result does not depend on the number of threads.
+///
+/// throws: Error(InvalidInput) if more than two cells share a face, two cells have the same corners, a crease is no boundary
+///         edge or a sharp face no face; names them
+/// cost:   O(n log n) time, about 500 bytes a cell
+[[nodiscard]] Topology build_topology(const HexMesh& mesh);
+
+/// Tags the smooth boundary edges whose two faces meet at more than `angle_deg`.
+///
+/// throws: Error(InvalidInput) if the angle is not in (0,180)
+void tag_creases(HexMesh& mesh, double angle_deg);
+
+}  // namespace subvol

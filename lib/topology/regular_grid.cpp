@@ -1,0 +1,159 @@
+#include "regular_grid.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+
+#include "subvol/cell.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// A cell turned so that its corners stand in the parameters of another: corner u + 2v + 4w.
+struct TurnedCell {
+    Index cell = 0;
+    std::array<Index, 8> corners;
+};
+
+TurnedCell as_it_is(const Topology& topology, Index cell) {
+    TurnedCell turned{cell, {}};
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto& [u, v, w] = kCornerParameters[k];
+        turned.corners[static_cast<std::size_t>(u + 2 * v + 4 * w)] = topology.cells[cell][k];
+    }
+    return turned;
+}
+
+/// The cell beyond a side (0 low, 1 high) along an axis, turned in the same way.
+std::optional<TurnedCell> step(const Topology& topology, const TurnedCell& from, std::size_t axis, std::size_t side) {
+    const std::size_t bit = std::size_t{1} << axis;
+    std::array<Index, 4> shared;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < 8; ++k) {
+        if (((k & bit) != 0) == (side == 1)) shared[count++] = from.corners[k];
+    }
+    const auto in = [](const auto& list, Index p) { return std::find(list.begin(), list.end(), p) != list.end(); };
+    for (const Index f : topology.cell_faces[from.cell]) {
+        const auto& quad = topology.faces[f];
+        if (!in(quad, shared[0]) || !in(quad, shared[3])) continue;
+        const auto [c0, c1] = topology.face_cells[f];
+        if (c1 == kNone) return std::nullopt;
+        TurnedCell next{c0 == from.cell ? c1 : c0, {}};
+        const auto& cell = topology.cells[next.cell];
+        for (std::size_t k = 0; k < 8; ++k) {
+            if (((k & bit) != 0) != (side == 1)) continue;
+            const Index p = from.corners[k];
+            const auto slot = static_cast<std::size_t>(std::find(cell.begin(), cell.end(), p) - cell.begin());
+            next.corners[k ^ bit] = p;
+            for (const std::size_t n : kCornerNeighbors[slot]) {
+                if (!in(shared, cell[n])) next.corners[k] = cell[n];
+            }
+        }
+        return next;
+    }
+    return std::nullopt;
+}
+
+/// Puts a cell's corners into a grid of `layers` cells about the center; false if another point is there already.
+bool put(const TurnedCell& cell, const std::array<int, 3>& offset, int layers, std::span<Index> grid) {
+    for (std::size_t k = 0; k < 8; ++k) {
+        std::size_t node = 0, stride = 1;
+        for (std::size_t a = 0; a < 3; ++a, stride *= static_cast<std::size_t>(2 + 2 * layers)) {
+            node += stride * static_cast<std::size_t>(layers + offset[a] + static_cast<int>(k >> a & 1));
+        }
+        if (grid[node] != kNone && grid[node] != cell.corners[k]) return false;
+        grid[node] = cell.corners[k];
+    }
+    return true;
+}
+
+/// Fills a grid with the cells that can be stepped to; false if they do not fit together.
+bool fill(const Topology& topology, Index cell, int layers, std::span<Index> grid) {
+    std::fill(grid.begin(), grid.end(), kNone);
+    const TurnedCell center = as_it_is(topology, cell);
+    for (int w = -layers; w <= layers; ++w) {
+        for (int v = -layers; v <= layers; ++v) {
+            for (int u = -layers; u <= layers; ++u) {
+                std::optional<TurnedCell> at = center;
+                const std::array<int, 3> offset{u, v, w};
+                for (std::size_t a = 0; a < 3; ++a) {
+                    for (int n = std::abs(offset[a]); n > 0 && at; --n) at = step(topology, *at, a, offset[a] > 0 ? 1 : 0);
+                }
+                if (at && !put(*at, offset, layers, grid)) return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// What is missing must be whole layers.
+bool has_whole_layers(const GridPoints& grid) {
+    const auto at = [&](std::size_t i, std::size_t j, std::size_t k) { return grid[i + 4 * j + 16 * k] == kNone; };
+    for (std::size_t k = 0; k < 4; ++k) {
+        for (std::size_t j = 0; j < 4; ++j) {
+            for (std::size_t i = 0; i < 4; ++i) {
+                if (at(i, j, k) != (at(i, 1, 1) || at(1, j, 1) || at(1, 1, k))) return false;
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+bool is_grid_point(const Topology& topology, Index point) {
+    std::size_t inner = 0, smooth = 0, sharp = 0;
+    const auto edges = topology.point_edges[point];
+    for (const Index e : edges) {
+        const std::size_t cells = topology.edge_cells[e].size();
+        if (!topology.edge_on_boundary[e]) {
+            inner += topology.edge_has_ring[e] && cells == 4;
+        } else if (topology.edge_is_crease[e]) {
+            sharp += cells == 1;
+        } else {
+            smooth += cells == 2 && topology.edge_faces[e].size() == 3;
+        }
+    }
+    switch (edges.size()) {
+        case 6:
+            return inner == 6;
+        case 5:
+            return inner == 1 && smooth == 4;
+        case 4:
+            return smooth == 2 && sharp == 2;
+        case 3:
+            return sharp == 3;
+        default:
+            return false;
+    }
+}
+
+bool regular_grid(const Topology& topology, Index cell, GridPoints& grid) {
+    for (const Index p : topology.cells[cell]) {
+        if (!is_grid_point(topology, p)) return false;
+    }
+    return fill(topology, cell, 1, grid) && has_whole_layers(grid);
+}
+
+void cross_grid(const Topology& topology, Index cell, GridPoints& grid) {
+    grid.fill(kNone);
+    const TurnedCell center = as_it_is(topology, cell);
+    put(center, {0, 0, 0}, 1, grid);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t side = 0; side < 2; ++side) {
+            std::array<int, 3> offset{};
+            offset[axis] = side == 0 ? -1 : 1;
+            if (const auto beyond = step(topology, center, axis, side)) put(*beyond, offset, 1, grid);
+        }
+    }
+}
+
+bool wide_grid(const Topology& topology, Index cell, WideGridPoints& grid) {
+    GridPoints inner;
+    if (!regular_grid(topology, cell, inner)) return false;
+    const auto is_inside = [&](Index p) { return p != kNone && !topology.point_on_boundary[p] && is_grid_point(topology, p); };
+    return std::all_of(inner.begin(), inner.end(), is_inside) && fill(topology, cell, 2, grid);
+}
+
+}  // namespace subvol::detail

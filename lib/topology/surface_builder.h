@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "bucket_sort.h"
+#include "subvol/surface.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// The quad of a cell's side, counter-clockwise from outside, its smallest id first.
+[[nodiscard]] std::array<Index, 4> outward_quad(const Topology& topology, Index cell, Index face);
+
+/// As `boundary_surface`, of the faces that `where` selects by their points.
+[[nodiscard]] Surface boundary_surface_where(const HexMesh& mesh,
+                                             const std::function<bool(const std::array<Index, 4>&)>& where);
+
+/// A surface's triangles and, in the order of their first use, the points of the mesh that they need.
+class SurfaceBuilder {
+public:
+    explicit SurfaceBuilder(std::size_t mesh_points) : renumbered_(mesh_points, kNone) {}
+
+    /// The quad's smallest id comes first.
+    void add(const std::array<Index, 4>& quad) {
+        const std::array<Index, 4> q{number(quad[0]), number(quad[1]), number(quad[2]), number(quad[3])};
+        triangles_.push_back({q[0], q[1], q[2]});
+        triangles_.push_back({q[0], q[2], q[3]});
+    }
+
+    /// position(point of the mesh) is called in parallel.
+    template <class Position>
+    Surface finish(const Position& position) {
+        Surface surface{std::vector<Vec3>(used_.size()), std::move(triangles_)};
+        parallel_each(used_.size(), [&](std::size_t i) { surface.points[i] = position(used_[i]); });
+        return surface;
+    }
+
+private:
+    Index number(Index p) {
+        if (renumbered_[p] == kNone) {
+            renumbered_[p] = static_cast<Index>(used_.size());
+            used_.push_back(p);
+        }
+        return renumbered_[p];
+    }
+
+    std::vector<Index> renumbered_, used_;
+    std::vector<std::array<Index, 3>> triangles_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,211 @@
+#include "subvol/topology.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "bucket_sort.h"
+#include "subvol/error.h"
+#include "topology_parts.h"
+
+namespace subvol {
+
+using detail::bucket_sort;
+using detail::group_starts;
+using detail::parallel_each;
+
+namespace {
+
+struct EdgeRecord {
+    std::array<Index, 2> points;
+    Index face;
+    std::uint8_t slot;
+    auto operator<=>(const EdgeRecord&) const = default;
+};
+
+void build_edges(Topology& topology) {
+    const auto sorted = bucket_sort<EdgeRecord>(
+        topology.faces.size(), topology.point_count,
+        [&](std::size_t f, const auto& sink) {
+            for (std::size_t k = 0; k < 4; ++k) {
+                const Index a = topology.faces[f][k], b = topology.faces[f][(k + 1) % 4];
+                sink({{std::min(a, b), std::max(a, b)}, static_cast<Index>(f), static_cast<std::uint8_t>(k)});
+            }
+        },
+        [](const EdgeRecord& record) { return record.points[0]; });
+    const auto& records = sorted.records;
+    auto starts = group_starts(records, [](const auto& a, const auto& b) { return a.points == b.points; });
+
+    const std::size_t count = starts.size() - 1;
+    topology.edges.resize(count);
+    topology.face_edges.resize(topology.faces.size());
+    topology.edge_faces.values.resize(records.size());
+    parallel_each(count, [&](std::size_t e) {
+        topology.edges[e] = records[starts[e]].points;
+        for (std::size_t i = starts[e]; i < starts[e + 1]; ++i) {
+            topology.face_edges[records[i].face][records[i].slot] = static_cast<Index>(e);
+            topology.edge_faces.values[i] = records[i].face;
+        }
+    });
+    topology.edge_faces.offsets = std::move(starts);
+}
+
+void build_edge_offsets(Topology& topology) {
+    topology.edge_offsets.assign(topology.point_count + 1, 0);
+    for (const auto& edge : topology.edges) ++topology.edge_offsets[edge[0] + 1];
+    for (std::size_t p = 0; p < topology.point_count; ++p) topology.edge_offsets[p + 1] += topology.edge_offsets[p];
+}
+
+void build_cell_edges(Topology& topology) {
+    topology.cell_edges.resize(topology.cells.size());
+    parallel_each(topology.cells.size(), [&](std::size_t c) {
+        for (std::size_t k = 0; k < 12; ++k) {
+            const Index a = topology.cells[c][static_cast<std::size_t>(kCellEdges[k][0])];
+            const Index b = topology.cells[c][static_cast<std::size_t>(kCellEdges[k][1])];
+            topology.cell_edges[c][k] = *topology.find_edge(a, b);
+        }
+    });
+}
+
+void build_point_edges(Topology& topology) {
+    struct End {
+        Index point, edge;
+        auto operator<=>(const End&) const = default;
+    };
+    auto sorted = bucket_sort<End>(
+        topology.edges.size(), topology.point_count,
+        [&](std::size_t e, const auto& sink) {
+            for (const Index p : topology.edges[e]) sink(End{p, static_cast<Index>(e)});
+        },
+        [](const End& end) { return end.point; });
+    topology.point_edges.offsets = std::move(sorted.offsets);
+    topology.point_edges.values.resize(sorted.records.size());
+    parallel_each(sorted.records.size(), [&](std::size_t i) { topology.point_edges.values[i] = sorted.records[i].edge; });
+}
+
+void mark_boundary(Topology& topology) {
+    topology.edge_on_boundary.assign(topology.edges.size(), 0);
+    topology.point_on_boundary.assign(topology.point_count, 0);
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_boundary(static_cast<Index>(f))) continue;
+        for (const Index e : topology.face_edges[f]) topology.edge_on_boundary[e] = 1;
+        for (const Index p : topology.faces[f]) topology.point_on_boundary[p] = 1;
+    }
+}
+
+/// Tagged faces that lie on the hull are sharp as they are.
+void mark_sharp_faces(Topology& topology, std::span<const std::array<Index, 4>> tagged) {
+    if (tagged.empty()) return;
+    topology.face_is_sharp.assign(topology.faces.size(), 0);
+    for (const auto& points : tagged) {
+        const auto f = topology.find_face(points);
+        if (!f) {
+            std::string text;
+            for (const Index p : points) text += (text.empty() ? "" : " ") + std::to_string(p);
+            throw Error(ErrorCode::InvalidInput, "points " + text + " are no face", "sharp face",
+                        "four points of a face of a cell, in cyclic order");
+        }
+        topology.face_is_sharp[*f] = 1;
+    }
+}
+
+/// Whether one cell alone lies between two boundary faces about the edge. About an edge inside, the faces are a ring.
+bool has_single_cell(const Topology& topology, Index edge) {
+    const auto faces = topology.edge_faces[edge];
+    const bool ring = faces.size() == topology.edge_cells[edge].size();
+    for (std::size_t i = 0; i + (ring ? 0 : 1) < faces.size(); ++i) {
+        if (topology.face_on_boundary(faces[i]) && topology.face_on_boundary(faces[(i + 1) % faces.size()])) return true;
+    }
+    return false;
+}
+
+/// The default rule, and the mesh's own tags.
+void mark_creases(Topology& topology, detail::TagCheck check) {
+    topology.edge_is_crease.assign(topology.edges.size(), 0);
+    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+        if (!topology.edge_on_boundary[e]) continue;
+        const auto edge = static_cast<Index>(e);
+        const bool manifold = topology.boundary_faces_at(edge) == 2;
+        topology.nonmanifold_edges += !manifold;
+        topology.edge_is_crease[e] = !manifold || has_single_cell(topology, edge);
+    }
+    for (const auto& [a, b] : topology.creases) {
+        const auto e = topology.find_edge(a, b);
+        if (!e || !topology.edge_on_boundary[*e]) {
+            if (check == detail::TagCheck::Part) continue;
+            throw Error(ErrorCode::InvalidInput,
+                        "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge", "crease",
+                        "creases are edges of the boundary");
+        }
+        topology.edge_is_crease[*e] = 1;
+    }
+}
+
+/// Cells differ in their faces, and face numbers do not depend on the order of the cells.
+void rank_cells(Topology& topology) {
+    struct Key {
+        std::array<Index, 6> faces;
+        Index cell;
+        auto operator<=>(const Key&) const = default;
+    };
+    const auto sorted = bucket_sort<Key>(
+        topology.cells.size(), topology.faces.size(),
+        [&](std::size_t c, const auto& sink) {
+            auto faces = topology.cell_faces[c];
+            std::sort(faces.begin(), faces.end());
+            sink(Key{faces, static_cast<Index>(c)});
+        },
+        [](const Key& key) { return key.faces[0]; });
+    topology.cell_rank.resize(topology.cells.size());
+    parallel_each(sorted.records.size(),
+                  [&](std::size_t rank) { topology.cell_rank[sorted.records[rank].cell] = static_cast<Index>(rank); });
+}
+
+}  // namespace
+
+std::size_t Topology::boundary_faces_at(Index edge) const {
+    const auto ring = edge_faces[edge];
+    return static_cast<std::size_t>(std::count_if(ring.begin(), ring.end(), [&](Index f) { return face_on_boundary(f); }));
+}
+
+std::optional<Index> Topology::find_face(const std::array<Index, 4>& points) const {
+    const auto e = find_edge(points[0], points[1]);
+    if (!e) return std::nullopt;
+    for (const Index f : edge_faces[*e]) {
+        if (std::is_permutation(points.begin(), points.end(), faces[f].begin())) return f;
+    }
+    return std::nullopt;
+}
+
+std::optional<Index> Topology::find_edge(Index a, Index b) const {
+    const std::array<Index, 2> key{std::min(a, b), std::max(a, b)};
+    if (key[1] >= point_count) return std::nullopt;
+    const auto begin = edges.begin() + edge_offsets[key[0]], end = edges.begin() + edge_offsets[key[0] + 1];
+    const auto found = std::lower_bound(begin, end, key);
+    if (found == end || *found != key) return std::nullopt;
+    return static_cast<Index>(found - edges.begin());
+}
+
+Topology detail::build_topology(const HexMesh& mesh, TagCheck check) {
+    Topology topology;
+    topology.point_count = mesh.points.size();
+    topology.cells = mesh.cells;
+    detail::build_faces(topology);
+    rank_cells(topology);
+    build_edges(topology);
+    build_edge_offsets(topology);
+    build_cell_edges(topology);
+    build_point_edges(topology);
+    mark_sharp_faces(topology, mesh.sharp_faces);
+    mark_boundary(topology);
+    detail::order_edge_rings(topology);
+    topology.creases = mesh.creases;
+    mark_creases(topology, check);
+    return topology;
+}
+
+Topology build_topology(const HexMesh& mesh) {
+    return detail::build_topology(mesh, detail::TagCheck::Whole);
+}
+
+}  // namespace subvol

@@ -1,0 +1,98 @@
+#include "topology_parts.h"
+
+#include <algorithm>
+#include <string>
+
+#include "bucket_sort.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Quad = std::array<Index, 4>;
+
+struct FaceRecord {
+    Quad points;
+    Index cell;
+    std::uint8_t side;
+    auto operator<=>(const FaceRecord&) const = default;
+};
+
+Quad canonical_quad(const std::array<Index, 8>& cell, std::size_t side) {
+    Quad quad;
+    for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
+    std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
+    if (quad[1] > quad[3]) std::swap(quad[1], quad[3]);
+    return quad;
+}
+
+std::string name_cells(const Topology& topology, Index a, Index b) {
+    auto corners_a = topology.cells[a], corners_b = topology.cells[b];
+    std::sort(corners_a.begin(), corners_a.end());
+    std::sort(corners_b.begin(), corners_b.end());
+    if (corners_a != corners_b) return {};
+    return "cells " + std::to_string(a) + " and " + std::to_string(b) + " have the same corners (cells counted from 0)";
+}
+
+[[noreturn]] void refuse_face(const Topology& topology, std::span<const FaceRecord> sharing) {
+    for (std::size_t i = 0; i < sharing.size(); ++i) {
+        for (std::size_t j = i + 1; j < sharing.size(); ++j) {
+            const auto text = name_cells(topology, sharing[i].cell, sharing[j].cell);
+            if (!text.empty()) throw Error(ErrorCode::InvalidInput, text, {}, "each cell may be there once");
+        }
+    }
+    std::string points, cells;
+    for (const Index p : sharing[0].points) points += (points.empty() ? "" : " ") + std::to_string(p);
+    for (const auto& record : sharing) cells += (cells.empty() ? "" : ", ") + std::to_string(record.cell);
+    throw Error(ErrorCode::InvalidInput,
+                "face (" + points + ") has " + std::to_string(sharing.size()) + " cells: " + cells +
+                    " (points and cells counted from 0)",
+                {}, "at most two cells share a face");
+}
+
+/// Two cells with the same corners and no third neighbour share all six faces, which no face shows by itself.
+void refuse_twins(const Topology& topology) {
+    for (const auto& sides : topology.cell_faces) {
+        const auto first = topology.face_cells[sides[0]];
+        if (first[1] == kNone) continue;
+        if (std::all_of(sides.begin(), sides.end(), [&](Index f) { return topology.face_cells[f] == first; })) {
+            throw Error(ErrorCode::InvalidInput, name_cells(topology, first[0], first[1]), {}, "each cell may be there once");
+        }
+    }
+}
+
+}  // namespace
+
+void build_faces(Topology& topology) {
+    const auto sorted = bucket_sort<FaceRecord>(
+        topology.cells.size(), topology.point_count,
+        [&](std::size_t c, const auto& sink) {
+            for (std::size_t side = 0; side < 6; ++side) {
+                sink({canonical_quad(topology.cells[c], side), static_cast<Index>(c), static_cast<std::uint8_t>(side)});
+            }
+        },
+        [](const FaceRecord& record) { return record.points[0]; });
+    const auto& records = sorted.records;
+    const auto starts = group_starts(records, [](const auto& a, const auto& b) { return a.points == b.points; });
+
+    const std::size_t count = starts.size() - 1;
+    for (std::size_t f = 0; f < count; ++f) {
+        if (starts[f + 1] - starts[f] > 2)
+            refuse_face(topology, std::span(records).subspan(starts[f], starts[f + 1] - starts[f]));
+    }
+    topology.faces.resize(count);
+    topology.face_cells.resize(count);
+    topology.cell_faces.resize(topology.cells.size());
+    parallel_each(count, [&](std::size_t f) {
+        topology.faces[f] = records[starts[f]].points;
+        topology.face_cells[f] = {records[starts[f]].cell, kNone};
+        for (std::size_t i = starts[f]; i < starts[f + 1]; ++i) {
+            topology.face_cells[f][i - starts[f]] = records[i].cell;
+            topology.cell_faces[records[i].cell][records[i].side] = static_cast<Index>(f);
+        }
+    });
+    refuse_twins(topology);
+}
+
+}  // namespace subvol::detail

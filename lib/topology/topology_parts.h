@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// Fills faces, face_cells and cell_faces of a topology that has its cells and point_count.
+///
+/// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners
+void build_faces(Topology& topology);
+
+/// Puts the faces of every edge into ring order and fills edge_cells and edge_has_ring.
+void order_edge_rings(Topology& topology);
+
+/// The faces of one edge (ascending) walked from cell to cell: fans from hull face to hull face, then closed rings.
+///
+/// returns: the number of closed rings
+int walk_edge_ring(const Topology& topology, std::span<const Index> edge_faces, std::vector<Index>& ring_faces,
+                   std::vector<Index>& ring_cells);
+
+/// Whether creases must be edges of the boundary, as they must in a whole mesh. In a part of a mesh a crease may lie inside
+/// where the cells that made it boundary are cut off: at the part's outer cells, whose rules are not evaluated.
+enum class TagCheck { Whole, Part };
+
+[[nodiscard]] Topology build_topology(const HexMesh& mesh, TagCheck check);
+
+}  // namespace subvol::detail

@@ -1,0 +1,163 @@
+#include "dense_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <tuple>
+
+namespace subvol::detail {
+
+namespace {
+
+/// Boxes of a quadtree above level l: 1 + 4 + … + 4^(l−1).
+std::size_t boxes_above(int level) {
+    return ((std::size_t{1} << (2 * level)) - 1) / 3;
+}
+
+}  // namespace
+
+DenseGrid::DenseGrid(const DenseCell& cell, std::size_t attribute)
+    : cell_splits_(cell_splits().data()),
+      cell_(cell.cell),
+      side_(cell.side),
+      levels_(std::countr_zero(cell.side - 1)),
+      origin_(cell.points[0]) {
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto& [u, v, w] = kCellCorners[k];
+        step_[k] = static_cast<std::size_t>(u) + side_ * (static_cast<std::size_t>(v) + side_ * static_cast<std::size_t>(w));
+    }
+    rank_points(cell, attribute);
+    split_cells();
+    build_sides();
+}
+
+void DenseGrid::rank_points(const DenseCell& cell, std::size_t attribute) {
+    const std::size_t channels = cell.values[attribute].size() / cell.points.size();
+    const auto key = [&](Index n) {
+        const Vec3& p = cell.points[n];
+        return std::tuple(p.x, p.y, p.z, n);
+    };
+    std::vector<Index> order(cell.points.size());
+    std::iota(order.begin(), order.end(), Index{0});
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    points_.resize(order.size());
+    ranks_.resize(order.size());
+    range_ = {cell.values[attribute][0], cell.values[attribute][0]};
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        const Index n = order[rank];
+        const double value = cell.values[attribute][n * channels];
+        ranks_[n] = static_cast<Index>(rank);
+        points_[rank] = {cell.points[n], value};
+        box_.add(cell.points[n]);
+        range_ = {std::min(range_.min, value), std::max(range_.max, value)};
+    }
+}
+
+void DenseGrid::split_cells() {
+    splits_.resize(std::size_t{1} << (3 * levels_));
+    for (std::size_t c = 0; c < splits_.size(); ++c) {
+        std::array<Index, 8> ids;
+        for (std::size_t k = 0; k < 8; ++k) ids[k] = ranks_[lowest_node(c) + step_[k]];
+        splits_[c] = cell_split_of(ids);
+    }
+}
+
+std::array<Index, 3> DenseGrid::cell_at(std::size_t face, Index i, Index j) const {
+    const CellSide side = cell_side(face);
+    std::array<Index, 3> at{};
+    at[static_cast<std::size_t>(side.axis)] = side.end ? (Index{1} << levels_) - 1 : 0;
+    at[static_cast<std::size_t>((side.axis + 1) % 3)] = i;
+    at[static_cast<std::size_t>((side.axis + 2) % 3)] = j;
+    return at;
+}
+
+DenseGrid::SmallBox DenseGrid::small_box(const Box& box) const {
+    SmallBox small;
+    for (int k = 0; k < 3; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        small.center[at] = static_cast<float>(0.5 * (box.lower[k] + box.upper[k]) - origin_[k]);
+        small.half[at] = static_cast<float>(0.5 * (box.upper[k] - box.lower[k]));
+    }
+    return small;
+}
+
+void DenseGrid::build_sides() {
+    sides_.resize(6 * boxes_above(levels_ + 1));
+    std::vector<Box> boxes;
+    for (std::size_t face = 0; face < 6; ++face) {
+        SmallBox* const tree = sides_.data() + face * boxes_above(levels_ + 1);
+        const CellSide side = cell_side(face);
+        const Index n = Index{1} << levels_;
+        boxes.assign(std::size_t{n} * n, {});
+        for (Index j = 0; j < n; ++j) {
+            for (Index i = 0; i < n; ++i) {
+                const std::size_t lowest = lowest_node(cell_number(cell_at(face, i, j)));
+                for (std::size_t k = 0; k < 8; ++k) {
+                    if (kCellCorners[k][static_cast<std::size_t>(side.axis)] != side.end) continue;
+                    boxes[i + std::size_t{n} * j].add(points_[ranks_[lowest + step_[k]]].position);
+                }
+            }
+        }
+        for (int level = levels_; level >= 0; --level) {
+            const std::size_t width = std::size_t{1} << level;
+            for (std::size_t b = 0; b < width * width; ++b) tree[boxes_above(level) + b] = small_box(boxes[b]);
+            if (level == 0) break;
+            std::vector<Box> above(width * width / 4);
+            for (std::size_t j = 0; j < width; ++j) {
+                for (std::size_t i = 0; i < width; ++i) {
+                    Box& parent = above[i / 2 + width / 2 * (j / 2)];
+                    parent.add(boxes[i + width * j].lower);
+                    parent.add(boxes[i + width * j].upper);
+                }
+            }
+            boxes = std::move(above);
+        }
+    }
+}
+
+std::size_t DenseGrid::bytes() const {
+    return sizeof(*this) + points_.size() * sizeof(Point) + ranks_.size() * sizeof(Index) + splits_.size() +
+           sides_.size() * sizeof(SmallBox);
+}
+
+Index DenseGrid::neighbor(Index tet, Index k) const {
+    const CellSplit& split = cell_splits_[splits_[tet / 8]];
+    const std::uint8_t next = split.neighbors[tet % 8][k];
+    if (next < 8) return (tet & ~Index{7}) + next;
+    const std::size_t face = next - 8u;
+    const CellSide side = cell_side(face);
+    const std::size_t cell = tet / 8, stride = std::size_t{1} << (side.axis * levels_);
+    const std::size_t at = cell / stride % (std::size_t{1} << levels_);
+    if (at == (side.end ? (std::size_t{1} << levels_) - 1 : 0)) return kNone;
+    const std::size_t beyond = side.end ? cell + stride : cell - stride;
+    const std::size_t missing = corner_across(split.missing[tet % 8][k], side.axis);
+    const std::size_t opposite = opposite_face(face);
+    return static_cast<Index>(8 * beyond + cell_splits_[splits_[beyond]].owners[opposite][missing] / 4u);
+}
+
+void DenseGrid::descend(const RayPlane& plane, double margin, std::size_t face, int level, Index i, Index j,
+                        std::vector<TetFace>& faces) const {
+    const SmallBox& box = sides_[face * boxes_above(levels_ + 1) + boxes_above(level) + i + (std::size_t{j} << level)];
+    const Vec3 center = origin_ + Vec3(box.center[0], box.center[1], box.center[2]);
+    if (!plane.may_meet(center, Vec3(box.half[0], box.half[1], box.half[2]), margin)) return;
+    if (level < levels_) {
+        for (Index k = 0; k < 4; ++k) descend(plane, margin, face, level + 1, 2 * i + k % 2, 2 * j + k / 2, faces);
+        return;
+    }
+    const std::size_t cell = cell_number(cell_at(face, i, j));
+    for (const std::uint8_t owner : cell_splits_[splits_[cell]].owners[face]) {
+        if (owner == CellSplit::kNoOwner) continue;
+        const auto triangle = static_cast<TetFace>(32 * cell + owner);
+        if (cross_face(*this, plane, triangle)) faces.push_back(triangle);
+    }
+}
+
+void DenseGrid::find_crossed(const RayPlane& plane, std::vector<TetFace>& faces) const {
+    // Boxes are rounded to single precision about the origin, seen points to double precision about the eye.
+    const Vec3 away = glm::abs(origin_ - plane.origin()), place = glm::abs(origin_);
+    const double margin =
+        1e-6 * box_.diagonal() + 1e-14 * (std::max({away.x, away.y, away.z}) + std::max({place.x, place.y, place.z}));
+    for (std::size_t face = 0; face < 6; ++face) descend(plane, margin, face, 0, 0, 0, faces);
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,60 @@
+#include "dense_tracer.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace subvol::detail {
+
+void DenseTracer::find_ends(const RayPlane& plane, const Ray& ray) {
+    met_.clear();
+    ends_.clear();
+    scene_.find_met(ray, met_);
+    for (const std::uint32_t g : met_) {
+        const DenseGrid& grid = scene_.grids()[g];
+        faces_.clear();
+        grid.find_crossed(plane, faces_);
+        const std::size_t before = ends_.size();
+        bool in_front = false;
+        for (const TetFace face : faces_) {
+            const double t = cross_face(grid, plane, face)->crossing().t;
+            in_front |= t > 0;
+            ends_.push_back({t, grid.cell(), g, face, false});
+        }
+        if (!in_front) ends_.resize(before);
+    }
+    // By cell, not by the grid's number: that depends on what else is in memory.
+    std::sort(ends_.begin(), ends_.end(),
+              [](const End& a, const End& b) { return std::tie(a.t, a.cell, a.face) < std::tie(b.t, b.cell, b.face); });
+}
+
+bool DenseTracer::mark_walked(std::uint32_t grid, TetFace face) {
+    const auto found =
+        std::find_if(ends_.begin(), ends_.end(), [&](const End& end) { return end.grid == grid && end.face == face; });
+    if (found == ends_.end()) return false;
+    found->walked = true;
+    return true;
+}
+
+Segment DenseTracer::trace(const Ray& ray) {
+    const RayPlane plane(ray);
+    find_ends(plane, ray);
+    if (ends_.empty()) return {};
+    ++counts_.rays;
+    const double speed = glm::length(ray.direction);
+    LitDepth state;
+    for (End& end : ends_) {
+        if (end.walked) continue;
+        end.walked = true;
+        const DenseGrid& grid = scene_.grids()[end.grid];
+        TetFace other = end.face;
+        const WalkOutcome outcome = walk_between(grid, plane, end.face, speed, compositor_, state, other, counts_.segments);
+        if (outcome == WalkOutcome::Opaque) break;
+        if (outcome == WalkOutcome::Lost || !mark_walked(end.grid, other)) {
+            ++counts_.lost_rays;
+            break;
+        }
+    }
+    return state.light;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "dense_scene.h"
+#include "integrate_walk.h"
+
+namespace subvol::detail {
+
+struct DenseCounts {
+    std::size_t rays = 0;
+    std::size_t segments = 0;
+    std::size_t lost_rays = 0;
+};
+
+/// Integrates rays through dense grids. Keeps scratch memory: one for each thread or tile.
+class DenseTracer {
+public:
+    DenseTracer(const DenseScene& scene, const Optics& optics) : scene_(scene), compositor_(optics, kOpaque) {}
+
+    /// The part of the ray in front of its origin.
+    [[nodiscard]] Segment trace(const Ray& ray);
+    [[nodiscard]] const DenseCounts& counts() const { return counts_; }
+
+private:
+    /// A boundary face of a grid that the ray crosses: the walks pair them up.
+    struct End {
+        double t;
+        Index cell;
+        std::uint32_t grid;
+        TetFace face;
+        bool walked;
+    };
+    void find_ends(const RayPlane& plane, const Ray& ray);
+    [[nodiscard]] bool mark_walked(std::uint32_t grid, TetFace face);
+
+    const DenseScene& scene_;
+    Compositor compositor_;
+    DenseCounts counts_;
+    std::vector<std::uint32_t> met_;
+    std::vector<TetFace> faces_;
+    std::vector<End> ends_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,217 @@
+#include "subvol/render_dense.h"
+
+#include <tbb/combinable.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+
+#include "dense_passes.h"
+#include "dense_tracer.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+constexpr int kMostLevels = 8;  // faces of tetrahedra are numbered with 32 bits
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void check(const HexMesh& mesh, std::span<const double> scalar, const DenseOptions& options) {
+    check_samples(options.samples);
+    if (scalar.size() != mesh.points.size()) {
+        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
+                    std::to_string(mesh.points.size()) + ", one a point");
+    }
+    for (const int levels : {options.levels.value_or(1), options.max_levels}) {
+        if (levels >= 0 && levels <= kMostLevels) continue;
+        throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {},
+                    "0 to " + std::to_string(kMostLevels));
+    }
+    if (!(options.image_tolerance > 0)) {
+        throw Error(ErrorCode::InvalidInput, "the tolerance of the image is " + std::to_string(options.image_tolerance), {},
+                    "more than 0");
+    }
+}
+
+/// The mesh with the scalar as its only attribute.
+HexMesh with_scalar(const HexMesh& mesh, std::span<const double> scalar) {
+    HexMesh control{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
+    control.attributes.push_back({"scalar", 1, {scalar.begin(), scalar.end()}});
+    return control;
+}
+
+bool visible(const Optics& optics, double min, double max) {
+    const auto opaque = [&](double value) { return optics.extinction(value) > 0; };
+    const auto knots = optics.knots();
+    return opaque(min) || opaque(max) ||
+           std::any_of(knots.begin(), knots.end(), [&](double knot) { return knot > min && knot < max && opaque(knot); });
+}
+
+double rms(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        const double change = static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]);
+        if (i % 4 != 3) sum += change * change;
+    }
+    return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));
+}
+
+// Traces, and hands its counts on when its tile is done.
+class CountedTracer {
+public:
+    CountedTracer(const DenseScene& scene, const Optics& optics, tbb::combinable<DenseCounts>& sums)
+        : tracer_(scene, optics), sums_(&sums) {}
+    CountedTracer(CountedTracer&&) = delete;
+    ~CountedTracer() {
+        DenseCounts& sum = sums_->local();
+        sum.rays += tracer_.counts().rays;
+        sum.segments += tracer_.counts().segments;
+        sum.lost_rays += tracer_.counts().lost_rays;
+    }
+    Segment operator()(const Ray& ray) { return tracer_.trace(ray); }
+
+private:
+    DenseTracer tracer_;
+    tbb::combinable<DenseCounts>* sums_;
+};
+
+/// Draws one level.
+class LevelPainter {
+public:
+    LevelPainter(const HexMesh& mesh, const View& view, const Optics& optics, const DenseOptions& options, int levels)
+        : mesh_(mesh),
+          view_(view),
+          optics_(optics),
+          options_(options),
+          refine_(options.refine),
+          image_(view.width(), view.height()) {
+        refine_.levels = levels;
+        refine_.progress = nullptr;
+        report_.levels = levels;
+    }
+
+    DenseResult run() {
+        auto start = Clock::now();
+        report_progress(options_.progress, "build", 0);
+        find_seen();
+        const std::size_t at_once = most_bytes_ > 0 ? options_.memory / most_bytes_ : seen_.size();
+        const std::vector<DensePass> passes = plan_passes(view_, seen_, at_once);
+        report_.passes = passes.size();
+        const bool kept_suffice = passes.size() == 1 && kept_.size() == seen_.size();
+        for (const DensePass& pass : passes) {
+            if (!kept_suffice) build(pass.cells);
+            sort_kept();
+            report_.seconds_build += seconds_since(start);
+            start = Clock::now();
+            draw(pass.rect);
+            report_.seconds_draw += seconds_since(start);
+            start = Clock::now();
+        }
+        report_.seconds_build += seconds_since(start);
+        return {std::move(image_), report_};
+    }
+
+private:
+    /// Finds what can be seen, and keeps those grids as long as they fit.
+    void find_seen() {
+        std::mutex adding;
+        std::atomic<bool> full = false;
+        const auto look = [&](const DenseCell& cell) {
+            Box box;
+            for (const Vec3& p : cell.points) box.add(p);
+            const auto [min, max] = std::ranges::minmax(cell.values[0]);
+            const auto rect = visible(optics_, min, max) ? pixels_of(box, view_) : std::nullopt;
+            std::optional<DenseGrid> grid;
+            if (rect && !full) grid.emplace(cell, 0);
+            const std::lock_guard lock(adding);
+            report_.micro_cells += std::size_t{1} << (3 * refine_.levels);
+            ++(rect ? report_.blocks : report_.skipped_blocks);
+            if (!rect) return;
+            seen_.push_back({cell.cell, *rect});
+            if (full || !grid) return;
+            most_bytes_ = std::max(most_bytes_, grid->bytes());
+            if (kept_bytes_ + grid->bytes() <= options_.memory) return keep(std::move(*grid));
+            full = true;
+            drop();
+        };
+        for_each_dense_cell(mesh_, refine_, {.cells = {}, .on_limit = true}, look);
+        std::sort(seen_.begin(), seen_.end(), [](const SeenGrid& a, const SeenGrid& b) { return a.cell < b.cell; });
+    }
+
+    void build(const std::vector<Index>& cells) {
+        drop();
+        std::mutex adding;
+        for_each_dense_cell(mesh_, refine_, {.cells = cells, .on_limit = true}, [&](const DenseCell& cell) {
+            DenseGrid grid(cell, 0);
+            const std::lock_guard lock(adding);
+            keep(std::move(grid));
+        });
+    }
+
+    void keep(DenseGrid&& grid) {
+        kept_bytes_ += grid.bytes();
+        report_.bytes = std::max(report_.bytes, kept_bytes_);
+        kept_.push_back(std::move(grid));
+    }
+    void drop() {
+        kept_ = {};
+        kept_bytes_ = 0;
+    }
+    void sort_kept() {
+        std::sort(kept_.begin(), kept_.end(), [](const DenseGrid& a, const DenseGrid& b) { return a.cell() < b.cell(); });
+    }
+
+    void draw(const PixelRect& rect) {
+        const DenseScene scene(kept_);
+        tbb::combinable<DenseCounts> sums;
+        draw_in_tiles(view_, options_.samples, rect, image_, options_.progress,
+                      [&] { return CountedTracer(scene, optics_, sums); });
+        sums.combine_each([&](const DenseCounts& sum) {
+            report_.rays += sum.rays;
+            report_.segments += sum.segments;
+            report_.lost_rays += sum.lost_rays;
+        });
+    }
+
+    const HexMesh& mesh_;
+    const View& view_;
+    const Optics& optics_;
+    const DenseOptions& options_;
+    RefineOptions refine_;
+    std::vector<SeenGrid> seen_;
+    std::vector<DenseGrid> kept_;
+    std::size_t kept_bytes_ = 0, most_bytes_ = 0;
+    Image image_;
+    DenseReport report_;
+};
+
+}  // namespace
+
+DenseResult render_dense(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+                         const DenseOptions& options) {
+    check(mesh, scalar, options);
+    const HexMesh control = with_scalar(mesh, scalar);
+    const auto draw = [&](int levels) { return LevelPainter(control, view, optics, options, levels).run(); };
+    if (options.levels) return draw(*options.levels);
+    DenseResult result = draw(std::min(1, options.max_levels));
+    while (!result.report.converged && result.report.levels < options.max_levels) {
+        DenseResult next = draw(result.report.levels + 1);
+        next.report.image_change = rms(next.image, result.image);
+        next.report.converged = *next.report.image_change < options.image_tolerance;
+        next.report.seconds_build += result.report.seconds_build;
+        next.report.seconds_draw += result.report.seconds_draw;
+        result = std::move(next);
+    }
+    return result;
+}
+
+}  // namespace subvol

@@ -1,0 +1,75 @@
+#include <string>
+
+#include "deadline.h"
+#include "subvol/error.h"
+#include "subvol/progressive.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+void check(const PtProgressiveOptions& options) {
+    if (!(options.seconds > 0)) {
+        throw Error(ErrorCode::InvalidInput, "the time is " + std::to_string(options.seconds), {},
+                    "a positive number of seconds");
+    }
+    for (const double lod : options.lod) {
+        if (lod >= 0 && lod <= 1) continue;
+        throw Error(ErrorCode::InvalidInput, "a fraction of the faces is " + std::to_string(lod), {}, "0..1");
+    }
+}
+
+class Steps {
+public:
+    Steps(PtRenderer& renderer, const View& view, const Optics& optics, const PtProgressiveOptions& options)
+        : renderer_(renderer), view_(view), optics_(optics), options_(options), deadline_(options.progress, options.seconds) {}
+
+    PtProgressiveResult run() {
+        draw(PtOrder::Havs, 0, 1);
+        deadline_.arm();
+        try {
+            for (const double lod : options_.lod) draw(PtOrder::Havs, lod, 1);
+            draw(PtOrder::Havs, 1, 1);
+            const bool late = result_.pt.report.late_faces > 0;
+            if (late || options_.pt.samples > 1) draw(late ? PtOrder::Lists : PtOrder::Havs, 1, options_.pt.samples);
+            result_.finished = true;
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Cancelled || deadline_.stopped()) throw;
+        }
+        result_.seconds = deadline_.elapsed();
+        return std::move(result_);
+    }
+
+private:
+    void draw(PtOrder order, double lod, int samples) {
+        PtOptions options = options_.pt;
+        options.order = order;
+        options.lod = lod;
+        options.samples = samples;
+        options.progress = &deadline_;
+        result_.pt = renderer_.draw(view_, optics_, options);
+        result_.order = order;
+        result_.lod = lod;
+        ++result_.steps;
+        deadline_.picture(result_.pt.image);
+    }
+
+    PtRenderer& renderer_;
+    const View& view_;
+    const Optics& optics_;
+    const PtProgressiveOptions& options_;
+    Deadline deadline_;
+    PtProgressiveResult result_;
+};
+
+}  // namespace
+
+PtProgressiveResult render_progressively(PtRenderer& renderer, const View& view, const Optics& optics,
+                                         const PtProgressiveOptions& options) {
+    check(options);
+    return Steps(renderer, view, optics, options).run();
+}
+
+}  // namespace subvol

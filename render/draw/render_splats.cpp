@@ -1,0 +1,183 @@
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "gl_context.h"
+#include "gl_sheets.h"
+#include "gl_splatter.h"
+#include "pixel_tiles.h"
+#include "splat_cpu.h"
+#include "subvol/error.h"
+#include "subvol/splat.h"
+
+namespace subvol {
+
+namespace {
+
+/// Software GL is slower than the CPU and draws the same picture: it is used only when asked for.
+SplatMethod resolved(const SplatOptions& options) {
+    if (options.method != SplatMethod::Auto) return options.method;
+    const auto device = find_gl_device(options.device);
+    return device && device->hardware ? SplatMethod::Gl : SplatMethod::Cpu;
+}
+
+/// Draws sheets in a context of its own, which is current only while it is worked with.
+class SheetDrawer {
+public:
+    explicit SheetDrawer(std::optional<int> device) : context_(device) {
+        sheets_.emplace();
+        context_.release();
+    }
+    ~SheetDrawer() {
+        const detail::GlScope scope(context_);
+        sheets_.reset();
+    }
+    SheetDrawer(const SheetDrawer&) = delete;
+    SheetDrawer& operator=(const SheetDrawer&) = delete;
+
+    [[nodiscard]] detail::Drawn draw(const detail::SplatFrame& frame, Progress* progress) {
+        const detail::GlScope scope(context_);
+        return sheets_->draw(frame, progress);
+    }
+    [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
+
+private:
+    detail::GlContext context_;
+    std::optional<detail::GlSheets> sheets_;
+};
+
+std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
+    if (!find_gl_device(options.device))
+        throw Error(ErrorCode::MissingCapability, "sheets need OpenGL 4.5, and none was found through EGL", {},
+                    "the method splat");
+    return std::make_unique<SheetDrawer>(options.device);
+}
+
+std::string cpu_threads() {
+    return std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) + " CPU threads";
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Mean {
+    std::array<float, 4> color{};
+    float depth = std::numeric_limits<float>::infinity();
+};
+
+Mean mean_of(const SplatResult& drawn, int x, int y, int n) {
+    std::array<double, 4> sum{};
+    double depth = 0, seen = 0;
+    for (int j = y * n; j < (y + 1) * n; ++j) {
+        for (int i = x * n; i < (x + 1) * n; ++i) {
+            const auto pixel = drawn.image.pixel(i, j);
+            for (std::size_t c = 0; c < 4; ++c) sum[c] += double{pixel[c]};
+            const auto at =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(drawn.image.width) + static_cast<std::size_t>(i);
+            if (!std::isfinite(drawn.depth[at])) continue;
+            depth += double{pixel[3]} * double{drawn.depth[at]};
+            seen += double{pixel[3]};
+        }
+    }
+    Mean mean;
+    for (std::size_t c = 0; c < 4; ++c) mean.color[c] = static_cast<float>(sum[c] / (n * n));
+    if (seen > 0) mean.depth = static_cast<float>(depth / seen);
+    return mean;
+}
+
+/// Replaces each n × n pixels by their mean; the depth is the mean of what is seen in all of them, by opacity.
+void take_means(SplatResult& drawn, int n) {
+    if (n == 1) return;
+    Image image(drawn.image.width / n, drawn.image.height / n);
+    std::vector<float> depth(image.rgba.size() / 4);
+    tbb::parallel_for(0, image.height, [&](int y) {
+        for (int x = 0; x < image.width; ++x) {
+            const Mean mean = mean_of(drawn, x, y, n);
+            std::copy(mean.color.begin(), mean.color.end(), image.pixel(x, y).begin());
+            depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)] =
+                mean.depth;
+        }
+    });
+    drawn.image = std::move(image);
+    drawn.depth = std::move(depth);
+}
+
+}  // namespace
+
+struct Splatter::State {
+    State(const RbfVolume& volume, const SplatOptions& wanted) : options(wanted), scene(detail::make_scene(volume, wanted)) {
+        options.method = resolved(wanted);
+        if (options.method == SplatMethod::Gl) gpu.emplace(scene, options.device);
+        if (options.method == SplatMethod::Sheets) sheets = make_sheet_drawer(options);
+    }
+
+    /// The CPU prepares what it or sheet buffers draw.
+    [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& look, Progress* progress,
+                                           SplatReport& report) {
+        const auto start = std::chrono::steady_clock::now();
+        detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
+        report.seconds_prepare += seconds_since(start);
+        report.backend = sheets ? "gl" : "cpu";
+        report.device = sheets ? sheets->renderer() : cpu_threads();
+        report.bin_entries = frame.tile_splats.size();
+        report.boundary_hits = frame.intervals.hits;
+        return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
+    }
+
+    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, Progress* progress,
+                                            SplatReport& report) {
+        auto drawn = gpu->draw(view, look, options.sheets, progress);
+        report.backend = "gl";
+        report.device = gpu->renderer();
+        report.bin_entries = gpu->report().bin_entries;
+        report.boundary_hits = gpu->report().boundary_hits;
+        report.stages = gpu->report().stages;
+        return drawn;
+    }
+
+    SplatOptions options;
+    detail::SplatScene scene;
+    std::optional<detail::GlSplatter> gpu;
+    std::unique_ptr<SheetDrawer> sheets;
+    detail::SplatFrame frame{};  // its memory is used again
+};
+
+Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) {
+    detail::check_samples(options.samples);
+    state_ = std::make_unique<State>(volume, options);
+}
+
+Splatter::~Splatter() = default;
+Splatter::Splatter(Splatter&&) noexcept = default;
+Splatter& Splatter::operator=(Splatter&&) noexcept = default;
+
+SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
+    State& state = *state_;
+    if (!progress) progress = state.options.progress;
+    SplatResult result;
+    auto& report = result.report;
+    const auto start = std::chrono::steady_clock::now();
+    const auto look = detail::classify(state.scene, optics);
+    report.seconds_prepare = seconds_since(start);
+    const int n = state.options.samples;
+    const View fine(view.camera(), n * view.width(), n * view.height());  // its pixels' centres are the samples
+    auto drawn = state.gpu ? state.draw_on_gpu(fine, look, progress, report) : state.draw_frame(fine, look, progress, report);
+    result.image = std::move(drawn.image);
+    result.depth = std::move(drawn.depth);
+    take_means(result, n);
+    report.seconds_draw = seconds_since(start) - report.seconds_prepare;
+    report.points = state.scene.volume->size();
+    return result;
+}
+
+SplatResult render_splats(const RbfVolume& volume, const View& view, const Optics& optics, const SplatOptions& options) {
+    return Splatter(volume, options).draw(view, optics);
+}
+
+}  // namespace subvol

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <string>
+#include <vector>
+
+#include "subvol/gl_device.h"
+
+namespace subvol::detail {
+
+/// Times what the device does, a stage after the other, on the current context.
+class GlStages {
+public:
+    ~GlStages() { clear(); }
+    GlStages() = default;
+    GlStages(const GlStages&) = delete;
+    GlStages& operator=(const GlStages&) = delete;
+
+    void clear() {
+        for (const Mark& mark : marks_) glDeleteQueries(1, &mark.query);
+        marks_.clear();
+    }
+    /// From here on it is this stage; an empty name ends the last one.
+    void begin(const char* stage) {
+        GLuint query = 0;
+        glGenQueries(1, &query);
+        glQueryCounter(query, GL_TIMESTAMP);
+        marks_.push_back({stage, query});
+    }
+    /// Stages of one name are added up. Waits for the device.
+    [[nodiscard]] std::vector<StageTime> times() const;
+
+private:
+    struct Mark {
+        const char* stage;
+        GLuint query;
+    };
+    std::vector<Mark> marks_;
+};
+
+}  // namespace subvol::detail

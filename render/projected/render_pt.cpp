@@ -1,0 +1,230 @@
+#include "subvol/render_pt.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "gl_context.h"
+#include "gl_tet_lists.h"
+#include "gl_tets.h"
+#include "pixel_tiles.h"
+#include "pt_frame.h"
+#include "subvol/error.h"
+#include "tet_faces.h"
+#include "tet_mesh.h"
+#include "tet_order.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using detail::DrawStage;
+using detail::GlTets;
+
+// OpenGL numbers vertices by signed integers; tetrahedra have 6, faces 3; a face's rank leaves 3 bits.
+constexpr std::size_t kMostTets = std::size_t{0x7fffffff} / 6, kMostFaces = std::size_t{1} << 29;
+constexpr int kMostEntries = 65536;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The context that was current is so again.
+struct KeepCurrent {
+    detail::EglContext before = detail::EglContext::current();
+    ~KeepCurrent() { (void)before.make_current(); }
+};
+
+const std::optional<int>& checked_device(const std::optional<int>& device) {
+    if (find_gl_device(device)) return device;
+    throw Error(ErrorCode::MissingCapability, "projected tetrahedra need OpenGL 4.5, and none was found through EGL", {},
+                "the method tets");
+}
+
+void check_count(const char* what, std::size_t count, std::size_t most) {
+    if (count <= most) return;
+    throw Error(ErrorCode::MissingCapability, std::to_string(count) + " " + what + " are too many for OpenGL", {},
+                "at most " + std::to_string(most) + ", or the method tets");
+}
+
+void check_options(const PtOptions& options) {
+    check_samples(options.samples);
+    if (options.kbuffer < 1 || options.kbuffer > kMostEntries) {
+        throw Error(ErrorCode::InvalidInput, "the k-buffer has " + std::to_string(options.kbuffer) + " entries", {},
+                    "1.." + std::to_string(kMostEntries));
+    }
+    if (!(options.lod >= 0 && options.lod <= 1)) {
+        throw Error(ErrorCode::InvalidInput, "the fraction of the faces is " + std::to_string(options.lod), {}, "0..1");
+    }
+    if (options.lod != 1 && options.order != PtOrder::Havs)
+        throw Error(ErrorCode::InvalidInput, "only faces can be left out", {}, "the order havs");
+}
+
+std::size_t most_fragments(std::size_t list_bytes, const GlDevice& device, GlTets::Items items) {
+    const bool tets = items == GlTets::Items::Tets;
+    const std::size_t fragment_bytes = tets ? 20 : 12, entry_bytes = tets ? 16 : 8;  // of two buffers, of the larger one
+    constexpr std::size_t kMost = std::size_t{1} << 31;                              // that 32 bits number, with room
+    return std::min({list_bytes / fragment_bytes, device.max_ssbo_bytes / entry_bytes, kMost});
+}
+
+}  // namespace
+
+struct PtRenderer::State {
+    State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device, Progress* progress);
+    ~State() {
+        const detail::GlScope scope(context);
+        lists.reset();
+        drawer.reset();
+    }
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+
+    void upload(GlTets::Items items);
+    void order(detail::GlTetFrame& frame, const View& view, const PtOptions& options, PtReport& report);
+    [[nodiscard]] Image draw_sample(const PtOptions& options, PtReport& report, const DrawStage& stage);
+    [[nodiscard]] Image draw_lists(const PtOptions& options, PtReport& report, const DrawStage& stage);
+    [[nodiscard]] Image draw_samples(const PtOptions& options, PtReport& report);
+
+    Clock::time_point start = Clock::now();
+    TetMesh tets;
+    std::optional<TetFaces> faces;  // once they are drawn
+    Box box;
+    PtReport built;
+    detail::GlContext context;
+    std::optional<GlTets> drawer;
+    std::optional<detail::GlTetLists> lists;
+};
+
+PtRenderer::State::State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device,
+                         Progress* progress)
+    : context(checked_device(device)) {
+    report_progress(progress, "build", 0);
+    tets = build_tet_mesh(mesh, scalar);
+    check_count("tetrahedra", tets.tets.size(), kMostTets);
+    box = bounds(mesh);
+    drawer.emplace();
+    lists.emplace(*drawer);
+    context.release();
+    built.device = context.renderer();
+    built.tets = tets.tets.size();
+    built.degenerate_tets = tets.degenerate_tets;
+    built.inverted_tets = tets.inverted_tets;
+    report_progress(progress, "build", 1);
+    built.seconds_build = seconds_since(start);
+}
+
+void PtRenderer::State::upload(GlTets::Items items) {
+    if (items == GlTets::Items::Faces && !faces) {
+        faces = find_faces(tets);
+        check_count("faces", faces->faces.size(), kMostFaces);
+    }
+    if (drawer->has(items)) return;
+    if (items == GlTets::Items::Faces) return drawer->set_faces(faces->faces);
+    std::vector<std::array<std::uint32_t, 4>> corners;
+    corners.reserve(tets.tets.size());
+    for (const auto& tet : tets.tets) {
+        corners.push_back(tet.corner);
+        std::sort(corners.back().begin(), corners.back().end());
+    }
+    drawer->set_tets(corners);
+}
+
+void PtRenderer::State::order(detail::GlTetFrame& frame, const View& view, const PtOptions& options, PtReport& report) {
+    if (options.order == PtOrder::Havs) {
+        report.faces = faces->faces.size();
+        report.faces_drawn = faces->count(options.lod);
+        frame.order = order_faces(tets, *faces, report.faces_drawn, view);
+        return;
+    }
+    TetOrder found = options.order == PtOrder::Topological ? order_topologically(tets, view) : order_by_centroid(tets, view);
+    frame.order = std::move(found.tets);
+    report.cycles = found.cycles;
+}
+
+Image PtRenderer::State::draw_lists(const PtOptions& options, PtReport& report, const DrawStage& stage) {
+    const auto items = options.order == PtOrder::Havs ? GlTets::Items::Faces : GlTets::Items::Tets;
+    const std::size_t most = most_fragments(options.list_bytes, context.device(), items);
+    auto drawn = items == GlTets::Items::Faces ? lists->draw_faces(static_cast<std::size_t>(options.kbuffer), most, stage)
+                                               : lists->draw_tets(most, stage);
+    report.fragments += drawn.fragments;
+    report.parts += drawn.parts;
+    report.late_faces += drawn.late_faces;
+    report.violations = report.violations.value_or(0) + drawn.wrong_pixels;
+    return std::move(drawn.image);
+}
+
+Image PtRenderer::State::draw_sample(const PtOptions& options, PtReport& report, const DrawStage& stage) {
+    const bool in_order = options.order == PtOrder::Centroid || options.order == PtOrder::Topological;
+    return in_order ? drawer->draw_in_order(stage) : draw_lists(options, report, stage);
+}
+
+/// The grid of rays of trace_pixel, one picture for each of its places.
+Image PtRenderer::State::draw_samples(const PtOptions& options, PtReport& report) {
+    const int n = options.samples;
+    const DrawStage whole{options.progress};
+    if (n == 1) return draw_sample(options, report, whole);
+    const double pictures = static_cast<double>(n) * n;
+    std::vector<double> sums;
+    Image image;
+    for (int k = 0; k < n * n; ++k) {
+        const int column = k % n, row = k / n;
+        drawer->set_offset({(column + 0.5) / n - 0.5, (row + 0.5) / n - 0.5});
+        image = draw_sample(options, report, whole.part(k / pictures, 1 / pictures));
+        sums.resize(image.rgba.size());
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += double{image.rgba[i]};
+    }
+    drawer->set_offset(Vec2(0.0));
+    for (std::size_t i = 0; i < sums.size(); ++i) image.rgba[i] = static_cast<float>(sums[i] / pictures);
+    return image;
+}
+
+PtRenderer::PtRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device, Progress* progress) {
+    check_tet_input(mesh, scalar);
+    const KeepCurrent keep;
+    state_ = std::make_unique<State>(mesh, scalar, device, progress);
+}
+
+PtRenderer::~PtRenderer() = default;
+PtRenderer::PtRenderer(PtRenderer&&) noexcept = default;
+PtRenderer& PtRenderer::operator=(PtRenderer&&) noexcept = default;
+
+double PtRenderer::seconds_build() const {
+    return state_->built.seconds_build;
+}
+
+PtResult PtRenderer::draw(const View& view, const Optics& optics, const PtOptions& options) {
+    check_options(options);
+    State& state = *state_;
+    const detail::GlScope scope(state.context);
+    PtResult result{{}, state.built};
+    PtReport& report = result.report;
+    const bool faces = options.order == PtOrder::Havs;
+
+    auto start = Clock::now();
+    state.upload(faces ? GlTets::Items::Faces : GlTets::Items::Tets);
+    detail::GlTetFrame frame = detail::make_tet_frame(state.tets, state.box, view, optics, faces);
+    report.seconds_prepare = seconds_since(start);
+
+    start = Clock::now();
+    state.order(frame, view, options, report);
+    report.seconds_sort = seconds_since(start);
+
+    start = Clock::now();
+    state.drawer->set_frame(frame, view);
+    result.image = state.draw_samples(options, report);
+    report.seconds_draw = seconds_since(start);
+    if (options.count_violations && !report.violations) (void)state.draw_lists(options, report, {options.progress});
+    return result;
+}
+
+PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+                               const PtOptions& options) {
+    check_tet_input(mesh, scalar);
+    check_options(options);
+    return PtRenderer(mesh, scalar, options.device, options.progress).draw(view, optics, options);
+}
+
+}  // namespace subvol

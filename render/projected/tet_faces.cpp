@@ -1,0 +1,168 @@
+#include "tet_faces.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace subvol::detail {
+
+namespace {
+
+struct Numbered {
+    double key;
+    std::uint32_t number;
+
+    bool operator<(const Numbered& other) const { return key != other.key ? key < other.key : number < other.number; }
+};
+
+double signed_volume(const TetMesh& mesh, const std::array<Index, 4>& corner) {
+    const Vec3& p = mesh.points[corner[0]].position;
+    return dot(cross(mesh.points[corner[1]].position - p, mesh.points[corner[2]].position - p),
+               mesh.points[corner[3]].position - p);
+}
+
+/// Sorts three corners; true if that turns the face over.
+bool sort_corners(std::array<Index, 3>& corner) {
+    bool turned = false;
+    const auto sort_two = [&](std::size_t a, std::size_t b) {
+        if (corner[a] <= corner[b]) return;
+        std::swap(corner[a], corner[b]);
+        turned = !turned;
+    };
+    sort_two(0, 1);
+    sort_two(1, 2);
+    sort_two(0, 1);
+    return turned;
+}
+
+/// +1 if the tetrahedron is on the side of the normal of its face with sorted corners, else −1. Whatever it is for a
+/// tetrahedron without volume, its four faces agree: a ray comes out of it as often as it goes in.
+int side_of_face(bool positive, std::uint32_t k, bool turned) {
+    return (positive != (k % 2 == 0)) != turned ? 1 : -1;
+}
+
+/// Likewise for the tetrahedron across a face. Two of them may share more than one.
+int side_of_same_face(const TetMesh& mesh, Index tet, Index from, const std::array<Index, 3>& sorted, bool positive) {
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        if (mesh.neighbor(tet, k) != from) continue;
+        auto corner = mesh.corners(4 * tet + k);
+        const bool turned = sort_corners(corner);
+        if (corner == sorted) return side_of_face(positive, k, turned);
+    }
+    return 0;
+}
+
+std::uint64_t mix_bits(std::uint64_t x) {  // the finaliser of SplitMix64
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
+    return x ^ (x >> 31);
+}
+
+/// A throw of the face's corners, as time until it is its turn: the larger the face, the sooner. Drawing by area makes the
+/// error of a part less by a fifth than drawing without.
+double shuffle_key(const TetMesh& mesh, const TetFaces::Face& face) {
+    std::uint64_t bits = 0x9e3779b97f4a7c15U;
+    for (const Index corner : face.corner) bits = mix_bits(bits + corner);
+    const double thrown = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;  // in (0, 1)
+    const Vec3& p = mesh.points[face.corner[0]].position;
+    const Vec3 normal = cross(mesh.points[face.corner[1]].position - p, mesh.points[face.corner[2]].position - p);
+    return -std::log(thrown) / glm::length(normal);
+}
+
+/// As an unsigned number that goes up with it.
+std::uint32_t ascending_bits(float x) {
+    const auto bits = std::bit_cast<std::uint32_t>(x);
+    return bits ^ ((bits >> 31) != 0 ? 0xffffffffU : 0x80000000U);
+}
+
+template <class Body>
+void for_each_index(std::size_t count, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+    });
+}
+
+}  // namespace
+
+std::size_t TetFaces::count(double fraction) const {
+    const auto inner = static_cast<double>(faces.size() - outer);
+    return outer + static_cast<std::size_t>(std::ceil(fraction * inner));
+}
+
+TetFaces find_faces(const TetMesh& mesh) {
+    std::vector<std::uint8_t> positive(mesh.tets.size());
+    for_each_index(positive.size(),
+                   [&](std::size_t t) { positive[t] = signed_volume(mesh, mesh.tets[t].corner) >= 0 ? 1 : 0; });
+    TetFaces result;
+    std::vector<TetFaces::Face> inner;
+    for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+        for (std::uint32_t k = 0; k < 4; ++k) {
+            const Index other = mesh.neighbor(t, k);
+            if (other < t) continue;  // kNone is above all
+            auto corner = mesh.corners(4 * t + k);
+            int cover = side_of_face(positive[t] != 0, k, sort_corners(corner));
+            if (other != kNone) cover += side_of_same_face(mesh, other, t, corner, positive[other] != 0);
+            (cover == 0 ? inner : result.faces).push_back({corner, static_cast<std::uint32_t>(2 + cover)});
+        }
+    }
+    result.outer = result.faces.size();
+    std::vector<Numbered> order(inner.size());
+    for_each_index(order.size(), [&](std::size_t i) {
+        order[i] = {shuffle_key(mesh, inner[i]), static_cast<std::uint32_t>(i)};
+    });
+    tbb::parallel_sort(order.begin(), order.end());
+    result.faces.resize(result.outer + inner.size());
+    for_each_index(order.size(), [&](std::size_t i) { result.faces[result.outer + i] = inner[order[i].number]; });
+    return result;
+}
+
+std::vector<std::uint32_t> order_faces(const TetMesh& mesh, const TetFaces& faces, std::size_t count, const View& view) {
+    std::vector<std::uint64_t> keys(count);
+    for_each_index(count, [&](std::size_t i) {
+        Vec3 sum(0.0);
+        for (const Index p : faces.faces[i].corner) sum += mesh.points[p].position;
+        const auto depth = static_cast<float>(view.to_eye(sum / 3.0).z);
+        keys[i] = std::uint64_t{ascending_bits(depth)} << 32 | i;
+    });
+    tbb::parallel_sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> order(count);
+    for_each_index(count, [&](std::size_t i) { order[i] = static_cast<std::uint32_t>(keys[i]); });
+    return order;
+}
+
+double value_at(const TetMesh& mesh, const Vec3& point) {
+    struct Best {
+        double inside = -std::numeric_limits<double>::infinity(), value = 0;
+    };
+    // Barycentric weights; the least of them says how far inside a point is. The first of equals wins.
+    const auto look_at = [&](Best best, std::size_t t) {
+        const auto& corner = mesh.tets[t].corner;
+        const double volume = signed_volume(mesh, corner);
+        if (volume == 0) return best;
+        Best here{std::numeric_limits<double>::infinity(), 0};
+        for (std::size_t k = 0; k < 4; ++k) {
+            std::array<Vec3, 4> p;
+            for (std::size_t i = 0; i < 4; ++i) p[i] = i == k ? point : mesh.points[corner[i]].position;
+            const double weight = dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / volume;
+            here.inside = std::min(here.inside, weight);
+            here.value += weight * mesh.points[corner[k]].value;
+        }
+        return here.inside > best.inside ? here : best;
+    };
+    return tbb::parallel_reduce(
+               tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), Best{},
+               [&](const auto& range, Best best) {
+                   for (std::size_t t = range.begin(); t < range.end(); ++t) best = look_at(best, t);
+                   return best;
+               },
+               [](const Best& a, const Best& b) { return b.inside > a.inside ? b : a; })
+        .value;
+}
+
+}  // namespace subvol::detail

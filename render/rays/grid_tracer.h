@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+
+#include "subvol/optics.h"
+#include "subvol/render_grid.h"
+
+namespace subvol::detail {
+
+/// Integrates rays through a grid. Keeps a cursor: one for each thread or tile.
+class GridTracer {
+public:
+    GridTracer(const Voxels& grid, const Optics& optics, double tolerance);
+
+    /// The part of the ray in front of its origin.
+    [[nodiscard]] Segment trace(const Ray& ray);
+    [[nodiscard]] const GridTraceReport& counts() const { return counts_; }
+
+private:
+    /// A ray in index space.
+    struct Line {
+        Vec3 origin, direction, inverse;
+        double speed;  // world length of a unit of t
+    };
+    struct Stretch {
+        double begin, end;
+    };
+    /// Cells lower … upper, both included: cell i lies between voxels i and i + 1.
+    struct Cells {
+        Voxel lower, upper;
+    };
+
+    [[nodiscard]] Line to_index(const Ray& ray) const;
+    [[nodiscard]] bool clip(const Line& line, Stretch& inside) const;
+    [[nodiscard]] Voxel cell_at(const Line& line, double t, const Cells& within) const;
+    [[nodiscard]] Cells covered(const Voxel& cell, const VoxelBlock& block) const;
+    void add_cell(const Line& line, const Voxel& cell, Stretch stretch, Segment& light);
+    void add_voxel_part(const Line& line, const Voxel& cell, const VoxelCorners& corners, Stretch stretch, Segment& light);
+
+    const Optics& optics_;
+    double value_tolerance_;
+    Mat3 to_index_;
+    Mat3 to_world_;
+    Vec3 origin_;
+    Cells cells_;
+    std::unique_ptr<VoxelCursor> cursor_;
+    GridTraceReport counts_;
+};
+
+}  // namespace subvol::detail

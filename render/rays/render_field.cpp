@@ -1,0 +1,106 @@
+#include "subvol/render_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pixel_tiles.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+using FieldFunction = std::function<std::optional<double>(const Vec3&)>;
+
+constexpr double kEndTolerance = 1e-9;  // of a step
+constexpr double kOpaque = 1e-6;
+constexpr double kMaxSteps = 1e9;
+
+struct Interval {
+    double begin, end;
+};
+
+// The part of the ray in front of the eye that lies in the box.
+Interval clip(const Ray& ray, const Box& box) {
+    Interval inside{0, std::numeric_limits<double>::infinity()};
+    for (int k = 0; k < 3; ++k) {
+        if (ray.direction[k] == 0) {
+            if (ray.origin[k] < box.lower[k] || ray.origin[k] > box.upper[k]) return {0, 0};
+            continue;
+        }
+        const double a = (box.lower[k] - ray.origin[k]) / ray.direction[k];
+        const double b = (box.upper[k] - ray.origin[k]) / ray.direction[k];
+        inside.begin = std::max(inside.begin, std::min(a, b));
+        inside.end = std::min(inside.end, std::max(a, b));
+    }
+    return inside;
+}
+
+struct Sample {
+    double t;
+    std::optional<double> value;
+};
+
+class Marcher {
+public:
+    Marcher(const FieldFunction& field, const Box& box, const Optics& optics, double step_world)
+        : field_(field), box_(box), optics_(optics), step_world_(step_world) {}
+
+    Segment operator()(const Ray& ray) const {
+        Segment total;
+        const Interval range = clip(ray, box_);
+        if (!(range.begin < range.end)) return total;
+        const double speed = glm::length(ray.direction);
+        const double steps = std::max(1.0, std::ceil((range.end - range.begin) * speed / step_world_));
+        Sample last = at(ray, range.begin);
+        for (double i = 1; i <= steps && total.transmittance > kOpaque; ++i) {
+            const Sample next = at(ray, range.begin + (range.end - range.begin) * (i / steps));
+            composite(total, between(ray, last, next, speed));
+            last = next;
+        }
+        return total;
+    }
+
+private:
+    Sample at(const Ray& ray, double t) const { return {t, field_(ray.origin + t * ray.direction)}; }
+
+    // The last sample inside on the way from one inside to one outside.
+    Sample end_of_field(const Ray& ray, Sample inside, Sample outside) const {
+        const double tolerance = kEndTolerance * std::abs(outside.t - inside.t);
+        while (std::abs(outside.t - inside.t) > tolerance) {
+            const Sample middle = at(ray, 0.5 * (inside.t + outside.t));
+            if (middle.t == inside.t || middle.t == outside.t) break;
+            (middle.value ? inside : outside) = middle;
+        }
+        return inside;
+    }
+
+    Segment between(const Ray& ray, Sample front, Sample back, double speed) const {
+        if (!front.value && !back.value) return {};
+        if (!front.value) front = end_of_field(ray, back, front);
+        if (!back.value) back = end_of_field(ray, front, back);
+        return optics_.integrate(*front.value, *back.value, (back.t - front.t) * speed);
+    }
+
+    const FieldFunction& field_;
+    const Box& box_;
+    const Optics& optics_;
+    double step_world_;
+};
+
+}  // namespace
+
+Image render_field(const FieldFunction& field, const Box& box, const View& view, const Optics& optics,
+                   const FieldOptions& options) {
+    check_samples(options.samples);
+    if (box.empty()) return {view.width(), view.height()};
+    if (!(options.step_world > 0) || !(box.diagonal() <= kMaxSteps * options.step_world)) {
+        throw Error(ErrorCode::InvalidInput, "the step is " + std::to_string(options.step_world), {},
+                    "a positive world length, at least 1e-9 of the diagonal of a finite box");
+    }
+    const Marcher marcher(field, box, optics, options.step_world);
+    return draw_in_tiles(view, options.samples, options.progress, [&] { return marcher; });
+}
+
+}  // namespace subvol

@@ -1,0 +1,66 @@
+#include "subvol/render_grid.h"
+
+#include <tbb/combinable.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "grid_tracer.h"
+#include "pixel_tiles.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+void check(const Voxels& grid, const GridOptions& options) {
+    check_samples(options.samples);
+    if (!(options.tolerance > 0)) {
+        throw Error(ErrorCode::InvalidInput, "the tolerance is " + std::to_string(options.tolerance), {}, "a positive number");
+    }
+    const double volume = glm::determinant(grid.to_world());
+    if (volume == 0 || !std::isfinite(volume)) {
+        throw Error(ErrorCode::InvalidInput, "the axes of the grid's voxels lie in a plane");
+    }
+}
+
+// Traces, and hands its counts on when its tile is done.
+class CountedTracer {
+public:
+    CountedTracer(GridTracer tracer, tbb::combinable<GridTraceReport>& sums) : tracer_(std::move(tracer)), sums_(&sums) {}
+    CountedTracer(CountedTracer&&) = delete;
+    ~CountedTracer() {
+        GridTraceReport& sum = sums_->local();
+        sum.rays += tracer_.counts().rays;
+        sum.cells += tracer_.counts().cells;
+        sum.blocks += tracer_.counts().blocks;
+    }
+    Segment operator()(const Ray& ray) { return tracer_.trace(ray); }
+
+private:
+    GridTracer tracer_;
+    tbb::combinable<GridTraceReport>* sums_;
+};
+
+}  // namespace
+
+GridResult render_grid(const Voxels& grid, const View& view, const Optics& optics, const GridOptions& options) {
+    check(grid, options);
+    const auto [lower, upper] = grid.range();
+    if (lower[0] > upper[0]) return {{view.width(), view.height()}, {}};
+    GridResult result;
+    const auto start = std::chrono::steady_clock::now();
+    tbb::combinable<GridTraceReport> sums;
+    result.image = draw_in_tiles(view, options.samples, options.progress,
+                                 [&] { return CountedTracer(GridTracer(grid, optics, options.tolerance), sums); });
+    sums.combine_each([&](const GridTraceReport& sum) {
+        result.report.rays += sum.rays;
+        result.report.cells += sum.cells;
+        result.report.blocks += sum.blocks;
+    });
+    result.report.seconds_draw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+}  // namespace subvol

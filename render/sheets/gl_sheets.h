@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "drawn.h"
+#include "gl_buffer.h"
+#include "gl_program.h"
+#include "sheet_target.h"
+
+namespace subvol::detail {
+
+/// The splatter by sheet buffers, on the current context: for every sheet, front to back, the sections of the kernels that it
+/// cuts are drawn as rectangles that add up in a buffer of floats; then the buffer is classified and composited. It has every
+/// feature of the CPU's and follows the same rules; programs and memory are kept from picture to picture.
+///
+/// Pictures are bitwise the same every time: kernels are added up in their order.
+/// cost:   one draw and one dispatch a sheet, each of the sheet's rectangle only
+/// source: docs/science.md (NMM06, VG05)
+class GlSheets {
+public:
+    GlSheets();
+    ~GlSheets();
+    GlSheets(const GlSheets&) = delete;
+    GlSheets& operator=(const GlSheets&) = delete;
+
+    /// throws: Error(MissingCapability) if the device has no room for kernels, boundary or picture
+    [[nodiscard]] Drawn draw(const SplatFrame& frame, Progress* progress);
+
+private:
+    struct Programs {
+        GlProgram kernels, composite;
+    };
+
+    const Programs& programs(const SplatFrame& frame);
+    void upload(const SplatFrame& frame);
+    void start_beams(const SplatFrame& frame);
+    void draw_kernels(const SplatFrame& frame, const GlProgram& program, int sheet, std::size_t first, std::size_t count);
+    void composite(const SplatFrame& frame, const GlProgram& program, int sheet, const PixelRect& rect);
+    [[nodiscard]] std::uint32_t done_pixels() const;
+    [[nodiscard]] Drawn read(const SplatFrame& frame) const;
+
+    std::map<std::string, Programs> programs_;  // by their features
+    SheetTarget target_;
+    GLuint vertices_ = 0;
+    GlBuffer splats_, bends_, colors_, color_bends_, axes_, kernel_table_;
+    GlBuffer table_, visible_, color_table_, interval_offsets_, intervals_;
+    GlBuffer beams_, lasts_, looks_, done_, ids_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "subvol/progress.h"
+#include "subvol/vec.h"
+
+namespace subvol {
+
+/// Who draws kernels, and how; the pictures are the same.
+///
+/// Auto:   Gl where there is a hardware GPU, else Cpu
+/// Cpu:    tiles of the picture, batches of sheets, on all threads
+/// Gl:     the same by OpenGL compute shaders
+/// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, software too: the way of the EuroVis 2007 paper,
+///         for comparison
+enum class SplatMethod { Auto, Cpu, Gl, Sheets };
+
+/// Light on the surfaces of equal value: Blinn and Phong's, with one light at the eye and a key light, both from either side.
+/// Where the value hardly changes there is no surface, and colours stay what they are.
+///
+/// ambient, diffuse, specular: parts of the light, ≥ 0
+/// key:                        towards the key light, in eye space (right, up, away from the eye)
+struct Shading {
+    double ambient = 0.3;
+    double diffuse = 0.7;
+    double specular = 0.25;
+    double shininess = 32;
+    Vec3 key{-0.5, 0.7, -0.5};
+};
+
+/// samples:       n × n places a pixel on a regular grid, of which the mean is taken, 1..16
+/// sheets:        planes of constant eye depth over the volume's depth range, 2..65536
+/// channel:       which channel of the volume is shown
+/// device:        of OpenGL, its number in gl_devices(); none: the first hardware, else software
+/// color_channel: takes the colours from another channel than the opacities; not pre-integrated
+/// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
+struct SplatOptions {
+    SplatMethod method = SplatMethod::Auto;
+    std::optional<int> device{};
+    int samples = 1;
+    int sheets = 200;
+    std::size_t channel = 0;
+    std::optional<std::size_t> color_channel{};
+    bool normalized = true;
+    std::optional<Shading> shading{};
+    Progress* progress = nullptr;
+};
+
+}  // namespace subvol

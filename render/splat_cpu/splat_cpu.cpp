@@ -1,0 +1,57 @@
+// The splatter for CPUs: a tile at a time, a batch of sheets at a time, front to back; pixels in vectors as wide as the machine
+// has them. This file is compiled once for every instruction set, and the best one is chosen where it runs.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "splat_cpu.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "splat_cpu.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "splat_tile-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace subvol::detail::HWY_NAMESPACE {
+
+void draw_tile(const SplatFrame& frame, int tile, Drawn& drawn) {
+    if (frame.scene->plain()) {
+        TileRenderer<true>(frame).draw(tile, drawn);
+    } else {
+        TileRenderer<false>(frame).draw(tile, drawn);
+    }
+}
+
+}  // namespace subvol::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace subvol::detail {
+
+HWY_EXPORT(draw_tile);
+
+Drawn draw_splats_cpu(const SplatFrame& frame, Progress* progress) {
+    const View& view = *frame.view;
+    Drawn drawn{Image(view.width(), view.height()), {}};
+    drawn.depth.assign(drawn.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    const int tiles = frame.tiles_x * frame.tiles_y;
+    std::mutex reporting;
+    int done = 0;
+    report_progress(progress, "splat", 0);
+    tbb::parallel_for(tbb::blocked_range<int>(0, tiles, 1), [&](const auto& range) {
+        for (int tile = range.begin(); tile < range.end(); ++tile) HWY_DYNAMIC_DISPATCH(draw_tile)(frame, tile, drawn);
+        if (!progress) return;
+        const std::lock_guard lock(reporting);
+        done += range.end() - range.begin();
+        report_progress(progress, "splat", static_cast<double>(done) / tiles);
+    });
+    return drawn;
+}
+
+}  // namespace subvol::detail
+#endif

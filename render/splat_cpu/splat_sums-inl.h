@@ -1,0 +1,123 @@
+// Sums of kernels over one tile and one batch of sheets. Included once for every instruction set: see splat_cpu.cpp.
+#if defined(SUBVOL_SPLAT_SUMS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SUBVOL_SPLAT_SUMS_INL_H
+#undef SUBVOL_SPLAT_SUMS_INL_H
+#else
+#define SUBVOL_SPLAT_SUMS_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "splat_frame.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace subvol::detail::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes = hn::CappedTag<float, 16>;
+using IntLanes = hn::RebindToSigned<Lanes>;
+using Floats = hn::Vec<Lanes>;
+using Ints = hn::Vec<IntLanes>;
+using Mask = hn::Mask<Lanes>;
+
+/// Pixels are handled in blocks of one vector: as square as it can be.
+constexpr std::size_t kBlock = hn::MaxLanes(Lanes());
+constexpr std::size_t kBlockWidth = kBlock < 4 ? kBlock : 4, kBlockHeight = kBlock / kBlockWidth;
+constexpr std::size_t kTile = SplatFrame::kTile_px;
+constexpr std::size_t kColumns = kTile / kBlockWidth, kRows = kTile / kBlockHeight, kBlocks = kColumns * kRows;
+
+/// What is summed for each pixel and sheet: Σw, Σwv, and where asked for Σw of the colour's v and Σw∇v.
+constexpr std::size_t kWeight = 0, kValue = 1, kColor = 2, kGradient = 3, kSums = kGradient + 3;
+
+/// Where the pixels of a tile are: slopes of each lane, absolute, so that tiles do not matter.
+struct TilePixels {
+    HWY_ALIGN float x[kColumns * kBlock];
+    HWY_ALIGN float y[kRows * kBlock];
+    float left = 0, top = 0;  // of the tile, in pixels
+};
+
+/// The sheets of a batch as a kernel sees them.
+struct Cuts {
+    HWY_ALIGN float zs[kBatch], x[kBatch], y[kBatch], e[kBatch], v[kBatch];
+    std::int32_t column0[kBatch], column1[kBatch], row0[kBatch], row1[kBatch];
+};
+
+struct BatchView {
+    HWY_ALIGN float depth[kBatch];
+    HWY_ALIGN float across[kBatch];  // world length of a unit of slope
+    HWY_ALIGN float to_pixels[kBatch];
+    float mid_x, mid_y;
+    int begin = 0, end = kBatch;  // the sheets of the batch that are summed
+};
+
+HWY_ATTR inline void cut(const EyeSplat& s, const BatchView& batch, const TilePixels& tile, Cuts& cuts) {
+    for (std::size_t k = 0; k < kBatch; ++k) {
+        const float zs = batch.depth[k] - s.depth, left = 1.0f - zs * zs * s.inv_szz;
+        const float root = std::sqrt(std::max(left, 0.0f)), margin = left > 0 ? 0.55f : -1e9f;
+        const float x = s.center_x + s.shear_x * zs, y = s.center_y + s.shear_y * zs;
+        cuts.zs[k] = zs;
+        cuts.x[k] = x;
+        cuts.y[k] = y;
+        cuts.e[k] = zs * zs * s.inv_szz;
+        cuts.v[k] = s.value + zs * s.value_slope;
+        // In blocks from the tile's corner; half a pixel and a little for rounding more than the section.
+        const float scale = batch.to_pixels[k];
+        const float px = x * scale + (batch.mid_x - tile.left), hx = s.extent_x * root * scale + margin;
+        const float py = (batch.mid_y - tile.top) - y * scale, hy = s.extent_y * root * scale + margin;
+        const auto column = [](float p) {
+            return static_cast<std::int32_t>(
+                       std::min(std::max(p, -static_cast<float>(kBlockWidth)), kTile + 0.0f) * (1.0f / kBlockWidth) + 1.0f) -
+                   1;
+        };
+        const auto row = [](float p) {
+            return static_cast<std::int32_t>(
+                       std::min(std::max(p, -static_cast<float>(kBlockHeight)), kTile + 0.0f) * (1.0f / kBlockHeight) + 1.0f) -
+                   1;
+        };
+        cuts.column0[k] = std::max(column(px - hx), 0);
+        cuts.column1[k] = std::min(column(px + hx), static_cast<std::int32_t>(kColumns) - 1);
+        cuts.row0[k] = std::max(row(py - hy), 0);
+        cuts.row1[k] = std::min(row(py + hy), static_cast<std::int32_t>(kRows) - 1);
+    }
+}
+
+/// Adds a compact kernel with one value: the loop that most pictures spend their time in.
+HWY_ATTR inline void add_plain(const EyeSplat& s, const BatchView& batch, const TilePixels& tile, Cuts& cuts, float* sums) {
+    const Lanes d;
+    cut(s, batch, tile, cuts);
+    const auto rxx = hn::Set(d, s.root_xx), gx = hn::Set(d, s.gradient_x), moment = hn::Set(d, s.moment);
+    const auto one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+    for (int k = batch.begin; k < batch.end; ++k) {
+        const auto c0 = cuts.column0[k], c1 = cuts.column1[k];
+        const auto across = hn::Set(d, batch.across[k]), x = hn::Set(d, cuts.x[k]), y = hn::Set(d, cuts.y[k]);
+        for (auto row = cuts.row0[k]; row <= cuts.row1[k]; ++row) {
+            const auto dy = hn::MulSub(hn::Load(d, tile.y + static_cast<std::size_t>(row) * kBlock), across, y);
+            const auto across_row = hn::Mul(hn::Set(d, s.root_yy), dy);
+            const auto e_row = hn::MulAdd(across_row, across_row, hn::Set(d, cuts.e[k]));
+            const auto e_slope = hn::Mul(hn::Set(d, s.root_xy), dy);
+            const auto v_row = hn::MulAdd(hn::Set(d, s.gradient_y), dy, hn::Set(d, cuts.v[k]));
+            float* to = sums + ((static_cast<std::size_t>(k) * kRows + static_cast<std::size_t>(row)) * kColumns +
+                                static_cast<std::size_t>(c0)) *
+                                   (2 * kBlock);
+            for (auto column = c0; column <= c1; ++column, to += 2 * kBlock) {
+                const auto dx = hn::MulSub(hn::Load(d, tile.x + static_cast<std::size_t>(column) * kBlock), across, x);
+                const auto along_row = hn::MulAdd(rxx, dx, e_slope);
+                const auto e = hn::MulAdd(along_row, along_row, e_row);
+                const auto left = hn::Max(hn::Sub(one, e), zero);
+                const auto w = hn::Mul(hn::Mul(left, left), left);
+                const auto v = hn::MulAdd(moment, e, hn::MulAdd(gx, dx, v_row));
+                hn::Store(hn::Add(hn::Load(d, to), w), d, to);
+                hn::Store(hn::MulAdd(w, v, hn::Load(d, to + kBlock)), d, to + kBlock);
+            }
+        }
+    }
+}
+
+}  // namespace subvol::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "boundary_scene.h"
+#include "tet_walk.h"
+
+namespace subvol::detail {
+
+/// The boundary faces that a ray crosses: walks pair them up. Keeps its memory from ray to ray.
+class RayEnds {
+public:
+    RayEnds(const TetMesh& mesh, const BoundaryScene& scene) : mesh_(&mesh), scene_(&scene) {}
+
+    /// Finds those of a ray, none of them walked yet.
+    void find(const RayPlane& plane, const Ray& ray);
+    [[nodiscard]] bool empty() const { return ends_.empty(); }
+
+    /// The first one along the ray from which or to which no walk has gone; kNone if there is none.
+    [[nodiscard]] TetFace first_unwalked() const;
+
+    /// Both ends of a walk.
+    void mark_walked(const RayPlane& plane, TetFace start, TetFace end);
+
+private:
+    struct End {
+        TetFace face;
+        double t;
+        bool walked;
+    };
+    void add(const RayPlane& plane, TetFace face);
+    void add_near(const RayPlane& plane, TetFace face);
+
+    const TetMesh* mesh_;
+    const BoundaryScene* scene_;
+    std::vector<TetFace> hits_;
+    std::vector<End> ends_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,118 @@
+#include <tbb/combinable.h>
+
+#include <chrono>
+
+#include "boundary_scene.h"
+#include "pixel_tiles.h"
+#include "subvol/render_tets.h"
+#include "tet_mesh.h"
+#include "tet_packet_tracer.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Draws a tile: as `trace_pixel` for each of its pixels, but all pixels at once.
+void draw_tile(const View& view, int samples, const PixelRect& tile, TetPacketTracer& tracer, Image& image) {
+    std::vector<Ray> rays;
+    std::vector<Segment> seen, sums;
+    const auto for_each_pixel = [&](const auto& body) {
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            for (int x = tile.x0; x < tile.x1; ++x) body(x, y);
+        }
+    };
+    for (int j = 0; j < samples; ++j) {
+        for (int i = 0; i < samples; ++i) {
+            rays.clear();
+            for_each_pixel([&](int x, int y) { rays.push_back(view.ray(x + (i + 0.5) / samples, y + (j + 0.5) / samples)); });
+            seen.resize(rays.size());
+            sums.resize(rays.size(), {.color = Vec3(0.0), .transmittance = 0});
+            tracer.trace(rays, seen);
+            for (std::size_t k = 0; k < seen.size(); ++k) {
+                sums[k].color += seen[k].color;
+                sums[k].transmittance += seen[k].transmittance;
+            }
+        }
+    }
+    const double count = static_cast<double>(samples) * samples;
+    auto sum = sums.begin();
+    for_each_pixel([&](int x, int y) {
+        write_pixel(image, x, y, {sum->color / count, sum->transmittance / count});
+        ++sum;
+    });
+}
+
+}  // namespace
+
+struct TetsRenderer::State {
+    TetMesh tets;
+    std::optional<BoundaryScene> scene;
+    TetsReport built;
+};
+
+TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, Progress* progress)
+    : state_(std::make_unique<State>()) {
+    check_tet_input(mesh, scalar);
+    const auto start = Clock::now();
+    report_progress(progress, "build", 0);
+    TetMesh& tets = state_->tets;
+    tets = build_tet_mesh(mesh, scalar);
+    report_progress(progress, "build", 0.8);
+    state_->scene.emplace(tets, bounds(mesh));
+    report_progress(progress, "build", 1);
+    TetsReport& built = state_->built;
+    built.tets = tets.tets.size();
+    built.degenerate_tets = tets.degenerate_tets;
+    built.inverted_tets = tets.inverted_tets;
+    built.bytes = tets.tets.size() * (sizeof(TetMesh::Tet) + sizeof(tets.links[0])) +
+                  tets.points.size() * sizeof(TetMesh::Point) + tets.boundary.size() * sizeof(TetFace);
+    built.seconds_build = seconds_since(start);
+}
+
+TetsRenderer::~TetsRenderer() = default;
+TetsRenderer::TetsRenderer(TetsRenderer&&) noexcept = default;
+TetsRenderer& TetsRenderer::operator=(TetsRenderer&&) noexcept = default;
+
+double TetsRenderer::seconds_build() const {
+    return state_->built.seconds_build;
+}
+
+TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const TetsOptions& options) const {
+    check_samples(options.samples);
+    TetsResult result{{}, state_->built};
+    TetsReport& report = result.report;
+    const auto start = Clock::now();
+    tbb::combinable<TraceCounts> sums;
+    result.image = Image(view.width(), view.height());
+    for_each_tile({0, 0, view.width(), view.height()}, options.progress, [&](const PixelRect& tile) {
+        TetPacketTracer tracer(state_->tets, *state_->scene, optics);
+        draw_tile(view, options.samples, tile, tracer, result.image);
+        TraceCounts& sum = sums.local();
+        sum.rays += tracer.counts().rays;
+        sum.segments += tracer.counts().segments;
+        sum.lost_rays += tracer.counts().lost_rays;
+    });
+    sums.combine_each([&](const TraceCounts& sum) {
+        report.rays += sum.rays;
+        report.segments += sum.segments;
+        report.lost_rays += sum.lost_rays;
+    });
+    report.seconds_draw = seconds_since(start);
+    return result;
+}
+
+TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+                       const TetsOptions& options) {
+    check_samples(options.samples);
+    return TetsRenderer(mesh, scalar, options.progress).draw(view, optics, options);
+}
+
+}  // namespace subvol

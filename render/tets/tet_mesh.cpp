@@ -1,0 +1,139 @@
+#include "tet_mesh.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "subvol/cell.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kTetsPerCell = 6;
+constexpr std::size_t kMaxCells = (std::size_t{1} << 32) / (4 * kTetsPerCell) - 1;
+
+// Below this part of the cube over its longest edge a volume is rounding of the coordinates.
+constexpr double kZeroVolume = 1e-13;
+
+struct FaceRecord {
+    std::array<Index, 3> ids;  // ascending
+    TetFace face;
+
+    bool operator<(const FaceRecord& other) const { return std::tie(ids, face) < std::tie(other.ids, other.face); }
+};
+
+FaceRecord record_of(const TetMesh& mesh, TetFace face) {
+    auto [a, b, c] = mesh.corners(face);
+    if (a > b) std::swap(a, b);
+    if (b > c) std::swap(b, c);
+    if (a > b) std::swap(a, b);
+    return {{a, b, c}, face};
+}
+
+template <class Body>
+void for_each_index(std::size_t count, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
+    });
+}
+
+TetLink& link_of(TetMesh& mesh, TetFace face) {
+    return mesh.links[face / 4][mesh.rank(face / 4, face % 4)];
+}
+
+void connect(TetMesh& mesh) {
+    mesh.links.resize(mesh.tets.size());
+    std::vector<FaceRecord> faces(4 * mesh.tets.size());
+    for_each_index(faces.size(), [&](std::size_t i) { faces[i] = record_of(mesh, static_cast<TetFace>(i)); });
+    tbb::parallel_sort(faces.begin(), faces.end());
+    for (std::size_t i = 0, end; i < faces.size(); i = end) {
+        for (end = i + 1; end < faces.size() && faces[end].ids == faces[i].ids;) ++end;
+        if (end - i == 2) {
+            const TetFace one = faces[i].face, other = faces[i + 1].face;
+            link_of(mesh, one) = {other / 4, mesh.tets[other / 4].corner[other % 4]};
+            link_of(mesh, other) = {one / 4, mesh.tets[one / 4].corner[one % 4]};
+        } else {
+            for (std::size_t k = i; k < end; ++k) mesh.boundary.push_back(faces[k].face);
+        }
+    }
+    std::sort(mesh.boundary.begin(), mesh.boundary.end());  // cell order: near in the list is near in space
+}
+
+enum class Shape { Regular, Degenerate, Inverted };
+
+Shape shape_of(const TetMesh& mesh, const TetMesh::Tet& tet) {
+    std::array<Vec3, 4> p;
+    for (std::size_t k = 0; k < 4; ++k) p[k] = mesh.points[tet.corner[k]].position;
+    const Vec3 a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
+    const double longest =
+        std::sqrt(std::max({dot(a, a), dot(b, b), dot(c, c), dot(b - a, b - a), dot(c - a, c - a), dot(c - b, c - b)}));
+    const double volume = dot(cross(a, b), c);
+    if (!(std::abs(volume) > kZeroVolume * longest * longest * longest)) return Shape::Degenerate;
+    return volume < 0 ? Shape::Inverted : Shape::Regular;
+}
+
+void count_shapes(TetMesh& mesh) {
+    using Counts = std::array<std::size_t, 2>;
+    const auto counts = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), Counts{},
+        [&](const auto& range, Counts sum) {
+            for (std::size_t t = range.begin(); t < range.end(); ++t) {
+                const Shape shape = shape_of(mesh, mesh.tets[t]);
+                if (shape == Shape::Degenerate) ++sum[0];
+                if (shape == Shape::Inverted) ++sum[1];
+            }
+            return sum;
+        },
+        [](const Counts& a, const Counts& b) {
+            return Counts{a[0] + b[0], a[1] + b[1]};
+        });
+    mesh.degenerate_tets = counts[0];
+    mesh.inverted_tets = counts[1];
+}
+
+}  // namespace
+
+void check_tet_input(const HexMesh& mesh, std::span<const double> scalar) {
+    if (scalar.size() != mesh.points.size()) {
+        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
+                    std::to_string(mesh.points.size()) + ", one a point");
+    }
+    validate(mesh);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        for (const Index p : mesh.cells[c]) {
+            if (std::isfinite(scalar[p])) continue;
+            throw Error(ErrorCode::InvalidInput, "the scalar is not finite", "point " + std::to_string(p));
+        }
+    }
+}
+
+TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> scalar) {
+    if (hexes.cells.size() > kMaxCells) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.cells.size()) + " cells", {},
+                    "at most " + std::to_string(kMaxCells));
+    }
+    if (hexes.points.size() > TetLink::kBoundary) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.points.size()) + " points", {},
+                    "at most " + std::to_string(TetLink::kBoundary));
+    }
+    TetMesh mesh;
+    mesh.points.resize(hexes.points.size());
+    for_each_index(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], scalar[p]}; });
+    mesh.tets.resize(kTetsPerCell * hexes.cells.size());
+    for_each_index(hexes.cells.size(), [&](std::size_t c) {
+        const auto split = split_cell(hexes.cells[c]);
+        for (std::size_t k = 0; k < kTetsPerCell; ++k) mesh.tets[kTetsPerCell * c + k] = {split[k]};
+    });
+    count_shapes(mesh);
+    connect(mesh);
+    return mesh;
+}
+
+}  // namespace subvol::detail

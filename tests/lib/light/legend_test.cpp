@@ -1,0 +1,121 @@
+#include "subvol/legend.h"
+#include "subvol/detail/round_ticks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "lib/expect_error.h"
+#include "lib/temp_folder.h"
+
+namespace subvol {
+
+using namespace detail;
+namespace {
+
+using test::expect_error;
+
+std::vector<std::string> labels(double min, double max, int most = 7) {
+    std::vector<std::string> all;
+    for (const Tick& tick : round_ticks(min, max, most)) all.push_back(tick.label);
+    return all;
+}
+
+using Labels = std::vector<std::string>;
+
+TEST(RoundTicks, HaveTheDigitsOfTheirStep) {
+    EXPECT_EQ(labels(0, 1), (Labels{"0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
+    EXPECT_EQ(labels(-1, 1), (Labels{"−1.0", "−0.5", "0", "0.5", "1.0"}));
+    EXPECT_EQ(labels(273.15, 391.2), (Labels{"280", "300", "320", "340", "360", "380"}));
+    EXPECT_EQ(labels(0, 3e-4), (Labels{"0", "0.00005", "0.00010", "0.00015", "0.00020", "0.00025", "0.00030"}));
+    EXPECT_EQ(labels(0, 3e7), (Labels{"0", "5e+06", "1.0e+07", "1.5e+07", "2.0e+07", "2.5e+07", "3.0e+07"}));
+    EXPECT_EQ(labels(100000.5, 100000.9), (Labels{"100000.5", "100000.6", "100000.7", "100000.8", "100000.9"}));
+}
+
+TEST(RoundTicks, LieInTheRangeAndAreRound) {
+    for (const auto& [min, max] :
+         {std::pair{-3.7, 12.9}, {0.0, 1.0}, {1e-12, 7e-12}, {-9e20, 4e20}, {0.999, 1.001}, {5, 5.5}}) {
+        const auto ticks = round_ticks(min, max);
+        ASSERT_GE(ticks.size(), 2u) << min;
+        EXPECT_LE(ticks.size(), 7u) << min;
+        const double step = ticks[1].value - ticks[0].value, rounding = 1e-9 * (max - min);
+        const double digit = step / std::pow(10, std::floor(std::log10(step) + 1e-6));
+        EXPECT_NEAR(std::min({std::abs(digit - 1), std::abs(digit - 2), std::abs(digit - 5)}), 0, 1e-6) << min;
+        for (std::size_t i = 0; i < ticks.size(); ++i) {
+            EXPECT_TRUE(ticks[i].value >= min - rounding && ticks[i].value <= max + rounding) << min;
+            EXPECT_NEAR(ticks[i].value - ticks[0].value, static_cast<double>(i) * step, rounding) << min;
+        }
+        EXPECT_LT(ticks[0].value - step, min) << "one more would fit";
+        EXPECT_GT(ticks.back().value + step, max) << "one more would fit";
+    }
+}
+
+class Legend : public test::TempFolder {
+protected:
+    [[nodiscard]] static pugi::xml_document parsed(const std::string& svg) {
+        pugi::xml_document document;
+        EXPECT_TRUE(document.load_string(svg.c_str()));
+        return document;
+    }
+};
+
+TEST_F(Legend, HoldsTheColoursInSrgb) {
+    const TransferFunction grey{{{0, Vec3(0)}, {10, Vec3(1)}}, {{0, 0}, {10, 1}}};
+    const auto document = parsed(legend_svg(grey, {.title = "T", .min = 0, .max = 10}));
+    std::string middle, first, last;
+    for (const pugi::xml_node stop : document.child("svg").child("linearGradient").children("stop")) {
+        const std::string offset = stop.attribute("offset").value();
+        (offset == "50.00%" ? middle : offset == "0.00%" ? first : last) = stop.attribute("stop-color").value();
+    }
+    EXPECT_EQ(first, "#000000");
+    EXPECT_EQ(middle, "#bcbcbc");  // half the light is byte 188
+    EXPECT_EQ(last, "#ffffff");
+}
+
+TEST_F(Legend, DrawsTheOpacityCurveAndTicksAtTheirPlaces) {
+    const TransferFunction f{{{0, Vec3(1)}}, {{0, 0}, {5, 1}, {10, 0.5}}};
+    const std::string svg = legend_svg(f, {.min = 0, .max = 10, .width_px = 100});
+    const auto document = parsed(svg);
+    double curve_x = 0, curve_y = 0, zero_y = 0;
+    for (const pugi::xml_node path : document.child("svg").children("path")) {
+        if (std::string(path.attribute("stroke-width").value()) != "1.5") continue;
+        std::string text = path.attribute("d").value();
+        char letter = 0;
+        double x0 = 0, x2 = 0, y2 = 0;
+        std::istringstream(text) >> letter >> x0 >> zero_y >> letter >> curve_x >> curve_y >> letter >> x2 >> y2;
+        EXPECT_NEAR(curve_x - x0, 50, 0.01);
+        EXPECT_NEAR(x2 - x0, 100, 0.01);
+        EXPECT_NEAR((zero_y - y2) / (zero_y - curve_y), 0.5, 0.001);  // two decimals of a pixel
+    }
+    EXPECT_GT(zero_y, curve_y + 20);
+    for (const pugi::xml_node text : document.child("svg").children("text")) {
+        if (std::string(text.text().get()) != "5") continue;
+        EXPECT_NEAR(std::atof(text.attribute("x").value()), curve_x, 0.01);
+    }
+}
+
+TEST_F(Legend, TakesAnyTitleAndAConstantField) {
+    const TransferFunction f = transfer_function_preset("viridis", 3, 3);
+    const auto document = parsed(legend_svg(f, {.title = "a < b & \"c\"", .min = 3, .max = 3}));
+    EXPECT_STREQ(document.child("svg").child("text").text().get(), "a < b & \"c\"");
+    expect_error(ErrorCode::InvalidInput, "range", [&] { (void)legend_svg(f, {.min = 1, .max = 0}); });
+    expect_error(ErrorCode::InvalidInput, "width", [&] { (void)legend_svg(f, {.width_px = 0}); });
+    expect_error(ErrorCode::InvalidInput, "no colour knot", [] { (void)legend_svg({}); });
+}
+
+TEST_F(Legend, IsWrittenWhole) {
+    const TransferFunction f = transfer_function_preset("bone", 0, 1);
+    const auto path = write("a.svg", "before");
+    write_legend(path, f);
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    EXPECT_EQ(text.str(), legend_svg(f));
+    expect_error(ErrorCode::Io, "nowhere", [&] { write_legend("nowhere/a.svg", f); });
+}
+
+}  // namespace
+}  // namespace subvol

@@ -1,0 +1,194 @@
+// Exodus II, written by netCDF itself in each of its formats.
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "exodus_texts.h"
+#include "lib/test_meshes.h"
+#include "mesh_damage.h"
+#include "subvol/mesh_report.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const HexMesh kBox = make_box(2, 2, 1);
+constexpr std::size_t kPoints = 18;
+
+std::vector<double> count_from(double first, std::size_t count) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < count; ++i) values.push_back(first + static_cast<double>(i));
+    return values;
+}
+
+// Three of the hexahedra, then the last one; two time steps.
+ExodusText two_blocks() {
+    ExodusBlock first = hex_block(kBox), second{"hex", 8, {}};
+    second.connectivity.assign(first.connectivity.begin() + 24, first.connectivity.end());
+    first.connectivity.resize(24);
+    ExodusText file{.points = kBox.points, .blocks = {first, second}, .times = {0, 0.5}};
+    for (const std::string name : {"VELX", "VELY", "VELZ", "T", "D_x", "D_y"}) {
+        file.of_nodes.push_back({name, count_from(static_cast<double>(file.of_nodes.size()), 2 * kPoints)});
+    }
+    file.of_elements = {{"c", {{0, 0, 0, 5, 5, 5}, {0, 6}}}, {"only one", {{0, 0, 0, 5, 5, 5}, {}}}};
+    return file;
+}
+
+class ExodusIo : public TempFolder {
+protected:
+    [[nodiscard]] ReadResult read(const ExodusText& file, const ReadOptions& options = {}) const {
+        return read_mesh(write("a.exo", exodus_text(file)), options);
+    }
+    [[nodiscard]] std::string read_error(const std::string& bytes) const {
+        return error_of([&] { static_cast<void>(read_mesh(write("a.exo", bytes))); });
+    }
+    [[nodiscard]] std::string read_error(const ExodusText& file) const { return read_error(exodus_text(file)); }
+};
+
+TEST_F(ExodusIo, EveryFormatGivesTheMeshAndTheFieldsOfTheLastStep) {
+    for (const int format : {0, NC_64BIT_OFFSET, NC_64BIT_DATA, NC_NETCDF4, NC_NETCDF4 | NC_CLASSIC_MODEL}) {
+        for (const bool old_names : {false, true}) {
+            ExodusText file = two_blocks();
+            file.format = format;
+            file.old_names = old_names;
+            const ReadResult result = read(file);
+            EXPECT_EQ(result.mesh.points, kBox.points);
+            EXPECT_EQ(result.mesh.cells, kBox.cells);
+            EXPECT_THAT(result.warnings, ElementsAre("array \"only one\" is not in every block: ignored",
+                                                     "of 2 time steps the last one is taken", HasSubstr("cell array \"c\"")));
+            ASSERT_EQ(result.fields.size(), 5u);
+            EXPECT_EQ(result.mesh.find_attribute("T")->values, count_from(3 + kPoints, kPoints));
+            EXPECT_EQ(result.mesh.find_attribute("D_y")->values, count_from(5 + kPoints, kPoints));  // there is no D_z
+            const Attribute& velocity = *result.mesh.find_attribute("VEL");
+            EXPECT_EQ(velocity.channels, 3);
+            EXPECT_EQ(velocity.values[3 * 7 + 1], 7 + 1 + kPoints);
+            EXPECT_EQ(result.fields[4].min, 5);
+            EXPECT_EQ(result.fields[4].max, 6);
+            EXPECT_EQ(result.mesh.find_attribute("c")->values[0], 5);
+            EXPECT_EQ(result.mesh.find_attribute("c")->values[kPoints - 1], 6);
+        }
+    }
+}
+
+TEST_F(ExodusIo, EveryNameOfSuchAFile) {
+    for (const std::string name : {"a.e", "a.exo", "a.ex2", "a.g", "a.EXO"}) {
+        const ReadResult result = read_mesh(write(name, exodus_text({.points = kBox.points, .blocks = {hex_block(kBox)}})));
+        EXPECT_EQ(result.mesh.cells, kBox.cells);
+        EXPECT_TRUE(result.warnings.empty());
+    }
+}
+
+TEST_F(ExodusIo, CurvedCellsGiveTheirCorners) {
+    const HexMesh cube = make_box(1, 1, 1);
+    for (const std::size_t nodes : {20u, 27u}) {
+        ExodusBlock block{"HEX" + std::to_string(nodes), nodes, hex_block(cube).connectivity};
+        block.connectivity.resize(nodes, 1);
+        const ReadResult result = read({.points = cube.points, .blocks = {block}});
+        EXPECT_EQ(result.mesh.cells, cube.cells);
+        EXPECT_THAT(result.warnings, ElementsAre("1 element has more nodes than corners: the corners alone are taken"));
+    }
+}
+
+TEST_F(ExodusIo, OtherCellsAreSplitOrLeftOutWithTheirValues) {
+    ExodusText file{.points = make_box(1, 1, 1).points, .blocks = {}, .times = {0}};
+    file.points.insert(file.points.end(), {{.5, .5, 2}, {2, .5, 0}, {2, .5, 1}});
+    file.blocks = {{"SHELL4", 4, {1, 2, 4, 3}},
+                   {"PYRAMID5", 5, {5, 6, 8, 7, 9}},
+                   hex_block(make_box(1, 1, 1)),
+                   {"WEDGE6", 6, {2, 10, 4, 6, 11, 8}},
+                   {"TETRA4", 4, {6, 11, 8, 9}}};
+    file.of_elements = {{"e", {{9}, {1}, {2}, {3}, {4}}}};
+    const ReadResult split = read(file);
+    EXPECT_THAT(split.warnings[0], HasSubstr("1 element of type \"SHELL4\" ignored"));
+    EXPECT_THAT(split.warnings[1], HasSubstr("1 hexahedron, 1 tetrahedron, 1 prism and 1 pyramid"));
+    EXPECT_NEAR(inspect(split.mesh).volume, 1 + 1.0 / 3 + 0.5 + 1.0 / 6, 1e-12);  // rounding
+    EXPECT_EQ(split.fields[0].min, 1);
+    const ReadResult alone = read(file, {.other_cells = OtherCells::Ignore});
+    EXPECT_EQ(alone.mesh.cells.size(), 1u);
+    EXPECT_EQ(alone.mesh.find_attribute("e")->values[0], 2);
+    EXPECT_THAT(alone.warnings[0], HasSubstr("1 element of type \"TETRA4\", 1 element of type \"WEDGE6\" ignored"));
+}
+
+TEST_F(ExodusIo, WrongFilesGetASentenceWithTheElementOrNode) {
+    EXPECT_THAT(read_error(""), HasSubstr("a.exo: the file is empty"));
+    EXPECT_THAT(read_error("MeshVersionFormatted 2"), HasSubstr("a.exo: not an Exodus II file"));
+    EXPECT_THAT(read_error("CDF\x01"), HasSubstr("a.exo, byte 4: records: unexpected end of file"));
+    EXPECT_THAT(read_error("CDF\x03____"), HasSubstr("this version of netCDF's classic format is not supported"));
+    EXPECT_THAT(read_error("\x89HDF"), HasSubstr("a.exo: cannot be read: "));
+    NetcdfText other(0);
+    other.dimension("x", 3);
+    EXPECT_THAT(read_error(other.text()), HasSubstr("not an Exodus II file, or it has no nodes"));
+    const auto with_corner = [&](int node) {
+        ExodusText file = two_blocks();
+        file.blocks[1].connectivity[3] = node;
+        return read_error(file);
+    };
+    EXPECT_THAT(with_corner(0), HasSubstr("a.exo: element 4: there is no node 0 (nodes are 1 to 18)"));
+    EXPECT_THAT(with_corner(19), HasSubstr("element 4: there is no node 19"));
+    EXPECT_THAT(with_corner(two_blocks().blocks[1].connectivity[2]), HasSubstr("a.exo: element 4 has node "));
+    ExodusText file = two_blocks();
+    file.points[4].y = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THAT(read_error(file), HasSubstr("a.exo: non-finite coordinate at node 5"));
+    file = two_blocks();
+    file.of_nodes[3].second[kPoints + 2] = std::numeric_limits<double>::infinity();
+    EXPECT_THAT(read_error(file), HasSubstr("array \"T\": the value at node 3 is not finite"));
+    file = two_blocks();
+    file.blocks[0] = {"HEX8", 4, {1, 2, 3, 4}};
+    file.of_elements.clear();
+    EXPECT_THAT(read_error(file), HasSubstr("block 1 of type \"HEX8\" has 4 nodes an element (a hexahedron has 8)"));
+    EXPECT_THAT(read_error(ExodusText{.points = kBox.points, .blocks = {{"QUAD", 4, {1, 2, 4, 3}}}}),
+                HasSubstr("no hexahedra, but 1 element of type \"QUAD\""));
+}
+
+// The length of a dimension stands behind its name, which is filled up to four bytes.
+std::string with_length(std::string bytes, const std::string& dimension, char high_byte) {
+    bytes[bytes.find(dimension) + (dimension.size() + 3) / 4 * 4] = high_byte;
+    return bytes;
+}
+
+TEST_F(ExodusIo, CountsAreBelievedAsFarAsTheFileIsLong) {
+    const std::string good = exodus_text(two_blocks());
+    for (const std::string dimension : {"num_nodes", "num_el_blk", "num_el_in_blk1", "num_nod_per_el2", "num_nod_var"}) {
+        EXPECT_THAT(read_error(with_length(good, dimension, '\x10')),
+                    testing::AnyOf(HasSubstr("count out of range"), HasSubstr("a record is longer than the file")))
+            << dimension;
+        EXPECT_THAT(read_error(with_length(good, dimension, '\x80')), HasSubstr("negative count")) << dimension;
+    }
+    // What stands behind a variable's name is how many dimensions it has: netCDF's library allocates as many.
+    EXPECT_THAT(read_error(with_length(good, "connect1", '\x10')), HasSubstr("netCDF: there is no dimension"));
+    std::string records = good;
+    records[5] = 1;  // 65538 steps
+    EXPECT_THAT(read_error(records), HasSubstr("values go beyond the end of the file"));
+    for (std::size_t cut = 0; cut < good.size(); cut += 37) {
+        EXPECT_THAT(read_error(good.substr(0, cut)), HasSubstr("a.exo")) << cut;
+    }
+}
+
+using ExodusFuzz = MeshFuzz;
+
+TEST_F(ExodusFuzz, OfEachClassicFormat) {
+    ExodusText file{.points = make_box(1, 1, 1).points, .blocks = {hex_block(make_box(1, 1, 1))}, .times = {0}};
+    file.of_nodes = {{"s", count_from(0, 8)}};
+    file.of_elements = {{"c", {{1}}}};
+    unsigned seed = 50;
+    for (const int format : {0, NC_64BIT_OFFSET, NC_64BIT_DATA}) {
+        file.format = format;
+        file.old_names = format == 0;
+        expect_sound_or_refused(".exo", exodus_text(file), seed++);
+    }
+}
+
+// A file that was written without going back says that it has all ones of records.
+TEST_F(ExodusIo, StreamsOfRecords) {
+    std::string bytes = exodus_text(two_blocks());
+    for (std::size_t i = 4; i < 8; ++i) bytes[i] = '\xFF';
+    EXPECT_EQ(read_mesh(write("a.e", bytes)).mesh.find_attribute("T")->values, count_from(3 + kPoints, kPoints));
+}
+
+}  // namespace
+
+}  // namespace subvol::test

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <random>
+#include <string>
+
+#include "lib/temp_folder.h"
+#include "subvol/mesh_io.h"
+
+namespace subvol::test {
+
+/// Any byte, but often those that mean something to a parser.
+inline char odd_byte(std::mt19937& random) {
+    constexpr std::string_view kLikely = "0123456789-+.eE \n#na\t%\"";
+    const auto draw = random();
+    return draw % 2 == 0 ? static_cast<char>(draw >> 8) : kLikely[(draw >> 8) % kLikely.size()];
+}
+
+inline std::string damaged(std::string text, std::mt19937& random) {
+    const auto place = [&] { return random() % text.size(); };
+    const auto ways = random() % 4;
+    if (ways == 0) return text.substr(0, place());
+    if (ways == 1) return text.erase(place(), 1 + random() % 40);
+    if (ways == 2) return text.insert(place(), text.substr(place(), random() % 40));
+    for (auto flips = 1 + random() % 4; flips > 0; --flips) text[place()] = odd_byte(random);
+    return text;
+}
+
+/// A test of what a reader makes of damaged files.
+class MeshFuzz : public TempFolder {
+protected:
+    /// Whatever is read is sound, and whatever is not is refused by an Error; nothing else leaves the reader.
+    void expect_sound_or_refused(const std::string& extension, const std::string& text, unsigned seed) const {
+        constexpr int kRuns = 1500;
+        std::mt19937 random(seed);
+        int refused = 0;
+        for (int run = 0; run < kRuns; ++run) {
+            const auto file = write(std::to_string(run) + extension, damaged(text, random));  // a new one: truncating is slow
+            try {
+                validate(read_mesh(file).mesh);
+            } catch (const Error& error) {
+                EXPECT_FALSE(std::string(error.what()).empty());
+                ++refused;
+            }
+            std::filesystem::remove(file);
+        }
+        EXPECT_GT(refused, kRuns / 10);  // the damage is real
+    }
+};
+
+}  // namespace subvol::test

@@ -1,0 +1,117 @@
+// Points that are joined and cells that are left out when a mesh is read.
+
+#include <gmock/gmock.h>
+
+#include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
+#include "subvol/mesh_io.h"
+#include "subvol/mesh_report.h"
+#include "vtu_texts.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Two boxes side by side, each with points of its own.
+HexMesh two_boxes(double gap) {
+    HexMesh mesh = make_box(1, 2, 2), other = make_box(1, 2, 2);
+    const auto first = static_cast<Index>(mesh.points.size());
+    for (const Vec3& x : other.points) mesh.points.push_back(x + Vec3(1 + gap, 0, 0));
+    for (auto cell : other.cells) {
+        for (Index& p : cell) p += first;
+        mesh.cells.push_back(cell);
+    }
+    return mesh;
+}
+
+class Weld : public TempFolder {
+protected:
+    [[nodiscard]] ReadResult read(const HexMesh& mesh, const ReadOptions& options) const {
+        return read_mesh(write("a.mesh", medit_text(mesh)), options);
+    }
+};
+
+TEST_F(Weld, JoinsPointsAtTheSamePlaceOnly) {
+    EXPECT_EQ(inspect(read(two_boxes(0), {}).mesh).boundary_faces, 32u);
+    const ReadResult result = read(two_boxes(0), {.weld = 0});
+    EXPECT_THAT(result.warnings,
+                ElementsAre("9 points welded to others at the same place; of their values those of the first are kept"));
+    const MeshReport report = inspect(result.mesh), box = inspect(make_box(2, 2, 2));
+    EXPECT_EQ(report.points_used, box.points_used);
+    EXPECT_EQ(report.faces, box.faces);
+    EXPECT_EQ(report.edges, box.edges);
+    EXPECT_THAT(read(two_boxes(1e-9), {.weld = 0}).warnings, ElementsAre(HasSubstr("0 points welded")));
+}
+
+TEST_F(Weld, JoinsPointsWithinATolerance) {
+    for (const double gap : {1e-9, -1e-9, 0.9e-6}) {
+        const ReadResult result = read(two_boxes(gap), {.weld = 1e-6});
+        EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("9 points welded to others nearby")));
+        EXPECT_EQ(inspect(result.mesh).faces, inspect(make_box(2, 2, 2)).faces);
+    }
+    EXPECT_EQ(inspect(read(two_boxes(1.1e-6), {.weld = 1e-6}).mesh).boundary_faces, 32u);
+}
+
+TEST_F(Weld, MinusZeroIsZero) {
+    HexMesh mesh = two_boxes(0);
+    for (std::size_t p = 0; p < mesh.points.size() / 2; ++p) {
+        if (mesh.points[p].y == 0) mesh.points[p].y = -0.0;
+    }
+    EXPECT_THAT(read(mesh, {.weld = 0}).warnings, ElementsAre(HasSubstr("9 points welded")));
+}
+
+TEST_F(Weld, RefusesToCollapseCells) {
+    EXPECT_THAT(error_of([&] { static_cast<void>(read(make_box(2, 2, 2), {.weld = 1})); }),
+                HasSubstr("a cell has vertex 1 and vertex 2, which would be welded (a smaller tolerance"));
+    for (const double weld : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        EXPECT_THAT(error_of([&] { static_cast<void>(read(make_box(2, 2, 2), {.weld = weld})); }),
+                    HasSubstr("points cannot be welded within"));
+    }
+}
+
+// A row of five cells in two pieces that overlap by one; the second has a hidden cell.
+std::string ghost_text(VtuText& vtu) {
+    HexMesh left = make_box(3, 1, 1), right = make_box(3, 1, 1);
+    for (Vec3& x : right.points) x.x += 2;
+    const auto data = [&](const std::vector<std::uint8_t>& ghosts, double value) {
+        return "<CellData>" + vtu.array("UInt8", "Name=\"vtkGhostType\"", ghosts) +
+               vtu.array("Float64", "Name=\"c\"", std::vector<double>(3, value)) + "</CellData>";
+    };
+    return vtu.file(vtu.piece(left, data({0, 0, 1}, 1)) + vtu.piece(right, data({0, 0, 32}, 2)));
+}
+
+TEST_F(Weld, GhostCellsAreLeftOut) {
+    VtuText vtu;
+    const ReadResult result = read_mesh(write("a.vtu", ghost_text(vtu)), {.weld = 0});
+    EXPECT_THAT(result.warnings, ElementsAre("2 pieces put together", "2 ghost cells (duplicate or hidden) left out",
+                                             HasSubstr("4 points welded"), HasSubstr("cell array \"c\"")));
+    const MeshReport report = inspect(result.mesh);
+    EXPECT_EQ(report.cells, 4u);
+    EXPECT_EQ(report.volume, 4);
+    EXPECT_EQ(report.faces, inspect(make_box(4, 1, 1)).faces);
+    EXPECT_EQ(result.mesh.find_attribute("vtkGhostType"), nullptr);
+    ASSERT_EQ(result.fields.size(), 1u);
+    const auto& values = result.mesh.find_attribute("c")->values;
+    EXPECT_EQ(values[2], 1.5);  // between the pieces
+    EXPECT_EQ(values[1], 1);
+}
+
+TEST_F(Weld, CellsWithHiddenPointsAreLeftOut) {
+    const auto text = [](const std::string& ghosts) {
+        return vtk_text(make_box(3, 1, 1)) + "POINT_DATA 16\nSCALARS vtkGhostType unsigned_char 1\nLOOKUP_TABLE default\n" +
+               ghosts;
+    };
+    // A duplicate point is as good as another.
+    const ReadResult result = read_mesh(write("a.vtk", text("1 1 1 1 1 1 1 2 1 1 1 1 1 1 1 1\n")));
+    EXPECT_THAT(result.warnings, ElementsAre("1 cell with hidden points left out"));
+    EXPECT_EQ(inspect(result.mesh).volume, 2);
+    const std::string all = text("2 2 2 2 2 2 2 2 2 2 2 2 2 2 2 2\n");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(write("b.vtk", all))); }), HasSubstr("the mesh has no hexahedra"));
+}
+
+}  // namespace
+
+}  // namespace subvol::test

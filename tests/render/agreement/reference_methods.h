@@ -1,0 +1,79 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "render/hex_meshes.h"
+#include "render/voxel_box.h"
+#include "subvol/render_dense.h"
+#include "subvol/render_grid.h"
+#include "subvol/render_pt.h"
+#include "subvol/render_tets.h"
+
+namespace subvol::test {
+
+/// The reference renderers.
+enum class Reference { Tets, Dense, Voxels, PtTopological, PtLists };
+
+inline const std::vector<Reference> kReferences{Reference::Tets, Reference::Dense, Reference::Voxels, Reference::PtTopological,
+                                                Reference::PtLists};
+
+inline std::string name_of(Reference reference) {
+    return std::vector<std::string>{"Tets", "Dense", "Voxels", "PtTopological", "PtLists"}[static_cast<std::size_t>(reference)];
+}
+inline void PrintTo(Reference reference, std::ostream* out) {
+    *out << name_of(reference);
+}
+
+[[nodiscard]] inline bool needs_gl(Reference reference) {
+    return reference == Reference::PtTopological || reference == Reference::PtLists;
+}
+
+inline double largest_difference(const Image& a, const Image& b) {
+    double largest = a.rgba.size() == b.rgba.size() ? 0 : 1e30;
+    for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i) {
+        const double difference = std::abs(double{a.rgba[i]} - double{b.rgba[i]});
+        if (!(difference <= largest)) largest = difference;  // NaN counts
+    }
+    return largest;
+}
+
+/// Over all four channels.
+inline double rms(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
+    return std::sqrt(sum / static_cast<double>(a.rgba.size()));
+}
+
+/// A field on a mesh; dense grids at `levels` of MCQ. Voxels have no mesh.
+inline Image draw(Reference reference, const HexMesh& mesh, std::span<const double> values, const View& view,
+                  const Optics& optics, int levels = 1) {
+    switch (reference) {
+        case Reference::Tets:
+            return render_tets(mesh, values, view, optics).image;
+        case Reference::Dense:
+            return render_dense(mesh, values, view, optics, {.levels = levels}).image;
+        case Reference::PtTopological:
+        case Reference::PtLists:
+            return render_projected_tets(mesh, values, view, optics,
+                                         {.order = reference == Reference::PtLists ? PtOrder::Lists : PtOrder::Topological})
+                .image;
+        case Reference::Voxels:
+            break;
+    }
+    return {};
+}
+
+/// A field in a box, as `cells`³ cells with their inner points moved by up to `jitter` cell widths, or as so many voxels.
+inline Image draw(Reference reference, const Box& box, int cells, double jitter,
+                  const std::function<double(const Vec3&)>& field, const View& view, const Optics& optics, int levels = 1) {
+    if (reference == Reference::Voxels) {
+        return render_grid(VoxelBox(box, cells, field), view, optics, {.tolerance = 1e-6}).image;
+    }
+    HexMesh mesh = jittered_box(static_cast<Index>(cells), jitter, 5);
+    for (Vec3& p : mesh.points) p = box.lower + p * box.size();
+    return draw(reference, mesh, evaluate(mesh, field), view, optics, levels);
+}
+
+}  // namespace subvol::test

@@ -1,0 +1,143 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "subvol/error.h"
+#include "subvol/limit_level.h"
+#include "subvol/mesh_report.h"
+#include "subvol/model.h"
+#include "subvol/rasterize.h"
+#include "subvol/refine.h"
+#include "subvol/vdb_grid.h"
+#include "vdb/each_voxel.h"
+#include "vdb/test_meshes.h"
+
+namespace subvol {
+namespace {
+
+using namespace test;
+
+const std::vector<std::string> kField{"f"};
+
+std::map<Voxel, double> values_of(const VdbGrid& grid) {
+    std::map<Voxel, double> values;
+    for_each_voxel(grid, [&](const Voxel& v, double value) { values[v] = value; });
+    return values;
+}
+
+VdbGrid rasterized(const HexMesh& mesh, double voxel, const LimitCells& limit) {
+    return std::move(rasterize(mesh, kField, {.voxel_size_world = voxel, .limit = &limit}).front());
+}
+
+// MCQ keeps quadratics, up to the boundary and at its edges: cells of 27 nodes are its limit itself. What is left is a float's
+// rounding and Newton's tolerance.
+TEST(LimitCells, AreExactWhereTheLimitIsQuadratic) {
+    const auto bent = [](const Vec3& q) {
+        return Vec3(q.x + 0.2 * q.y * q.y - 0.1 * q.x * q.z, q.y + 0.15 * q.x * q.x, q.z + 0.1 * q.x * q.y + 0.2 * q.y * q.y);
+    };
+    const auto value = [](const Vec3& q) { return 0.3 + q.x * q.x - 0.5 * q.y * q.z + 0.4 * q.z; };
+    HexMesh mesh = with_field(box_mesh(4), "f", value);
+    for (Vec3& p : mesh.points) p = bent(p);
+    const double voxel = 0.03;
+    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
+    EXPECT_TRUE(limit.converged);
+    EXPECT_EQ(std::ranges::max(limit.cell_levels), std::max(limit.level, 1));
+    double most = 0;
+    std::size_t inside = 0;
+    for_each_voxel(rasterized(mesh, voxel, limit), [&](const Voxel& v, double stored) {
+        const Vec3 x = voxel * Vec3(v[0], v[1], v[2]);
+        Vec3 q = x;
+        for (int step = 0; step < 40; ++step) q += 0.9 * (x - bent(q));  // a contraction
+        ASSERT_LT(glm::length(x - bent(q)), 1e-12);
+        most = std::max(most, std::abs(stored - value(q)));
+        ++inside;
+    });
+    EXPECT_GT(inside, 20000u);
+    EXPECT_LT(most, 5e-7);
+}
+
+// Against the trilinear cells of a level that is deep enough: they are the reference that curved cells replace.
+TEST(LimitCells, StandForADeepLevel) {
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw}) {
+        SCOPED_TRACE(static_cast<int>(scheme));
+        const HexMesh mesh =
+            with_field(ball_mesh(2), "f", [](const Vec3& p) { return std::sin(3 * p.x) * std::cos(2 * p.y) + p.z; });
+        constexpr double kVoxel = 0.05, kRange = 4;
+        const LimitLevelOptions tolerance{.position_world = 0.1 * kVoxel, .value_of_range = 2e-3};
+        const LimitCells limit = find_limit_cells(mesh, {.scheme = {scheme}}, tolerance);
+        EXPECT_TRUE(limit.converged);
+        EXPECT_LE(limit.position_world, tolerance.position_world);
+        EXPECT_LE(limit.value_of_range, tolerance.value_of_range);
+        const RasterizeOptions by_cells{.voxel_size_world = kVoxel, .refine = {.scheme = {scheme}}, .limit = &limit};
+        const RasterizeOptions deep{.voxel_size_world = kVoxel, .refine = {.scheme = {scheme}, .levels = 4}, .on_limit = true};
+        const auto got = values_of(rasterize(mesh, kField, by_cells).front());
+        const auto wanted = values_of(rasterize(mesh, kField, deep).front());
+        double squares = 0, most = 0;
+        std::size_t both = 0;
+        for (const auto& [v, value] : wanted) {
+            const auto found = got.find(v);
+            if (found == got.end()) continue;
+            const double error = std::abs(found->second - value);
+            most = std::max(most, error);
+            squares += error * error;
+            ++both;
+        }
+        // Only centres within the tolerance of the boundary change sides: of a ball's, 3·(voxel/radius)·0.1 are.
+        EXPECT_LT(static_cast<double>(wanted.size() - both), 0.02 * static_cast<double>(both));
+        EXPECT_LT(static_cast<double>(got.size() - both), 0.02 * static_cast<double>(both));
+        // A centre off by the tolerance of positions has another value by the gradient, which is up to 4.
+        EXPECT_LT(most, 4 * tolerance.position_world + 2 * kRange * tolerance.value_of_range);
+        EXPECT_LT(std::sqrt(squares / static_cast<double>(both)), 0.5 * kRange * tolerance.value_of_range);
+    }
+}
+
+TEST(LimitCells, AreFinerWhereTheFieldIsRough) {
+    const HexMesh mesh = with_field(box_mesh(8), "f", [](const Vec3& p) { return std::max(0.0, p.x - 0.5) * p.y; });
+    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 1e-3});
+    EXPECT_EQ(limit.level, 0);
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        const double x = mesh.points[mesh.cells[c][0]].x;
+        if (x > 0.7 || x < 0.2) {
+            EXPECT_EQ(limit.cell_levels[c], 1) << c;
+        }
+    }
+    EXPECT_GT(std::ranges::max(limit.cell_levels), 1);
+}
+
+// Cells of several levels side by side: no centre is lost between them, none is outside of a box.
+TEST(LimitCells, OfSeveralLevelsFitTogether) {
+    const HexMesh mesh = with_field(jittered_box_mesh(4), "f", [](const Vec3& p) { return p.x; });
+    LimitCells limit{.level = 1, .cell_levels = std::vector<std::uint8_t>(mesh.cells.size())};
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) limit.cell_levels[c] = static_cast<std::uint8_t>(1 + c % 4);
+    const VdbGrid grid = rasterized(mesh, 1.0 / 50, limit);
+    EXPECT_EQ(grid.report().active_voxels, 50u * 50 * 50);
+    for_each_voxel(grid, [&](const Voxel& v, double value) { ASSERT_NEAR(value, v[0] / 50.0, 1e-6); });
+}
+
+// Too many cells for a level more: they are taken as they are.
+TEST(LimitCells, OfAMeshThatIsFineAlready) {
+    const HexMesh mesh = with_field(jittered_box_mesh(4), "f", [](const Vec3& p) { return p.y * p.y; });
+    const LimitCells limit = find_limit_cells(mesh, {}, {.max_cells = 100});
+    EXPECT_FALSE(limit.converged);
+    EXPECT_TRUE(limit.cell_levels.empty());
+    EXPECT_EQ(values_of(rasterized(mesh, 0.04, limit)), values_of(rasterize(mesh, kField, {.voxel_size_world = 0.04}).front()));
+}
+
+TEST(LimitCells, OfNothingAreNone) {
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
+        const LimitCells limit = find_limit_cells({}, {.scheme = {scheme}}, {});
+        EXPECT_TRUE(limit.converged);
+        EXPECT_TRUE(limit.cell_levels.empty());
+    }
+}
+
+TEST(LimitCells, OfAnotherMeshAreRefused) {
+    const HexMesh mesh = with_field(box_mesh(3), "f", [](const Vec3&) { return 1.0; });
+    const LimitCells limit = find_limit_cells(with_field(box_mesh(2), "f", [](const Vec3&) { return 1.0; }), {}, {});
+    EXPECT_THROW((void)rasterized(mesh, 0.1, limit), Error);
+}
+
+}  // namespace
+}  // namespace subvol

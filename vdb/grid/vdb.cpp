@@ -1,0 +1,101 @@
+#include "subvol/vdb_grid.h"
+
+#include <openvdb/tools/Count.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "vdb_data.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+/// The range of what a function makes of the active values.
+template <class Grid, class Measure>
+void set_range(const Grid& grid, const Measure& measure, GridReport& report) {
+    auto at = grid.cbeginValueOn();
+    if (!at) return;
+    report.min = report.max = measure(*at);
+    for (; at; ++at) {
+        const double value = measure(*at);
+        report.min = std::min(report.min, value);
+        report.max = std::max(report.max, value);
+    }
+}
+
+void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
+    if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&grid)) {
+        report.kind = "float";
+        if (report.active_voxels == 0) return;
+        const auto range = openvdb::tools::minMax(floats->constTree());
+        report.min = static_cast<double>(range.min());
+        report.max = static_cast<double>(range.max());
+    } else if (const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(&grid)) {
+        report.kind = "vector";
+        set_range(
+            *vectors, [](const openvdb::Vec3s& v) { return openvdb::Vec3d(v).length(); }, report);
+    } else if (const auto* integers = dynamic_cast<const openvdb::Int32Grid*>(&grid)) {
+        report.kind = "integer";
+        set_range(
+            *integers, [](std::int32_t v) { return static_cast<double>(v); }, report);
+    } else {
+        report.kind = grid.isType<openvdb::MaskGrid>() ? "mask" : grid.valueType();
+    }
+}
+
+}  // namespace
+
+VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
+    GridReport report{.name = grid->getName(),
+                      .kind = {},
+                      .active_voxels = grid->activeVoxelCount(),
+                      .voxel_size_world = grid->voxelSize()[0],
+                      .bytes = grid->memUsage()};
+    set_kind_and_range(*grid, report);
+    if (report.active_voxels > 0) {
+        const openvdb::CoordBBox voxels = grid->evalActiveVoxelBoundingBox();
+        const auto box = grid->transform().indexToWorld(openvdb::BBoxd(voxels.min().asVec3d(), voxels.max().asVec3d()));
+        report.bounds = {{box.min()[0], box.min()[1], box.min()[2]}, {box.max()[0], box.max()[1], box.max()[2]}};
+    }
+    auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
+    return VdbGrid(std::make_unique<VdbGrid::Data>(VdbGrid::Data{grid, std::move(floats), std::move(report)}));
+}
+
+VdbGrid::VdbGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {
+}
+VdbGrid::~VdbGrid() = default;
+VdbGrid::VdbGrid(VdbGrid&&) noexcept = default;
+VdbGrid& VdbGrid::operator=(VdbGrid&&) noexcept = default;
+
+const GridReport& VdbGrid::report() const {
+    return data_->report;
+}
+
+std::optional<double> VdbGrid::value(const Vec3& x) const {
+    if (!data_->floats) return std::nullopt;
+    const auto index = data_->grid->transform().worldToIndex({x.x, x.y, x.z});
+    constexpr double kReach = 1 << 30;
+    if (!(std::max({std::abs(index[0]), std::abs(index[1]), std::abs(index[2])}) < kReach)) return std::nullopt;
+
+    // Not registered with the tree, hence cheap to make and safe in many threads, while nobody changes the tree.
+    const openvdb::FloatGrid::ConstUnsafeAccessor accessor(data_->floats->constTree());
+    if (!accessor.isValueOn(openvdb::Coord::round(index))) return std::nullopt;
+    const auto lower = openvdb::Coord::floor(index);
+    const auto beyond = index - lower.asVec3d();
+    double sum = 0, weights = 0;
+    for (int k = 0; k < 8; ++k) {
+        const openvdb::Coord step(k & 1, k >> 1 & 1, k >> 2);
+        float voxel = 0;
+        if (!accessor.probeValue(lower + step, voxel)) continue;
+        double weight = 1;
+        for (int d = 0; d < 3; ++d) weight *= (k >> d & 1) ? beyond[d] : 1.0 - beyond[d];
+        sum += weight * static_cast<double>(voxel);
+        weights += weight;
+    }
+    return sum / weights;  // the voxel that holds x counts at least 1/8
+}
+
+}  // namespace subvol

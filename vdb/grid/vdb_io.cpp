@@ -1,0 +1,37 @@
+#include <openvdb/openvdb.h>
+
+#include "subvol/detail/atomic_file.h"
+#include "subvol/error.h"
+#include "vdb_data.h"
+#include "vdb_stream.h"
+
+namespace subvol {
+
+using namespace detail;
+
+void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids, VdbCompression compression) {
+    AtomicFile file(path);
+    openvdb::GridCPtrVec written;
+    for (const auto& grid : grids) written.push_back(grid.data().grid);
+    write_grids(file, path, written, compression);
+    file.commit();
+}
+
+std::vector<VdbGrid> read_vdb(const std::filesystem::path& path) {
+    const auto grids = read_grids(path);
+    std::vector<VdbGrid> result;
+    std::string others;
+    for (const auto& grid : *grids) {
+        if (grid->isType<openvdb::FloatGrid>()) {
+            result.push_back(make_vdb_grid(grid));
+        } else {
+            others += (others.empty() ? "" : ", ") + grid->type();
+        }
+    }
+    if (result.empty()) {
+        throw Error(ErrorCode::InvalidInput, "holds no float grid", path.string(), others.empty() ? "" : "it holds: " + others);
+    }
+    return result;
+}
+
+}  // namespace subvol
