@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dense grids level by level: seconds, what is crossed, and how the picture of one level differs from that of the finest; and
 // the tetrahedra of the refined mesh, which come to the same. The order is the logarithm of the quotient of two differences.
 //

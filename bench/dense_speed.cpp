@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dense cells of a twisted block, streamed. Arguments: cells per side, levels.
 #include <atomic>
 #include <cmath>

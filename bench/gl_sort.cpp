@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sort, scan and ranges on a GL device. Arguments: millions of keys, bits, device.
 #include "gl_sort.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits at random places of a generated model. Arguments: model, resolution, queries.
 #include <cstdio>
 #include <cstdlib>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points a second of the conversion to radial basis functions, rule `scheme`: the twisted block at 1, 2 and 4 intervals an
 // edge.
 //

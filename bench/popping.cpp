@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether pictures pop as the camera goes round: changes from frame to frame of a turntable, of splats and of the tetrahedra
 // reference. Kernels enter and leave sheets and tiles from frame to frame; if that showed, splats would change more.
 //

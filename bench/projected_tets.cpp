@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Projected tetrahedra on the twisted block: seconds a picture by order, and the difference from rays through the same
 // tetrahedra. Every row is the fastest of some pictures of one renderer.
 //

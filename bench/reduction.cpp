@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many kernels a field error costs: `reduce_rbf`, with and without moves, against uniform sampling with second-order
 // kernels (the coarsest lattice of the model that reaches the error) and one kernel a control vertex. Errors are those of one
 // set of samples of the limit volume, which no reduction has seen.

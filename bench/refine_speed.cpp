@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refinement of a twisted block: tables and their application, stored tables again and again, the trilinear split beside MCQ,
 // one thread beside all, and what part of the machine's memory bandwidth that is. All ratios from one run. Arguments: cells per
 // side, levels, repeats.

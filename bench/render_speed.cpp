@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames a second of the splatter: the models at two picture sizes, the twisted block from 30 thousand to 4 million points, and
 // the cost of an overlap: kernels are widened, so that nothing but the number of kernel–pixel–sheet triples changes.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays a second through the tetrahedra of the twisted block, with one thread and with all: 512², rays that meet the volume.
 //
 //   tets_speed [resolution…]

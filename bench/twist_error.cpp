@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Error and cost on the twisted block, whose exact picture is known: splats (per interval count and correction), the
 // tetrahedra reference and the dense grids against the exact picture, with the smooth and the sharp transfer function.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A grid made in parts against the same in one piece, voxel by voxel: the pawn.
 // Arguments: voxels along the longest side (800), memory of a part in MB (64).
 #include <bit>

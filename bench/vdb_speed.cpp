@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The twisted block into voxels, by resolution: seconds with 2 and 1 threads, memory, the part of a plain copy's speed,
 // writing, error against the exact inverse. Every resolution is a process of its own, so that its peak of memory is its own.
 //

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # subvol_component(NAME PUBLIC target… PRIVATE target…): a component is one installed library with its own include root, made of
 # the objects of its rooms. include/ has the header that brings all of the component's public headers.
 #

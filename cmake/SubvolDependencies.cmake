@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every dependency, found once. The pitfalls of Debian's packages are dealt with here and nowhere else.
 find_package(Threads REQUIRED)
 find_package(TBB CONFIG REQUIRED)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The target `docs`: the API reference, by Doxygen if it is installed. A warning is an error.
 find_package(Doxygen QUIET)
 if(DOXYGEN_FOUND)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # `cpack` in the build folder: subvol (the command) and libsubvol-dev (headers, static libraries, CMake's files) for Debian.
 # scripts/test-package installs both in a bare Debian.
 set(CPACK_GENERATOR DEB)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # subvol_embed_shader(ROOM FILE): the text of a shader NAME.comp becomes `kShader_NAME_comp` in the generated shader_NAME_comp.h,
 # which the room and those that use it can include.
 function(subvol_embed_shader room file)

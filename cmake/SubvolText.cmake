@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # subvol_embed_texts(ROOM HEADER FILE…): the files' texts, by their names without extension, in the generated header's
 # `kTexts`: {name, text} in the order given.
 function(subvol_embed_texts target header)

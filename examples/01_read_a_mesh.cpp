@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh from a file: what is in it, and is it sound? With a file's name it reads that, else one that it writes itself.
 
 #include <cstdio>

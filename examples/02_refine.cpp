@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refinement: every level splits a cell into eight, and the volume tends to a smooth limit. Writes fine.vtu, for ParaView.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a mesh to kernels, and from kernels to a picture. Writes points.ply and splat.png.
 
 #include <algorithm>

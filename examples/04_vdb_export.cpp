@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The refined volume as OpenVDB grids, for Blender, Houdini and the like. Writes ball.vdb and reads it again.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a control mesh to a picture: once as splats of the control points, once as rays through the refined cells.
 //
 // Writes splat.png and rays.png into the current folder and prints how much they differ.

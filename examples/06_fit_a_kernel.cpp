@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A kernel of one's own: fitted to a scheme's basis function, written as JSON, and used to draw. Writes own_kernel.png.
 
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One table for a mesh that moves, and the limit at a place: what an animation or a simulation would do frame by frame.
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A transfer function of one's own, and a turn about the volume. Writes turn_0.png to turn_7.png and legend.svg.
 
 #include <algorithm>

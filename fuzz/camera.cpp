@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cameras as JSON, and as ten numbers (what follows a zero byte).
 
 #include "subvol/camera.h"

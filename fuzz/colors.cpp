@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colour maps in ParaView's JSON, and opacities in a line (what follows a zero byte).
 
 #include "input.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kernels as JSON; one that is taken has to be written and read back.
 
 #include "subvol/kernel.h"

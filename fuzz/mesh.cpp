@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One of the readers of meshes; what it reads has to be valid and fit to be measured, with either set of options.
 
 #include "input.h"

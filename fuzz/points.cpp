@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of points, .ply or .vtp; what is read has to be valid.
 
 #include "input.h"

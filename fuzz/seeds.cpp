@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fuzz_seeds FOLDER: writes small good inputs, those of each fuzzer into a folder of its name.
 
 #include <filesystem>

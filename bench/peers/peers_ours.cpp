@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The twisted block by every method of ours: CPU-seconds of the first and of a later frame, and the error against the exact
 // picture, with the smooth transfer function. Writes that picture for others: size² RGB floats, rows from the top.
 //

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """The twisted block by our methods and by VTK's, one table: CPU-seconds a frame and RMSE against the exact picture.
 
     bench/peers/table.py [build folder = build/release] [N = 40]

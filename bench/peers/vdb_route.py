@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """A mesh into a .vdb file by VTK, numpy and pyopenvdb, and by ours: CPU-seconds, wall time, peak memory, and their ratios.
 
     bench/peers/vdb_route.py [build folder = build/release] [N = 40] [voxels a side = 200 400]

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """VTK's volume mappers on the twisted block: CPU-seconds of the first and of a later frame, and the error.
 
     vtk_volumes.py twist.vtu exact.f32

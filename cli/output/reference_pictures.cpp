@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "reference_pictures.h"
 
 #include "subvol/progressive.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "input.h"
 #include "refine_arguments.h"
 #include "subvol/mesh_io.h"

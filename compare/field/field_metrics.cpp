@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/field_metrics.h"
 
 #include <tbb/parallel_for.h>

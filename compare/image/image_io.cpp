@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/image_io.h"
 
 #include <OpenImageIO/filesystem.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/oiio_compare.h"
 
 #include <OpenImageIO/imagebuf.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 document.documentElement.classList.add('js');
 document.addEventListener('input', function (event) {
   if (event.target.matches('.slide input')) {

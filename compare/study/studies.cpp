@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "built_in_studies.h"
 #include "study_keys.h"
 #include "subvol/error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/study_run.h"
 #include "subvol/detail/atomic_file.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/fit_kernel.h"
 
 #include "fit_samples.h"

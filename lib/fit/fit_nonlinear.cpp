@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fit_samples.h"
 #include "fit_shapes.h"
 #include "kernel_formulas.h"

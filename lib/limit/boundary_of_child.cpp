@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "boundary_of_child.h"
 
 #include <tbb/enumerable_thread_specific.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/mesh_motion.h"
 
 #include "subvol/error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/refine.h"
 
 #include "child_topology.h"

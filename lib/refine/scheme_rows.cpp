@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "scheme_rows.h"
 
 #include "bucket_sort.h"

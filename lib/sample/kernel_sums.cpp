@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "kernel_sums.h"
 
 #include <tbb/task_group.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scheme of Bajaj, Schaefer, Warren and Xu [bsxw2002]: a trilinear split, then every point becomes the mean of the
 // centroids of the small hexes about it; on the boundary of the small quads, on creases of the small segments. Both steps in
 // one: a small hex's centroid is the trilinear point at 1/4 of its parent, and those about the same parent are averaged first.

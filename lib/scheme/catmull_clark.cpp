@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Catmull-Clark solids [mj1996]: inside the means of cells, faces and edges; on the boundary the surface of Catmull and Clark,
 // on creases the cubic B-spline.
 #include "spline_scheme.h"

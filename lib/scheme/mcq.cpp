@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MCQ-G: interpolatory subdivision of hexahedral meshes, MCQ inside and a generalisation of ours at irregular edges, boundaries
 // and creases. Terms that would lie beyond the boundary are replaced by quadratic extrapolation from their partner term.
 #include <algorithm>

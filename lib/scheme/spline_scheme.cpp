@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "spline_scheme.h"
 
 namespace subvol::detail {

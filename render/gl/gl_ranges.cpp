@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "gl_ranges.h"
 
 #include "shader_find_ranges_comp.h"

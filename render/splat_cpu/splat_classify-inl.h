@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Classification and compositing of the sheets of a batch, a block of pixels at a time. Included once for every instruction
 // set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_CLASSIFY_INL_H) == defined(HWY_TARGET_TOGGLE)

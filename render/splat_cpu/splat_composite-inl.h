@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From sums to light: a block of pixels through the sheets of a batch. Included once for every instruction set: see
 // splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_COMPOSITE_INL_H) == defined(HWY_TARGET_TOGGLE)

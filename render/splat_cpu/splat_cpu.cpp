@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The splatter for CPUs: a tile at a time, a batch of sheets at a time, front to back; pixels in vectors as wide as the machine
 // has them. This file is compiled once for every instruction set, and the best one is chosen where it runs.
 #include <tbb/parallel_for.h>

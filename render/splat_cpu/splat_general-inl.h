@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums of kernels of any shape, with Hessians, a second value and gradients: what splat_sums-inl.h does for the plain ones.
 // Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_GENERAL_INL_H) == defined(HWY_TARGET_TOGGLE)

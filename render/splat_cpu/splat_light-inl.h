@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Light on the surfaces of equal value. Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_LIGHT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_LIGHT_INL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums of kernels over one tile and one batch of sheets. Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_SUMS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_SUMS_INL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One tile of the picture. Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_TILE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_TILE_INL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compiled once for every instruction set; the best one is chosen where it runs.
 #include "tet_packet.h"
 

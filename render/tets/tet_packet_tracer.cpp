@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tet_packet_tracer.h"
 
 #include <hwy/cache_control.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A collection of malformed meshes from outside the repository: refused with one sentence, quickly and within bounds.
 
 The collection is the folder `bad` beside the one that SUBVOL_DATA names; its README.md has a table that says of each file whether

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a user meets first: help, exit codes, one sentence for a mistake, nothing left behind, the same result again."""
 
 import signal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A headless Chromium, spoken to through the pipe of its DevTools protocol."""
 
 import base64

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`subvol info` against the tables of the collection of real meshes that SUBVOL_DATA names.
 
 Its README.md has one table of counts and one of fields; every figure of both is looked up in what the command prints. Without the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the command that SUBVOL_COMMAND names; shared by the tests of this folder."""
 
 import json

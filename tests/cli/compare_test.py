@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The verb `compare`: figures whose right value is known, exit codes, and one sentence for what cannot be compared."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the faults are tried on: a command of every verb, its files when nothing is wrong, and when one of them is whole."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Faults: disks that are full, folders that are read-only, signals at random moments, too little memory, no OpenGL.
 
     SUBVOL_COMMAND=build/release/bin/subvol python3 tests/cli/faults.py [--signals 200] [--only NAMES] [--table FILE]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`subvol fit`: the keys of its tables, which are a contract, and the paper's figures."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every model at a small size, as splats against the dense grid of its limit: a study, judged by the study's own metrics."""
 
 import csv

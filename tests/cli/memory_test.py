@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a cell of a large mesh costs in memory, as docs/formats.md says: 300 000 cells stand for a hundred million."""
 
 import re

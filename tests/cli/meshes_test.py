@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Meshes of other programs through the command: what is done to them as options say, and files that VTK reads."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turntables, cameras and legends of `render`; videos with a stand-in for ffmpeg that keeps what it is told."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of points: what is in them is what the mesh gives, and a reader that is not ours finds it."""
 
 import array

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The report of a study in a browser: it loads alone, its slider works, it fits a phone and a page of paper."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The JSON keys, which are a contract, and figures whose right value is known."""
 
 import json

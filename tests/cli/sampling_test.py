@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ways to turn a mesh into points, as the options of `points` and `render` name them."""
 
 import unittest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Options of splatting: light, colours of a second field, sheets, devices, a time budget; depth in .exr files."""
 
 import unittest

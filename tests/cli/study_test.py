@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Studies: their files, the paper's table 2, and what is left when a run is killed."""
 
 import csv

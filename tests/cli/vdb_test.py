@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Grids: what the options of `vdb` promise."""
 
 import json

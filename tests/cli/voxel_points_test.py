@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A .vdb grid as kernels: what is splatted is what rays through its voxels see."""
 
 import unittest

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Checks a .vdb file through OpenVDB's Python module against values at voxel centres.
 
 check_with_pyopenvdb.py FILE.vdb FILE.json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes grids of a mesh with irregular edges, and what they hold at 1,000 voxel centres, to be checked by another reader of
 // .vdb files:
 //   write_reference_grid FILE.vdb FILE.json

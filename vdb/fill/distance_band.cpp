@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "distance_band.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cells into voxels, in vectors as wide as the machine has them. This file is compiled once for every instruction set, and the
 // best one is chosen where it runs.
 #include "fill_block.h"

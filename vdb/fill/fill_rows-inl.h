@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which centres of a row of a leaf lie in a cell. Included once for every instruction set: see fill_block.cpp.
 #if defined(SUBVOL_FILL_ROWS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_FILL_ROWS_INL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values at the centres found in a cell. Included once for every instruction set: see fill_block.cpp.
 #if defined(SUBVOL_FILL_VALUES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_FILL_VALUES_INL_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "refined_cells.h"
 
 #include <tbb/parallel_for.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "vdb_stream.h"
 
 #include <openvdb/io/Archive.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/vdb_points.h"
 
 #include <openvdb/openvdb.h>

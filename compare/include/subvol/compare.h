@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 /// All of subvol::compare: metrics of pictures and fields, picture files, studies, reports.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "netcdf_source.h"
 #include "subvol/error.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "mesh_file.h"
 #include "output_file.h"
 #include "vtk_xml_writer.h"

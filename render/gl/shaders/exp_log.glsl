@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drivers' own are too coarse for 1 − exp(−x) near 0; this is good to the last bit or two, and the same everywhere.
 float exp_of(float x) {
     x = clamp(x, -87.0, 87.0);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A number of items that the host knows, or one that a buffer holds.
 layout(std430, binding = 7) readonly buffer CountSource { uint count_source[]; };
 layout(location = 0) uniform uint most_items;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 shared uint group_sums[2][kThreads];
 
 // The sum of the values of this thread and of those before it in the group. Every thread must come here.

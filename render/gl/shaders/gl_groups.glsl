@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Work groups of 256 that take 8 items a thread. Groups are numbered over two dimensions, in rows of at
 // most 1024: one dimension may have but 65535, and short rows make that case a common one.
 const uint kThreads = 256u;

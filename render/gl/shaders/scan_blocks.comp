@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // Each value becomes the sum of those before it: in its block, and of the blocks before, whose sums have been scanned already.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) buffer Values { uint values[]; };

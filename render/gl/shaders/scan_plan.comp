@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // How many groups each level of a scan takes: the sums of a level's blocks are the items of the next.
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) writeonly buffer Plan { uvec4 plan[]; };

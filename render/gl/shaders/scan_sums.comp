@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The sum of each block.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Values { uint values[]; };

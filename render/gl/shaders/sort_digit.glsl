@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 layout(location = 4) uniform uint shift;
 layout(location = 5) uniform uint bits;  // of the digit, 1..8
 

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // A pass of the sort: a block is sorted by its digit in shared memory, four bits at a time, then its runs of equal digits are
 // written to where the scanned counts say.
 layout(local_size_x = 256) in;

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The groups of a sort's passes, and how many counts of digits they write.
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) writeonly buffer Plan { uvec4 plan[]; };

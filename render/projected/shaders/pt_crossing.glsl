@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which faces the ray of a pixel crosses, and where. It follows from the edges alone, and an edge is the same to every face that
 // has it: so nothing is lost or counted twice between neighbours (src/ray_plane.h, in single precision).
 

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // Where the ray of a pixel crosses a face. PT_COUNT counts that, PT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2;
 flat in uint rank;

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // A face, one triangle, and what its fragments need to know of it.
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };  // eye space, value in parts of the knots' range
 layout(std430, binding = 1) readonly buffer Faces { uvec4 faces[]; };  // corners, ascending; 2 + change of cover

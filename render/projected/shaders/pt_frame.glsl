@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What does not change from tetrahedron to tetrahedron. Lengths are in parts of the volume's diagonal, in eye space; depths are
 // relative to that of the volume's middle.
 uniform vec2 middle_px, size_px;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Outlines of tetrahedra and faces in the picture. They are drawn a little too large: fragments find out for themselves whether
 // they are inside.
 const float kMargin_px = 0.0625;    // rasterisers round places to 1/256 px

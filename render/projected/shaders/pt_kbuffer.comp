@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The k-buffer of each pixel, over its list of faces: they come in the order in which they were drawn, at most kbuffer of them
 // wait, and of those and the next one the nearest goes on. Between it and the one that went before, the value is linear.
 layout(local_size_x = 64) in;

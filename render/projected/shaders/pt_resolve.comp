@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // Sorts the list of each pixel from front to back, integrates and composites it. Lists come nearly sorted: insertion is quick.
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) writeonly buffer Pictures { vec4 picture[]; };

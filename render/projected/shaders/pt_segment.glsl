@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exact light of a segment on which the value goes linearly, as Optics::integrate: split at the knots of the transfer function,
 // between which colour and opacity are linear.
 struct Knot {

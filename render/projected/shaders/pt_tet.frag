@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // A tetrahedron at a pixel. What becomes of the segment: PT_COMPOSITE blends it over what was drawn before; PT_COUNT counts it;
 // PT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2, corner3;

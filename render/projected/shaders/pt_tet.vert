@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The silhouette of a tetrahedron, two triangles or one, and what its fragments need to know of it.
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };  // eye space, value in parts of the knots' range
 layout(std430, binding = 1) readonly buffer Tets { uvec4 tets[]; };  // corners, ascending

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // Classifies a sheet and composites what lies between it and the last one.
 layout(local_size_x = 8, local_size_y = 8) in;
 struct Last {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What does not change from sheet to sheet, under the names of splat_classify.glsl and splat_light.glsl.
 uniform vec4 unit;            // of the table's prefixes
 uniform float half_weight;    // where there is no boundary: the volume ends where weights fall below

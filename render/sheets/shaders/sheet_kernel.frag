@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // What a kernel adds to the sums of a sheet.
 uniform vec2 middle_px;
 uniform float pixel, across;

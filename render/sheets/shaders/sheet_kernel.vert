@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The section of a kernel with a sheet: a rectangle about it, two triangles each.
 layout(std430, binding = 6) readonly buffer Listed { uint listed[]; };
 uniform vec2 middle_px, size_px;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a value looks like: src/splat_classify-inl.h.
 struct Row {
     ivec4 prefix;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rules of src/boundary_intervals.cpp, bit for bit: where pixels are covered no rounding may differ, so every number that
 // decides it is `precise` or whole.
 layout(std140, binding = 1) uniform Camera {

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The surface's points in eye space and on the picture.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Positions { double positions[]; };

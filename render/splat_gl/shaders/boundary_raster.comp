@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // Which pixels the triangles cover. FILL 0 counts the hits of each pixel, FILL 1 writes them, in any order.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer StripOffsets { uint strip_offsets[]; };

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The hits of each pixel, sorted, become intervals in the same place.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer HitOffsets { uint hit_offsets[]; };

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // The pixels that each triangle may cover, and in how many strips of a row that is.
 layout(local_size_x = 256) in;
 layout(std430, binding = 1) readonly buffer EyePoints { EyePoint eye_points[]; };

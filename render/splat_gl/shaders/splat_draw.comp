@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // A work group a tile, a thread a pixel; batches of sheets front to back, sums in registers. No order depends on chance, and no
 // number on where tiles and batches begin: pictures are bitwise repeatable.
 layout(local_size_x = kTile, local_size_y = kTile) in;

@@ -1,4 +1,5 @@
 #version 450
+// SPDX-License-Identifier: Apache-2.0
 // A key and a kernel for each bin that a kernel meets. A thread an entry: it finds its kernel by halving.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Offsets { uint offsets[]; };  // of each kernel's entries; the last is their number

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the splatter's shaders know of a frame; src/gl_splat_frame.h has the same. The host puts in the constants: kReach, kBatch,
 // kTile and so on, what the scene has (BENT, COLORED …), and where a kernel's extras are.
 layout(std140, binding = 0) uniform Frame {

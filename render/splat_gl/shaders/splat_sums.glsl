@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sums of kernels on the sheets of a batch, for the pixel of each thread. Kernels are cut by the sheets once for the whole group
 // and laid in shared memory, a chunk at a time. Each block of 8×4 pixels knows which kernels it may meet, and on which sheets:
 // its threads go through these only, together.

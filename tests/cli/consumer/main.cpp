@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calls into every component, so that each must have been installed with what it links to.
 #include <subvol/image_metrics.h>
 #include <subvol/model.h>

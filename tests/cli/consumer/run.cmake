@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs the build into an empty folder, then configures, builds and runs the project here against it. Then asks for the package in
 # ways that are right and wrong.
 file(REMOVE_RECURSE ${WORK})

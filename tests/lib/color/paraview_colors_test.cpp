@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Colour maps as ParaView writes them, against what VTK makes of them. The expected numbers are those that VTK 9.1 returned for
 // the same knots (vtkColorTransferFunction::GetColor, vtkPiecewiseFunction::GetValue), to six digits.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/legend.h"
 #include "subvol/detail/round_ticks.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "subvol/mixed_cells.h"
 
 #include <gmock/gmock.h>

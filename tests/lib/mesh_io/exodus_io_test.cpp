@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Exodus II, written by netCDF itself in each of its formats.
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gmsh, versions 4.0 and 4.1, whose nodes and elements come in blocks; binary files; curved elements; fields at elements.
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gmsh, version 2, ASCII; what the versions have in common.
 
 #include <gmock/gmock.h>

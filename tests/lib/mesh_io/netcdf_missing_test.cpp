@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A build without netCDF's library.
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plot3D's grids and flows, which do not say how they are encoded.
 
 #include <gmock/gmock.h>

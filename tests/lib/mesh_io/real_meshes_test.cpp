@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every hexahedral mesh of the collection of real ones against its figures.
 
 #include <gmock/gmock.h>

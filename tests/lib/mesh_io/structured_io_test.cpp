@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Structured grids as hexahedra: VTK XML (.vts) and legacy VTK.
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Legacy VTK whose values are big-endian numbers between lines of text.
 
 #include <gmock/gmock.h>

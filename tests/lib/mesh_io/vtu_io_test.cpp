@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // VTK XML in every encoding.
 
 #include <gmock/gmock.h>

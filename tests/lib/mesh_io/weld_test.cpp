@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points that are joined and cells that are left out when a mesh is read.
 
 #include <gmock/gmock.h>

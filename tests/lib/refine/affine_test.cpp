@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A field that is affine in the positions stays so under every scheme, whatever the mesh: weights sum to 1, to the last bits.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several levels at once derive each level's topology from its parent; level by level it is built anew by sorting. Both must
 // give the same mesh, to the last bit and number.
 #include <gtest/gtest.h>

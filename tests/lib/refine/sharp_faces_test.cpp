@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sharp faces inside a mesh: both sides are refined as if the other were not there.
 #include <gtest/gtest.h>
 

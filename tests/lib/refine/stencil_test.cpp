@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stencils of one MCQ-G step against known answers, worked out by independent prototypes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ways to choose samples: refined meshes and their lines, footprints, tolerances, value rules; and the full correction.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

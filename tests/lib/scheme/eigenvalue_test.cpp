@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The spectra of the schemes' local subdivision matrices, made from our stencils, against those of independent prototypes.
 #include <gtest/gtest.h>
 

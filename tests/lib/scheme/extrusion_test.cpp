@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The approximating schemes on extruded quad meshes: in section they are surface schemes, written out here on their own.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the approximating schemes promise: tricubic B-splines where the mesh is regular, their own averages elsewhere.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sequence of levels: pictures of dense grids, and of the tetrahedra of refined meshes, go to the limit's with the second
 // order, that of trilinear cells.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One linear field by every renderer and from many cameras; and split into other cells: the picture is the same.
 #include <gtest/gtest.h>
 

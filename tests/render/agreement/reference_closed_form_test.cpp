@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Slab, ramp, ball and Gaussian by every reference renderer against their closed forms.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The twisted block, whose exact picture is known, small enough for a test: who is how near to it.
 #include <gtest/gtest.h>
 

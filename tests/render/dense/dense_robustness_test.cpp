@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Dense grids of real meshes by rays from 26 directions, one of each picture through a point of the grids: no ray is lost, and
 // the length inside is that between the entries and exits of the limit's boundary, found without any adjacency.
 #include <gtest/gtest.h>

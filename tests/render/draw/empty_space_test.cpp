@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What drop_invisible drops must not be missed in any picture.
 #include "subvol/empty_space.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sheet buffers against the CPU: they follow the same rules, so that only rounding may part them.
 #include <gtest/gtest.h>
 

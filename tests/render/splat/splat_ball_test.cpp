@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One kernel a control vertex against the limit volume, where edges and vertices are extraordinary.
 #include <gtest/gtest.h>
 

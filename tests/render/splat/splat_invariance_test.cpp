@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a picture of splats may not depend on: threads, the order of points, batches that are passed over.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

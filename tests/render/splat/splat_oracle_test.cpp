@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The splatter for CPUs against the readable one.
 #include "splat_oracle.h"
 

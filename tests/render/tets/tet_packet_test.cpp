@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays side by side are rays one by one, to the last bit: through points and along edges, in folded and flat meshes too.
 #include "tet_packet_tracer.h"
 

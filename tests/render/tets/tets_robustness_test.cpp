@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rays through points, edges and anywhere, along axes and diagonals, through all meshes there are: no ray is lost, and the
 // length inside is that between the entries and exits of the boundary, found without any adjacency. SUBVOL_SWEEP=n takes n
 // times as many rays.

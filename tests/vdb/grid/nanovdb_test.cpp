@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What other programs do: NanoVDB's own reader.
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Imports a grid of a .vdb file into Blender, checks where it lies, and renders one frame.
 
   blender -b --factory-startup --python blender_import.py -- FILE.vdb -o PICTURE.exr --grid NAME \\

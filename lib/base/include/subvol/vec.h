@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // The small vectors of the public interface are GLM's: the one third-party type in the headers (docs/adr/0002).

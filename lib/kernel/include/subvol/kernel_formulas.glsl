@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The kernels' formulas, once for C++ and GLSL: only what both languages read the same way.
 //
 // The includer says what `real`, `real3` and `real4` are and supplies `real kernel_table(int i)`, the kernel's table.
