@@ -34,8 +34,7 @@ double overlaps(const RbfVolume& volume, const View& view) {
     }
     double sum = 0;
     for (std::size_t i = 0; i < volume.size(); ++i) {
-        const auto& f = volume.frames[i];
-        const double det = glm::determinant(Mat3(Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5])));
+        const double det = glm::determinant(matrix(volume.frames[i]));
         const double pixel = view.pixel() * view.to_eye(volume.centers[i]).z;
         sum += 4.0 / 3 * std::numbers::pi * std::sqrt(std::max(det, 0.0)) / (pixel * pixel);
     }

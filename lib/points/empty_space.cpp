@@ -31,9 +31,8 @@ class KernelInBox {
 public:
     KernelInBox(const RbfVolume& volume, const RbfChannel& channel, std::size_t i)
         : center_(volume.centers[i]), value_(channel.values[i]), moment_(channel.moments[i]) {
-        const auto& s = volume.frames[i];
         const auto& g = channel.gradients[i];
-        inverse_ = glm::inverse(Mat3(s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5]));
+        inverse_ = glm::inverse(matrix(volume.frames[i]));
         gradient_ = {g[0], g[1], g[2]};
         if (!channel.hessians.empty()) hessian_ = channel.hessians[i];
     }
@@ -71,7 +70,7 @@ private:
     double value_, moment_;
     Mat3 inverse_;
     Vec3 gradient_;
-    std::array<float, 6> hessian_{};
+    Symmetric3 hessian_{};
 };
 
 /// Boxes over the volume, half a kernel's distance wide, each with the range of all that kernels stand for in it.

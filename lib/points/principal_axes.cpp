@@ -29,9 +29,8 @@ void rotate(Mat3& s, Mat3& directions, int p, int q) {
 
 }  // namespace
 
-PrincipalAxes principal_axes(const std::array<float, 6>& frame) {
-    const auto& [xx, xy, xz, yy, yz, zz] = frame;
-    Mat3 s(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+PrincipalAxes principal_axes(const Symmetric3& frame) {
+    Mat3 s = matrix(frame);
     Mat3 directions(1.0);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
         rotate(s, directions, 0, 1);

@@ -23,13 +23,9 @@ struct RbfField::Kernels {
         float value;
         std::array<float, 3> gradient;
         float moment;
-        std::array<float, 6> hessian;
+        Symmetric3 hessian;
 
-        [[nodiscard]] Vec3 bend(const Vec3& d) const {
-            const auto& h = hessian;
-            return {h[0] * d.x + h[1] * d.y + h[2] * d.z, h[1] * d.x + h[3] * d.y + h[4] * d.z,
-                    h[2] * d.x + h[4] * d.y + h[5] * d.z};
-        }
+        [[nodiscard]] Vec3 bend(const Vec3& d) const { return matrix(hessian) * d; }
         [[nodiscard]] Vec3 slope() const { return {gradient[0], gradient[1], gradient[2]}; }
         [[nodiscard]] double at(const Vec3& d, double e) const {
             return double(value) + glm::dot(slope() + .5 * bend(d), d) + double(moment) * e;
@@ -47,7 +43,7 @@ struct RbfField::Kernels {
         for (std::size_t slot = 0; slot < terms.size(); ++slot) {
             const std::size_t i = tree.kernel(slot);
             terms[slot] = {channel.values[i], channel.gradients[i], channel.moments[i],
-                           channel.hessians.empty() ? std::array<float, 6>{} : channel.hessians[i]};
+                           channel.hessians.empty() ? Symmetric3{} : channel.hessians[i]};
         }
     }
 

@@ -87,7 +87,7 @@ private:
     }
 
     // Symmetric ones, in our order.
-    [[nodiscard]] std::vector<std::array<float, 6>> tensors(const std::string& name, std::size_t count) const {
+    [[nodiscard]] std::vector<Symmetric3> tensors(const std::string& name, std::size_t count) const {
         auto tensors = tuples<6>(name, count);
         for (auto& tensor : tensors) {
             const auto theirs = tensor;

@@ -56,8 +56,8 @@ void write_field_data(VtkXmlWriter& out, const RbfVolume& volume) {
              std::to_string(triangles) + "</DataArray>\n</FieldData>");
 }
 
-void write_tensors(VtkXmlWriter& out, const std::string& name, const std::vector<std::array<float, 6>>& tensors) {
-    std::vector<std::array<float, 6>> in_order(tensors.size());
+void write_tensors(VtkXmlWriter& out, const std::string& name, const std::vector<Symmetric3>& tensors) {
+    std::vector<Symmetric3> in_order(tensors.size());
     for (std::size_t i = 0; i < tensors.size(); ++i) {
         for (std::size_t k = 0; k < 6; ++k) in_order[i][k] = tensors[i][kVtpTensorOrder[k]];
     }

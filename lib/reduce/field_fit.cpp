@@ -59,14 +59,14 @@ void FieldFit::Entry::add_to(KernelTerms& sum, double factor) const {
     sum[4] += f * double(e);
 }
 
-FieldFit::FieldFit(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel,
+FieldFit::FieldFit(std::span<const Vec3> centers, std::span<const Symmetric3> frames, const Kernel& kernel,
                    const FieldSamples& samples)
     : samples_(samples), row_starts_(samples.size() + 1) {
     fill_rows(centers, frames, kernel);
     fill_columns(centers.size());
 }
 
-void FieldFit::fill_rows(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel) {
+void FieldFit::fill_rows(std::span<const Vec3> centers, std::span<const Symmetric3> frames, const Kernel& kernel) {
     const KernelTree tree(centers, frames);
     std::vector<std::uint32_t> counts(samples_.size());
     with_weight(kernel, [&](const auto& weight) {

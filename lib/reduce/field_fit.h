@@ -17,7 +17,7 @@ using KernelTerms = std::array<double, 5>;
 /// The linear least-squares problem of an RBF volume with fixed kernels: Σ weight (f(x) − value)² over samples.
 class FieldFit {
 public:
-    FieldFit(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel,
+    FieldFit(std::span<const Vec3> centers, std::span<const Symmetric3> frames, const Kernel& kernel,
              const FieldSamples& samples);
 
     /// Improves `terms` by steps of preconditioned conjugate gradients on the normal equations, pulled lightly to `prior`.
@@ -45,7 +45,7 @@ private:
     };
     using Vector = std::vector<KernelTerms>;
 
-    void fill_rows(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, const Kernel& kernel);
+    void fill_rows(std::span<const Vec3> centers, std::span<const Symmetric3> frames, const Kernel& kernel);
     void fill_columns(std::size_t kernels);
     [[nodiscard]] double row_value(std::size_t sample, std::span<const KernelTerms> terms) const;
     [[nodiscard]] Vector transposed_times(std::span<const double> rows) const;

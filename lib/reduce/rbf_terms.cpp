@@ -13,7 +13,7 @@ std::vector<KernelTerms> terms_of(const RbfVolume& volume, const RbfChannel& cha
     return terms;
 }
 
-void set_terms(RbfChannel& channel, std::span<const std::array<float, 6>> frames, std::span<const KernelTerms> terms) {
+void set_terms(RbfChannel& channel, std::span<const Symmetric3> frames, std::span<const KernelTerms> terms) {
     channel.values.resize(terms.size());
     channel.gradients.resize(terms.size());
     channel.moments.resize(terms.size());

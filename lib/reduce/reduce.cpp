@@ -163,7 +163,7 @@ private:
         Mat3 s = (r * r * kUniform) * part.fit.covariance;
         const double trace = s[0][0] + s[1][1] + s[2][2];
         s += Mat3(kThickness * kThickness * (trace > 0 ? trace : 1e-12));
-        frames_[p] = frame(s, 1);
+        frames_[p] = symmetric3(s);
         // No part may have a hole: kernels of odd shapes are widened.
         const auto root = detail::inverse_root(frames_[p]);
         double farthest = 0;
@@ -172,14 +172,9 @@ private:
             farthest = std::max(farthest, glm::dot(place, place));
         }
         const double allowed = std::pow(kFarthest / radius, 2);
-        if (farthest > allowed) frames_[p] = frame(s, farthest / allowed);
+        if (farthest > allowed) frames_[p] = symmetric3(farthest / allowed * s);
         const Vec3 h = detail::to_frame(frames_[p], part.fit.slope);
         terms_[p] = prior_[p] = {part.fit.value, h.x, h.y, h.z, 0};
-    }
-
-    static std::array<float, 6> frame(const Mat3& s, double scale) {
-        const auto at = [&](int i, int j) { return static_cast<float>(scale * s[i][j]); };
-        return {at(0, 0), at(1, 0), at(2, 0), at(1, 1), at(2, 1), at(2, 2)};
     }
 
     const FieldSamples& samples_;
@@ -188,7 +183,7 @@ private:
     double weight_ = 0;
     std::vector<std::size_t> fresh_;
     std::vector<Vec3> centers_;
-    std::vector<std::array<float, 6>> frames_;
+    std::vector<Symmetric3> frames_;
     std::vector<KernelTerms> terms_, prior_;
     std::vector<double> error_;
 };

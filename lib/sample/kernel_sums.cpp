@@ -14,11 +14,6 @@ namespace {
 constexpr double kFlat = 1e-9;       // of a cube's determinant: a thousandth of its thickness
 constexpr double kThickness = 1e-3;  // of the mean square extent
 
-std::array<float, 6> six_floats(const Mat3& s) {
-    return {static_cast<float>(s[0][0]), static_cast<float>(s[1][0]), static_cast<float>(s[2][0]),
-            static_cast<float>(s[1][1]), static_cast<float>(s[2][1]), static_cast<float>(s[2][2])};
-}
-
 }  // namespace
 
 KernelSums::KernelSums(const SampleOptions& options, RbfVolume& volume)
@@ -51,7 +46,7 @@ bool KernelSums::finish(double cells) {
     const double scale = (metric_[0][0] + metric_[1][1] + metric_[2][2]) / 3;
     const bool flat = !(glm::determinant(metric_) > kFlat * scale * scale * scale);
     if (flat) metric_ += Mat3(kThickness * (scale > 0 ? scale : 1));
-    volume_.frames[point_] = six_floats(metric_ * (radius2_ / cells));
+    volume_.frames[point_] = symmetric3(metric_ * (radius2_ / cells));
     const Mat3 inverse = glm::inverse(metric_);
     for (std::size_t c = 0; c < laplacian_.size(); ++c) {
         const bool corrected = options_.correction != Correction::None && !flat;
@@ -65,11 +60,11 @@ bool KernelSums::finish(double cells) {
     return flat;
 }
 
-std::array<float, 6> without_moment(const Mat3& hessian, const std::array<float, 6>& frame) {
-    const Mat3 s(frame[0], frame[1], frame[2], frame[1], frame[3], frame[4], frame[2], frame[4], frame[5]);
+Symmetric3 without_moment(const Mat3& hessian, const Symmetric3& frame) {
+    const Mat3 s = matrix(frame);
     double along = 0;  // H : S
     for (int a = 0; a < 3; ++a) along += glm::dot(hessian[a], s[a]);
-    return six_floats(hessian - along / 3 * glm::inverse(s));
+    return symmetric3(hessian - along / 3 * glm::inverse(s));
 }
 
 RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const SampleOptions& options) {

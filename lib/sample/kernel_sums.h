@@ -34,7 +34,7 @@ private:
 };
 
 /// What the moment leaves of a Hessian: H less its part along the frame's inverse, as six numbers.
-[[nodiscard]] std::array<float, 6> without_moment(const Mat3& hessian, const std::array<float, 6>& frame);
+[[nodiscard]] Symmetric3 without_moment(const Mat3& hessian, const Symmetric3& frame);
 
 /// An RBF volume of `count` points with the channels of a mesh, nothing filled in; its centers are yet to come.
 ///

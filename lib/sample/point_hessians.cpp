@@ -38,7 +38,7 @@ Eigen::Matrix<double, 3, 6> product_rows(const Eigen::Vector3d& d) {
 /// Fits the Hessian of one point in coordinates in which its frame is a ball of sample intervals.
 class HessianFit {
 public:
-    void begin(const std::array<float, 6>& frame, double radius) {
+    void begin(const Symmetric3& frame, double radius) {
         Six s;
         for (int k = 0; k < 6; ++k) s[k] = frame[static_cast<std::size_t>(k)] / (radius * radius);
         root_ = symmetric(s).llt().matrixL();

@@ -43,7 +43,7 @@ public:
     /// Sets the kernel that the others are about.
     void look_at(std::size_t i) {
         i_ = i;
-        const Mat3 s = to_eye_ * (reach_ * frame_matrix(scene_.volume->frames[i])) * glm::transpose(to_eye_);
+        const Mat3 s = to_eye_ * (reach_ * matrix(scene_.volume->frames[i])) * glm::transpose(to_eye_);
         szz_ = s[2][2];
         shear_ = {s[2][0] / szz_, s[2][1] / szz_};
         cxx_ = s[0][0] - s[2][0] * shear_.x;
@@ -75,9 +75,8 @@ public:
 
     [[nodiscard]] EyeRange range(const RbfChannel& channel, const Cells& cells) const {
         const double middle = static_cast<double>(value(channel, cells)), bow = static_cast<double>(moment(channel, cells));
-        const double spread =
-            value_spread(channel, i_, reach_ * frame_matrix(scene_.volume->frames[i_])) * cells.scale * 1.001 +
-            1e-5 * (std::abs(middle) + std::abs(bow)) + 0.01;
+        const double spread = value_spread(channel, i_, reach_ * matrix(scene_.volume->frames[i_])) * cells.scale * 1.001 +
+                              1e-5 * (std::abs(middle) + std::abs(bow)) + 0.01;
         return {to_float(middle - spread + std::min(bow, 0.0)), to_float(middle + spread + std::max(bow, 0.0))};
     }
 
@@ -90,7 +89,7 @@ public:
 
     [[nodiscard]] EyeBend bend(const RbfChannel& channel, const Cells& cells) const {
         if (channel.hessians.empty()) return {};
-        const Mat3 bend = 0.5 * cells.scale * (to_eye_ * frame_matrix(channel.hessians[i_]) * glm::transpose(to_eye_));
+        const Mat3 bend = 0.5 * cells.scale * (to_eye_ * matrix(channel.hessians[i_]) * glm::transpose(to_eye_));
         const Vec3 shear(shear_.x, shear_.y, 1), sheared = bend * shear;
         return {to_float(glm::dot(shear, sheared)),
                 to_float(2 * sheared.x),

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "subvol/detail/principal_axes.h"
@@ -11,12 +10,8 @@
 
 namespace subvol::detail {
 
-inline Mat3 frame_matrix(const std::array<float, 6>& f) {
-    return {Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5])};
-}
-
 /// S^(−1/2), the symmetric root: maps the frame's ellipsoid to the unit ball. A separable kernel has its axes along it.
-inline Mat3 inverse_symmetric_root(const std::array<float, 6>& frame) {
+inline Mat3 inverse_symmetric_root(const Symmetric3& frame) {
     const PrincipalAxes axes = principal_axes(frame);
     Mat3 result(0.0);
     for (int a = 0; a < 3; ++a) result += glm::outerProduct(axes.directions[a], axes.directions[a]) / axes.half_axes[a];
@@ -30,7 +25,7 @@ inline double value_spread(const RbfChannel& channel, std::size_t i, const Mat3&
     const Vec3 gradient(g[0], g[1], g[2]);
     const double spread = std::sqrt(std::max(0.0, glm::dot(gradient, frame * gradient)));
     if (channel.hessians.empty()) return spread;
-    const Mat3 h = frame_matrix(channel.hessians[i]);
+    const Mat3 h = matrix(channel.hessians[i]);
     const double norm = std::sqrt(glm::dot(h[0], h[0]) + glm::dot(h[1], h[1]) + glm::dot(h[2], h[2]));
     return spread + 0.5 * norm * (frame[0][0] + frame[1][1] + frame[2][2]);
 }

@@ -147,8 +147,7 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     if (scene.half_weight > 0) {
         const Vec3& forward = view.axes()[2];
         for (std::size_t i = 0; i < volume.size(); ++i) {
-            const auto& f = volume.frames[i];
-            const Mat3 s(Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5]));
+            const Mat3 s = matrix(volume.frames[i]);
             add(view.to_eye(volume.centers[i]).z, std::sqrt(std::max(0.0, glm::dot(forward, s * forward))));
         }
     }

@@ -36,7 +36,7 @@ void pack_kernel(const SplatScene& scene, std::size_t i, float* to) {
                                                  g[1],
                                                  g[2],
                                                  channel.moments[i],
-                                                 to_float(value_spread(channel, i, reach * frame_matrix(f))),
+                                                 to_float(value_spread(channel, i, reach * matrix(f))),
                                                  0};
     std::copy(std::begin(packed), std::end(packed), to);
 }

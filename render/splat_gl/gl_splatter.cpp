@@ -67,7 +67,7 @@ std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& 
     tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
         const Vec3& forward = view.axes()[2];
         const double z = view.to_eye(scene.volume->centers[i]).z - middle;
-        const double szz = glm::dot(forward, frame_matrix(scene.volume->frames[i]) * forward);
+        const double szz = glm::dot(forward, matrix(scene.volume->frames[i]) * forward);
         const double reach = std::sqrt(std::max(0.0, widening * szz)) * (1 + 1e-5);
         wanted[i] = z + reach >= front && z - reach <= back;
     });

@@ -60,8 +60,7 @@ double voxel_size(const RbfVolume& volume, double points_per_voxel) {
     const double radius = support_radius(volume.kernel);
     double room = 0, farthest = 0;
     for (std::size_t i = 0; i < volume.size(); ++i) {
-        const auto& [xx, xy, xz, yy, yz, zz] = volume.frames[i];
-        const double determinant = glm::determinant(Mat3(xx, xy, xz, xy, yy, yz, xz, yz, zz));
+        const double determinant = glm::determinant(matrix(volume.frames[i]));
         room += std::sqrt(std::max(determinant, 0.0)) / (radius * radius * radius);
         const Vec3 p = glm::abs(volume.centers[i]);
         farthest = std::max({farthest, p.x, p.y, p.z});
@@ -74,12 +73,12 @@ openvdb::Vec3f to_vdb(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-openvdb::Mat3s to_vdb(const std::array<float, 6>& tensor) {
+openvdb::Mat3s to_vdb(const Symmetric3& tensor) {
     const auto& [xx, xy, xz, yy, yz, zz] = tensor;
     return {xx, xy, xz, xy, yy, yz, xz, yz, zz};
 }
 
-std::array<float, 6> from_vdb(const openvdb::Mat3s& s) {
+Symmetric3 from_vdb(const openvdb::Mat3s& s) {
     return {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
 }
 

@@ -88,11 +88,6 @@ private:
     std::array<bool, 3> has_after_{}, has_before_{};
 };
 
-std::array<float, 6> six_floats(const Mat3& s) {
-    return {static_cast<float>(s[0][0]), static_cast<float>(s[1][0]), static_cast<float>(s[2][0]),
-            static_cast<float>(s[1][1]), static_cast<float>(s[2][1]), static_cast<float>(s[2][2])};
-}
-
 /// Where the kernels lie and which form they have: world = to_world · ijk + origin.
 struct Lattice {
     Mat3 to_world;
@@ -105,7 +100,7 @@ public:
         : lattice_(lattice),
           inverse_(glm::inverse(lattice.to_world)),
           radius_(support_radius(volume.kernel)),
-          frame_(six_floats(radius_ * radius_ * lattice.to_world * glm::transpose(lattice.to_world))),
+          frame_(symmetric3(radius_ * radius_ * lattice.to_world * glm::transpose(lattice.to_world))),
           correction_(correction),
           volume_(volume) {}
 
@@ -124,14 +119,14 @@ public:
         channel.moments[point] = static_cast<float>(radius_ * radius_ * trace / 6);
         if (correction_ == Correction::Second) return;
         hessian -= Mat3(trace / 3);
-        channel.hessians[point] = six_floats(glm::transpose(inverse_) * hessian * inverse_);
+        channel.hessians[point] = symmetric3(glm::transpose(inverse_) * hessian * inverse_);
     }
 
 private:
     Lattice lattice_;
     Mat3 inverse_;
     double radius_;
-    std::array<float, 6> frame_;
+    Symmetric3 frame_;
     Correction correction_;
     RbfVolume& volume_;
 };

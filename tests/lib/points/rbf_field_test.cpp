@@ -58,8 +58,7 @@ std::optional<double> direct_value(const RbfVolume& volume, const Vec3& x) {
     double sum = 0, weighted = 0;
     const auto& c = volume.channels[0];
     for (std::size_t i = 0; i < volume.size(); ++i) {
-        const auto& f = volume.frames[i];
-        const Mat3 s(Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5]));
+        const Mat3 s = matrix(volume.frames[i]);
         const Vec3 d = x - volume.centers[i];
         const double e = glm::dot(d, glm::inverse(s) * d);
         if (!(e < 1)) continue;

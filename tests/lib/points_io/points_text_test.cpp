@@ -45,7 +45,7 @@ TEST_F(PointsText, PlyOfOtherMakers) {
     };
     const auto expect = [&](const RbfVolume& read) {
         EXPECT_EQ(read.centers, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
-        EXPECT_EQ(read.frames[1], (std::array<float, 6>{4, 1, .5f, 9, .25f, 16}));
+        EXPECT_EQ(read.frames[1], (Symmetric3{4, 1, .5f, 9, .25f, 16}));
         EXPECT_EQ(read.channels[0].values, (std::vector<float>{-7, 8}));
         EXPECT_EQ(read.channels[0].gradients[1], (std::array<float, 3>{}));
         EXPECT_TRUE(read.channels[0].hessians.empty());

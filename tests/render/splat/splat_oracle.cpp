@@ -17,10 +17,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastWeight = 0.02;  // below it a sheet knows no value
 
-Mat3 symmetric(const std::array<float, 6>& f) {
-    return {Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5])};
-}
-
 /// S^(−1/2) by the iteration of Denman and Beavers.
 Mat3 inverse_root(const Mat3& s) {
     const double scale = (s[0][0] + s[1][1] + s[2][2]) / 3;
@@ -45,8 +41,8 @@ public:
     Oracle(const RbfVolume& volume, const View& view, const Optics& optics, const SplatOptions& options, Emission emission)
         : volume_(volume), view_(view), optics_(optics), options_(options), emission_(emission) {
         for (const auto& frame : volume.frames) {
-            inverses_.push_back(glm::inverse(symmetric(frame)));
-            roots_.push_back(support_radius(volume.kernel) * inverse_root(symmetric(frame)));
+            inverses_.push_back(glm::inverse(matrix(frame)));
+            roots_.push_back(support_radius(volume.kernel) * inverse_root(matrix(frame)));
         }
         diagonal_ = box_of(volume).diagonal();
         near_ = view.perspective() ? 1e-4 * diagonal_ : 0;
@@ -91,7 +87,7 @@ private:
         for (const Vec3& p : volume_.boundary.points) add(p, 0);
         for (std::size_t i = 0; half_weight_ > 0 && i < volume_.size(); ++i) {
             const Vec3& forward = view_.axes()[2];
-            add(volume_.centers[i], std::sqrt(glm::dot(forward, symmetric(volume_.frames[i]) * forward)));
+            add(volume_.centers[i], std::sqrt(glm::dot(forward, matrix(volume_.frames[i]) * forward)));
         }
         z_first_ = std::max(z_first_, near_);
     }
@@ -106,7 +102,7 @@ private:
     /// A kernel's value at d from its centre, and that value's gradient.
     [[nodiscard]] double value(const RbfChannel& channel, std::size_t i, const Vec3& d, Vec3& gradient) const {
         const Vec3 g(channel.gradients[i][0], channel.gradients[i][1], channel.gradients[i][2]), q = inverses_[i] * d;
-        const Mat3 h = channel.hessians.empty() ? Mat3(0.0) : symmetric(channel.hessians[i]);
+        const Mat3 h = channel.hessians.empty() ? Mat3(0.0) : matrix(channel.hessians[i]);
         const auto moment = static_cast<double>(channel.moments[i]);
         gradient = g + 2 * moment * q + h * d;
         return static_cast<double>(channel.values[i]) + glm::dot(g, d) + moment * glm::dot(d, q) + 0.5 * glm::dot(d, h * d);

@@ -11,29 +11,42 @@
 
 namespace subvol {
 
+/// A symmetric 3×3 matrix by its upper triangle: xx xy xz yy yz zz.
+using Symmetric3 = std::array<float, 6>;
+
+[[nodiscard]] inline Mat3 matrix(const Symmetric3& s) {
+    return {Vec3(s[0], s[1], s[2]), Vec3(s[1], s[3], s[4]), Vec3(s[2], s[4], s[5])};
+}
+
+/// m: symmetric; rounded to float
+[[nodiscard]] inline Symmetric3 symmetric3(const Mat3& m) {
+    return {static_cast<float>(m[0][0]), static_cast<float>(m[1][0]), static_cast<float>(m[2][0]),
+            static_cast<float>(m[1][1]), static_cast<float>(m[2][1]), static_cast<float>(m[2][2])};
+}
+
 /// One scalar channel. What a kernel stands for at x is values + gradients·d + moments·e + ½ dᵀ hessians d, with d = x−μ and
 /// e = dᵀ S⁻¹ d.
 ///
 /// gradients: world⁻¹; moments: R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
-/// hessians:  xx xy xz yy yz zz of what is left of H when the part along S⁻¹ is taken out (world⁻²), one a point; none: that
+/// hessians:  what is left of H when the part along S⁻¹ is taken out (world⁻²), one a point; none: that
 ///            part is all
 struct RbfChannel {
     std::string name{};
     std::vector<float> values{};
     std::vector<std::array<float, 3>> gradients{};
     std::vector<float> moments{};
-    std::vector<std::array<float, 6>> hessians{};
+    std::vector<Symmetric3> hessians{};
 };
 
 /// A subdivision volume as radial basis functions: what every renderer and exporter takes.
 ///
 /// centers:  world
-/// frames:   xx xy xz yy yz zz of S = R² J Jᵀ (world²), J's columns the world displacement per sample interval
+/// frames:   S = R² J Jᵀ (world²), J's columns the world displacement per sample interval
 /// kernel:   of all points: its value at ρ = R√e is their weight, its support radius is the frames' R
 /// boundary: the solid's surface, outward; outside it there is nothing. Empty: the points have no known boundary
 struct RbfVolume {
     std::vector<Vec3> centers;
-    std::vector<std::array<float, 6>> frames;
+    std::vector<Symmetric3> frames;
     std::vector<RbfChannel> channels;
     Kernel kernel;
     Surface boundary;

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "subvol/vec.h"
+#include "subvol/rbf_volume.h"
 
 namespace subvol::detail {
 
@@ -17,7 +17,7 @@ struct PrincipalAxes {
 };
 
 /// frame: as in RbfVolume
-[[nodiscard]] PrincipalAxes principal_axes(const std::array<float, 6>& frame);
+[[nodiscard]] PrincipalAxes principal_axes(const Symmetric3& frame);
 
 /// A rotation as a unit quaternion w x y z, w not negative.
 [[nodiscard]] std::array<double, 4> quaternion(const Mat3& rotation);
