@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <span>
 #include <vector>
 
-#include "subvol/hex_mesh.h"
+#include "subvol/detail/median_tree.h"
 #include "subvol/vec.h"
 
 namespace subvol::detail {
@@ -18,70 +17,55 @@ namespace subvol::detail {
     return glm::dot(d, d);
 }
 
-/// A tree over boxes, halved at the median. It is complete: node n has the children 2n+1 and 2n+2, leaves hold up to 8 boxes.
-/// It depends on its input alone.
+/// Finds boxes that a place is in or near: a tree over them, with their own boxes in its leaves.
 class BoxTree {
 public:
-    explicit BoxTree(std::vector<Box> boxes);
+    explicit BoxTree(const std::vector<Box>& boxes);
 
-    [[nodiscard]] Box bounds() const { return nodes_.front(); }
+    [[nodiscard]] Box bounds() const { return tree_.box(0); }
 
-    /// Calls visit(item) for every box with enter(box), until one returns true. Whoever holds a box that is entered must be
-    /// too.
+    /// Calls visit(item) for every box with enter(box), until one returns true. If enter is true for a box, it must be true for
+    /// every box that contains it.
     template <class Enter, class Visit>
     void visit(const Enter& enter, const Visit& visit) const {
-        std::array<std::size_t, 64> open;
-        std::size_t count = 0;
-        open[count++] = 0;
-        while (count > 0) {
-            const std::size_t node = open[--count];
-            if (!enter(nodes_[node])) continue;
-            if (node < first_leaf_) {
-                open[count++] = 2 * node + 2;
-                open[count++] = 2 * node + 1;
-                continue;
+        tree_.visit_leaves(enter, [&](std::size_t first, std::size_t last) {
+            for (std::size_t slot = first; slot < last; ++slot) {
+                if (enter(boxes_[slot]) && visit(tree_.item(slot))) return true;
             }
-            const std::size_t leaf = node - first_leaf_, end = first_slot(leaf + 1);
-            for (std::size_t slot = first_slot(leaf); slot < end; ++slot) {
-                if (enter(boxes_[slot]) && visit(order_[slot])) return;
-            }
-        }
+            return false;
+        });
     }
 
     /// The least of squared_distance_to(item) over all items; infinite if there are none.
     template <class Distance>
     [[nodiscard]] double nearest(const Vec3& x, const Distance& squared_distance_to) const {
         double best = std::numeric_limits<double>::infinity();
-        search(0, squared_distance(nodes_[0], x), x, squared_distance_to, best);
+        search(0, squared_distance(tree_.box(0), x), x, squared_distance_to, best);
         return best;
     }
 
 private:
-    [[nodiscard]] std::size_t first_slot(std::size_t leaf) const { return leaf * order_.size() / (first_leaf_ + 1); }
-    void sort_below(std::span<const Box> boxes, std::size_t begin_leaf, std::size_t leaves);
-
     template <class Distance>
     void search(std::size_t node, double bound, const Vec3& x, const Distance& squared_distance_to, double& best) const {
         if (bound >= best) return;
-        if (node < first_leaf_) {
-            // The nearer child first: it often makes the other one needless.
-            std::array<std::size_t, 2> child{2 * node + 1, 2 * node + 2};
-            std::array<double, 2> distance{squared_distance(nodes_[child[0]], x), squared_distance(nodes_[child[1]], x)};
+        if (!tree_.is_leaf(node)) {
+            // The nearer child first: then the other one is often too far away to be searched.
+            const std::array<std::size_t, 2> child{2 * node + 1, 2 * node + 2};
+            const std::array<double, 2> distance{squared_distance(tree_.box(child[0]), x),
+                                                 squared_distance(tree_.box(child[1]), x)};
             const std::size_t nearer = distance[0] <= distance[1] ? 0 : 1;
             search(child[nearer], distance[nearer], x, squared_distance_to, best);
             search(child[1 - nearer], distance[1 - nearer], x, squared_distance_to, best);
             return;
         }
-        const std::size_t leaf = node - first_leaf_;
-        for (std::size_t slot = first_slot(leaf); slot < first_slot(leaf + 1); ++slot) {
-            if (squared_distance(boxes_[slot], x) < best) best = std::min(best, squared_distance_to(order_[slot]));
+        const auto [first, last] = tree_.slots(node);
+        for (std::size_t slot = first; slot < last; ++slot) {
+            if (squared_distance(boxes_[slot], x) < best) best = std::min(best, squared_distance_to(tree_.item(slot)));
         }
     }
 
-    std::vector<Index> order_;
-    std::vector<Box> boxes_;  // in that order
-    std::vector<Box> nodes_;
-    std::size_t first_leaf_ = 0;  // of 2ᵏ leaves it is 2ᵏ − 1
+    MedianTree<Box> tree_;
+    std::vector<Box> boxes_;  // by slot
 };
 
 }  // namespace subvol::detail

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
-#include "subvol/hex_mesh.h"
-#include "subvol/vec.h"
+#include "subvol/detail/median_tree.h"
+#include "subvol/rbf_volume.h"
 
 namespace subvol::detail {
 
@@ -23,44 +24,32 @@ struct InverseRoot {
     }
 };
 
-/// frame: xx xy xz yy yz zz of S; a singular one is thickened to 1e-6 of its longest extent
-[[nodiscard]] InverseRoot inverse_root(const std::array<float, 6>& frame);
+/// frame: S; a singular one is thickened to 1e-6 of its longest extent
+[[nodiscard]] InverseRoot inverse_root(const Symmetric3& frame);
 
-/// Finds the ellipsoids e < 1 that hold a point: a tree of boxes over them, halved at the median, all in flat arrays.
-///
-/// The tree is complete: node n has the children 2n+1 and 2n+2, leaves hold up to 16 ellipsoids. It depends on its input alone.
+/// Finds the ellipsoids e < 1 that hold a point.
 class KernelTree {
 public:
-    KernelTree(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames);
+    KernelTree(std::span<const Vec3> centers, std::span<const Symmetric3> frames);
 
     [[nodiscard]] std::size_t size() const { return shapes_.size(); }
 
-    /// The kernel at a place of the tree's order.
-    [[nodiscard]] std::size_t kernel(std::size_t slot) const { return order_[slot]; }
+    /// The kernel in a slot of the tree.
+    [[nodiscard]] std::size_t kernel(std::size_t slot) const { return tree_.item(slot); }
 
     /// Calls visit(slot, d, A d, e) for every ellipsoid with e < 1 at x; d = x − center.
     template <class Visit>
     void visit_at(const Vec3& x, const Visit& visit) const {
-        if (boxes_.empty()) return;
-        std::array<std::size_t, 64> open;
-        std::size_t count = 0;
-        open[count++] = 0;
-        while (count > 0) {
-            const std::size_t node = open[--count];
-            if (!boxes_[node].holds(x)) continue;
-            if (node < first_leaf_) {
-                open[count++] = 2 * node + 2;
-                open[count++] = 2 * node + 1;
-                continue;
-            }
-            const std::size_t leaf = node - first_leaf_, end = first_slot(leaf + 1);
-            for (std::size_t slot = first_slot(leaf); slot < end; ++slot) {
+        const auto holds = [&](const FloatBox& box) { return box.holds(x); };
+        tree_.visit_leaves(holds, [&](std::size_t first, std::size_t last) {
+            for (std::size_t slot = first; slot < last; ++slot) {
                 const Vec3 d = x - shapes_[slot].center;
                 const Vec3 scaled = shapes_[slot].root.times(d);
                 const double e = glm::dot(scaled, scaled);
                 if (e < 1) visit(slot, d, scaled, e);
             }
-        }
+            return false;
+        });
     }
 
     [[nodiscard]] const InverseRoot& root(std::size_t slot) const { return shapes_[slot].root; }
@@ -69,6 +58,12 @@ private:
     struct FloatBox {
         std::array<float, 3> lower{}, upper{};
 
+        void add(const FloatBox& other) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                lower[k] = std::min(lower[k], other.lower[k]);
+                upper[k] = std::max(upper[k], other.upper[k]);
+            }
+        }
         [[nodiscard]] bool holds(const Vec3& x) const {
             return x.x >= double(lower[0]) && x.x <= double(upper[0]) && x.y >= double(lower[1]) && x.y <= double(upper[1]) &&
                    x.z >= double(lower[2]) && x.z <= double(upper[2]);
@@ -79,14 +74,10 @@ private:
         InverseRoot root;
     };
 
-    [[nodiscard]] std::size_t first_slot(std::size_t leaf) const { return leaf * order_.size() / (first_leaf_ + 1); }
-    void sort_below(std::span<const Vec3> centers, std::size_t begin_leaf, std::size_t leaves);
-    void fill_leaf(std::span<const Vec3> centers, std::span<const std::array<float, 6>> frames, std::size_t leaf);
+    [[nodiscard]] static FloatBox box_of(const Vec3& center, const Symmetric3& frame);
 
-    std::vector<Index> order_;
-    std::vector<Shape> shapes_;
-    std::vector<FloatBox> boxes_;
-    std::size_t first_leaf_ = 0;  // of 2ᵏ leaves it is 2ᵏ − 1
+    MedianTree<FloatBox> tree_;
+    std::vector<Shape> shapes_;  // by slot
 };
 
 }  // namespace subvol::detail

@@ -24,6 +24,10 @@ struct Box {
         lower = glm::min(lower, p);
         upper = glm::max(upper, p);
     }
+    void add(const Box& b) {
+        lower = glm::min(lower, b.lower);
+        upper = glm::max(upper, b.upper);
+    }
     [[nodiscard]] bool empty() const { return !(lower.x <= upper.x); }
     [[nodiscard]] Vec3 size() const { return empty() ? Vec3(0.0) : upper - lower; }
     [[nodiscard]] Vec3 center() const { return empty() ? Vec3(0.0) : 0.5 * (lower + upper); }
