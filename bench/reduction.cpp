@@ -19,7 +19,7 @@ namespace {
 
 using namespace subvol;
 
-void print(const char* how, std::size_t kernels, const FieldError& error, double seconds) {
+void print(const char* how, std::size_t kernels, const ErrorAtSamples& error, double seconds) {
     std::printf("  %-28s %8zu kernels  rmse %.5f  max %.3f  uncovered %zu  %6.1f s\n", how, kernels, error.rmse, error.max_abs,
                 error.uncovered, seconds);
     std::fflush(stdout);
@@ -32,13 +32,13 @@ void print_uniform(const std::string& model, int resolution, double rmse, const 
     for (int n = 4; n < resolution; n += n < 16 ? 2 : n < 40 ? 4 : 8) lattices.emplace_back(n, 1);
     for (const int per_edge : {1, 2, 3}) lattices.emplace_back(resolution, per_edge);
     for (const auto& [n, per_edge] : lattices) {
-        FieldError error;
+        ErrorAtSamples error;
         std::size_t kernels = 0;
         const double seconds = bench::seconds_of(
             [&, n = n, per_edge = per_edge] {
                 const RbfVolume volume = sample_rbf_points(make_model(model, n), {.per_edge = per_edge}).volume;
                 kernels = volume.size();
-                error = field_error(volume, other);
+                error = error_at_samples(volume, other);
             },
             1);
         if (error.rmse > rmse) continue;
@@ -51,15 +51,15 @@ void print_uniform(const std::string& model, int resolution, double rmse, const 
 
 void compare(const std::string& model, int resolution) {
     const HexMesh mesh = make_model(model, resolution);
-    const FieldSamples other = sample_cells(mesh, 30'011, {.tolerance = 1e-4});
+    const FieldSamples other = limit_samples_in_cells(mesh, "", 30'011, {.tolerance = 1e-4});
     std::printf("%s: %zu cells\n", model.c_str(), mesh.cells.size());
     const RbfVolume full = sample_rbf_points(mesh).volume;
-    print("one a control vertex", full.size(), field_error(full, other), 0);
+    print("one a control vertex", full.size(), error_at_samples(full, other), 0);
     for (const double rmse : {.01, .003}) {
         std::printf(" target %.3f\n", rmse);
         for (const bool move : {false, true}) {
-            const auto reduced = reduce_rbf(mesh, {.rmse = rmse, .move = move});
-            print(move ? "reduced, moved" : "reduced", reduced.volume.size(), field_error(reduced.volume, other),
+            const auto reduced = reduce_rbf(mesh, "", {.rmse = rmse, .move = move});
+            print(move ? "reduced, moved" : "reduced", reduced.volume.size(), error_at_samples(reduced.volume, other),
                   reduced.report.seconds);
         }
         print_uniform(model, resolution, rmse, other);

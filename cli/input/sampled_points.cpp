@@ -2,10 +2,10 @@
 #include "sampled_points.h"
 
 #include "grid_input.h"
-#include "subvol/empty_space.h"
 #include "subvol/error.h"
 #include "subvol/reduce.h"
 #include "subvol/vdb_sample.h"
+#include "subvol/visible_points.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -23,7 +23,7 @@ RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, 
         throw Error(ErrorCode::InvalidInput, "needs a value, there is no transfer function", "--threshold");
     }
     const TransferFunction function =
-        arguments.threshold.empty() ? *seen : above(parse_number("--threshold", arguments.threshold));
+        arguments.threshold.empty() ? *seen : opaque_above(parse_number("--threshold", arguments.threshold));
     VisibleVolume visible = report.timed("threshold", [&] { return drop_invisible(volume, 0, function); });
     report["dropped"] = visible.dropped;
     if (visible.volume.size() == 0) {
@@ -38,7 +38,7 @@ RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments,
                                 .move = arguments.move_kernels,
                                 .limit = limit,
                                 .progress = limit.progress};
-    ReduceResult reduced = report.timed("reduce", [&] { return reduce_rbf(mesh, options); });
+    ReduceResult reduced = report.timed("reduce", [&] { return reduce_rbf(mesh, {}, options); });
     report["points_before"] = mesh.points.size();
     report["field_rmse"] = reduced.report.validation.rmse;
     if (reduced.report.points > mesh.points.size()) {

@@ -13,6 +13,7 @@
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
 #include "subvol/rasterize.h"
+#include "subvol/reduce.h"
 #include "subvol/sample.h"
 #include "subvol/vdb_grid.h"
 
@@ -67,7 +68,7 @@ CaseResult field_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     RbfVolume volume = sample_rbf_points(mesh, study_sampling(of, mesh)).volume;
     if (of.flag("every_second")) volume = every_second(std::move(volume), coarse_points(of));
-    const FieldError error = field_error(volume, places_of(of, mesh));
+    const ErrorAtSamples error = error_at_samples(volume, places_of(of, mesh));
     result.metrics["rmse"] = error.rmse;
     result.metrics["max"] = error.max_abs;
     result.metrics["uncovered"] = static_cast<double>(error.uncovered);
@@ -83,7 +84,7 @@ CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
     const MeshField limit(on_limit(refine(mesh, {.levels = of.whole("levels")}), Scheme::Mcq), name);
     const RbfVolume volume = sample_rbf_points(mesh, study_sampling(of, mesh)).volume;
     const PointsField kernels(volume);
-    const FieldErrors errors = compare_fields(
+    const FieldDifference errors = compare_fields(
         kernels.view(), limit.view(),
         {.samples = static_cast<std::size_t>(of.number("places")), .seed = static_cast<std::uint64_t>(of.number("seed"))});
     const auto [low, high] = std::ranges::minmax(mesh.attributes.front().values);
@@ -117,7 +118,7 @@ CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
     const std::vector<std::string> names{mesh.attributes.front().name};
     const auto grids = rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
-    const FieldErrors errors =
+    const FieldDifference errors =
         compare_field({.value = [&](const Vec3& x) { return grids.front().value(x); }}, places_of(of, mesh));
     result.metrics["rmse"] = errors.l2;
     result.metrics["max"] = errors.linf;
@@ -142,7 +143,7 @@ double rmse_between(std::span<const double> a, std::span<const double> b) {
 CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const Attribute& density = mesh.attributes.front();
-    const auto exact = values_at_new_points(mesh, density, ValueRule::Scheme, Kernel{});
+    const auto exact = values_at_new_points(mesh, density.name, ValueRule::Scheme, Kernel{});
     std::vector<double> ours;
     if (of.text("rule") == "samples") {
         const RbfVolume points = sample_rbf_points(mesh, {.per_edge = 2}).volume;
@@ -150,7 +151,7 @@ CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
         ours.assign(values.begin() + static_cast<std::ptrdiff_t>(mesh.points.size()), values.end());
     } else {
         const ValueRule rule = of.text("rule") == "cubic" ? ValueRule::Cubic : ValueRule::Paper;
-        ours = values_at_new_points(mesh, density, rule, study_kernel(of.text("kernel")));
+        ours = values_at_new_points(mesh, density.name, rule, study_kernel(of.text("kernel")));
     }
     // Densities are signed; what is not positive is empty, as in the paper.
     const auto positive = [](std::span<const double> values) {

@@ -7,7 +7,6 @@
 #include "study_input.h"
 #include "study_metrics.h"
 #include "study_work.h"
-#include "subvol/empty_space.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
@@ -19,6 +18,7 @@
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
 #include "subvol/vdb_grid.h"
+#include "subvol/visible_points.h"
 #include "text.h"
 
 namespace subvol::cli {

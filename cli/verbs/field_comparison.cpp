@@ -36,7 +36,7 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
                                  Report& report) const {
     const FieldInput a = load_field(test, options, refine, "a", report);
     const FieldInput b = load_field(reference, options, refine, "b", report);
-    const FieldErrors errors = report.timed("samples", [&] {
+    const FieldDifference errors = report.timed("samples", [&] {
         return compare_fields(a.view, b.view, {.samples = samples, .seed = options.seed, .progress = report.progress()});
     });
     if (errors.samples == 0) {

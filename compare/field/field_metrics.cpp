@@ -40,7 +40,7 @@ std::vector<Place> random_batch(const FieldView& test, const FieldView& referenc
     return batch;
 }
 
-std::vector<Place> random_places_of(const FieldView& test, const FieldView& reference, const FieldErrorOptions& options) {
+std::vector<Place> random_places_of(const FieldView& test, const FieldView& reference, const FieldDifferenceOptions& options) {
     if (reference.box.empty()) throw Error(ErrorCode::InvalidInput, "the reference field has an empty box");
     std::mt19937_64 random(options.seed);
     std::vector<Place> places;
@@ -66,7 +66,7 @@ struct Errors {
         // Not a number stays, as in the sums.
         if (!(std::abs(difference) <= largest)) largest = std::isnan(largest) ? largest : std::abs(difference);
     }
-    void put_into(FieldErrors& errors) const {
+    void put_into(FieldDifference& errors) const {
         if (!(weights > 0)) return;
         errors.l1 = absolutes / weights;
         errors.l2 = std::sqrt(squares / weights);
@@ -74,7 +74,7 @@ struct Errors {
     }
 };
 
-void put_gradients(const FieldView& test, const FieldView& reference, std::span<const Place> places, FieldErrors& errors) {
+void put_gradients(const FieldView& test, const FieldView& reference, std::span<const Place> places, FieldDifference& errors) {
     std::vector<double> squares(places.size());
     tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
         squares[i] = -1;  // none
@@ -110,9 +110,9 @@ std::optional<Vec3> gradient_at(const FieldView& field, const Vec3& x) {
     return gradient;
 }
 
-FieldErrors compare_fields(const FieldView& test, const FieldView& reference, const FieldErrorOptions& options) {
+FieldDifference compare_fields(const FieldView& test, const FieldView& reference, const FieldDifferenceOptions& options) {
     const auto places = random_places_of(test, reference, options);
-    FieldErrors errors;
+    FieldDifference errors;
     Errors sums;
     for (const Place& place : places) {
         if (place.test) {
@@ -127,11 +127,11 @@ FieldErrors compare_fields(const FieldView& test, const FieldView& reference, co
     return errors;
 }
 
-FieldErrors compare_field(const FieldView& test, const FieldSamples& places) {
+FieldDifference compare_field(const FieldView& test, const FieldSamples& places) {
     if (places.size() == 0) throw Error(ErrorCode::InvalidInput, "there are no places to compare a field at");
     std::vector<std::optional<double>> values(places.size());
     tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) { values[i] = test.value(places.points[i]); });
-    FieldErrors errors;
+    FieldDifference errors;
     Errors sums;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (values[i]) {

@@ -69,20 +69,11 @@ std::vector<LimitQuery> random_queries(const std::vector<CellPart>& parts, doubl
     return queries;
 }
 
-/// The mesh with this attribute alone.
-HexMesh with_only(const HexMesh& mesh, std::string_view attribute) {
-    const Attribute* field = mesh.find_attribute(attribute);
-    if (field == nullptr || field->channels != 1) {
-        throw Error(ErrorCode::InvalidInput, "the mesh has no field '" + std::string(attribute) + "' of one channel");
-    }
-    return {mesh.points, mesh.cells, {*field}, mesh.creases, mesh.sharp_faces};
-}
-
 }  // namespace
 
-FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, PlaceKind kind, double within, std::size_t count,
+FieldSamples random_places(const HexMesh& mesh, std::string_view field, PlaceKind kind, double within, std::size_t count,
                            std::uint64_t seed, Scheme scheme) {
-    const HexMesh bare = with_only(mesh, attribute);
+    const HexMesh bare = with_scalar_field(mesh, field);
     const auto parts = parts_of(bare, kind);
     if (parts.empty()) return {};
     LimitSamples limit = evaluate_limit(bare, random_queries(parts, within, count, seed),
@@ -90,8 +81,8 @@ FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, Plac
     return {std::move(limit.positions), std::move(limit.attributes.front().values), std::vector<double>(count, 1.0)};
 }
 
-FieldSamples new_vertices(const HexMesh& mesh, std::string_view attribute, int level, Scheme scheme) {
-    HexMesh coarse = refine(with_only(mesh, attribute), {.scheme = {scheme}, .levels = level});
+FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level, Scheme scheme) {
+    HexMesh coarse = refine(with_scalar_field(mesh, field), {.scheme = {scheme}, .levels = level});
     const auto old = static_cast<std::ptrdiff_t>(coarse.points.size());  // they keep their numbers
     const HexMesh fine = refine(coarse, {.scheme = {scheme}, .levels = 1});
     const auto& values = fine.attributes.front().values;

@@ -13,13 +13,9 @@ using namespace detail;
 
 namespace {
 
-HexMesh with_only(HexMesh mesh, std::string_view name) {
+HexMesh with_only(HexMesh mesh, std::string_view field) {
     validate(mesh);
-    const Attribute* field = mesh.find_attribute(name);
-    if (field == nullptr || field->channels != 1) {
-        throw Error(ErrorCode::InvalidInput, "the mesh has no field '" + std::string(name) + "' of one channel");
-    }
-    mesh.attributes = {Attribute(*field)};
+    mesh.attributes = {Attribute(scalar_field(mesh, field))};
     return mesh;
 }
 
@@ -37,7 +33,7 @@ struct MeshField::Cells {
     HexMesh mesh;
     detail::BoxTree tree;
 
-    Cells(HexMesh all, std::string_view attribute) : mesh(with_only(std::move(all), attribute)), tree(cell_boxes(mesh)) {}
+    Cells(HexMesh all, std::string_view field) : mesh(with_only(std::move(all), field)), tree(cell_boxes(mesh)) {}
 
     /// Calls use(locator, tetrahedron, values at the corners) for the first cell found to hold x.
     template <class Use>

@@ -217,6 +217,12 @@ std::optional<Attribute> channel_of(const HexMesh& mesh, const std::string& name
     return result;
 }
 
+std::string names_of(const HexMesh& mesh) {
+    std::string names;
+    for (const auto& attribute : mesh.attributes) names += (names.empty() ? "" : ", ") + attribute.name;
+    return names.empty() ? "the mesh has no fields" : "the mesh has: " + names;
+}
+
 }  // namespace
 
 SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name) {
@@ -226,10 +232,7 @@ SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>
             return {length_of(*found), "field \"" + *name + "\" is a vector: its length is taken"};
         }
         if (auto channel = channel_of(mesh, *name)) return {std::move(*channel), {}};
-        std::string known;
-        for (const auto& attribute : mesh.attributes) known += (known.empty() ? "" : ", ") + attribute.name;
-        throw Error(ErrorCode::InvalidInput, "there is no field \"" + *name + "\"", {},
-                    known.empty() ? "the mesh has no fields" : "the mesh has: " + known);
+        throw Error(ErrorCode::InvalidInput, "there is no field \"" + *name + "\"", {}, names_of(mesh));
     }
     for (const auto& attribute : mesh.attributes) {
         if (attribute.channels == 1) return {attribute, {}};
@@ -239,6 +242,18 @@ SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>
         return {length_of(first), "no scalar field: the length of \"" + first.name + "\" is taken"};
     }
     return {{"density", 1, std::vector<double>(mesh.points.size(), 1.0)}, "no field: density 1 everywhere"};
+}
+
+const Attribute& scalar_field(const HexMesh& mesh, std::string_view field) {
+    for (const Attribute& attribute : mesh.attributes) {
+        if (attribute.channels == 1 && (field.empty() || attribute.name == field)) return attribute;
+    }
+    const std::string name = field.empty() ? "" : "\"" + std::string(field) + "\" ";
+    throw Error(ErrorCode::InvalidInput, "the mesh has no field " + name + "of one channel", {}, names_of(mesh));
+}
+
+HexMesh with_scalar_field(const HexMesh& mesh, std::string_view field) {
+    return {mesh.points, mesh.cells, {scalar_field(mesh, field)}, mesh.creases, mesh.sharp_faces};
 }
 
 }  // namespace subvol

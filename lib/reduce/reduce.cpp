@@ -190,10 +190,10 @@ private:
 
 }  // namespace
 
-FieldError field_error(const RbfVolume& volume, const FieldSamples& samples) {
+ErrorAtSamples error_at_samples(const RbfVolume& volume, const FieldSamples& samples) {
     check(samples);
     const auto values = RbfField(volume).evaluate(samples.points);
-    FieldError result;
+    ErrorAtSamples result;
     double sum = 0, weight = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (std::isnan(values[i])) {
@@ -235,7 +235,7 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
             result.volume = std::move(moved.volume);
             report.rmse = moved.report.rmse_after;
         }
-        report.validation = field_error(result.volume, validation);
+        report.validation = error_at_samples(result.volume, validation);
         report.reached = std::max(report.rmse, report.validation.rmse) <= options.rmse && report.validation.uncovered == 0;
         if (!more) break;
         // The samples were met better than what lies between them, or moves gained less: aim lower.
@@ -247,22 +247,23 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
     return result;
 }
 
-ReduceResult reduce_rbf(const HexMesh& mesh, const ReduceOptions& options) {
+ReduceResult reduce_rbf(const HexMesh& mesh, std::string_view field, const ReduceOptions& options) {
     check(options);
+    const HexMesh bare = with_scalar_field(mesh, field);
     // 8 samples a cell, more on coarse meshes; of the independent ones fewer, as each refines its cell.
     constexpr std::size_t kSamples = 200'000, kValidation = 20'000, kMostSamples = 8'000'000;
     const std::size_t cells = mesh.cells.size();
     const int level = cells * 8 >= kSamples ? 1 : cells * 64 >= kSamples ? 2 : 3;
     LimitOptions limit = options.limit;
     limit.progress = options.progress;
-    const FieldSamples validation = sample_cells(mesh, kValidation, limit);
-    ReduceResult result = reduce_rbf(sample_vertices(mesh, level, limit), validation, options);
+    const FieldSamples validation = limit_samples_in_cells(bare, {}, kValidation, limit);
+    ReduceResult result = reduce_rbf(limit_samples_at_vertices(bare, {}, level, limit), validation, options);
     // What fails for want of samples gets eight times as many, once, as long as memory is a matter of course.
     const bool more = !result.report.reached && result.report.points < options.max_points;
     if (more && level < 3 && cells << (3 * level + 3) <= kMostSamples)
-        result = reduce_rbf(sample_vertices(mesh, level + 1, limit), validation, options);
-    result.volume.channels[0].name = mesh.attributes[0].name;
-    const HexMesh once = refine(mesh, {.scheme = limit.scheme, .levels = 1, .progress = limit.progress});
+        result = reduce_rbf(limit_samples_at_vertices(bare, {}, level + 1, limit), validation, options);
+    result.volume.channels[0].name = bare.attributes[0].name;
+    const HexMesh once = refine(bare, {.scheme = limit.scheme, .levels = 1, .progress = limit.progress});
     result.volume.boundary = boundary_surface(on_limit(once, limit.scheme.kind));
     return result;
 }

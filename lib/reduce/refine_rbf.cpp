@@ -44,13 +44,13 @@ RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples,
     RbfRefineResult result;
     result.volume = volume;
     result.volume.channels.resize(1);
-    const FieldError before = field_error(result.volume, samples);
+    const ErrorAtSamples before = error_at_samples(result.volume, samples);
     result.volume.channels[0].hessians.clear();  // what is fitted are values, gradients and moments
     const auto groups = detail::group_by_kernel(result.volume, samples);
     const FieldSamples chosen = detail::thin_samples(samples, groups.order, groups.starts, kMostSamples).samples;
     const auto fit =
         options.move ? detail::fit_moving(result.volume, chosen, options) : fit_fixed(result.volume, chosen, options);
-    const FieldError after = field_error(result.volume, samples);
+    const ErrorAtSamples after = error_at_samples(result.volume, samples);
     const bool better = after.rmse <= before.rmse && after.uncovered <= before.uncovered;
     if (!better) {
         result.volume = volume;

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "child_cells.h"
-#include "subvol/error.h"
 #include "subvol/refine.h"
 
 namespace subvol {
@@ -133,11 +132,8 @@ double RuleInCell::weighted_mean(const double* nodes, const Vec3& uvw) const {
 
 }  // namespace detail
 
-std::vector<double> values_at_new_points(const HexMesh& mesh, const Attribute& attribute, ValueRule rule,
-                                         const Kernel& kernel) {
-    if (attribute.channels != 1)
-        throw Error(ErrorCode::InvalidInput, "the attribute " + attribute.name + " has several channels");
-    HexMesh bare{mesh.points, mesh.cells, {attribute}, mesh.creases, mesh.sharp_faces};
+std::vector<double> values_at_new_points(const HexMesh& mesh, std::string_view field, ValueRule rule, const Kernel& kernel) {
+    const HexMesh bare = with_scalar_field(mesh, field);
     const std::size_t old = mesh.points.size();
     if (rule == ValueRule::Scheme) {
         const auto all = refine(bare).attributes.front().values;

@@ -34,7 +34,7 @@ FieldView in_box(const Formula& f, const Box& box = kUnit) {
 
 TEST(CompareFields, AConstantDifference) {
     const auto wave = [](const Vec3& x) { return std::sin(3 * x.x) + x.y * x.z; };
-    const FieldErrors errors = compare_fields(in_box([&](const Vec3& x) { return wave(x) + .5; }), in_box(wave));
+    const FieldDifference errors = compare_fields(in_box([&](const Vec3& x) { return wave(x) + .5; }), in_box(wave));
     EXPECT_NEAR(errors.l1, .5, 1e-12);
     EXPECT_NEAR(errors.l2, .5, 1e-12);
     EXPECT_NEAR(errors.linf, .5, 1e-12);
@@ -46,7 +46,7 @@ TEST(CompareFields, AConstantDifference) {
 
 TEST(CompareFields, ALinearDifference) {
     // |x| has the mean 1/2, x² the mean 1/3, with standard deviations of .29 and .30 a sample: four of them over √100000.
-    const FieldErrors errors =
+    const FieldDifference errors =
         compare_fields(in_box([](const Vec3& x) { return 3 * x.y + x.x; }), in_box([](const Vec3& x) { return 3 * x.y; }));
     EXPECT_NEAR(errors.l1, .5, 4 * .29 / std::sqrt(1e5));
     EXPECT_NEAR(errors.l2 * errors.l2, 1. / 3, 4 * .30 / std::sqrt(1e5));
@@ -58,11 +58,12 @@ TEST(CompareFields, ALinearDifference) {
 TEST(CompareFields, OnlyWhereBothAre) {
     const Box half{Vec3(0.0), Vec3(.25, 1, 1)};
     const auto zero = [](const Vec3&) { return 0.0; };
-    const FieldErrors errors = compare_fields(in_box(zero, half), in_box([](const Vec3&) { return 2.0; }), {.samples = 40000});
+    const FieldDifference errors =
+        compare_fields(in_box(zero, half), in_box([](const Vec3&) { return 2.0; }), {.samples = 40000});
     EXPECT_EQ(errors.samples + errors.uncovered, 40000u);
     EXPECT_NEAR(static_cast<double>(errors.samples), 10000, 4 * std::sqrt(7500));  // binomial
     EXPECT_EQ(errors.l2, 2);
-    const FieldErrors none = compare_fields(in_box(zero, {Vec3(2.0), Vec3(3.0)}), in_box(zero));
+    const FieldDifference none = compare_fields(in_box(zero, {Vec3(2.0), Vec3(3.0)}), in_box(zero));
     EXPECT_EQ(none.samples, 0u);
     EXPECT_EQ(none.l2, 0);
     EXPECT_THROW(
@@ -71,8 +72,8 @@ TEST(CompareFields, OnlyWhereBothAre) {
 }
 
 TEST(CompareFields, NotANumberShows) {
-    const FieldErrors errors = compare_fields(in_box([](const Vec3& x) { return x.x < .5 ? NAN : 0.0; }),
-                                              in_box([](const Vec3&) { return 0.0; }), {.samples = 100});
+    const FieldDifference errors = compare_fields(in_box([](const Vec3& x) { return x.x < .5 ? NAN : 0.0; }),
+                                                  in_box([](const Vec3&) { return 0.0; }), {.samples = 100});
     EXPECT_TRUE(std::isnan(errors.l1) && std::isnan(errors.l2) && std::isnan(errors.linf));
 }
 
@@ -83,7 +84,7 @@ TEST(CompareFields, TrilinearCellsHaveTheErrorOfLinearInterpolation) {
     const MeshField field(mesh, "f");
     FieldView exact = in_box([](const Vec3& x) { return x.x * x.x; });
     exact.gradient = [](const Vec3& x) { return std::optional(Vec3(2 * x.x, 0, 0)); };
-    const FieldErrors errors = compare_fields(field.view(), exact);
+    const FieldDifference errors = compare_fields(field.view(), exact);
     EXPECT_NEAR(errors.l1, h * h / 6, 4 * .075 * h * h / std::sqrt(1e5));  // .075: the deviation of t (1−t)
     EXPECT_NEAR(errors.l2, h * h / std::sqrt(30), 2e-3 * h * h);           // 1 % at 100000 places
     EXPECT_NEAR(errors.linf, h * h / 4, 1e-4 * h * h);                     // a place within .01 h of a cell's middle
@@ -96,7 +97,7 @@ TEST(CompareFields, SameForAnyNumberOfThreadsAndOtherSeedsDiffer) {
     const auto b = in_box([](const Vec3& x) { return std::sin(7 * x.x * x.z); });
     const auto measured = [&](std::size_t threads, std::uint64_t seed) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-        const FieldErrors errors = compare_fields(a, b, {.samples = 20000, .seed = seed});
+        const FieldDifference errors = compare_fields(a, b, {.samples = 20000, .seed = seed});
         return std::array{errors.l1,
                           errors.l2,
                           errors.linf,
@@ -122,7 +123,7 @@ TEST(GradientAt, ExactCentralAndOneSided) {
 
 TEST(CompareField, AtGivenPlacesWithTheirWeights) {
     const FieldSamples places{{Vec3(.1), Vec3(.5), Vec3(.9), Vec3(5.0)}, {0, 0, 0, 0}, {1, 2, 1, 9}};
-    const FieldErrors errors = compare_field(in_box([](const Vec3& x) { return x.x > .8 ? 3.0 : 1.0; }), places);
+    const FieldDifference errors = compare_field(in_box([](const Vec3& x) { return x.x > .8 ? 3.0 : 1.0; }), places);
     EXPECT_EQ(errors.samples, 3u);
     EXPECT_EQ(errors.uncovered, 1u);
     EXPECT_DOUBLE_EQ(errors.l1, (1 + 2 + 3) / 4.);
@@ -134,7 +135,7 @@ TEST(CompareField, AtGivenPlacesWithTheirWeights) {
 TEST(NewVertices, AreThoseThatOneRefinementAdds) {
     HexMesh mesh = test::with_field(test::ball_mesh(2), "f", [](const Vec3& x) { return std::sin(3 * x.x) + x.y * x.z; });
     const FieldSamples places = new_vertices(mesh, "f");
-    EXPECT_EQ(places.values, values_at_new_points(mesh, mesh.attributes.front(), ValueRule::Scheme, Kernel{}));
+    EXPECT_EQ(places.values, values_at_new_points(mesh, "f", ValueRule::Scheme, Kernel{}));
     const HexMesh fine = refine(mesh);
     EXPECT_EQ(places.size(), fine.points.size() - mesh.points.size());
     EXPECT_EQ(new_vertices(mesh, "f", 1).size(), refine(fine).points.size() - fine.points.size());

@@ -26,11 +26,11 @@ TEST(Reduce, MeetsItsTargetOnIndependentSamples) {
     for (const std::string& name : {std::string("twist"), std::string("ball")}) {
         const HexMesh mesh = make_model(name, name == "ball" ? 8 : 16);
         // Not those that the reduction was validated with: more of them, at other places.
-        const FieldSamples other = sample_cells(mesh, 31'000, {.tolerance = 1e-4});
+        const FieldSamples other = limit_samples_in_cells(mesh, "", 31'000, {.tolerance = 1e-4});
         for (const double rmse : {.05, .01}) {
-            const auto reduced = reduce_rbf(mesh, {.rmse = rmse});
+            const auto reduced = reduce_rbf(mesh, "", {.rmse = rmse});
             EXPECT_TRUE(reduced.report.reached) << name;
-            const FieldError error = field_error(reduced.volume, other);
+            const ErrorAtSamples error = error_at_samples(reduced.volume, other);
             EXPECT_LE(error.rmse, 1.05 * rmse) << name;  // two sets of samples differ by some per cent
             EXPECT_EQ(error.uncovered, 0u) << name;
             EXPECT_EQ(reduced.report.points, reduced.volume.size());
@@ -42,13 +42,13 @@ TEST(Reduce, MeetsItsTargetOnIndependentSamples) {
 
 TEST(Reduce, NeedsFewerKernelsThanUniformSamplesWhereTheFieldIsLocal) {
     const HexMesh mesh = mesh_with_feature(24);
-    const FieldSamples other = sample_cells(mesh, 20'000, {.tolerance = 1e-4});
+    const FieldSamples other = limit_samples_in_cells(mesh, "", 20'000, {.tolerance = 1e-4});
     for (const Index n : {8U, 12U}) {  // the same field, sampled on coarser lattices with second-order kernels
         const RbfVolume uniform = sample_rbf_points(mesh_with_feature(n)).volume;
-        const double error = field_error(uniform, other).rmse;
-        const auto reduced = reduce_rbf(mesh, {.rmse = error});
+        const double error = error_at_samples(uniform, other).rmse;
+        const auto reduced = reduce_rbf(mesh, "", {.rmse = error});
         EXPECT_TRUE(reduced.report.reached);
-        EXPECT_LE(field_error(reduced.volume, other).rmse, 1.01 * error);
+        EXPECT_LE(error_at_samples(reduced.volume, other).rmse, 1.01 * error);
         EXPECT_LT(reduced.volume.size(), uniform.size() / 2) << "half as many and fewer at " << n;
     }
 }
@@ -56,13 +56,13 @@ TEST(Reduce, NeedsFewerKernelsThanUniformSamplesWhereTheFieldIsLocal) {
 TEST(Reduce, OneKernelIsEnoughForALinearField) {
     HexMesh mesh = test::irregular();
     test::add_field(mesh, "f", [](const Vec3& p) { return 1 + p.x - 2 * p.y + .5 * p.z; });
-    const auto reduced = reduce_rbf(mesh, {.rmse = 1e-4});
+    const auto reduced = reduce_rbf(mesh, "", {.rmse = 1e-4});
     EXPECT_EQ(reduced.volume.size(), 1u);
     EXPECT_TRUE(reduced.report.reached);
 }
 
 TEST(Reduce, StopsAtTheMostPoints) {
-    const auto reduced = reduce_rbf(mesh_with_feature(8), {.rmse = 1e-6, .max_points = 30});
+    const auto reduced = reduce_rbf(mesh_with_feature(8), "f", {.rmse = 1e-6, .max_points = 30});
     EXPECT_EQ(reduced.volume.size(), 30u);
     EXPECT_FALSE(reduced.report.reached);
 }
@@ -78,15 +78,15 @@ void expect_same(const RbfVolume& a, const RbfVolume& b) {
 TEST(Reduce, AnyNumberOfThreadsGivesTheSameBits) {
     const HexMesh mesh = mesh_with_feature(10);
     const ReduceOptions options{.rmse = .05, .move = true};
-    const auto many = reduce_rbf(mesh, options);
+    const auto many = reduce_rbf(mesh, "", options);
     tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    expect_same(many.volume, reduce_rbf(mesh, options).volume);
+    expect_same(many.volume, reduce_rbf(mesh, "", options).volume);
 }
 
 TEST(Refine, LowersTheErrorOfSampledKernels) {
     const HexMesh coarse = mesh_with_feature(8), fine = mesh_with_feature(24);
-    const FieldSamples samples = sample_vertices(fine, 1);
-    const FieldSamples other = sample_cells(fine, 20'000, {.tolerance = 1e-4});
+    const FieldSamples samples = limit_samples_at_vertices(fine, "", 1);
+    const FieldSamples other = limit_samples_in_cells(fine, "", 20'000, {.tolerance = 1e-4});
     const RbfVolume start = sample_rbf_points(coarse).volume;
     const auto fixed = refine_rbf(start, samples);
     const auto moved = refine_rbf(fixed.volume, samples, {.move = true, .iterations = 10});
@@ -95,16 +95,16 @@ TEST(Refine, LowersTheErrorOfSampledKernels) {
     EXPECT_EQ(fixed.volume.centers, start.centers);
     EXPECT_NE(moved.volume.centers, start.centers);
     // What is gained on the samples is gained between them too.
-    const double before = field_error(start, other).rmse;
-    EXPECT_LT(field_error(fixed.volume, other).rmse, .6 * before);
-    EXPECT_LT(field_error(moved.volume, other).rmse, field_error(fixed.volume, other).rmse);
-    EXPECT_EQ(field_error(moved.volume, other).uncovered, 0u);
+    const double before = error_at_samples(start, other).rmse;
+    EXPECT_LT(error_at_samples(fixed.volume, other).rmse, .6 * before);
+    EXPECT_LT(error_at_samples(moved.volume, other).rmse, error_at_samples(fixed.volume, other).rmse);
+    EXPECT_EQ(error_at_samples(moved.volume, other).uncovered, 0u);
     EXPECT_EQ(moved.volume.boundary.triangles.size(), start.boundary.triangles.size());
 }
 
 TEST(Refine, LeavesKernelsThatNoSampleSees) {
     RbfVolume volume = sample_rbf_points(mesh_with_feature(6)).volume;
-    FieldSamples samples = sample_vertices(mesh_with_feature(6), 1);
+    FieldSamples samples = limit_samples_at_vertices(mesh_with_feature(6), "", 1);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {  // only where x < .4
         if (samples.points[i].x >= .4) continue;
@@ -129,21 +129,22 @@ TEST(Reduce, RefusesWrongOptionsAndSamples) {
         test::expect_error(ErrorCode::InvalidInput, part, call);
     };
     const HexMesh mesh = mesh_with_feature(4);
-    refuse("target error", [&] { (void)reduce_rbf(mesh, {.rmse = 0}); });
-    refuse("target error", [&] { (void)reduce_rbf(mesh, {.rmse = NAN}); });
-    refuse("overlap", [&] { (void)reduce_rbf(mesh, {.overlap = .1}); });
-    refuse("not radial", [&] { (void)reduce_rbf(mesh, {.kernel = CubicConvolutionKernel{}}); });
-    refuse("at most 0 points", [&] { (void)reduce_rbf(mesh, {.max_points = 0}); });
-    refuse("no field", [&] { (void)reduce_rbf(test::make_box(2, 2, 2), {}); });
-    FieldSamples samples = sample_vertices(mesh, 1);
+    refuse("target error", [&] { (void)reduce_rbf(mesh, "", {.rmse = 0}); });
+    refuse("target error", [&] { (void)reduce_rbf(mesh, "", {.rmse = NAN}); });
+    refuse("overlap", [&] { (void)reduce_rbf(mesh, "", {.overlap = .1}); });
+    refuse("not radial", [&] { (void)reduce_rbf(mesh, "", {.kernel = CubicConvolutionKernel{}}); });
+    refuse("at most 0 points", [&] { (void)reduce_rbf(mesh, "", {.max_points = 0}); });
+    refuse("no field", [&] { (void)reduce_rbf(test::make_box(2, 2, 2), ""); });
+    refuse("no hexahedra", [&] { (void)limit_samples_in_cells(HexMesh{{}, {}, mesh.attributes, {}, {}}, "f", 10); });
+    FieldSamples samples = limit_samples_at_vertices(mesh, "", 1);
     const RbfVolume volume = sample_rbf_points(mesh).volume;
     refuse("iterations", [&] { (void)refine_rbf(volume, samples, {.iterations = 0}); });
     refuse("ridge", [&] { (void)refine_rbf(volume, samples, {.ridge = 0}); });
     refuse("no channel", [&] { (void)refine_rbf(RbfVolume{}, samples); });
     samples.values[3] = INFINITY;
-    refuse("sample 3", [&] { (void)field_error(volume, samples); });
+    refuse("sample 3", [&] { (void)error_at_samples(volume, samples); });
     samples.values.pop_back();
-    refuse("one value", [&] { (void)field_error(volume, samples); });
+    refuse("one value", [&] { (void)error_at_samples(volume, samples); });
 }
 
 }  // namespace

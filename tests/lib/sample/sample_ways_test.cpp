@@ -243,7 +243,7 @@ TEST(SampleWays, RulesChangeValuesBetweenControlPointsOnly) {
     const auto scheme = sample_rbf_points(mesh, {.per_edge = 2}).volume;
     for (const ValueRule rule : {ValueRule::Cubic, ValueRule::Paper}) {
         const auto points = sample_rbf_points(mesh, {.per_edge = 2, .values = rule}).volume;
-        const auto expected = values_at_new_points(mesh, mesh.attributes[0], rule, SampleOptions{}.value_kernel);
+        const auto expected = values_at_new_points(mesh, "", rule, SampleOptions{}.value_kernel);
         ASSERT_EQ(points.size(), mesh.points.size() + expected.size());
         const std::size_t cells = points.size() - mesh.cells.size();  // the order of the cells' points is another
         for (std::size_t i = 0; i < cells; ++i) {

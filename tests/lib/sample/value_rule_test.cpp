@@ -14,8 +14,8 @@ namespace subvol {
 namespace {
 
 double rmse_of(const HexMesh& mesh, ValueRule rule, const Kernel& kernel) {
-    const auto values = values_at_new_points(mesh, mesh.attributes[0], rule, kernel);
-    const auto exact = values_at_new_points(mesh, mesh.attributes[0], ValueRule::Scheme, {});
+    const auto values = values_at_new_points(mesh, "f", rule, kernel);
+    const auto exact = values_at_new_points(mesh, "f", ValueRule::Scheme, {});
     double sum = 0;
     for (std::size_t i = 0; i < values.size(); ++i) sum += (values[i] - exact[i]) * (values[i] - exact[i]);
     return std::sqrt(sum / static_cast<double>(values.size()));
@@ -24,7 +24,7 @@ double rmse_of(const HexMesh& mesh, ValueRule rule, const Kernel& kernel) {
 TEST(ValueRule, SchemeIsTheRefinement) {
     HexMesh mesh = test::irregular();
     test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(2 * p.x) + p.y * p.z; });
-    const auto values = values_at_new_points(mesh, mesh.attributes[0], ValueRule::Scheme, {});
+    const auto values = values_at_new_points(mesh, "f", ValueRule::Scheme, {});
     const auto fine = refine(mesh).attributes[0].values;
     ASSERT_EQ(values.size(), fine.size() - mesh.points.size());
     EXPECT_TRUE(std::equal(values.begin(), values.end(), fine.begin() + static_cast<std::ptrdiff_t>(mesh.points.size())));
@@ -35,7 +35,7 @@ TEST(ValueRule, CubicReproducesQuadraticsOnABoxToItsSides) {
     HexMesh mesh = test::make_box(4, 4, 4);
     test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.x - p.y * p.z + 2 * p.z * p.z - p.x; });
     const HexMesh fine = refine(mesh);
-    const auto values = values_at_new_points(mesh, mesh.attributes[0], ValueRule::Cubic, {});
+    const auto values = values_at_new_points(mesh, "f", ValueRule::Cubic, {});
     for (std::size_t i = 0; i < values.size(); ++i) {
         const Vec3& p = fine.points[mesh.points.size() + i];
         EXPECT_NEAR(values[i], p.x * p.x - p.y * p.z + 2 * p.z * p.z - p.x, 1e-12);
@@ -45,8 +45,8 @@ TEST(ValueRule, CubicReproducesQuadraticsOnABoxToItsSides) {
 TEST(ValueRule, CubicReproducesFieldsLinearInTheParametersOnIrregularMeshes) {
     HexMesh mesh = test::make_nested_cubes(2);
     test::add_field(mesh, "f", [](const Vec3&) { return 3.0; });
-    for (const double v : values_at_new_points(mesh, mesh.attributes[0], ValueRule::Cubic, {})) EXPECT_NEAR(v, 3, 1e-12);
-    for (const double v : values_at_new_points(mesh, mesh.attributes[0], ValueRule::Paper, named_kernel("bc"))) {
+    for (const double v : values_at_new_points(mesh, "f", ValueRule::Cubic, {})) EXPECT_NEAR(v, 3, 1e-12);
+    for (const double v : values_at_new_points(mesh, "f", ValueRule::Paper, named_kernel("bc"))) {
         EXPECT_NEAR(v, 3, 1e-12);
     }
 }
@@ -57,7 +57,7 @@ TEST(ValueRule, PaperIsTheWeightedMeanOfTheControlPointsAbout) {
     test::add_field(mesh, "f", [&](const Vec3&) { return static_cast<double>(random()) * 0x1p-32; });
     const Kernel kernel = named_kernel("paper_bc");
     const HexMesh fine = refine(mesh);
-    const auto values = values_at_new_points(mesh, mesh.attributes[0], ValueRule::Paper, kernel);
+    const auto values = values_at_new_points(mesh, "f", ValueRule::Paper, kernel);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const Vec3& x = fine.points[mesh.points.size() + i];  // a box of unit cells: parameters are positions
         double weights = 0, sum = 0;
@@ -91,10 +91,17 @@ TEST(ValueRule, BetterRulesErrLess) {
     EXPECT_GT(cubic, 0);
 }
 
-TEST(ValueRule, RefusesSeveralChannels) {
+TEST(ValueRule, TheFieldIsNamedOrTheFirstOfOneChannel) {
     HexMesh mesh = test::make_box(1, 1, 1);
     mesh.attributes.push_back({"v", 3, std::vector<double>(24, 0.0)});
-    EXPECT_THROW((void)values_at_new_points(mesh, mesh.attributes[0], ValueRule::Cubic, {}), Error);
+    const auto values = [&](std::string_view field) { return values_at_new_points(mesh, field, ValueRule::Cubic, {}); };
+    test::expect_error(ErrorCode::InvalidInput, "no field \"v\" of one channel", [&] { (void)values("v"); });
+    test::expect_error(ErrorCode::InvalidInput, "no field of one channel", [&] { (void)values(""); });
+    mesh.attributes.push_back({"one", 1, std::vector<double>(8, 1.0)});
+    mesh.attributes.push_back({"two", 1, std::vector<double>(8, 2.0)});
+    EXPECT_EQ(values(""), values("one"));
+    EXPECT_EQ(values("two"), std::vector<double>(values("two").size(), 2.0));
+    test::expect_error(ErrorCode::InvalidInput, "no field \"three\"", [&] { (void)values("three"); });
 }
 
 }  // namespace

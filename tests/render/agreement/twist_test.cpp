@@ -65,7 +65,7 @@ TEST_P(TwistedBlock, FewKernelsShowWhatManyShow) {
     const Optics optics_used = optics(GetParam());
     const View view({.eye = {2.6, -4.2, 2.0}, .target = {-.55, 0, 0}, .up = {0, 0, 1}}, kSize_px, kSize_px);
     const HexMesh mesh = make_model("twist", kCells);
-    const auto full = sample_rbf_points(mesh).volume, reduced = reduce_rbf(mesh, {.rmse = .005}).volume;
+    const auto full = sample_rbf_points(mesh).volume, reduced = reduce_rbf(mesh, {}, {.rmse = .005}).volume;
     EXPECT_LT(reduced.size(), full.size() / 3);
     const auto draw = [&](const RbfVolume& volume) {
         return render_splats(volume, view, optics_used, {.method = SplatMethod::Cpu, .sheets = 400}).image;

@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
+#include "subvol/field_samples.h"
 #include "subvol/progress.h"
-#include "subvol/reduce.h"
 #include "subvol/surface.h"
 #include "subvol/vec.h"
 
@@ -35,7 +35,7 @@ struct FieldView {
 /// gradient_rmse: root of the mean of the squared length of the gradients' difference (world⁻¹), over `gradients` places
 /// samples:       places where both fields have a value
 /// uncovered:     places where the reference has one and the other has none; they count for nothing else
-struct FieldErrors {
+struct FieldDifference {
     double l1 = 0, l2 = 0, linf = 0;
     double gradient_rmse = 0;
     std::size_t samples = 0;
@@ -43,7 +43,7 @@ struct FieldErrors {
     std::size_t gradients = 0;
 };
 
-struct FieldErrorOptions {
+struct FieldDifferenceOptions {
     std::size_t samples = 100'000;
     std::uint64_t seed = 0;
     bool gradients = true;
@@ -54,13 +54,13 @@ struct FieldErrorOptions {
 ///
 /// throws: Error(InvalidInput) if no place of the reference's domain is found: 1000 tries a sample at most
 /// cost:   parallel; bitwise the same for any number of threads
-[[nodiscard]] FieldErrors compare_fields(const FieldView& test, const FieldView& reference,
-                                         const FieldErrorOptions& options = {});
+[[nodiscard]] FieldDifference compare_fields(const FieldView& test, const FieldView& reference,
+                                             const FieldDifferenceOptions& options = {});
 
 /// A field at given places with known values, weighted by the places' weights (`random_places`, `new_vertices`). No gradients.
 ///
 /// throws: Error(InvalidInput) if there is no place
-[[nodiscard]] FieldErrors compare_field(const FieldView& test, const FieldSamples& places);
+[[nodiscard]] FieldDifference compare_field(const FieldView& test, const FieldSamples& places);
 
 /// The integral of a field over its domain: the midpoint rule on cubes.
 ///

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "subvol/reduce.h"
+#include "subvol/field_samples.h"
 #include "subvol/refine.h"
 
 namespace subvol {
@@ -11,19 +11,19 @@ namespace subvol {
 /// Where in a mesh: anywhere; at interior edges of other than four cells; at the boundary.
 enum class PlaceKind { Anywhere, Extraordinary, Boundary };
 
-/// Random places in the cells of a mesh and the limit of an attribute's one channel there, to level 6; all of weight 1.
+/// Random places in the cells of a mesh and the limit of a field (`scalar_field`) there, to level 6; all of weight 1.
 ///
 /// within:  for the last two kinds, how far from the edge or face a place may be, in cells: (0,1]
 /// returns: nothing if the mesh has no such edge
-/// throws:  Error(InvalidInput) as `evaluate_limit`, or if there is no such attribute of one channel
-[[nodiscard]] FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, PlaceKind kind, double within,
+/// throws:  Error(InvalidInput) as `evaluate_limit` and `scalar_field`
+[[nodiscard]] FieldSamples random_places(const HexMesh& mesh, std::string_view field, PlaceKind kind, double within,
                                          std::size_t count, std::uint64_t seed, Scheme scheme = Scheme::Mcq);
 
 /// The vertices that are new at level `level` + 1 of a refinement, with the scheme's values there, all of weight 1: where
 /// [mnmq2007] measures (table 2). As always the mesh as it came is level 0.
 ///
-/// throws: Error(InvalidInput) as `refine`, or if there is no such attribute of one channel
-[[nodiscard]] FieldSamples new_vertices(const HexMesh& mesh, std::string_view attribute, int level = 0,
+/// throws: Error(InvalidInput) as `refine` and `scalar_field`
+[[nodiscard]] FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level = 0,
                                         Scheme scheme = Scheme::Mcq);
 
 }  // namespace subvol

@@ -10,15 +10,15 @@
 
 namespace subvol {
 
-/// A mesh's attribute as a field: trilinear in the cells as they are, found by the tetrahedra of `split_cell`. Satisfies
-/// `Field`. For the limit give it a refined mesh (`refine`, `on_limit`). Where cells overlap, the one with the smallest number
-/// counts.
+/// A scalar field of a mesh (`scalar_field`): trilinear in the cells as they are, found by the tetrahedra of `split_cell`.
+/// Satisfies `Field`. For the limit give it a refined mesh (`refine`, `on_limit`). Where cells overlap, the one with the
+/// smallest number counts.
 ///
-/// throws: Error(InvalidInput) as `validate`, or if there is no such attribute of one channel
+/// throws: Error(InvalidInput) as `validate` and `scalar_field`
 /// cost:   a tree of boxes over the cells, about 60 bytes a cell beside the mesh; some µs a value; thread-safe
 class MeshField {
 public:
-    MeshField(HexMesh mesh, std::string_view attribute);
+    MeshField(HexMesh mesh, std::string_view field);
     ~MeshField();
     MeshField(MeshField&&) noexcept;
     MeshField& operator=(MeshField&&) noexcept;

@@ -71,4 +71,13 @@ struct SelectedField {
 /// throws: Error(InvalidInput) if no attribute has that name; lists those that exist
 [[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name);
 
+/// The field that a call of the library works on.
+///
+/// field:  names an attribute of one channel; empty: the first one
+/// throws: Error(InvalidInput) if there is no such attribute
+[[nodiscard]] const Attribute& scalar_field(const HexMesh& mesh, std::string_view field);
+
+/// The mesh with no attribute but this one. throws: as `scalar_field`
+[[nodiscard]] HexMesh with_scalar_field(const HexMesh& mesh, std::string_view field);
+
 }  // namespace subvol

@@ -2,42 +2,25 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+#include <string_view>
 
+#include "subvol/field_samples.h"
 #include "subvol/limit.h"
 #include "subvol/progress.h"
 #include "subvol/rbf_volume.h"
 
 namespace subvol {
 
-/// A scalar field at places of a volume. weights: the volume that each sample stands for, ≥ 0 (world³)
-struct FieldSamples {
-    std::vector<Vec3> points;
-    std::vector<double> values;
-    std::vector<double> weights;
-
-    [[nodiscard]] std::size_t size() const { return points.size(); }
-};
-
-/// The first channel of the mesh's first attribute at the limit of every vertex of its level-`level` refinement: exact values,
-/// the boundary included.
-///
-/// throws: Error(InvalidInput) as `refine`, or if the mesh has no attribute
-[[nodiscard]] FieldSamples sample_vertices(const HexMesh& mesh, int level, const LimitOptions& options = {});
-
-/// The same field at `count` places (at least one a cell, of at most `count` cells) inside control cells, well spread.
-[[nodiscard]] FieldSamples sample_cells(const HexMesh& mesh, std::size_t count, const LimitOptions& options = {});
-
 /// How far a field is from samples: the root of the volume's mean squared error.
 ///
 /// uncovered: samples where the field has no value; they do not count for rmse
-struct FieldError {
+struct ErrorAtSamples {
     double rmse = 0;
     double max_abs = 0;
     std::size_t uncovered = 0;
 };
 
-[[nodiscard]] FieldError field_error(const RbfVolume& volume, const FieldSamples& samples);
+[[nodiscard]] ErrorAtSamples error_at_samples(const RbfVolume& volume, const FieldSamples& samples);
 
 /// rmse:       to be reached, in units of the field, > 0
 /// kernel:     of the result; radial
@@ -62,7 +45,7 @@ struct ReduceReport {
     std::size_t samples = 0;
     int rounds = 0;
     double rmse = 0;
-    FieldError validation;
+    ErrorAtSamples validation;
     bool reached = false;
     double seconds = 0;
 };
@@ -83,8 +66,11 @@ struct ReduceResult {
 [[nodiscard]] ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validation,
                                       const ReduceOptions& options = {});
 
-/// The same from a mesh: samples of its limit, its boundary surface and bounds.
-[[nodiscard]] ReduceResult reduce_rbf(const HexMesh& mesh, const ReduceOptions& options = {});
+/// The same for a field of a mesh: samples of its limit, its boundary surface and bounds.
+///
+/// field:  as in `scalar_field`
+/// throws: as above, as `refine` and `scalar_field`
+[[nodiscard]] ReduceResult reduce_rbf(const HexMesh& mesh, std::string_view field, const ReduceOptions& options = {});
 
 /// move:       centres and sizes too, not values, gradients and moments alone
 /// iterations: at most, of the solver: conjugate gradients without `move`, Levenberg-Marquardt with it

@@ -83,11 +83,11 @@ struct SampleResult {
 
 /// What a rule makes of the first refinement's new points: the error of a rule is its difference from the scheme there.
 ///
-/// attribute: of `mesh`, one channel
-/// kernel:    of the rule `Paper`
-/// returns:   a value for each point that `refine` adds to those of the mesh, in its order
-/// throws:    Error(InvalidInput) as `refine`, or if the attribute has several channels
-[[nodiscard]] std::vector<double> values_at_new_points(const HexMesh& mesh, const Attribute& attribute, ValueRule rule,
+/// field:   as in `scalar_field`
+/// kernel:  of the rule `Paper`
+/// returns: a value for each point that `refine` adds to those of the mesh, in its order
+/// throws:  Error(InvalidInput) as `refine` and `scalar_field`
+[[nodiscard]] std::vector<double> values_at_new_points(const HexMesh& mesh, std::string_view field, ValueRule rule,
                                                        const Kernel& kernel);
 
 }  // namespace subvol

@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "subvol/field_samples.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "bucket_sort.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
-#include "subvol/reduce.h"
 
 namespace subvol {
 namespace {
-
-const Attribute& first_attribute(const HexMesh& mesh) {
-    if (mesh.attributes.empty())
-        throw Error(ErrorCode::InvalidInput, "the mesh has no field to sample", {}, "an attribute at its points");
-    return mesh.attributes[0];
-}
 
 /// The volume about a corner: an eighth of the determinant of its edges.
 double corner_volume(const HexMesh& mesh, const std::array<Index, 8>& cell, std::size_t corner) {
@@ -27,23 +21,22 @@ double corner_volume(const HexMesh& mesh, const std::array<Index, 8>& cell, std:
 
 }  // namespace
 
-FieldSamples sample_vertices(const HexMesh& mesh, int level, const LimitOptions& options) {
-    const HexMesh fine =
-        on_limit(refine(mesh, {.scheme = options.scheme, .levels = level, .progress = options.progress}), options.scheme.kind);
-    const Attribute& field = first_attribute(fine);
-    FieldSamples samples{.points = fine.points, .values = {}, .weights = std::vector<double>(fine.points.size())};
-    samples.values.resize(fine.points.size());
-    for (std::size_t p = 0; p < fine.points.size(); ++p)
-        samples.values[p] = field.values[p * static_cast<std::size_t>(field.channels)];
+FieldSamples limit_samples_at_vertices(const HexMesh& mesh, std::string_view field, int level, const LimitOptions& options) {
+    const RefineOptions refinement{.scheme = options.scheme, .levels = level, .progress = options.progress};
+    const HexMesh fine = on_limit(refine(with_scalar_field(mesh, field), refinement), options.scheme.kind);
+    FieldSamples samples{
+        .points = fine.points, .values = fine.attributes[0].values, .weights = std::vector<double>(fine.points.size())};
     for (const auto& cell : fine.cells) {
         for (std::size_t k = 0; k < 8; ++k) samples.weights[cell[k]] += corner_volume(fine, cell, k);
     }
     return samples;
 }
 
-FieldSamples sample_cells(const HexMesh& mesh, std::size_t count, const LimitOptions& options) {
-    first_attribute(mesh);
-    if (count < 1) throw Error(ErrorCode::InvalidInput, "no sample is asked for", {}, "1 or more");
+FieldSamples limit_samples_in_cells(const HexMesh& mesh, std::string_view field, std::size_t count,
+                                    const LimitOptions& options) {
+    const HexMesh bare = with_scalar_field(mesh, field);
+    validate(bare);
+    if (count < 1) throw Error(ErrorCode::InvalidInput, "the number of samples is 0", {}, "1 or more");
     const std::size_t cells = mesh.cells.size(), used = std::min(cells, count), each = count / used;
     // The R3 sequence of the plastic number's sibling: 1/g, 1/g², 1/g³ with g⁴ = g + 1.
     constexpr double kG = 1.2207440846057596;
@@ -55,13 +48,11 @@ FieldSamples sample_cells(const HexMesh& mesh, std::size_t count, const LimitOpt
         queries.push_back(
             {static_cast<Index>(k / each * cells / used), {part(1 / kG), part(1 / (kG * kG)), part(1 / (kG * kG * kG))}});
     }
-    LimitSamples limit = evaluate_limit(mesh, queries, options);
-    FieldSamples samples{.points = std::move(limit.positions), .values = {}, .weights = {}};
-    const LimitAttribute& field = limit.attributes[0];
+    LimitSamples limit = evaluate_limit(bare, queries, options);
+    FieldSamples samples{.points = std::move(limit.positions), .values = std::move(limit.attributes[0].values), .weights = {}};
     const double share = static_cast<double>(cells) / static_cast<double>(used * each);
-    for (std::size_t k = 0; k < queries.size(); ++k) {
-        samples.values.push_back(field.values[k * field.channels]);
-        samples.weights.push_back(share * std::max(0.0, glm::determinant(limit.jacobians[k])));
+    for (const Mat3& jacobian : limit.jacobians) {
+        samples.weights.push_back(share * std::max(0.0, glm::determinant(jacobian)));
     }
     return samples;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/empty_space.h"
+#include "subvol/visible_points.h"
 
 #include <algorithm>
 #include <atomic>
@@ -212,7 +212,7 @@ VisibleVolume drop_invisible(const RbfVolume& volume, std::size_t channel, const
     return result;
 }
 
-TransferFunction above(double value) {
+TransferFunction opaque_above(double value) {
     const double next = std::nextafter(value, std::numeric_limits<double>::infinity());
     return {.color = {{value, Vec3(1.0)}}, .opacity = {{value, 0}, {next, 1}}};
 }

@@ -16,7 +16,7 @@ struct VisibleVolume {
 /// opacity. In a small box the field may be anything between the least and the largest corrected value that kernels have there:
 /// it is their mean. So what is dropped changes nothing that is seen.
 ///
-/// function: of the channel's values; only its opacity counts. `above(t)` hides what is at or below t.
+/// function: of the channel's values; only its opacity counts. `opaque_above(t)` hides what is at or below t.
 /// throws:   Error(InvalidInput) if there is no such channel, the function is not valid, or the kernel has negative lobes:
 /// their
 ///           field is not bounded by the kernels' values
@@ -24,6 +24,6 @@ struct VisibleVolume {
 [[nodiscard]] VisibleVolume drop_invisible(const RbfVolume& volume, std::size_t channel, const TransferFunction& function);
 
 /// A white transfer function that is opaque above a value, and clear at it and below.
-[[nodiscard]] TransferFunction above(double value);
+[[nodiscard]] TransferFunction opaque_above(double value);
 
 }  // namespace subvol

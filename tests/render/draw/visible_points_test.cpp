@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What drop_invisible drops must not be missed in any picture.
-#include "subvol/empty_space.h"
+#include "subvol/visible_points.h"
 
 #include <gtest/gtest.h>
 
@@ -56,15 +56,15 @@ INSTANTIATE_TEST_SUITE_P(Corrections, EmptySpace, testing::Values(Correction::No
 
 TEST(EmptySpaceLimits, EverythingOrNothing) {
     const auto volume = sample_rbf_points(make_model("ball", 4)).volume;
-    EXPECT_EQ(drop_invisible(volume, 0, above(10)).volume.size(), 0u);
-    EXPECT_EQ(drop_invisible(volume, 0, above(-10)).dropped, 0u);
+    EXPECT_EQ(drop_invisible(volume, 0, opaque_above(10)).volume.size(), 0u);
+    EXPECT_EQ(drop_invisible(volume, 0, opaque_above(-10)).dropped, 0u);
 }
 
 TEST(EmptySpaceLimits, RefusesChannelsAndKernelsThatItCannotBound) {
     auto volume = sample_rbf_points(make_model("ball", 4)).volume;
-    EXPECT_THROW((void)drop_invisible(volume, 1, above(0)), Error);
+    EXPECT_THROW((void)drop_invisible(volume, 1, opaque_above(0)), Error);
     volume.kernel = named_kernel("two_gaussians");
-    EXPECT_THROW((void)drop_invisible(volume, 0, above(0)), Error);
+    EXPECT_THROW((void)drop_invisible(volume, 0, opaque_above(0)), Error);
 }
 
 }  // namespace
