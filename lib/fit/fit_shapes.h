@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "least_squares.h"
 #include "subvol/fit_kernel.h"
 
 namespace subvol::detail {
@@ -15,5 +16,14 @@ namespace subvol::detail {
 [[nodiscard]] KernelFit fit_wendland_c4(const BasisFunction& basis);
 [[nodiscard]] KernelFit fit_separable_gaussian(const BasisFunction& basis);
 [[nodiscard]] KernelFit fit_separable_table(const BasisFunction& basis);
+
+/// The search for a width or radius.
+[[nodiscard]] inline Unknown length_from(double start) {
+    return {.start = start, .lower = 0.05, .upper = 6};
+}
+
+[[nodiscard]] inline FitReport report_of(const Minimum& minimum, int parameters) {
+    return {.errors = {}, .parameters = parameters, .iterations = minimum.iterations, .converged = minimum.converged};
+}
 
 }  // namespace subvol::detail

@@ -3,6 +3,7 @@
 
 #include "fit_samples.h"
 #include "fit_shapes.h"
+#include "kernel_formulas.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -105,6 +106,28 @@ TuckerFit fit_tucker(const BasisFunction& basis, int rank) {
             .value();
     });
     return fit;
+}
+
+KernelFit detail::fit_separable_gaussian(const BasisFunction& basis) {
+    const std::size_t last = fit_last(basis);
+    const auto residuals = [&](std::span<const double> p, std::span<double> to) {
+        const Kernel kernel = SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]};
+        auto formulas = formulas_of(kernel);
+        std::vector<double> line;
+        for (std::size_t i = 0; i <= last; ++i) {
+            const double x = fit_step(basis) * static_cast<double>(i);
+            line.push_back(formulas.kernel_factor(formulas.kind, formulas.parameters, x));
+        }
+        std::size_t entry = 0;
+        each_in_wedge(last, [&](std::size_t i, std::size_t j, std::size_t k) {
+            const double error = line[i] * line[j] * line[k] - basis_at(basis, i, j, k);
+            to[entry++] = std::sqrt(wedge_multiplicity(i, j, k)) * error;
+        });
+    };
+    const std::vector<Unknown> unknowns{length_from(0.6), {1, -10, 10}, {-0.5, -10, 10}};
+    const Minimum minimum = minimize_squares(unknowns, wedge_size(last), residuals);
+    const auto& p = minimum.parameters;
+    return {SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]}, report_of(minimum, 3)};
 }
 
 KernelFit detail::fit_separable_table(const BasisFunction& basis) {

@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+// The boundary of a refined mesh without the refined mesh. The rules of all schemes make the points of the boundary from points
+// of the boundary alone. So it is enough to keep, at each level, the cells that have a point on the hull: they contain every
+// entity that a rule of the boundary looks at.
+//
+// Cutting off the other cells exposes new faces. None of them has a point on the hull, as every cell at such a point is kept;
+// so one point of a face decides whether it belongs to the hull of the whole mesh or was exposed.
+#include "boundary_level.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
 #include <algorithm>
 
-#include "boundary_of_child.h"
+#include "boundary_rings.h"
+#include "child_topology.h"
+#include "refine_steps.h"
+#include "scheme_rows.h"
 #include "subvol/limit.h"
-#include "subvol/topology.h"
 #include "surface_builder.h"
 #include "topology_parts.h"
 
@@ -11,47 +23,122 @@ namespace subvol::detail {
 
 namespace {
 
-// Schemes make the boundary of the boundary alone. So it is enough to refine the cells about it: theirs is all that a rule of
-// the boundary looks at. What else bounds these cells is none of it; a mark at the points tells which is which: 1 on the
-// boundary. No point of a boundary's face is made of others, and no point of the cut's faces is made of the boundary's.
+using HullFlags = std::vector<std::uint8_t>;  // for each point: whether it is on the hull
 
-bool marked(const HexMesh& mesh, const std::array<Index, 4>& face) {
-    const auto& marks = mesh.attributes.front().values;
-    return std::ranges::all_of(face, [&](Index p) { return marks[p] > .5; });
-}
-
-/// 1 at the points of marked faces that bound the mesh, else 0.
-std::vector<double> marks_of(const HexMesh& mesh) {
-    Topology topology;  // of its faces only
+HullFlags hull_points(const HexMesh& mesh) {
+    Topology topology;  // its faces only
     topology.point_count = mesh.points.size();
     topology.cells = mesh.cells;
     build_faces(topology);
-    std::vector<double> marks(mesh.points.size(), 0);
+    HullFlags on_hull(mesh.points.size(), 0);
     for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_hull(static_cast<Index>(f)) || !marked(mesh, topology.faces[f])) continue;
-        for (const Index p : topology.faces[f]) marks[p] = 1;
+        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+        for (const Index p : topology.faces[f]) on_hull[p] = 1;
     }
-    return marks;
+    return on_hull;
 }
 
-/// The cells with a point on the marked boundary, newly marked.
-HexMesh cells_about_boundary(HexMesh mesh) {
-    mesh.attributes.front().values = marks_of(mesh);
-    const auto& marks = mesh.attributes.front().values;
-    std::erase_if(mesh.cells,
-                  [&](const auto& cell) { return std::ranges::none_of(cell, [&](Index p) { return marks[p] > 0; }); });
-    return without_unused_points(std::move(mesh));
+/// The cells that have a point on the hull, without attributes, and the flags of their points.
+struct HullCells {
+    HexMesh mesh;
+    HullFlags on_hull;
+
+    HullCells(const HexMesh& whole, std::span<const std::uint8_t> flags) {
+        const auto at_hull = [&](const auto& entity) { return std::ranges::any_of(entity, [&](Index p) { return flags[p]; }); };
+        std::ranges::copy_if(whole.cells, std::back_inserter(mesh.cells), at_hull);
+        std::ranges::copy_if(whole.creases, std::back_inserter(mesh.creases), at_hull);
+        std::ranges::copy_if(whole.sharp_faces, std::back_inserter(mesh.sharp_faces), at_hull);
+        std::vector<std::uint8_t> used(flags.size(), 0);
+        for (const auto& cell : mesh.cells) {
+            for (const Index p : cell) used[p] = 1;
+        }
+        for (std::size_t p = 0; p < used.size(); ++p) {
+            if (used[p]) on_hull.push_back(flags[p]);
+        }
+        mesh.points = whole.points;
+        mesh = without_unused_points(std::move(mesh));
+    }
+};
+
+/// Calls visit(face) for the faces of the whole mesh's hull.
+template <class Visit>
+void each_hull_face(const Topology& topology, std::span<const std::uint8_t> on_hull, const Visit& visit) {
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        const auto face = static_cast<Index>(f);
+        if (topology.face_on_hull(face) && on_hull[topology.faces[f][0]]) visit(face);
+    }
+}
+
+HullFlags hull_points_of_child(const Topology& parent, const HullFlags& on_hull) {
+    const ChildNumbering first(parent);
+    HullFlags child(first.end, 0);
+    each_hull_face(parent, on_hull, [&](Index face) {
+        child[first.faces + face] = 1;
+        for (const Index p : parent.faces[face]) child[p] = 1;
+        for (const Index e : parent.face_edges[face]) child[first.edges + e] = 1;
+    });
+    return child;
+}
+
+Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const HullFlags& on_hull,
+                          const SchemeOptions& scheme) {
+    const SchemeRows rows(topology, scheme);
+    const ChildNumbering first(topology);
+    SurfaceBuilder builder(first.cells);  // no cell point is on the boundary
+    each_hull_face(topology, on_hull, [&](Index face) {
+        const auto& corners = topology.faces[face];
+        const auto quad = outward_quad(topology, topology.face_cells[face][0], face);
+        const auto center = static_cast<Index>(first.faces + face);
+        const auto edge_point = [&](std::size_t k) {  // between corners k and k + 1
+            const std::size_t a = slot_of(corners, quad[k]), b = slot_of(corners, quad[(k + 1) % 4]);
+            return static_cast<Index>(first.edges + topology.face_edges[face][(a + 1) % 4 == b ? a : b]);
+        };
+        for (std::size_t k = 0; k < 4; ++k) builder.add({quad[k], edge_point(k), center, edge_point((k + 3) % 4)});
+    });
+    tbb::enumerable_thread_specific<StencilBuilder> scratch;
+    return builder.finish([&](Index p) {
+        if (p < rows.kept()) return mesh.points[p];
+        StencilBuilder& row = scratch.local();
+        row.clear();
+        rows.write_row(p, row);
+        const StencilRuns stencil = row.finish();
+        Vec3 position(0.0);
+        std::size_t next = 0;
+        for (const auto& [weight, count] : stencil.runs) {
+            Vec3 sum(0.0);
+            for (std::uint32_t i = 0; i < count; ++i) sum += mesh.points[stencil.points[next++]];
+            position += weight * sum;
+        }
+        return position;
+    });
 }
 
 }  // namespace
 
+Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const SchemeOptions& scheme) {
+    return boundary_of_child(mesh, topology, HullFlags(mesh.points.size(), 1), scheme);
+}
+
+Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_hull, const SchemeOptions& scheme) {
+    const HullCells near(mesh, on_hull);
+    return boundary_of_child(near.mesh, build_topology(near.mesh), near.on_hull, scheme);
+}
+
 Surface boundary_at_level(HexMesh mesh, const RefineOptions& options) {
     RefineOptions once = options;
     once.levels = 1;
-    mesh.attributes = {{"boundary", 1, std::vector<double>(mesh.points.size(), 1)}};
-    for (int level = 0; level < options.levels; ++level) mesh = refine(cells_about_boundary(std::move(mesh)), once);
+    mesh.attributes.clear();
+    HullFlags on_hull = hull_points(mesh);
+    for (int level = 0; level < options.levels; ++level) {
+        HullCells near(mesh, on_hull);
+        Topology topology = build_topology(near.mesh);
+        on_hull = hull_points_of_child(topology, near.on_hull);
+        RefinedPoints child = refine_points(std::move(near.mesh), std::move(topology), once);
+        mesh = std::move(child.mesh);
+        mesh.cells = child_cells(child.parent);
+    }
     mesh = on_limit(std::move(mesh), options.scheme.kind);
-    return boundary_surface_where(mesh, [&](const auto& face) { return marked(mesh, face); });
+    return boundary_surface_where(mesh, [&](const auto& face) { return on_hull[face[0]] != 0; });
 }
 
 }  // namespace subvol::detail

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "control_mesh.h"
 #include "dense_block.h"
 #include "patch.h"
+#include "refine_steps.h"
 #include "run_nested.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"

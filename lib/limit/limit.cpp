@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "control_mesh.h"
 #include "limit_batch.h"
+#include "refine_steps.h"
 #include "run_nested.h"
 #include "subvol/error.h"
 

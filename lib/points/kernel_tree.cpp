@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bucket_sort.h"
+#include "subvol/error.h"
 
 namespace subvol::detail {
 namespace {
@@ -21,6 +22,16 @@ float rounded_up(double x) {
 }
 
 }  // namespace
+
+void check_rbf_volume(const RbfVolume& volume) {
+    if (!is_radial(volume.kernel)) {
+        throw Error(ErrorCode::InvalidInput, "the kernel is not radial, frames have no axes for it", {}, "a radial kernel");
+    }
+    if (volume.size() >= kNone) {
+        throw Error(ErrorCode::InvalidInput, std::to_string(volume.size()) + " kernels are too many", {}, "fewer than 2³²");
+    }
+    validate(volume);
+}
 
 InverseRoot inverse_root(const Symmetric3& frame) {
     const Mat3 s = matrix(frame);

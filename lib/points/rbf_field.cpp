@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "check_rbf_volume.h"
 #include "kernel_tree.h"
 #include "kernel_weight.h"
 #include "space_order.h"

@@ -7,12 +7,22 @@
 
 #include "kernel_tree.h"
 #include "subvol/kernel.h"
+#include "subvol/rbf_volume.h"
 #include "subvol/reduce.h"
 
 namespace subvol::detail {
 
 /// What a kernel stands for, in its own scale: v + h·(A d) + m·e, all in units of the field.
 using KernelTerms = std::array<double, 5>;
+
+/// A slope in the world taken into a kernel's frame, h with g·d = h·(A d): h = A⁻ᵀ g = A S g.
+[[nodiscard]] inline Vec3 to_frame(const Symmetric3& frame, const Vec3& g) {
+    return inverse_root(frame).times(matrix(frame) * g);
+}
+
+/// The terms of a channel in the kernels' frames, and back.
+[[nodiscard]] std::vector<KernelTerms> terms_of(const RbfVolume& volume, const RbfChannel& channel);
+void set_terms(RbfChannel& channel, std::span<const Symmetric3> frames, std::span<const KernelTerms> terms);
 
 /// The linear least-squares problem of an RBF volume with fixed kernels: Σ weight (f(x) − value)² over samples.
 class FieldFit {
@@ -62,5 +72,12 @@ private:
     };
     std::vector<Place> columns_;
 };
+
+/// Moves centres, sizes and terms of the volume's first channel to fit the samples. Returns iterations and bytes.
+struct MovingFitReport {
+    int iterations = 0;
+    std::size_t bytes = 0;
+};
+MovingFitReport fit_moving(RbfVolume& volume, const FieldSamples& samples, const RbfRefineOptions& options);
 
 }  // namespace subvol::detail

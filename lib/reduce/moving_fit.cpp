@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "moving_fit.h"
-
 #include <ceres/ceres.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "bucket_sort.h"
+#include "field_fit.h"
 #include "kernel_weight.h"
-#include "rbf_terms.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

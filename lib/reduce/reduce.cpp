@@ -10,12 +10,11 @@
 #include <string>
 
 #include "bucket_sort.h"
-#include "rbf_terms.h"
+#include "field_fit.h"
 #include "sample_parts.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
 #include "subvol/surface.h"
-#include "thin_samples.h"
 
 namespace subvol {
 

@@ -3,11 +3,9 @@
 #include <cmath>
 #include <string>
 
-#include "check_rbf_volume.h"
-#include "moving_fit.h"
-#include "rbf_terms.h"
+#include "field_fit.h"
+#include "sample_parts.h"
 #include "subvol/error.h"
-#include "thin_samples.h"
 
 namespace subvol {
 namespace {

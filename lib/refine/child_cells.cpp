@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "child_cells.h"
+#include "child_topology.h"
 
 #include "bucket_sort.h"
 #include "subvol/cell.h"

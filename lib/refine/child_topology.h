@@ -5,6 +5,38 @@
 
 namespace subvol::detail {
 
+/// Where the points of the four kinds start in the child's numbering: old points, then one an edge, a face, a cell.
+struct ChildNumbering {
+    explicit ChildNumbering(const Topology& t)
+        : edges(t.point_count), faces(edges + t.edges.size()), cells(faces + t.faces.size()), end(cells + t.cells.size()) {}
+    std::size_t edges, faces, cells, end;
+};
+
+/// A place of the 3×3×3 lattice of a refined cell: a corner, or the number of one of its edges or faces, or the cell itself.
+struct LatticePlace {
+    enum Kind : std::uint8_t { Corner, Edge, Face, Cell } kind = Cell;
+    std::uint8_t number = 0;
+};
+
+/// The place of corner `corner` of child `child`.
+[[nodiscard]] LatticePlace lattice_place(std::size_t child, std::size_t corner);
+
+/// The cells of the child: 8c + k lies at corner k of cell c and is turned as c is.
+[[nodiscard]] std::vector<std::array<Index, 8>> child_cells(const Topology& parent);
+[[nodiscard]] constexpr Index child_cell(std::size_t c, std::size_t k) {
+    return static_cast<Index>(8 * c + k);
+}
+
+/// The 27 points of a refined cell, u fastest, in the child's numbering.
+[[nodiscard]] std::array<Index, 27> lattice_points(const Topology& parent, Index cell);
+
+/// The eight cells that 27 lattice points make.
+[[nodiscard]] std::array<std::array<Index, 8>, 8> split_lattice(const std::array<Index, 27>& points);
+
+/// The tags of the child: both halves of a crease, the four quarters of a sharp face.
+[[nodiscard]] std::vector<std::array<Index, 2>> child_creases(const Topology& parent);
+[[nodiscard]] std::vector<std::array<Index, 4>> child_sharp_faces(const Topology& parent);
+
 /// The topology of the child in the numbering of `refine`, derived from its parent's without sorting: exactly what
 /// `build_topology` makes of the child mesh.
 ///

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "bucket_sort.h"
-#include "child_cells.h"
+#include "child_topology.h"
 #include "scheme_rows.h"
 #include "topology_parts.h"
 

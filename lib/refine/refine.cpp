@@ -2,9 +2,8 @@
 #include "subvol/refine.h"
 
 #include "child_topology.h"
-#include "control_mesh.h"
-#include "last_level.h"
 #include "patch.h"
+#include "refine_steps.h"
 #include "scheme_rows.h"
 #include "subvol/error.h"
 
@@ -82,16 +81,30 @@ void check_cells(const HexMesh& mesh, std::span<const Index> cells) {
 
 }  // namespace
 
-detail::LastLevel detail::refine_without_cells(HexMesh control, Topology topology, const RefineOptions& options) {
-    LastLevel last{std::move(control), std::move(topology)};
-    for (int level = 1; level <= options.levels; ++level) {
-        if (level > 1) last.parent = child_topology(last.parent);
-        HexMesh child = child_data(last.mesh, SchemeRows(last.parent, options.scheme), options.progress, level);
-        child.creases = child_creases(last.parent);
-        child.sharp_faces = child_sharp_faces(last.parent);
-        last.mesh = std::move(child);
+void detail::check_levels(int levels) {
+    if (levels < 0 || levels > 10) {
+        throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {}, "0 to 10");
     }
-    return last;
+}
+
+HexMesh detail::control_mesh(HexMesh mesh, const SchemeOptions& scheme, int levels) {
+    check_levels(levels);
+    validate(mesh);
+    HexMesh control = without_unused_points(std::move(mesh));
+    if (scheme.crease_angle_deg && levels > 0) tag_creases(control, *scheme.crease_angle_deg);
+    return control;
+}
+
+detail::RefinedPoints detail::refine_points(HexMesh control, Topology topology, const RefineOptions& options) {
+    RefinedPoints refined{std::move(control), std::move(topology)};
+    for (int level = 1; level <= options.levels; ++level) {
+        if (level > 1) refined.parent = child_topology(refined.parent);
+        HexMesh child = child_data(refined.mesh, SchemeRows(refined.parent, options.scheme), options.progress, level);
+        child.creases = child_creases(refined.parent);
+        child.sharp_faces = child_sharp_faces(refined.parent);
+        refined.mesh = std::move(child);
+    }
+    return refined;
 }
 
 HexMesh refine(const HexMesh& mesh, const RefineOptions& options) {
@@ -99,9 +112,9 @@ HexMesh refine(const HexMesh& mesh, const RefineOptions& options) {
     if (options.levels == 0) return control;
     report_progress(options.progress, "topology", 0);
     Topology topology = build_topology(control);
-    detail::LastLevel last = detail::refine_without_cells(std::move(control), std::move(topology), options);
-    last.mesh.cells = detail::child_cells(last.parent);
-    return std::move(last.mesh);
+    detail::RefinedPoints refined = detail::refine_points(std::move(control), std::move(topology), options);
+    refined.mesh.cells = detail::child_cells(refined.parent);
+    return std::move(refined.mesh);
 }
 
 HexMesh refine_cells(const HexMesh& mesh, std::span<const Index> cells, const RefineOptions& options) {

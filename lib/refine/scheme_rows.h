@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "child_cells.h"
+#include "child_topology.h"
 #include "schemes.h"
 #include "stencil_block.h"
 #include "subvol/progress.h"

@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "quartic.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::detail {

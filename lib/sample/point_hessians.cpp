@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "point_hessians.h"
-
 #include <Eigen/Dense>
 
 #include "bucket_sort.h"
-#include "kernel_sums.h"
+#include "direction_sums.h"
 
 namespace subvol::detail {
 

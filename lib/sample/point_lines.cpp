@@ -6,7 +6,7 @@
 
 #include "boundary_rings.h"
 #include "bucket_sort.h"
-#include "child_cells.h"
+#include "child_topology.h"
 
 namespace subvol::detail {
 

@@ -5,10 +5,9 @@
 #include <bit>
 #include <cmath>
 
-#include "boundary_of_child.h"
-#include "child_cells.h"
-#include "control_mesh.h"
-#include "last_level.h"
+#include "boundary_level.h"
+#include "child_topology.h"
+#include "refine_steps.h"
 #include "sample_counts.h"
 #include "sample_ways.h"
 #include "subvol/error.h"
@@ -122,10 +121,10 @@ SampledLevel refined_level(HexMesh control, int number, const SampleOptions& opt
     SampledLevel level;
     level.boundary = boundary_of(control, topology, options.per_edge, options);
     count_entities(level.counts, topology, static_cast<std::size_t>(options.per_edge));
-    detail::LastLevel last = detail::refine_without_cells(std::move(control), std::move(topology), refinement(options, number));
-    level.lines = detail::lines_of_child(last.parent);
-    level.mesh = std::move(last.mesh);
-    if (!interpolates(options.scheme.kind)) level.mesh.cells = detail::child_cells(last.parent);
+    detail::RefinedPoints refined = detail::refine_points(std::move(control), std::move(topology), refinement(options, number));
+    level.lines = detail::lines_of_child(refined.parent);
+    level.mesh = std::move(refined.mesh);
+    if (!interpolates(options.scheme.kind)) level.mesh.cells = detail::child_cells(refined.parent);
     return level;
 }
 
@@ -147,9 +146,9 @@ SampleResult sample_level(HexMesh control, int number, const SampleOptions& opti
 /// At counts that differ from edge to edge, or values that are not the scheme's.
 SampleResult sample_graded(const HexMesh& control, const SampleOptions& options) {
     const Topology topology = build_topology(control);
-    detail::LastLevel last = detail::refine_without_cells(control, topology, refinement(options, 2));
-    last.mesh.cells = detail::child_cells(last.parent);
-    const HexMesh twice = on_limit(std::move(last.mesh), options.scheme.kind);
+    detail::RefinedPoints refined = detail::refine_points(control, topology, refinement(options, 2));
+    refined.mesh.cells = detail::child_cells(refined.parent);
+    const HexMesh twice = on_limit(std::move(refined.mesh), options.scheme.kind);
     SampleResult result;
     int most = 1;
     if (options.tolerance > 0) {

@@ -9,7 +9,7 @@
 #include "boundary_rings.h"
 #include "bucket_sort.h"
 #include "cell_block.h"
-#include "kernel_sums.h"
+#include "direction_sums.h"
 #include "sample_counts.h"
 #include "sample_ways.h"
 #include "subvol/cell.h"
@@ -131,7 +131,7 @@ private:
     const CellBlocks& blocks_;
     const SampleOptions& options_;
     RbfVolume& volume_;
-    KernelSums sums_;
+    DirectionSums sums_;
     RuleInCell rule_;
     CellBlocks::Jet jet_;
     std::size_t point_ = 0;

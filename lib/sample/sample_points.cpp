@@ -4,8 +4,7 @@
 
 #include <atomic>
 
-#include "kernel_sums.h"
-#include "point_hessians.h"
+#include "direction_sums.h"
 #include "sample_ways.h"
 #include "value_rules.h"
 
@@ -110,7 +109,7 @@ private:
     const HexMesh& mesh_;
     const PointLines& lines_;
     bool across_;
-    KernelSums sums_;
+    DirectionSums sums_;
     RbfVolume& volume_;
     std::vector<ChannelView> sources_;
     std::vector<double> d_, dd_;

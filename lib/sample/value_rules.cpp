@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "child_cells.h"
+#include "child_topology.h"
 #include "subvol/refine.h"
 
 namespace subvol {

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fit_samples.h"
 #include "fit_shapes.h"
-#include "kernel_formulas.h"
-#include "least_squares.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr double kLeastLength = 0.05, kMostLength = 6;  // of widths and radii
 constexpr double kLeastRatio = 1.25;  // of the widths of two Gaussians: closer ones only cancel, with amplitudes without bound
 
 /// A kernel of amplitude 1 by its one length.
@@ -46,14 +43,6 @@ struct ScaledSum {
     }
 };
 
-FitReport report_of(const Minimum& minimum, int parameters) {
-    return {.errors = {}, .parameters = parameters, .iterations = minimum.iterations, .converged = minimum.converged};
-}
-
-Unknown length_from(double start) {
-    return {start, kLeastLength, kMostLength};
-}
-
 /// Length and amplitude of one term.
 struct OneTerm {
     double length, amplitude;
@@ -73,6 +62,25 @@ std::vector<double> widths_of(std::span<const double> ratios) {
     std::vector<double> widths(ratios.begin(), ratios.end());
     for (std::size_t i = 1; i < widths.size(); ++i) widths[i] *= widths[i - 1];
     return widths;
+}
+
+std::vector<double> profile(const RadialSamples& samples, const Kernel& kernel) {
+    std::vector<double> values;
+    for (const double rho : samples.rho) values.push_back(radial_value(kernel, rho));
+    return values;
+}
+
+std::vector<double> difference(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<double> result(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] - b[i];
+    return result;
+}
+
+/// Turns the column of B into that of a kernel with +3/2·B in the inner cubic coefficient.
+void slip(const RadialSamples& samples, double extent, std::vector<double>& column) {
+    for (std::size_t i = 0; i < samples.size() && samples.rho[i] < extent / 2; ++i) {
+        column[i] += 3 * samples.rho[i] * samples.rho[i] * samples.rho[i];
+    }
 }
 
 }  // namespace
@@ -125,26 +133,21 @@ KernelFit fit_gaussian_sum(const BasisFunction& basis, int terms) {
     return {GaussianSumKernel{.amplitudes = sum.amplitudes(widths), .sigmas = widths}, report_of(minimum, 2 * terms)};
 }
 
-KernelFit fit_separable_gaussian(const BasisFunction& basis) {
-    const std::size_t last = fit_last(basis);
-    const auto residuals = [&](std::span<const double> p, std::span<double> to) {
-        const Kernel kernel = SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]};
-        auto formulas = formulas_of(kernel);
-        std::vector<double> line;
-        for (std::size_t i = 0; i <= last; ++i) {
-            const double x = fit_step(basis) * static_cast<double>(i);
-            line.push_back(formulas.kernel_factor(formulas.kind, formulas.parameters, x));
-        }
-        std::size_t entry = 0;
-        each_in_wedge(last, [&](std::size_t i, std::size_t j, std::size_t k) {
-            const double error = line[i] * line[j] * line[k] - basis_at(basis, i, j, k);
-            to[entry++] = std::sqrt(wedge_multiplicity(i, j, k)) * error;
-        });
-    };
-    const std::vector<Unknown> unknowns{length_from(0.6), {1, -10, 10}, {-0.5, -10, 10}};
-    const Minimum minimum = minimize_squares(unknowns, wedge_size(last), residuals);
-    const auto& p = minimum.parameters;
-    return {SeparableGaussianKernel{.a = p[1], .b = p[2], .sigma = p[0]}, report_of(minimum, 3)};
+// Both families are linear in their parameters: a constant function and one column a parameter.
+KernelFit fit_cubic(const BasisFunction& basis, KernelShape shape, const FitOptions& options) {
+    const double extent = options.extent;
+    const RadialSamples samples = radial_samples(basis);
+    const auto of = [&](double b, double c) { return profile(samples, BcSplineKernel{.b = b, .c = c, .extent = extent}); };
+    const std::vector<double> constant = of(0, 0), target = difference(samples.mean, constant);
+    if (shape == KernelShape::CardinalSpline) {
+        const std::vector<std::vector<double>> columns{difference(constant, of(0, 1))};  // a = −C
+        const double a = linear_fit(samples.count, target, columns)[0];
+        return {CardinalSplineKernel{.a = a, .extent = extent}, {.errors = {}, .parameters = 1}};
+    }
+    std::vector<std::vector<double>> columns{difference(of(1, 0), constant), difference(of(0, 1), constant)};
+    if (options.sign_slip) slip(samples, extent, columns[0]);
+    const auto bc = linear_fit(samples.count, target, columns);
+    return {BcSplineKernel{.b = bc[0], .c = bc[1], .extent = extent}, {.errors = {}, .parameters = 2}};
 }
 
 }  // namespace subvol::detail

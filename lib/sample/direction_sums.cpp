@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "kernel_sums.h"
+#include "direction_sums.h"
 
 #include <tbb/task_group.h>
 
@@ -16,7 +16,7 @@ constexpr double kThickness = 1e-3;  // of the mean square extent
 
 }  // namespace
 
-KernelSums::KernelSums(const SampleOptions& options, RbfVolume& volume)
+DirectionSums::DirectionSums(const SampleOptions& options, RbfVolume& volume)
     : options_(options),
       volume_(volume),
       radius2_(support_radius(options.kernel) * support_radius(options.kernel)),
@@ -24,7 +24,7 @@ KernelSums::KernelSums(const SampleOptions& options, RbfVolume& volume)
       laplacian_(volume.channels.size()) {
 }
 
-void KernelSums::begin(std::size_t point) {
+void DirectionSums::begin(std::size_t point) {
     point_ = point;
     metric_ = Mat3(0.0);
     bend_ = Vec3(0.0);
@@ -32,7 +32,7 @@ void KernelSums::begin(std::size_t point) {
     std::fill(laplacian_.begin(), laplacian_.end(), 0.0);
 }
 
-void KernelSums::add(double weight, const Vec3& step, const Vec3& bend, const double* d_f, const double* dd_f) {
+void DirectionSums::add(double weight, const Vec3& step, const Vec3& bend, const double* d_f, const double* dd_f) {
     const Vec3 weighted = weight * step;
     metric_ += glm::outerProduct(weighted, step);
     bend_ += weight * bend;
@@ -42,7 +42,7 @@ void KernelSums::add(double weight, const Vec3& step, const Vec3& bend, const do
     }
 }
 
-bool KernelSums::finish(double cells) {
+bool DirectionSums::finish(double cells) {
     const double scale = (metric_[0][0] + metric_[1][1] + metric_[2][2]) / 3;
     const bool flat = !(glm::determinant(metric_) > kFlat * scale * scale * scale);
     if (flat) metric_ += Mat3(kThickness * (scale > 0 ? scale : 1));

@@ -8,16 +8,17 @@
 
 namespace subvol::detail {
 
-/// The boundary of the mesh's first refinement, without refining what lies inside. The scheme must interpolate.
+/// The boundary of the mesh's first refinement, without refining the interior. The scheme must interpolate.
 [[nodiscard]] Surface boundary_of_child(const HexMesh& mesh, const Topology& topology, const SchemeOptions& scheme);
 
-/// The same, with the topology of nothing but the cells at the boundary. on_hull: a flag for each point of the mesh
+/// The same; builds the topology of the cells at the boundary only. on_hull: a flag for each point of the mesh
 [[nodiscard]] Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_hull,
                                         const SchemeOptions& scheme);
 
-/// The boundary of the mesh refined options.levels times, on the limit, refining only what lies at the boundary.
+/// The boundary of the mesh refined options.levels times, on the limit; refines only the cells at the boundary.
 ///
-/// cost: about 20 points for each of the boundary's
+/// mesh: valid, with its creases; options.scheme.crease_angle_deg is not used
+/// cost: about 20 points for each point of the boundary
 [[nodiscard]] Surface boundary_at_level(HexMesh mesh, const RefineOptions& options);
 
 }  // namespace subvol::detail

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "point_lines.h"
 #include "subvol/sample.h"
 
 namespace subvol::detail {
 
 /// Brings together what the directions about a point say of its kernel: the frame from their steps, the gradient by least
 /// squares, the second moment as a mean (docs/adr/0004).
-class KernelSums {
+class DirectionSums {
 public:
-    KernelSums(const SampleOptions& options, RbfVolume& volume);
+    DirectionSums(const SampleOptions& options, RbfVolume& volume);
 
     void begin(std::size_t point);
 
@@ -35,6 +36,10 @@ private:
 
 /// What the moment leaves of a Hessian: H less its part along the frame's inverse, as six numbers.
 [[nodiscard]] Symmetric3 without_moment(const Mat3& hessian, const Symmetric3& frame);
+
+/// Fills in the Hessians of all channels from the gradients that the volume has, by least squares over the neighbours on the
+/// lines: along a line from the values, across it from the differences of the gradients.
+void fit_hessians(const PointLines& lines, RbfVolume& volume);
 
 /// An RBF volume of `count` points with the channels of a mesh, nothing filled in; its centers are yet to come.
 ///
