@@ -16,11 +16,11 @@ namespace {
 constexpr int kMaxLevel = 7;  // 76 MB of values
 
 struct Term {
-    std::array<int, 3> offset;  // from the corner of the new point's segment, face or cell, in points of the old level
+    std::array<int, 3> offset;  // from the lowest corner of the new point's segment, face or cell, in points of the old level
     double weight;
 };
 
-/// The masks of MCQ by which axes are half way: u + 2v + 4w.
+/// The masks of MCQ: bits u + 2v + 4w are set for the axes along which the new point lies half way.
 std::array<std::vector<Term>, 8> mcq_terms(double tension) {
     constexpr int kSide = detail::McqGrid::kSide, kShift = 1 + kSide + kSide * kSide;  // offsets are −1 to 2 along each axis
     const detail::McqGrid grid(tension);
@@ -81,8 +81,7 @@ BasisFunction product_basis(Scheme scheme, int level, int half_width, double (*f
 
 BasisFunction sample_basis_function(Scheme scheme, int level, double tension) {
     if (level < 0 || level > kMaxLevel) {
-        throw Error(ErrorCode::InvalidInput, "a basis function of level " + std::to_string(level) + " was asked for", {},
-                    "0 to 7");
+        throw Error(ErrorCode::InvalidInput, "the level of the basis function is " + std::to_string(level), {}, "0 to 7");
     }
     if (!std::isfinite(tension)) throw Error(ErrorCode::InvalidInput, "the tension is not a finite number");
     switch (scheme) {

@@ -14,7 +14,7 @@ std::size_t square(std::size_t i, std::size_t j, std::size_t k) {
     return i * i + j * j + k * k;
 }
 
-/// Count and sum of the samples at each squared distance, in steps; many squares have none.
+/// Count and sum of the samples at each squared distance, in squared steps; at many there is none.
 struct Shells {
     std::vector<double> count, sum;
 };

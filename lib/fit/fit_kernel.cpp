@@ -14,8 +14,7 @@ void check(const FitOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the extent of a cubic is " + std::to_string(options.extent), {}, "above 0, to 3");
     }
     if (options.terms < 1 || options.terms > 6) {
-        throw Error(ErrorCode::InvalidInput, "a sum of " + std::to_string(options.terms) + " Gaussians was asked for", {},
-                    "1 to 6");
+        throw Error(ErrorCode::InvalidInput, "the number of Gaussians is " + std::to_string(options.terms), {}, "1 to 6");
     }
 }
 

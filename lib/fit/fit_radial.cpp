@@ -6,16 +6,16 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kLeastRatio = 1.25;  // of the widths of two Gaussians: closer ones only cancel, with amplitudes without bound
+constexpr double kLeastRatio = 1.25;  // of the widths of two Gaussians: closer ones cancel, with unbounded amplitudes
 
-/// A kernel of amplitude 1 by its one length.
+/// Makes a kernel of amplitude 1 from its only length.
 using ByLength = Kernel (*)(double);
 
 Kernel gaussian(double sigma) {
     return GaussianKernel{.sigma = sigma};
 }
 
-/// A sum of amplitude·kernel(length): lengths are searched for, amplitudes follow from them.
+/// A sum of amplitude·kernel(length): lengths are searched for, amplitudes follow by linear least squares.
 struct ScaledSum {
     RadialSamples samples;
     ByLength kernel;
@@ -57,7 +57,7 @@ OneTerm fit_one_term(const BasisFunction& basis, ByLength kernel, double start) 
     return {minimum.parameters[0], sum.amplitudes(minimum.parameters)[0], report_of(minimum, 2)};
 }
 
-/// A first width and the ratios from each to the next, as widths.
+/// Widths from the first one and the ratio of each to the one before.
 std::vector<double> widths_of(std::span<const double> ratios) {
     std::vector<double> widths(ratios.begin(), ratios.end());
     for (std::size_t i = 1; i < widths.size(); ++i) widths[i] *= widths[i - 1];
@@ -76,7 +76,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
     return result;
 }
 
-/// Turns the column of B into that of a kernel with +3/2·B in the inner cubic coefficient.
+/// Changes the column of B to that of a kernel with +3/2·B in the inner cubic coefficient.
 void slip(const RadialSamples& samples, double extent, std::vector<double>& column) {
     for (std::size_t i = 0; i < samples.size() && samples.rho[i] < extent / 2; ++i) {
         column[i] += 3 * samples.rho[i] * samples.rho[i] * samples.rho[i];
@@ -133,7 +133,7 @@ KernelFit fit_gaussian_sum(const BasisFunction& basis, int terms) {
     return {GaussianSumKernel{.amplitudes = sum.amplitudes(widths), .sigmas = widths}, report_of(minimum, 2 * terms)};
 }
 
-// Both families are linear in their parameters: a constant function and one column a parameter.
+// Both families are linear in their parameters: a constant function and one column per parameter.
 KernelFit fit_cubic(const BasisFunction& basis, KernelShape shape, const FitOptions& options) {
     const double extent = options.extent;
     const RadialSamples samples = radial_samples(basis);

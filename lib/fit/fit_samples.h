@@ -9,7 +9,7 @@
 
 namespace subvol::detail {
 
-inline constexpr int kFitReach = 3;  // fits look at [−3,3]³
+inline constexpr int kFitReach = 3;  // fits use [−3,3]³
 
 /// The last index along an axis, and the distance between samples.
 [[nodiscard]] inline std::size_t fit_last(const BasisFunction& basis) {
@@ -22,8 +22,10 @@ inline constexpr int kFitReach = 3;  // fits look at [−3,3]³
     return basis.at(static_cast<int>(i), static_cast<int>(j), static_cast<int>(k));
 }
 
-/// The samples by their distance: for a radial kernel, least squares over these means, weighted by count, are those over all
-/// samples. `count` is the share of all samples.
+/// The means of the samples at each distance. For a radial kernel, least squares over these means, weighted by `count`, are
+/// equivalent to those over all samples.
+///
+/// count: as a part of the number of all samples
 struct RadialSamples {
     std::vector<double> rho, mean, count;
 
@@ -32,7 +34,7 @@ struct RadialSamples {
 
 [[nodiscard]] RadialSamples radial_samples(const BasisFunction& basis);
 
-/// Errors of model(i, j, k), over the wedge with its multiplicities.
+/// Errors of model(i, j, k) over all samples, by way of the wedge.
 template <class Model>
 [[nodiscard]] FitErrors wedge_errors(const BasisFunction& basis, const Model& model) {
     FitErrors errors;

@@ -6,7 +6,7 @@
 
 namespace subvol::detail {
 
-// The fits by shape; `fit_kernel` has checked the options and fills in the errors.
+// The fits of each shape. `fit_kernel` checks the options and fills in the errors.
 
 [[nodiscard]] KernelFit fit_cubic(const BasisFunction& basis, KernelShape shape, const FitOptions& options);
 [[nodiscard]] KernelFit fit_gaussian(const BasisFunction& basis);

@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 constexpr int kMostRounds = 500;
 constexpr int kMaxLevel = 6;  // 193³ values, 58 MB
 
-/// The samples of an octant as a matrix, x down and (y, z) along: entry times √ of how many samples it stands for, so that
-/// least squares over it are those over all.
+/// The samples of an octant as a matrix with rows x and columns (y, z). Each entry is multiplied by the root of how many
+/// samples are equal to it, so that least squares over the octant are those over all samples.
 struct Octant {
     VectorXd roots;  // √1, √2, √2, …
     MatrixXd values;
@@ -43,10 +43,10 @@ Octant octant_of(const BasisFunction& basis) {
     return octant;
 }
 
-/// The symmetric tensor with two of its three axes projected on the factors' columns: x by rank².
+/// The symmetric tensor with two of its three axes projected onto the columns of the factors: x by rank².
 MatrixXd project(const MatrixXd& values, const MatrixXd& factors) {
     const Eigen::Index n = factors.rows(), rank = factors.cols();
-    const MatrixXd first = factors.transpose() * values;  // p by (y, z): p may stand for any axis
+    const MatrixXd first = factors.transpose() * values;  // p by (y, z); by symmetry for any axis
     MatrixXd result(n, rank * rank);
     for (Eigen::Index z = 0; z < n; ++z) {
         const MatrixXd second = first.middleCols(n * z, n) * factors;  // p by q
@@ -55,7 +55,7 @@ MatrixXd project(const MatrixXd& values, const MatrixXd& factors) {
     return result;
 }
 
-/// The directions that carry most of the matrix' rows.
+/// The leading left singular vectors of a matrix.
 MatrixXd leading(const MatrixXd& matrix, Eigen::Index rank) {
     const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix * matrix.transpose());
     return solver.eigenvectors().rightCols(rank).rowwise().reverse();
@@ -89,7 +89,7 @@ std::vector<double> to_vector(const MatrixXd& matrix) {
 
 TuckerFit fit_tucker(const BasisFunction& basis, int rank) {
     if (rank < 1 || rank > 16) {
-        throw Error(ErrorCode::InvalidInput, "a rank of " + std::to_string(rank) + " was asked for", {}, "1 to 16");
+        throw Error(ErrorCode::InvalidInput, "the rank is " + std::to_string(rank), {}, "1 to 16");
     }
     const Octant octant = octant_of(basis);
     if (rank > octant.roots.size()) throw Error(ErrorCode::InvalidInput, "the rank is above the number of samples");

@@ -41,7 +41,7 @@ Minimum minimize_squares(std::span<const Unknown> unknowns, std::size_t residual
     cost->AddParameterBlock(static_cast<int>(at.size()));
     cost->SetNumResiduals(static_cast<int>(residuals));
     ceres::Problem problem;
-    problem.AddResidualBlock(cost, nullptr, at.data());  // which takes the cost function over
+    problem.AddResidualBlock(cost, nullptr, at.data());  // takes ownership of the cost function
     for (std::size_t i = 0; i < at.size(); ++i) {
         problem.SetParameterLowerBound(at.data(), static_cast<int>(i), unknowns[i].lower);
         problem.SetParameterUpperBound(at.data(), static_cast<int>(i), unknowns[i].upper);
@@ -63,7 +63,7 @@ std::vector<double> linear_fit(std::span<const double> weights, std::span<const 
         right[r] = root * target[row];
         for (Eigen::Index c = 0; c < count; ++c) matrix(r, c) = root * columns[static_cast<std::size_t>(c)][row];
     }
-    // Not the normal equations: Gaussians of similar widths are nearly dependent.
+    // By QR, not by the normal equations: Gaussians of similar widths are nearly dependent.
     const Eigen::VectorXd factors = matrix.colPivHouseholderQr().solve(right);
     return {factors.begin(), factors.end()};
 }

@@ -7,7 +7,7 @@
 
 namespace subvol::detail {
 
-/// Writes the residuals of some parameters.
+/// Writes the residuals for some parameters.
 using Residuals = std::function<void(std::span<const double> parameters, std::span<double> residuals)>;
 
 struct Minimum {
@@ -16,7 +16,7 @@ struct Minimum {
     bool converged = false;
 };
 
-/// Where the search for one parameter begins, and between what it stays.
+/// The start of the search for one parameter, and its bounds.
 struct Unknown {
     double start, lower, upper;
 };

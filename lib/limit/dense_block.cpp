@@ -8,7 +8,7 @@ namespace subvol::detail {
 DenseBlock::DenseBlock(int levels) : side_((std::size_t{1} << levels) + 1), lowest_(std::size_t{1} << (3 * levels)) {
     for (std::size_t d = 0; d < lowest_.size(); ++d) {
         std::array<std::size_t, 3> uvw{};
-        for (int level = 1; level <= levels; ++level) {  // the first split is the leading octal digit
+        for (int level = 1; level <= levels; ++level) {  // the leading octal digit is the child of the first split
             const std::size_t child = d >> (3 * (levels - level)) & 7;
             for (std::size_t a = 0; a < 3; ++a) {
                 uvw[a] += static_cast<std::size_t>(kCornerParameters[child][a]) << (levels - level);

@@ -18,7 +18,7 @@ public:
 
 private:
     std::size_t side_;
-    std::vector<std::uint32_t> lowest_;  // a descendant: the node at its lowest corner
+    std::vector<std::uint32_t> lowest_;  // for each descendant: the node at its lowest corner
 };
 
 }  // namespace subvol::detail

@@ -18,7 +18,8 @@ namespace subvol {
 
 namespace {
 
-/// So many cells at once that their descendants are some hundred thousand: fewer pay for their surroundings, more for memory.
+/// How many cells are refined at once, so that their descendants are some hundred thousand: fewer would spend most of the work
+/// on their surroundings, more would take too much memory.
 std::size_t batch_size(int levels) {
     return std::size_t{1} << std::max(0, 18 - 3 * levels);
 }
@@ -60,15 +61,15 @@ private:
 }  // namespace
 
 struct DenseCells::State {
-    State(const HexMesh& mesh, const RefineOptions& wanted, bool on_limit)
-        : control(detail::control_mesh(mesh, wanted.scheme, wanted.levels)),
+    State(const HexMesh& mesh, const RefineOptions& refinement, bool on_limit)
+        : control(detail::control_mesh(mesh, refinement.scheme, refinement.levels)),
           source(control),
-          options(wanted),
-          move(on_limit && !interpolates(wanted.scheme.kind)) {}
+          options(refinement),
+          move(on_limit && !interpolates(refinement.scheme.kind)) {}
 
     void refine_batch(std::span<const Index> cells, const detail::DenseBlock& block, int levels,
                       const std::function<void(const DenseCell&)>& visit) {
-        const int last_layers = move ? 1 : 0;  // a vertex's limit asks for the cells around it
+        const int last_layers = move ? 1 : 0;  // the limit of a vertex depends on the cells around it
         detail::Patch patch = detail::refine_patch(source, cells, options.scheme, levels, last_layers);
         if (move) patch.mesh = on_limit(std::move(patch.mesh), options.scheme.kind);
         Gather& gather = gathers.local();
@@ -107,7 +108,7 @@ void DenseCells::for_each(std::span<const Index> cells, int levels, const std::f
     }
     const detail::DenseBlock block(levels);
     const std::size_t most = batch_size(levels), at_least = std::max<std::size_t>(1, (cells.size() + most - 1) / most);
-    const std::size_t batch = (cells.size() + at_least - 1) / at_least;  // of the same size, as they run side by side
+    const std::size_t batch = (cells.size() + at_least - 1) / at_least;  // of equal size, as they run side by side
     const std::size_t batches = batch == 0 ? 0 : (cells.size() + batch - 1) / batch;
     constexpr std::size_t kTurn = 64;  // batches between two reports of progress
     for (std::size_t turn = 0; turn < batches; turn += kTurn) {

@@ -34,7 +34,8 @@ void check(const HexMesh& mesh, std::span<const LimitQuery> queries, const Limit
     }
 }
 
-/// What tolerances are relative to, a channel. A constant field still differs by rounding.
+/// The scale of each channel that tolerances are relative to. It is not 0 for a constant field, whose values differ by
+/// rounding.
 std::vector<double> channel_scales(const HexMesh& mesh) {
     const Box box = bounds(mesh);
     std::vector<double> scales(3, std::max(box.diagonal(), 1e-6 * glm::length(box.center())));
@@ -64,7 +65,7 @@ std::size_t batch_count(std::size_t queries) {
     return (queries + kBatch - 1) / kBatch;
 }
 
-/// Calls run(number, queries) for every batch, in parallel, and adds up what it reports.
+/// Calls run(number, queries) for every batch, in parallel, and adds up the reports.
 template <class Run>
 void run_batches(const std::vector<OpenQuery>& open, Progress* progress, LimitReport& total, const Run& run) {
     const std::size_t batches = batch_count(open.size());
@@ -95,7 +96,7 @@ LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> que
     const auto scales = channel_scales(control);
     LimitSamples samples = make_samples(control, queries.size());
 
-    // First what the whole mesh's topology settles, then what needs patches of its own.
+    // First the queries that can be answered with the topology of the whole mesh, then those that need refined patches.
     std::vector<OpenQuery> open;
     for (std::size_t i = 0; i < queries.size(); ++i) open.push_back({i, queries[i].cell, queries[i].uvw, {}});
     std::stable_sort(open.begin(), open.end(), [](const OpenQuery& a, const OpenQuery& b) { return a.cell < b.cell; });

@@ -30,7 +30,7 @@ private:
     std::size_t count_;
 };
 
-/// Weights of four grid points at −1, 0, 1, 2 for a place t in [0,1], and their derivatives.
+/// Weights of four grid points at −1, 0, 1, 2 for a parameter t in [0,1], and their derivatives.
 struct CubicBasis {
     std::array<double, 4> value{}, first{};
 
@@ -55,8 +55,9 @@ struct CubicBasis {
 
 using Basis = std::array<CubicBasis, 3>;
 
-/// Sums over 4×4×4 points, the first at `data`; points along an axis are `side` to its power apart.
-/// scale: by how much derivatives grow, 2^level
+/// Sums over 4×4×4 points of a grid of side³ points; `data` is the first of them.
+///
+/// scale: factor of the derivatives, 2^level
 void sum_grid(const double* data, std::size_t side, std::size_t channels, const Basis& basis, double scale, Jet& jet) {
     jet.assign(4 * channels, 0.0);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -97,8 +98,8 @@ public:
     }
 
 private:
-    /// Beyond a flat boundary a spline's control points are mirrored, 2 f₀ − f₁, which is what the boundary rules amount to; an
-    /// interpolant goes on quadratically, which leaves out the missing point.
+    /// Beyond a flat boundary the control points of a spline are 2 f₀ − f₁: with them the spline is the limit of the boundary
+    /// rules. An interpolant is continued quadratically: it becomes the parabola through the other three points.
     void fill_missing(const GridPoints& grid, std::size_t stride) {
         const std::size_t a = stride == 1 ? 4 : 1, b = stride == 16 ? 4 : 16;  // the strides of the other two axes
         for (const std::size_t layer : {std::size_t{0}, std::size_t{3}}) {
@@ -123,7 +124,7 @@ private:
     std::vector<double> data_;
 };
 
-/// Which of the eight children a place is in, u + 2v + 4w; the place becomes one in the child.
+/// Which of the eight children a place is in, u + 2v + 4w. The place becomes that in the child.
 std::size_t step_into_octant(Vec3& uvw) {
     std::size_t octant = 0;
     for (int a = 0; a < 3; ++a) {
@@ -153,7 +154,7 @@ void evaluate_linear(const HexMesh& mesh, std::size_t channels, Index cell, cons
     }
 }
 
-/// The cells that hold queries, ascending; OpenQuery::cell becomes the place in that list.
+/// The cells of the queries, ascending. OpenQuery::cell becomes an index into that list.
 std::vector<Index> number_cells(std::vector<OpenQuery>& open) {
     std::stable_sort(open.begin(), open.end(), [](const OpenQuery& a, const OpenQuery& b) { return a.cell < b.cell; });
     std::vector<Index> cells;
@@ -167,7 +168,7 @@ std::vector<Index> number_cells(std::vector<OpenQuery>& open) {
     return cells;
 }
 
-/// Moves a query to the child cell that it lies in.
+/// Moves a query to the child cell in which it lies.
 void enter_child(OpenQuery& at) {
     at.cell = 8 * at.cell + static_cast<Index>(kCornerOctants[step_into_octant(at.uvw)]);
 }
@@ -192,7 +193,7 @@ void BatchEvaluator::finish(const PatchSource& source, std::vector<OpenQuery> op
     }
 }
 
-/// Writes the queries that have converged at this level and takes them out of `open`.
+/// Writes the queries that have converged at this level and removes them from `open`.
 void BatchEvaluator::evaluate_level(const HexMesh& mesh, const Topology& topology, int level, std::vector<OpenQuery>& open) {
     report_.deepest_level = std::max(report_.deepest_level, level);
     const double scale = std::ldexp(1.0, level);
@@ -224,10 +225,10 @@ void BatchEvaluator::evaluate_level(const HexMesh& mesh, const Topology& topolog
     });
 }
 
-/// Whether the query has converged with this level's jet; if so, it is written.
+/// Writes the query if it has converged with this level's jet. Returns whether it has.
 bool BatchEvaluator::settle(OpenQuery& at, const Jet& jet, int level, bool regular, bool exact) {
     at.agreed = level >= 1 && is_close(jet, at.last, level) ? at.agreed + 1 : 0;
-    // A trilinear value does not change for one level at the centre of a cell, whose child point is the mean of the corners.
+    // At the centre of a cell whose cell point is the mean of its corners, a trilinear value does not change for one level.
     const bool settled = level >= 2 && at.agreed >= (regular ? 1 : 2);
     at.last = jet;
     if (!exact && !settled && level < options_.max_levels) return false;
@@ -257,8 +258,8 @@ void BatchEvaluator::refine_in_grid(OpenQuery& at, int level) {
     }
 }
 
-/// Derivatives are of half the order. About extraordinary edges and vertices they need not converge, so that after some
-/// levels the values alone decide.
+/// Derivatives converge with half the order of values. About extraordinary edges and vertices they may not converge at all, so
+/// after some levels the values alone decide.
 bool BatchEvaluator::is_close(const Jet& a, const Jet& b, int level) const {
     constexpr int kSlopeLevels = 7;
     const double slope_tolerance = level < kSlopeLevels ? std::sqrt(options_.tolerance) : HUGE_VAL;

@@ -10,15 +10,15 @@
 
 namespace subvol::detail {
 
-/// Value and derivatives of all channels at one place: entry 4c is channel c, followed by its derivatives by u, v, w. Channels
-/// 0 to 2 are the position.
+/// Values and derivatives of all channels at one place: entry 4c is the value of channel c, followed by its derivatives by u, v
+/// and w. Channels 0 to 2 are the position.
 using Jet = std::vector<double>;
 
 /// A query that has not converged yet.
 ///
-/// cell:   which of the patch's wanted cells it lies in; uvw: where in that cell
+/// cell:   the wanted cell of the patch in which it lies; uvw: its place there
 /// last:   its jet at the level before
-/// agreed: levels in a row whose jets agreed within the tolerance
+/// agreed: number of consecutive levels whose jets agreed within the tolerance
 struct OpenQuery {
     std::size_t query;
     Index cell;
@@ -29,12 +29,12 @@ struct OpenQuery {
 
 /// Evaluates the queries of a few control cells.
 ///
-/// A query whose cell lies in a regular grid is evaluated there, by B-splines or by cubic interpolation; one whose grid is wide
-/// enough is refined inside the grid, without topology. All others wait for the refinement of the patch about their cells,
-/// level by level, until two levels agree.
+/// A query whose cell lies in a regular grid is evaluated there, by B-splines or by cubic interpolation. If the grid is wide
+/// enough, it is refined inside the grid, without topology. For all other queries the patch about their cells is refined, level
+/// by level, until two levels agree.
 class BatchEvaluator {
 public:
-    /// scales: what tolerances are relative to, a channel. All references are kept.
+    /// scales: of each channel, what tolerances are relative to. All references are kept.
     BatchEvaluator(const LimitOptions& options, const std::vector<double>& scales, LimitSamples& samples);
 
     /// Evaluates the queries that need no patch; the others stay in `open`.

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which level of refinement approximates the limit within a tolerance. The limit is unknown, but where the field is smooth the
+// steps from level to level shrink by a factor of 4, so the last step bounds what is left: 1/4 + 1/16 + … = 1/3 of it.
+//
+//    ●───○───●───○───●     the nodes of level l along an edge of a control cell: even nodes ● are those of level l − 1
+//
+// The step to level l is the largest distance of an odd node ○ from its prediction by even nodes: from the mean of the two
+// beside it, if cells of level l − 1 are trilinear, or from a parabola through three of them (weights 3/8, 3/4, −1/8), if they
+// are triquadratic. In a face or cell the predictions are products of those along the axes.
 #include "subvol/limit_level.h"
 
 #include <algorithm>
@@ -27,7 +35,7 @@ std::vector<double> ranges_of(const HexMesh& mesh) {
     return ranges;
 }
 
-/// Nodes and weights from which a node of a grid is predicted.
+/// The nodes and weights that predict a node of a grid.
 struct Prediction {
     std::size_t count = 1;
     std::array<std::size_t, 27> nodes;
@@ -35,7 +43,7 @@ struct Prediction {
 
     explicit Prediction(std::size_t node) : nodes{node}, weights{1.0} {}
 
-    /// Spreads them over nodes at these steps along an axis.
+    /// Replaces each node by the nodes that predict it along an axis.
     template <std::size_t N>
     void spread(std::size_t stride, const std::array<int, N>& steps, const std::array<double, N>& by) {
         for (std::size_t p = 0; p < count; ++p) {
@@ -49,12 +57,12 @@ struct Prediction {
     }
 };
 
-/// From the even nodes about an odd one: their mean.
+/// An odd node is predicted by the mean of the even nodes beside it.
 void spread_linear(Prediction& prediction, std::size_t, std::size_t stride) {
     prediction.spread<2>(stride, {-1, 1}, {0.5, 0.5});
 }
 
-/// From three even nodes, the middle one at twice an odd number: the parabola through them.
+/// An odd node is predicted by the parabola through three even nodes, the middle one at twice an odd number.
 void spread_quadratic(Prediction& prediction, std::size_t at, std::size_t stride) {
     if (at % 4 == 1) {
         prediction.spread<3>(stride, {-1, 1, 3}, {0.375, 0.75, -0.125});
@@ -63,7 +71,7 @@ void spread_quadratic(Prediction& prediction, std::size_t at, std::size_t stride
     }
 }
 
-/// How far the odd nodes of a grid lie from what even ones predict: what its last level brought.
+/// The largest distance of a grid's odd nodes from their predictions.
 template <class Spread>
 Step last_step(const DenseCell& cell, const std::vector<double>& ranges, const Spread& spread) {
     Step most;
@@ -131,7 +139,7 @@ LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const
 }
 
 LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options) {
-    constexpr double kLeft = 0.25;  // of a step by one level more, where the field is smooth
+    constexpr double kLeft = 0.25;  // the next step is this part of the last one, where the field is smooth
     const std::size_t count = mesh.cells.size();
     LimitCells result{.cell_levels = {}, .converged = count == 0};
     if (count == 0 || !fits(count, 1, options.max_cells)) return result;
@@ -151,7 +159,7 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
             const double curved = level > 1 ? last_step(cell, ranges, spread_quadratic).value : HUGE_VAL;
             double& value = left[cell.cell].value;
             value = curved;
-            if (value <= options.value_of_range) return;  // by the nodes of the level before
+            if (value <= options.value_of_range) return;  // the nodes of the level before are enough
             value = kLeft * std::min(linear.value, curved);
             result.cell_levels[cell.cell] = static_cast<std::uint8_t>(level);
         });
@@ -160,7 +168,7 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
     }
     result.converged = open.empty();
     if (!interpolates(refinement.scheme.kind)) {
-        // Two levels give the limit of one vertex other bits: cells of both would not fit together.
+        // The limit of a vertex has different bits at different levels: cells of two levels would not fit together.
         int level = std::ranges::max(result.cell_levels);
         for (; !fits(count, level, options.max_cells); --level) result.converged = false;
         std::ranges::fill(result.cell_levels, static_cast<std::uint8_t>(level));

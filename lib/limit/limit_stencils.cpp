@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where the vertices of a scheme that does not interpolate ([mj1996], [bsxw2002]) lie on the limit.
+//
+// Let p be a vertex and the other points of the cells about it. One refinement makes the same number of points at the same
+// places about the vertex: its edge neighbours become its edge points, and so on. So p' = S p with a small square matrix S, and
+// after n levels Sⁿ p. The rows of S sum to 1, its largest eigenvalue is 1, all others are smaller: Sⁿ p converges to a single
+// point, l·p with the left eigenvector l S = l, Σ l = 1. In a grid l is the product of (1,4,1)/6 along the three axes.
+//
+// If two cells about the vertex share a second face, a point is met at two places and S has no unique columns. After one
+// refinement this no longer happens: then the limit is taken there and composed with the rows of the refinement.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -18,15 +27,14 @@ namespace {
 using detail::SchemeRows;
 using detail::StencilBuilder;
 
-/// A vertex with the points of the cells about it, and what one refinement makes of them: its edge neighbours become its edge
-/// points, and so on, so that the same few points are transformed into themselves.
+/// The matrix S of one vertex after the other.
 class LocalMatrix {
 public:
     LocalMatrix(const Topology& topology, const SchemeRows& rows) : topology_(topology), rows_(rows), first_(topology) {}
 
-    /// The left eigenvector of eigenvalue 1 as a stencil over the mesh's points.
+    /// Writes the left eigenvector of eigenvalue 1 as a stencil over the mesh's points.
     ///
-    /// returns: false, and nothing written, if a point stands in several places about the vertex
+    /// returns: false, and writes nothing, if a point is met at several places about the vertex
     bool limit_of(Index vertex, StencilBuilder& row) {
         if (detail::is_grid_point(topology_, vertex)) return spline_limit(vertex, row), true;
         if (!collect(vertex)) return false;
@@ -65,7 +73,7 @@ private:
         double weight;
     };
 
-    /// points_[i] of the parent becomes child_points_[i]. False if points repeat: two cells that share two faces, say.
+    /// Finds the points and, for points_[i], the child point child_points_[i] at its place. False if a point occurs twice.
     bool collect(Index vertex) {
         points_.assign(1, vertex);
         child_points_.assign(1, vertex);
@@ -99,12 +107,12 @@ private:
         }
     }
 
-    /// The rules of these schemes reach no further than the cells about the vertex.
+    /// The rules of these schemes use no point beyond the cells about the vertex.
     [[nodiscard]] std::uint32_t column_of(Index point) const {
         return *std::lower_bound(order_.begin(), order_.end(), point, [&](auto i, Index p) { return points_[i] < p; });
     }
 
-    /// By repeated multiplication: the next eigenvalue is at most about .7, so 1e-17 takes a hundred steps.
+    /// By power iteration: the next eigenvalue is at most about .7, so 1e-17 takes about a hundred steps.
     [[nodiscard]] std::vector<double> dominant_left_eigenvector() const {
         std::vector<double> weights(points_.size(), 0.0), next;
         weights[0] = 1;
@@ -129,13 +137,13 @@ private:
     std::vector<Entry> matrix_;
 };
 
-/// The limits of vertices about which points repeat, by way of the next level, where they no longer do.
+/// The limits of vertices about which a point occurs twice: by way of the next level, where none does.
 class RefinedLimits {
 public:
     RefinedLimits(const Topology& topology, Scheme scheme) : topology_(topology), scheme_(scheme) {}
 
     void limit_of(Index vertex, const SchemeRows& rows, StencilBuilder& row) const {
-        // What this runs in parallel must not take up another block, which could come here again.
+        // Without run_nested, a thread waiting here could take up another block and come here again.
         std::call_once(built_, [&] {
             detail::run_nested([&] {
                 child_ = detail::child_topology(topology_);

@@ -25,7 +25,7 @@ float rounded_up(double x) {
 
 void check_rbf_volume(const RbfVolume& volume) {
     if (!is_radial(volume.kernel)) {
-        throw Error(ErrorCode::InvalidInput, "the kernel is not radial, frames have no axes for it", {}, "a radial kernel");
+        throw Error(ErrorCode::InvalidInput, "the kernel is not radial: frames define no axes for it", {}, "a radial kernel");
     }
     if (volume.size() >= kNone) {
         throw Error(ErrorCode::InvalidInput, std::to_string(volume.size()) + " kernels are too many", {}, "fewer than 2³²");

@@ -12,12 +12,13 @@
 
 namespace subvol::detail {
 
-/// What the tree below needs of a volume.
+/// Checks what a KernelTree relies on.
 ///
 /// throws: Error(InvalidInput) as `validate`, if the kernel is not radial, or there are 2³² points or more
 void check_rbf_volume(const RbfVolume& volume);
 
-/// e(d) = |A d|² = dᵀ S⁻¹ d with A lower triangular (xx yx yy zx zy zz): never negative, whatever rounding does to S.
+/// A with e(d) = |A d|² = dᵀ S⁻¹ d, lower triangular (xx yx yy zx zy zz). So e is never negative, even if rounding makes S
+/// indefinite.
 struct InverseRoot {
     std::array<double, 6> a{};
 

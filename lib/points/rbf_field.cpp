@@ -17,7 +17,7 @@ namespace subvol {
 using detail::KernelTree;
 
 struct RbfField::Kernels {
-    /// What a kernel stands for: value + gradient·d + moment·e + ½ dᵀHd.
+    /// The contribution of a kernel: value + gradient·d + moment·e + ½ dᵀHd.
     struct Terms {
         float value;
         std::array<float, 3> gradient;

@@ -25,7 +25,7 @@ bool is_finite(const Vec3& p) {
 }
 
 void check_names(const std::vector<RbfChannel>& channels) {
-    if (channels.empty()) throw Error(ErrorCode::InvalidInput, "the points have no channel", {}, "one at least");
+    if (channels.empty()) throw Error(ErrorCode::InvalidInput, "the points have no channel", {}, "at least one");
     std::set<std::string> names;
     for (const auto& channel : channels) {
         if (!names.insert(channel.name).second) {
@@ -37,10 +37,10 @@ void check_names(const std::vector<RbfChannel>& channels) {
 void check_channel(const RbfChannel& channel, std::size_t points) {
     const std::string name = "channel \"" + channel.name + "\"";
     if (channel.values.size() != points || channel.gradients.size() != points || channel.moments.size() != points) {
-        throw Error(ErrorCode::InvalidInput, name + " has not one value, gradient and moment a point");
+        throw Error(ErrorCode::InvalidInput, name + " does not have one value, gradient and moment per point");
     }
     if (!channel.hessians.empty() && channel.hessians.size() != points) {
-        throw Error(ErrorCode::InvalidInput, name + " has not one Hessian a point", {}, "none at all are fine too");
+        throw Error(ErrorCode::InvalidInput, name + " does not have one Hessian per point", {}, "as many as points, or none");
     }
     for (std::size_t i = 0; i < points; ++i) {
         if (!std::isfinite(channel.values[i])) refuse_point(i, "the value of " + name + " is not finite");
@@ -75,7 +75,8 @@ Box box_of(const RbfVolume& volume) {
 
 void validate(const RbfVolume& volume) {
     validate(volume.kernel);
-    if (volume.frames.size() != volume.size()) throw Error(ErrorCode::InvalidInput, "there is not one frame a point");
+    if (volume.frames.size() != volume.size())
+        throw Error(ErrorCode::InvalidInput, "the number of frames is not that of the points");
     for (std::size_t i = 0; i < volume.size(); ++i) {
         if (!is_finite(volume.centers[i])) refuse_point(i, "a coordinate is not finite");
         const auto& s = volume.frames[i];

@@ -26,7 +26,7 @@ struct ValueRange {
     }
 };
 
-/// One kernel, and what it can stand for within a box.
+/// One kernel, and the values that it can have within a box.
 class KernelInBox {
 public:
     KernelInBox(const RbfVolume& volume, const RbfChannel& channel, std::size_t i)
@@ -37,7 +37,7 @@ public:
         if (!channel.hessians.empty()) hessian_ = channel.hessians[i];
     }
 
-    /// center, half: of the box. Nothing if it lies outside the support.
+    /// center, half: of the box; returns nothing if the box lies outside the support
     [[nodiscard]] std::optional<ValueRange> range(const Vec3& center, const Vec3& half) const {
         const Vec3 d = center - center_;
         const double at = std::sqrt(std::max(0.0, glm::dot(d, inverse_ * d))), around = std::sqrt(product(inverse_, half));
@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    /// The largest vᵀMv of the vectors within a box about 0.
+    /// A bound of vᵀMv for the vectors v within a box about 0.
     static double product(const Mat3& m, const Vec3& half) {
         double sum = 0;
         for (int a = 0; a < 3; ++a) {
@@ -73,7 +73,7 @@ private:
     Symmetric3 hessian_{};
 };
 
-/// Boxes over the volume, half a kernel's distance wide, each with the range of all that kernels stand for in it.
+/// Boxes over the volume, half the distance of two kernels wide, each with the range of all kernels' values in it.
 class RangeGrid {
 public:
     RangeGrid(const RbfVolume& volume, const RbfChannel& channel) : volume_(volume), channel_(channel) {
@@ -95,7 +95,7 @@ public:
         parallel_each(volume.size(), [&](std::size_t i) { each_box(i, widen); });
     }
 
-    /// All that the field can be in the support of a kernel.
+    /// The range of the field in the support of a kernel.
     [[nodiscard]] ValueRange about(std::size_t i) {
         ValueRange range;
         each_box(i, [&](const ValueRange& box, const ValueRange&) { range.add(box); });
@@ -105,7 +105,7 @@ public:
 private:
     static constexpr double kMostBoxes = 512;  // along an axis
 
-    /// The least and the largest do not depend on the order in which threads come.
+    /// The least and the largest do not depend on the order of the threads.
     static void widen(ValueRange& box, const ValueRange& range) {
         const std::atomic_ref low(box.low), high(box.high);
         for (float now = low.load(); range.low < now && !low.compare_exchange_weak(now, range.low);) {
@@ -114,7 +114,7 @@ private:
         }
     }
 
-    /// Calls visit(box, range of the kernel in it) for the boxes that a kernel meets.
+    /// Calls visit(box, range of the kernel in it) for the boxes that the support of a kernel meets.
     template <class Visit>
     void each_box(std::size_t i, const Visit& visit) {
         constexpr std::array<std::size_t, 3> kDiagonal{0, 3, 5};

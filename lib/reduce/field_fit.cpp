@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// With centres and frames fixed, the field of an RBF volume is linear in the terms of its kernels:
+//
+//    f(x) = Σ φ_i (v_i + h_i·place_i + m_i e_i)      φ_i = w_i(x) / Σ w,  place_i = A_i (x − μ_i),  e_i = |place_i|²
+//
+// So the terms with the least Σ weight (f(x) − value)² + ridge |terms − prior|² solve a sparse linear least-squares problem
+// with five unknowns for each kernel. Each sample is a row with an entry (φ, place, e) for each kernel that reaches it;
+// columns_ lists the entries of each kernel. Conjugate gradients solve the normal equations, preconditioned by the inverse 5×5
+// block of each kernel. The matrix of the normal equations is never formed: each step multiplies with the rows, then with the
+// columns. Both are sums in a fixed order, so the result does not depend on the number of threads.
 #include "field_fit.h"
 
 #include <tbb/blocked_range.h>
@@ -15,9 +24,9 @@ namespace subvol::detail {
 namespace {
 
 constexpr double kLeastWeight = 0.02;  // as the splatter has it
-constexpr double kLeastGain = 1e-10;   // of the first step's, where the solver ends
+constexpr double kLeastGain = 1e-10;   // the solver ends at this part of the first step's gain
 
-/// The same bits for any number of threads: fixed pieces, added in a fixed tree.
+/// Sums of fixed pieces, added in a fixed tree: the same bits for any number of threads.
 double dot(std::span<const KernelTerms> a, std::span<const KernelTerms> b) {
     return tbb::parallel_deterministic_reduce(
         tbb::blocked_range<std::size_t>(0, a.size(), 512), 0.0,
@@ -30,7 +39,7 @@ double dot(std::span<const KernelTerms> a, std::span<const KernelTerms> b) {
         std::plus<>());
 }
 
-/// Inverts a symmetric positive matrix in place, 5 × 5, by Gauss-Jordan: pivots cannot vanish.
+/// Inverts a symmetric positive definite 5×5 matrix in place, by Gauss-Jordan: no pivot is 0.
 void invert(std::array<double, 25>& m) {
     for (std::size_t p = 0; p < 5; ++p) {
         const double inverse = 1 / m[6 * p];
@@ -93,7 +102,7 @@ void FieldFit::fill_rows(std::span<const Vec3> centers, std::span<const Symmetri
     const KernelTree tree(centers, frames);
     std::vector<std::uint32_t> counts(samples_.size());
     with_weight(kernel, [&](const auto& weight) {
-        // Twice: to count, then to write.
+        // Two passes: the first counts the entries, the second writes them.
         for (const bool write : {false, true}) {
             parallel_each(samples_.size(), [&](std::size_t i) {
                 double sum = 0;

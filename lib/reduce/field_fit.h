@@ -12,15 +12,16 @@
 
 namespace subvol::detail {
 
-/// What a kernel stands for, in its own scale: v + h·(A d) + m·e, all in units of the field.
+/// A kernel's value, slope and moment in its own frame, (v, h, m): the field near it is v + h·(A d) + m·e. All are in units of
+/// the field.
 using KernelTerms = std::array<double, 5>;
 
-/// A slope in the world taken into a kernel's frame, h with g·d = h·(A d): h = A⁻ᵀ g = A S g.
+/// A world-space slope g in a kernel's frame: h with g·d = h·(A d), h = A⁻ᵀ g = A S g.
 [[nodiscard]] inline Vec3 to_frame(const Symmetric3& frame, const Vec3& g) {
     return inverse_root(frame).times(matrix(frame) * g);
 }
 
-/// The terms of a channel in the kernels' frames, and back.
+/// Converts a channel to terms in the kernels' frames, and back.
 [[nodiscard]] std::vector<KernelTerms> terms_of(const RbfVolume& volume, const RbfChannel& channel);
 void set_terms(RbfChannel& channel, std::span<const Symmetric3> frames, std::span<const KernelTerms> terms);
 
@@ -30,20 +31,21 @@ public:
     FieldFit(std::span<const Vec3> centers, std::span<const Symmetric3> frames, const Kernel& kernel,
              const FieldSamples& samples);
 
-    /// Improves `terms` by steps of preconditioned conjugate gradients on the normal equations, pulled lightly to `prior`.
+    /// Improves `terms` by steps of preconditioned conjugate gradients on the normal equations. A ridge holds them near `prior`
+    /// where samples do not determine them.
     ///
-    /// ridge: of a kernel's mean weight
-    /// returns: the steps taken; fewer where there is nothing left to gain
+    /// ridge:   as a part of a kernel's mean weight
+    /// returns: the steps taken; fewer than `steps` once the gain is negligible
     int solve(std::vector<KernelTerms>& terms, std::span<const KernelTerms> prior, int steps, double ridge = 1e-4) const;
 
-    /// Field minus sample, 0 where there is no field.
+    /// Field minus sample; 0 where no kernel reaches the sample.
     [[nodiscard]] std::vector<double> residuals(std::span<const KernelTerms> terms) const;
 
     [[nodiscard]] bool covered(std::size_t sample) const { return row_starts_[sample] < row_starts_[sample + 1]; }
     [[nodiscard]] std::size_t bytes() const;
 
 private:
-    /// One kernel at one sample: its share φ = w/Σw, and where the sample lies in its frame.
+    /// One kernel at one sample: its share φ = w/Σw, the place A d of the sample in its frame, and e.
     struct Entry {
         Index kernel = 0;
         float share = 0;
@@ -65,7 +67,7 @@ private:
     const FieldSamples& samples_;
     std::vector<std::size_t> row_starts_;
     std::vector<Entry> entries_;
-    std::vector<std::size_t> column_starts_;  // of a kernel, into columns_
+    std::vector<std::size_t> column_starts_;  // of each kernel, in columns_
     struct Place {
         Index sample;
         std::uint32_t offset;  // of the entry in its row
@@ -73,7 +75,7 @@ private:
     std::vector<Place> columns_;
 };
 
-/// Moves centres, sizes and terms of the volume's first channel to fit the samples. Returns iterations and bytes.
+/// Fits centres, sizes and the terms of the volume's first channel to the samples: a nonlinear problem.
 struct MovingFitReport {
     int iterations = 0;
     std::size_t bytes = 0;

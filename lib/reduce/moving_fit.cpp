@@ -17,17 +17,17 @@ constexpr int kUnknowns = 9;
 using Unknowns = std::array<double, kUnknowns>;
 
 constexpr double kLeastWeight = 0.02;
-constexpr double kMargin = 1.15;          // kernels that may come to reach a sample take part, within this growth
-constexpr double kShape = 0.1;            // how much more strongly shifts and growths are held than terms
-constexpr int kMostCholesky = 200;        // kernels: beyond, factors fill up and conjugate gradients are faster
-constexpr std::size_t kBlockBytes = 180;  // of one kernel at one sample: 9 derivatives, and Ceres' and our lists
+constexpr double kMargin = 1.15;          // a sample sees the kernels that reach it after growing by this factor
+constexpr double kShape = 0.1;            // the ridge of shifts and growths, of that of terms
+constexpr int kMostCholesky = 200;        // with more kernels the factors fill up and conjugate gradients are faster
+constexpr std::size_t kBlockBytes = 180;  // of one kernel at one sample: 9 derivatives, and the lists of Ceres and ours
 
 struct Neighbour {
     Index kernel;
     Vec3 place;  // A (x − center), before any move
 };
 
-/// √weight · (field − sample), with its derivatives by all unknowns about it.
+/// √weight · (field − sample), with its derivatives by the unknowns of all kernels about the sample.
 template <class Weight>
 class SampleCost : public ceres::CostFunction {
 public:
@@ -44,7 +44,7 @@ public:
             sum += t.w;
             weighted += t.w * t.v;
         }
-        if (!(sum > kLeastWeight)) return false;  // a hole: the step is taken back
+        if (!(sum > kLeastWeight)) return false;  // a hole: Ceres rejects the step
         const double f = weighted / sum;
         residual[0] = factor_ * (f - value_);
         if (!jacobians) return true;
@@ -88,7 +88,7 @@ private:
     Weight weight_;
 };
 
-/// Holds a kernel's unknowns where they were.
+/// The ridge: holds a kernel's unknowns near their start.
 class Hold : public ceres::SizedCostFunction<kUnknowns, kUnknowns> {
 public:
     Hold(const Unknowns& start, double terms, double shape) : start_(start), terms_(terms), shape_(shape) {}
@@ -154,7 +154,7 @@ void write_back(RbfVolume& volume, std::span<const Unknowns> unknowns) {
 
 ceres::Solver::Options solver_options(std::size_t kernels, int iterations) {
     ceres::Solver::Options options;
-    // One thread, and no BLAS: Ceres adds up in the order in which threads finish.
+    // One thread and no BLAS: with several, Ceres sums in the order in which threads finish.
     options.num_threads = 1;
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     const bool direct = kernels <= kMostCholesky && ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::EIGEN_SPARSE);

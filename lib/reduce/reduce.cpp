@@ -26,21 +26,21 @@ using detail::SampleParts;
 namespace {
 
 constexpr double kUniform = 12;           // side² of a box over its variance
-constexpr double kFarthest = 1.01;        // ρ of a part's farthest sample: the compact kernel weighs .125 there
-constexpr double kFirstError = 5;         // times the target: up to there parts are split by their own fits
-constexpr std::size_t kPartSamples = 64;  // of a part that take part in the fit
-constexpr double kMostGrowth = 0.3;       // of the parts are split in a round
-constexpr double kThickness = 1e-3;       // of a flat part, of its largest extent
+constexpr double kFarthest = 1.01;        // ρ of a part's farthest sample: the compact kernel's weight is .125 there
+constexpr double kFirstError = 5;         // parts are split by their own fits until the error is this many times the target
+constexpr std::size_t kPartSamples = 64;  // the most samples of a part in the fit
+constexpr double kMostGrowth = 0.3;       // the most parts that are split in a round, of all
+constexpr double kThickness = 1e-3;       // the least of a part, of its largest extent
 constexpr int kSteps = 40;                // of conjugate gradients; 120 lower the error by less than a hundredth
 constexpr int kMostChecks = 8;            // against the validation samples
-constexpr double kAimLower = 0.98;
-constexpr double kMoveGain = 2;  // how many times moves lower the error, at first guess
-constexpr int kMoves = 12;       // steps of the solver that moves kernels
+constexpr double kAimLower = 0.98;        // the next target, at most this part of the last
+constexpr double kMoveGain = 2;           // first guess of the factor by which moves lower the error
+constexpr int kMoves = 12;                // steps of the solver that moves kernels
 
 void check(const FieldSamples& samples) {
     const bool same = samples.values.size() == samples.size() && samples.weights.size() == samples.size();
     if (!same || samples.size() == 0 || samples.size() >= kNone) {
-        throw Error(ErrorCode::InvalidInput, "samples need one value and one weight a point", {}, "1 to 2³² samples");
+        throw Error(ErrorCode::InvalidInput, "samples need one value and one weight per point", {}, "1 to 2³² samples");
     }
     double total = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -51,7 +51,8 @@ void check(const FieldSamples& samples) {
         }
         total += samples.weights[i];
     }
-    if (!(total > 0)) throw Error(ErrorCode::InvalidInput, "all samples weigh nothing", {}, "the volume that each stands for");
+    if (!(total > 0))
+        throw Error(ErrorCode::InvalidInput, "all weights of samples are 0", {}, "the volume that each represents");
 }
 
 void check(const ReduceOptions& options) {
@@ -60,11 +61,11 @@ void check(const ReduceOptions& options) {
     if (!(options.overlap >= .7 && options.overlap <= 2))
         throw Error(ErrorCode::InvalidInput, "the overlap is " + std::to_string(options.overlap), {}, "0.7 to 2");
     if (!is_radial(options.kernel))
-        throw Error(ErrorCode::InvalidInput, "the kernel is not radial, frames have no axes for it", {}, "a radial kernel");
+        throw Error(ErrorCode::InvalidInput, "the kernel is not radial: frames define no axes for it", {}, "a radial kernel");
     if (options.max_points < 1) throw Error(ErrorCode::InvalidInput, "at most 0 points", {}, "1 or more");
 }
 
-/// A growing set of kernels over a partition of samples.
+/// A growing set of kernels, one for each part of a partition of samples.
 class Reduction {
 public:
     Reduction(const FieldSamples& samples, const ReduceOptions& options)
@@ -74,7 +75,8 @@ public:
 
     [[nodiscard]] std::size_t size() const { return parts_.parts().size(); }
 
-    /// Splits by the parts' own fits until those are near the target: cheap, and as good while kernels are far too few.
+    /// Splits by the parts' own fits until they are near the target: cheap, and as good as the full fit while there are far too
+    /// few kernels.
     void grow_alone(double rmse) {
         const double allowed = kFirstError * kFirstError * rmse * rmse * weight_;
         while (true) {
@@ -141,7 +143,7 @@ private:
         return count > 0;
     }
 
-    /// New parts get a kernel and their own fit for a start; the others keep theirs.
+    /// New parts get a kernel that starts with their own fit; the others keep theirs.
     void place_kernels() {
         if (centers_.empty()) {
             fresh_.resize(size());
@@ -163,7 +165,7 @@ private:
         const double trace = s[0][0] + s[1][1] + s[2][2];
         s += Mat3(kThickness * kThickness * (trace > 0 ? trace : 1e-12));
         frames_[p] = symmetric3(s);
-        // No part may have a hole: kernels of odd shapes are widened.
+        // Every sample of the part must be covered: the kernel of a part with distant samples is widened.
         const auto root = detail::inverse_root(frames_[p]);
         double farthest = 0;
         for (std::size_t k = part.begin; k < part.end; ++k) {
@@ -237,7 +239,7 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
         report.validation = error_at_samples(result.volume, validation);
         report.reached = std::max(report.rmse, report.validation.rmse) <= options.rmse && report.validation.uncovered == 0;
         if (!more) break;
-        // The samples were met better than what lies between them, or moves gained less: aim lower.
+        // The fit is better at the samples than between them, or moves gained less than expected: aim lower.
         const double error = std::max(report.rmse, report.validation.rmse);
         target = (options.move ? target : std::min(target, report.rmse)) * std::min(kAimLower, options.rmse / error);
     }
@@ -249,7 +251,7 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
 ReduceResult reduce_rbf(const HexMesh& mesh, std::string_view field, const ReduceOptions& options) {
     check(options);
     const HexMesh bare = with_scalar_field(mesh, field);
-    // 8 samples a cell, more on coarse meshes; of the independent ones fewer, as each refines its cell.
+    // 8 samples per cell, more on coarse meshes; fewer independent ones, as each refines its cell.
     constexpr std::size_t kSamples = 200'000, kValidation = 20'000, kMostSamples = 8'000'000;
     const std::size_t cells = mesh.cells.size();
     const int level = cells * 8 >= kSamples ? 1 : cells * 64 >= kSamples ? 2 : 3;
@@ -257,7 +259,7 @@ ReduceResult reduce_rbf(const HexMesh& mesh, std::string_view field, const Reduc
     limit.progress = options.progress;
     const FieldSamples validation = limit_samples_in_cells(bare, {}, kValidation, limit);
     ReduceResult result = reduce_rbf(limit_samples_at_vertices(bare, {}, level, limit), validation, options);
-    // What fails for want of samples gets eight times as many, once, as long as memory is a matter of course.
+    // If there were too few samples, try once with eight times as many, unless they would take too much memory.
     const bool more = !result.report.reached && result.report.points < options.max_points;
     if (more && level < 3 && cells << (3 * level + 3) <= kMostSamples)
         result = reduce_rbf(limit_samples_at_vertices(bare, {}, level + 1, limit), validation, options);

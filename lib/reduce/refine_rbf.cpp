@@ -10,7 +10,7 @@
 namespace subvol {
 namespace {
 
-constexpr std::size_t kMostSamples = 100;  // of each kernel: it has at most 9 unknowns
+constexpr std::size_t kMostSamples = 100;  // of each kernel, which has at most 9 unknowns
 
 void check(const RbfVolume& volume, const RbfRefineOptions& options) {
     detail::check_rbf_volume(volume);
@@ -43,7 +43,7 @@ RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples,
     result.volume = volume;
     result.volume.channels.resize(1);
     const ErrorAtSamples before = error_at_samples(result.volume, samples);
-    result.volume.channels[0].hessians.clear();  // what is fitted are values, gradients and moments
+    result.volume.channels[0].hessians.clear();  // values, gradients and moments are fitted without them
     const auto groups = detail::group_by_kernel(result.volume, samples);
     const FieldSamples chosen = detail::thin_samples(samples, groups.order, groups.starts, kMostSamples).samples;
     const auto fit =

@@ -16,9 +16,9 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kLeastSamples = 12;  // of a half: two a direction, so that its frame has three dimensions
-constexpr double kThin = 1e-6;             // of the largest variance: slopes along thinner directions are left alone
+constexpr double kThin = 1e-6;             // of the largest variance: slopes along thinner directions are not fitted
 
-/// Directions to halve a part across: its own axes, the world's, and the field's slope.
+/// Normals of planes that may halve a part: its principal axes, the world's axes, and the field's slope.
 std::array<Vec3, 7> candidates(const LinearFit& fit) {
     Eigen::Matrix3d c;
     for (int i = 0; i < 3; ++i) {
@@ -71,7 +71,7 @@ SampleParts::SampleParts(const FieldSamples& samples) : samples_(samples), order
 }
 
 void SampleParts::analyse(SamplePart& part) const {
-    // Sums are taken about a sample, so that nothing cancels far from the origin.
+    // Sums are relative to a sample, to avoid cancellation far from the origin.
     const Vec3 origin = samples_.points[order_[part.begin]];
     const auto each = [&](const auto& visit) {
         for (std::size_t k = part.begin; k < part.end; ++k) {
@@ -102,7 +102,7 @@ void SampleParts::analyse(SamplePart& part) const {
             part.normal = normals[k];
         }
     }
-    // A sample stands for the space about it: a single layer of them has a thickness.
+    // A sample represents the space around it: a single layer of samples has a thickness.
     const double spacing = std::cbrt(all.w / static_cast<double>(part.end - part.begin));
     part.fit.covariance += Mat3(spacing * spacing / 12);
     part.fit.mean += origin;

@@ -9,7 +9,7 @@
 
 namespace subvol::detail {
 
-/// Weighted sums over samples, up to what a linear fit needs.
+/// The weighted sums over samples that a linear fit needs.
 struct LinearSums {
     double w = 0, f = 0, ff = 0;
     Vec3 x{0.0}, fx{0.0};
@@ -19,7 +19,7 @@ struct LinearSums {
     [[nodiscard]] LinearSums operator-(const LinearSums& other) const;
 };
 
-/// The best linear function of samples: value at their mean, slope, and the squared error left over.
+/// The best linear function of samples: value at their mean, slope, and the remaining squared error.
 struct LinearFit {
     Vec3 mean{0.0};
     Mat3 covariance{0.0};
@@ -31,7 +31,7 @@ struct LinearFit {
 
 /// Samples that share a kernel: a range of `SampleParts::order()`.
 ///
-/// gain: how much of fit.error (Σ weight error²) goes if the part is halved across `normal` through its mean
+/// gain: by how much fit.error (Σ weight error²) falls if the part is halved by the plane through its mean across `normal`
 struct SamplePart {
     std::size_t begin = 0, end = 0;
     LinearFit fit;
@@ -39,7 +39,7 @@ struct SamplePart {
     double gain = 0;
 };
 
-/// A partition of samples that grows finer where it is told to.
+/// A partition of samples that is refined part by part.
 class SampleParts {
 public:
     explicit SampleParts(const FieldSamples& samples);
@@ -47,7 +47,7 @@ public:
     [[nodiscard]] const std::vector<SamplePart>& parts() const { return parts_; }
     [[nodiscard]] const std::vector<Index>& order() const { return order_; }
 
-    /// Halves the parts of these numbers; one half takes the part's number, the other a new one at the end.
+    /// Halves the parts with these numbers: one half keeps the number, the other gets a new one at the end.
     void split(const std::vector<std::size_t>& numbers);
 
 private:
@@ -65,10 +65,11 @@ struct SampleGroups {
     std::vector<std::size_t> starts;
 };
 
-/// Each sample with the kernel that weighs most there; those without one come in a last group.
+/// Groups samples by the kernel whose centre is nearest in its own frame (least e); samples outside all kernels are the last
+/// group.
 [[nodiscard]] SampleGroups group_by_kernel(const RbfVolume& volume, const FieldSamples& samples);
 
-/// At most `most` samples of each group, evenly chosen, that weigh what all of it weigh; groups keep their order.
+/// At most `most` samples of each group, evenly chosen, with the total weight of the group; groups keep their order.
 struct ThinSamples {
     FieldSamples samples;
     std::vector<std::size_t> starts;

@@ -15,7 +15,7 @@ ChildNumbers::ChildNumbers(const Topology& of)
     number_faces();
 }
 
-/// A face's cells in the order of their points.
+/// The cells of a face in the order of their cell points.
 std::array<Index, 2> ChildNumbers::cells_by_rank(Index f) const {
     auto cells = parent.face_cells[f];
     if (cells[1] != kNone && parent.cell_rank[cells[1]] < parent.cell_rank[cells[0]]) std::swap(cells[0], cells[1]);
@@ -72,7 +72,7 @@ Index ChildNumbers::other_edge(Index f, Index e, std::size_t v) const {
 }
 
 void ChildNumbers::number_faces() {
-    corner_offsets.assign(parent.point_count + 1, 0);  // twice the faces at a point are the faces at its edges
+    corner_offsets.assign(parent.point_count + 1, 0);  // each face at a point is counted at two of the point's edges
     parallel_each(parent.point_count, [&](std::size_t v) {
         std::size_t sides = 0;
         for (const Index e : parent.point_edges[v]) sides += parent.edge_faces[e].size();

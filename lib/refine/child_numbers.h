@@ -6,6 +6,22 @@
 
 namespace subvol::detail {
 
+// The numbers of a child's edges and faces, counted instead of sorted.
+//
+//    ●─ a ─○─ a ─●      A face of the parent after one refinement: old points ●, edge points ○ and the face point □.
+//    │     │     │      Its children and those of its cells:
+//    a  d  b  d  a        edges  a  from an old point to an edge point     two per parent edge
+//    │     │     │               b  from an edge point to a face point     four per parent face
+//    ○─ b ─□─ b ─○               c  from a face point to a cell point      six per parent cell
+//    │     │     │        faces  d  a quarter of a parent face             four per parent face
+//    a  d  b  d  a               e  in a cell, at one of its edges         twelve per parent cell
+//    │     │     │
+//    ●─ a ─○─ a ─●
+//
+// `build_topology` numbers edges and faces in the order of their smallest points, and the child's points are numbered kind by
+// kind. So the edges a come first, old point by old point, then the edges b, edge by edge, then the edges c, face by face. The
+// faces d come before the faces e for the same reason. At one point the order follows from the parent's numbers.
+
 /// The two sides of a cell that meet at each of its edges.
 constexpr std::array<std::array<std::uint8_t, 2>, 12> make_edge_sides() {
     std::array<std::array<std::uint8_t, 2>, 12> sides{};
@@ -22,25 +38,21 @@ constexpr std::array<std::array<std::uint8_t, 2>, 12> make_edge_sides() {
 
 inline constexpr auto kEdgeSides = make_edge_sides();
 
-/// The numbers that the edges and faces of a child have in the order of their point ids, told from the parent.
-///
-/// A child edge joins an old point and an edge point, an edge point and a face point, or a face point and a cell point; a child
-/// face lies in a parent face at one of its corners, or in a cell at one of its edges. In the order of their points they stand
-/// old point by old point, edge by edge, face by face.
+/// The number of each child edge and child face, by the entity of the parent that it lies in.
 struct ChildNumbers {
     explicit ChildNumbers(const Topology& parent);
 
     const Topology& parent;
     ChildNumbering first;
-    std::size_t edge_b, edge_c, face_e;        // where edges from edge points, from face points, faces in cells start
+    std::size_t edge_b, edge_c, face_e;        // the first numbers of the kinds b, c and e
     FlatArray<Index> sorted_faces;             // parent.edge_faces, ascending
     std::vector<Index> face_cell_offsets;      // how many cells the faces before this one have
     std::vector<Index> corner_offsets;         // how many faces the points before this one have
-    FlatArray<std::array<Index, 2>> at_ends;   // edges at the ends of an edge
-    FlatArray<std::array<Index, 4>> to_face;   // edges from the edges of a face to its point
-    FlatArray<std::array<Index, 6>> to_cell;   // edges from the sides of a cell to its point
-    FlatArray<std::array<Index, 4>> quarters;  // faces at the corners of a face
-    FlatArray<std::array<Index, 12>> inner;    // faces at the edges of a cell
+    FlatArray<std::array<Index, 2>> at_ends;   // edges a of an edge, by its ends
+    FlatArray<std::array<Index, 4>> to_face;   // edges b of a face, by its edges
+    FlatArray<std::array<Index, 6>> to_cell;   // edges c of a cell, by its sides
+    FlatArray<std::array<Index, 4>> quarters;  // faces d of a face, by its corners
+    FlatArray<std::array<Index, 12>> inner;    // faces e of a cell, by its edges
 
     [[nodiscard]] std::size_t edge_count() const { return edge_c + face_cell_offsets.back(); }
     [[nodiscard]] std::size_t face_count() const { return face_e + 12 * parent.cells.size(); }
@@ -54,7 +66,7 @@ private:
     void number_faces();
 };
 
-/// Fills edge_faces and edge_cells of a child that has all else: about half an edge as about the whole, four elsewhere inside.
+/// Fills edge_faces and edge_cells of a child whose other members are complete.
 void fill_child_rings(const ChildNumbers& numbers, Topology& child);
 
 }  // namespace subvol::detail

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "child_numbers.h"
-
+// The rings of faces and cells about a child's edges. About an edge a the ring is that of the parent edge that it halves; about
+// an edge b it has the four faces and four cells next to it in the two cells of the parent face (three and two on the hull);
+// about an edge c, inside a cell, four of each.
 #include <algorithm>
 
 #include "boundary_rings.h"
 #include "bucket_sort.h"
+#include "child_numbers.h"
 #include "topology_parts.h"
 
 namespace subvol::detail {
@@ -61,7 +63,7 @@ private:
         t_.edge_cells.values.resize(cells.back());
     }
 
-    /// Writes a closed ring: from its smallest face on to the smaller of that one's two neighbours.
+    /// Writes a closed ring, which starts at its smallest face and continues with the smaller of the two faces next to it.
     template <class Faces, class Cells>
     void put_ring(Index edge, const Faces& faces, const Cells& cells) {
         const std::size_t m = faces.size();
@@ -76,6 +78,7 @@ private:
         }
     }
 
+    /// Writes an open ring, from its smaller end on.
     template <class Faces, class Cells>
     void put_fan(Index edge, const Faces& faces, const Cells& cells) {
         const auto to_faces = t_.edge_faces.values.begin() + static_cast<std::ptrdiff_t>(t_.edge_faces.offsets[edge]);
@@ -132,7 +135,7 @@ private:
         }
     }
 
-    /// About the child edge from the point of edge k of a face to the face's point.
+    /// The ring about the child edge from the point of edge k of a face to the point of the face.
     void ring_in_face(Index f, std::size_t k) {
         const Index e = p_.face_edges[f][k], v0 = p_.faces[f][k], v1 = p_.faces[f][(k + 1) % 4];
         const auto [c0, c1] = p_.face_cells[f];

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The topology of a refined mesh from that of its parent. Every entity of the child lies in an entity of the parent: a child
+// edge halves a parent edge, crosses half a face or half a cell (edges a, b and c of child_numbers.h), a child face is a
+// quarter of a face or lies inside a cell. ChildNumbers gives their numbers, so that each member of the child's topology can be
+// written at its place, in parallel:
+//
+//    edges, faces    by their kinds
+//    cell_edges,     by the lattice of a refined cell: the two ends of a child edge are places of the 3×3×3 lattice, which name
+//    cell_faces      the parent entities that the edge lies in
+//    point_edges     the edges from points with smaller numbers, then those from the point itself
+//    flags           those of the parent entity; an entity inside a cell is on no boundary
+//
+// build_topology of the child mesh gives the same bits, at several times the cost: it sorts.
 #include "child_topology.h"
 
 #include <algorithm>
@@ -41,7 +53,7 @@ private:
     [[nodiscard]] Index cell_point(Index c) const { return static_cast<Index>(n_.first.cells + p_.cell_rank[c]); }
 
     void fill_edges() {
-        t_.edges.resize(n_.edge_c + n_.face_cell_offsets.back());
+        t_.edges.resize(n_.edge_count());
         parallel_each(p_.edges.size(), [&](std::size_t e) {
             for (std::size_t i = 0; i < 2; ++i)
                 t_.edges[n_.at_ends[e][i]] = {p_.edges[e][i], edge_point(static_cast<Index>(e))};
@@ -66,7 +78,7 @@ private:
     }
 
     void fill_faces() {
-        const std::size_t count = n_.face_e + 12 * p_.cells.size();
+        const std::size_t count = n_.face_count();
         t_.faces.resize(count);
         t_.face_edges.resize(count);
         t_.face_cells.resize(count);
@@ -134,7 +146,7 @@ private:
             }
         }
         for (std::size_t s = 0; s < 6; ++s) {
-            // Sides that touch the child's corner of the parent are quarters of its faces, the others lie inside.
+            // Sides at the child's corner of the parent are quarters of the parent's faces; the other three lie inside it.
             const auto& corners = kCellFaces[s];
             Index& face = t_.cell_faces[child_cell(c, child)][s];
             if (std::find(corners.begin(), corners.end(), static_cast<int>(child)) != corners.end()) {
@@ -159,7 +171,7 @@ private:
         for (std::size_t q = 0; q < t_.point_count; ++q) offsets[q + 1] = offsets[q] + degree(q);
         auto& values = t_.point_edges.values;
         values.resize(offsets.back());
-        const auto put = [&](std::size_t q, auto... edges) {  // ascending: first those from smaller points, then its own
+        const auto put = [&](std::size_t q, auto... edges) {  // ascending: those from smaller points, then its own
             std::size_t i = offsets[q];
             ((values[i++] = edges), ...);
             for (Index own = t_.edge_offsets[q]; own < t_.edge_offsets[q + 1]; ++own) values[i++] = own;
@@ -202,12 +214,13 @@ private:
         });
     }
 
-    /// By their sorted faces: the smallest one is a quarter of a parent's face, so cells stand old point by old point.
+    /// Cells are ranked by their sorted faces. The smallest face is a quarter of a parent face, so all cells at one old point
+    /// come before those at the next.
     void rank_cells() {
         t_.cell_rank.resize(t_.cells.size());
         std::vector<Index> offsets(p_.point_count + 1, 0);
         parallel_each(p_.point_count, [&](std::size_t v) {
-            std::size_t sides = 0;  // three faces of every cell at the point
+            std::size_t sides = 0;  // every cell at the point has three of its faces there
             for (Index q = n_.corner_offsets[v]; q < n_.corner_offsets[v + 1]; ++q) sides += t_.face_on_hull(q) ? 1 : 2;
             offsets[v + 1] = static_cast<Index>(sides / 3);
         });
@@ -239,7 +252,7 @@ private:
 }  // namespace
 
 Topology child_topology(const Topology& parent) {
-    const std::size_t faces = 4 * parent.faces.size() + 12 * parent.cells.size();  // the most numerous of the child's parts
+    const std::size_t faces = 4 * parent.faces.size() + 12 * parent.cells.size();  // a child has more faces than anything else
     if (faces >= kNone) {
         throw Error(ErrorCode::InvalidInput, "the refined mesh needs " + std::to_string(faces) + " faces", {},
                     "at most " + std::to_string(kNone - 1) + ": use fewer levels, or a build with SUBVOL_INDEX64");

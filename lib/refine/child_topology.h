@@ -5,14 +5,14 @@
 
 namespace subvol::detail {
 
-/// Where the points of the four kinds start in the child's numbering: old points, then one an edge, a face, a cell.
+/// Where the points of the four kinds start in the child's numbering: old points, then one point per edge, per face, per cell.
 struct ChildNumbering {
     explicit ChildNumbering(const Topology& t)
         : edges(t.point_count), faces(edges + t.edges.size()), cells(faces + t.faces.size()), end(cells + t.cells.size()) {}
     std::size_t edges, faces, cells, end;
 };
 
-/// A place of the 3×3×3 lattice of a refined cell: a corner, or the number of one of its edges or faces, or the cell itself.
+/// A place in the 3×3×3 lattice of a refined cell: one of its corners, edges or faces, or its centre.
 struct LatticePlace {
     enum Kind : std::uint8_t { Corner, Edge, Face, Cell } kind = Cell;
     std::uint8_t number = 0;
@@ -21,7 +21,7 @@ struct LatticePlace {
 /// The place of corner `corner` of child `child`.
 [[nodiscard]] LatticePlace lattice_place(std::size_t child, std::size_t corner);
 
-/// The cells of the child: 8c + k lies at corner k of cell c and is turned as c is.
+/// The cells of the child: 8c + k lies at corner k of cell c and has its orientation.
 [[nodiscard]] std::vector<std::array<Index, 8>> child_cells(const Topology& parent);
 [[nodiscard]] constexpr Index child_cell(std::size_t c, std::size_t k) {
     return static_cast<Index>(8 * c + k);
@@ -37,8 +37,8 @@ struct LatticePlace {
 [[nodiscard]] std::vector<std::array<Index, 2>> child_creases(const Topology& parent);
 [[nodiscard]] std::vector<std::array<Index, 4>> child_sharp_faces(const Topology& parent);
 
-/// The topology of the child in the numbering of `refine`, derived from its parent's without sorting: exactly what
-/// `build_topology` makes of the child mesh.
+/// The topology of the child in the numbering of `refine`, derived from its parent's without sorting: the same as
+/// `build_topology` of the child mesh.
 ///
 /// cost: parallel, O(n)
 [[nodiscard]] Topology child_topology(const Topology& parent);

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+// A patch is a part of a mesh that is refined with the same bits as the whole mesh. The rule of a new point uses no cell beyond
+// those that share a point with its cell, face or edge, so two layers around the wanted cells W are enough for any number of
+// levels: the children of the first layer are right too, and they are the two layers of the next patch.
+//
+//    │ 2  │ 1  │ W  │ W  │ 1  │ 2  │     a patch with its layers, along one axis
+//         │2│1 │W│W │W│W │1│2 │          its child: the children of W and of layer 1
+//
+// Layer 2 is only looked at: its children would lack their own surroundings. A patch that is refined once more needs one layer,
+// one that is not refined needs none. Creases and sharp faces are kept where they lie on the patch's cells.
 #include "patch.h"
 
 #include <algorithm>
@@ -18,7 +27,7 @@ std::array<Index, N> sorted(std::array<Index, N> points) {
     return points;
 }
 
-/// The tags that lie on sides or edges of the cells. `tags` are sorted, each with its points sorted.
+/// The tags that lie on the cells. tags: sorted, each with its points sorted; parts: the edges or the sides of a cell
 template <std::size_t N, std::size_t M>
 std::vector<std::array<Index, N>> tags_of(const std::vector<std::array<Index, N>>& tags,
                                           std::span<const std::array<Index, 8>> cells,
@@ -47,7 +56,7 @@ std::vector<std::array<Index, N>> sorted_tags(std::vector<std::array<Index, N>> 
     return tags;
 }
 
-/// Some points of a mesh, which keep their order.
+/// Some points of a mesh, in its order.
 class PointSelection {
 public:
     /// The points of some cells of a mesh of `point_count` points.
@@ -114,7 +123,7 @@ private:
     std::vector<Index> numbers_;  // in `points_`; empty if they are looked up
 };
 
-/// Orders cells by layers about the first `wanted` of them; those further away than `layers` are dropped.
+/// Orders cells by layers about the first `wanted` of them and drops those beyond the last layer.
 Patch arrange(std::vector<std::array<Index, 8>>&& cells, std::size_t point_count, std::size_t wanted, int layers) {
     std::vector<std::uint8_t> near(point_count, 0);
     const auto mark = [&](const auto& cell) {
@@ -137,7 +146,7 @@ Patch arrange(std::vector<std::array<Index, 8>>&& cells, std::size_t point_count
     return patch;
 }
 
-/// Values of the selected child points.
+/// Positions and attributes of some child points.
 void refine_data(const HexMesh& parent, const SchemeRows& rows, std::span<const Index> points, HexMesh& child) {
     child.points.resize(points.size());
     for (const auto& attribute : parent.attributes) {
@@ -168,7 +177,7 @@ void refine_data(const HexMesh& parent, const SchemeRows& rows, std::span<const 
 
 PatchSource::PatchSource(const HexMesh& mesh)
     : mesh_(mesh), creases_(sorted_tags(mesh.creases)), sharp_faces_(sorted_tags(mesh.sharp_faces)) {
-    Topology faces;  // building them validates the mesh: a later error would name the numbers of a patch
+    Topology faces;  // validates the mesh here: a later error would name the numbers of a patch
     faces.point_count = mesh.points.size();
     faces.cells = mesh.cells;
     build_faces(faces);

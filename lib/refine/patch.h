@@ -9,10 +9,10 @@
 
 namespace subvol::detail {
 
-/// Some cells of a mesh with the layers of cells around them: all that the rules need for the next level of these cells.
+/// Some cells of a mesh with up to two layers of cells around them: all that the rules need for the next level.
 ///
-/// Points stand in the order of the whole mesh, so that every rule sums in the same order as there. Cells: first those that are
-/// wanted, then those that share a point with them, then those that share a point with these.
+/// Points are in the order of the whole mesh, so that every rule sums in the same order as there. Cells: first those that are
+/// wanted, then the cells that share a point with them, then the cells that share a point with those.
 struct Patch {
     HexMesh mesh;
     std::size_t wanted = 0;       // cells [0, wanted)
@@ -29,7 +29,7 @@ public:
     [[nodiscard]] Patch cut(std::span<const Index> cells, int layers) const;
 
 private:
-    /// Those that share a point with some cells, and these: sorted.
+    /// Some cells and those that share a point with them, sorted.
     [[nodiscard]] std::vector<Index> cells_about(std::span<const Index> cells) const;
 
     const HexMesh& mesh_;
@@ -41,16 +41,16 @@ private:
 
 /// The next level of a patch: child 8k + j of its wanted cell k.
 ///
-/// layers: how many the child needs: 0 if it is not refined further, 1 if once, else 2
+/// layers: of the child: 0 if it is not refined further, 1 if once, else 2
 [[nodiscard]] Patch refine_patch(const Patch& patch, const SchemeOptions& scheme, int layers);
 
-/// The level-`levels` patch of some cells: descendants k·8^levels … of cells[k] are its wanted cells.
+/// The level-`levels` patch of some cells. Its wanted cells are the descendants of cells[0], then those of cells[1], and so on.
 ///
-/// layers: how many the result needs, as above
+/// layers: of the result, as above
 [[nodiscard]] Patch refine_patch(const PatchSource& source, std::span<const Index> cells, const SchemeOptions& scheme,
                                  int levels, int layers);
 
-/// The patch for some of the wanted cells of another, which must have as many layers.
+/// The patch of some of the wanted cells of another patch, which must have at least as many layers.
 [[nodiscard]] Patch sub_patch(const Patch& patch, std::span<const Index> wanted, int layers);
 
 }  // namespace subvol::detail

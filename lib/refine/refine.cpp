@@ -17,7 +17,7 @@ std::string stage_of(int level) {
     return "refine to level " + std::to_string(level);
 }
 
-/// Points and attributes of the child; the stencils are applied as they come and are not kept.
+/// Points and attributes of the child. The stencils are applied block by block and not kept.
 HexMesh child_data(const HexMesh& parent, const SchemeRows& rows, Progress* progress, int level) {
     HexMesh child;
     child.points.resize(rows.rows());
@@ -74,7 +74,7 @@ void check_cells(const HexMesh& mesh, std::span<const Index> cells) {
             throw Error(ErrorCode::InvalidInput, "there is no cell " + std::to_string(c), {},
                         "the mesh has " + std::to_string(mesh.cells.size()) + " cells");
         }
-        if (named[c]) throw Error(ErrorCode::InvalidInput, "cell " + std::to_string(c) + " is named twice");
+        if (named[c]) throw Error(ErrorCode::InvalidInput, "cell " + std::to_string(c) + " is listed twice");
         named[c] = 1;
     }
 }

@@ -14,7 +14,7 @@
 
 namespace subvol::detail {
 
-/// The rows of one refinement step, cut into blocks.
+/// The rows of one refinement step, in blocks.
 class SchemeRows {
 public:
     /// Keeps a reference to the topology.
@@ -30,7 +30,7 @@ public:
     /// The terms of child point `point`.
     void write_row(std::size_t point, StencilBuilder& row) const;
 
-    /// Calls visit(number, block) for every block, in parallel; the block is gone after the call.
+    /// Calls visit(number, block) for every block, in parallel. The block is valid during the call only.
     template <class Visit>
     void for_each_block(Progress* progress, const std::string& stage, const Visit& visit) const;
 

@@ -29,11 +29,10 @@ struct QuarticBasis {
     }
 };
 
-/// What a kernel needs to know along one axis of a cell, per sample interval: weights of the value, of the derivative, and of
-/// the second difference between samples.
+/// Weights along one axis of a cell: of the value, and per sample interval of the derivative and the second difference.
 ///
 /// The second difference is that of the neighbouring samples, not the second derivative: a kernel reaches over them, and limit
-/// curves need not have a second derivative. At a side of the cell, where one neighbour is missing, the derivative stands in:
+/// curves need not have a second derivative. At a side of the cell, where one neighbour is missing, the derivative replaces it:
 /// 2 (f(t+s) − f(t) − s f′(t)); the cell on the other side supplies the other half.
 struct SampleStencil {
     QuarticBasis::Weights value{}, first{}, second{};
@@ -53,8 +52,7 @@ struct SampleStencil {
     }
 };
 
-/// Where a node of the 5×5×5 block stands in the twice refined mesh: in which of the 64 descendants of its cell, at which
-/// corner.
+/// Where a node of the 5×5×5 block is in the twice refined mesh: at a corner of one of the 64 descendants of its cell.
 struct NodePlace {
     std::uint8_t descendant, corner;
 };
@@ -112,7 +110,7 @@ void CellBlocks::evaluate(std::size_t cell, const std::array<double, 3>& uvw, co
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
         for (std::size_t j = 0; j < 5; ++j) {
-            if (basis[b].value[j] == 0) continue;  // on corners, edges and faces most weights vanish
+            if (basis[b].value[j] == 0) continue;  // at corners, on edges and faces most weights vanish
             for (std::size_t k = 0; k < 5; ++k) {
                 const double across = basis[b].value[j] * basis[c].value[k];
                 if (across == 0) continue;

@@ -8,8 +8,8 @@
 
 namespace subvol::detail {
 
-/// Geometry and channels of a twice refined mesh, seen from its control cells: each is a block of 5×5×5 points, interpolated by
-/// quartics along each axis. Neighbouring blocks agree on what they share.
+/// Geometry and channels of a twice refined mesh by its control cells: each is a block of 5×5×5 points, interpolated by
+/// quartics along each axis. Neighbouring blocks agree in positions and values where they meet.
 class CellBlocks {
 public:
     static constexpr int kLevels = 2;
@@ -17,18 +17,18 @@ public:
     /// twice_refined: what `refine` makes of the control mesh in two levels; kept by reference
     explicit CellBlocks(const HexMesh& twice_refined);
 
-    /// Value, derivatives and second differences per sample interval at a point of a cell, as SampleStencil has them. Channels
-    /// are those of all attributes, one after the other.
+    /// Values, derivatives and second differences per sample interval at a point of a cell. Channels are those of all
+    /// attributes, one after the other.
     struct Jet {
         Vec3 position;
         std::array<Vec3, 3> d_position, dd_position;           // by u, v, w
-        std::vector<double> value;                             // a channel
-        std::vector<std::array<double, 3>> d_value, dd_value;  // a channel, by u, v, w
+        std::vector<double> value;                             // by channel
+        std::vector<std::array<double, 3>> d_value, dd_value;  // by channel and u, v, w
         std::array<Vec3, 3> mixed_position;                    // by v and w, w and u, u and v
         std::vector<std::array<double, 3>> mixed_value;
     };
 
-    /// step: the sample interval along u, v, w. The mixed derivatives are left alone.
+    /// step: the sample interval along u, v, w. `evaluate` leaves the mixed derivatives as they are, `evaluate_mixed` all else.
     void evaluate(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
     void evaluate_mixed(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
 

@@ -11,8 +11,8 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kFlat = 1e-9;       // of a cube's determinant: a thousandth of its thickness
-constexpr double kThickness = 1e-3;  // of the mean square extent
+constexpr double kFlat = 1e-9;       // of the determinant of a cube of the same trace
+constexpr double kThickness = 1e-3;  // added to a flat metric, of its mean square extent
 
 }  // namespace
 
@@ -52,7 +52,7 @@ bool DirectionSums::finish(double cells) {
         const bool corrected = options_.correction != Correction::None && !flat;
         const Vec3 g = corrected ? inverse * metric_gradient_[c] : Vec3(0.0);
         volume_.channels[c].gradients[point_] = {static_cast<float>(g.x), static_cast<float>(g.y), static_cast<float>(g.z)};
-        // The mean over the cells of Σ ∂²f − g·Σ ∂²x is H : J Jᵀ on any neighbourhood: no axes need to be paired.
+        // The mean over the cells of Σ ∂²f − g·Σ ∂²x is H : J Jᵀ in any neighbourhood: axes of different cells need no pairing.
         const bool second = corrected && options_.correction != Correction::Gradient;
         const double moment = second ? radius2_ / 6 * (laplacian_[c] - glm::dot(g, bend_)) / cells : 0.0;
         volume_.channels[c].moments[point_] = static_cast<float>(moment);
@@ -78,7 +78,7 @@ RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const SampleOptio
             channels.emplace_back().name = attribute.channels == 1 ? attribute.name : attribute.name + "." + std::to_string(c);
         }
     }
-    tbb::task_group arrays;  // to clear memory for the first time takes a while: several threads do
+    tbb::task_group arrays;  // clearing new memory takes a while, so several threads do it
     arrays.run([&] { volume.frames.resize(count); });
     for (RbfChannel& channel : channels) {
         arrays.run([&] { channel.values.resize(count); });

@@ -6,21 +6,24 @@
 
 namespace subvol::detail {
 
-/// Brings together what the directions about a point say of its kernel: the frame from their steps, the gradient by least
-/// squares, the second moment as a mean (docs/adr/0004).
+/// Sums over the directions about a point (a step along an axis of each cell, or along a line), from which its kernel follows:
+/// the frame from the steps, the gradient by least squares, the second moment as a mean (docs/adr/0004).
 class DirectionSums {
 public:
     DirectionSums(const SampleOptions& options, RbfVolume& volume);
 
     void begin(std::size_t point);
 
-    /// A direction: step ∂x and second difference ∂²x of the position per sample interval, those of channel c at d_f[c],
-    /// dd_f[c]. weight: how many cells have this direction
+    /// Adds a direction.
+    ///
+    /// weight:     how many cells have it
+    /// step, bend: derivative and second difference of the position per sample interval
+    /// d_f, dd_f:  the same of each channel
     void add(double weight, const Vec3& step, const Vec3& bend, const double* d_f, const double* dd_f);
 
-    /// Writes frame, gradients and moments of the point; `cells`: how many cells are about it.
+    /// Writes frame, gradients and moments of the point. cells: how many cells are about it
     ///
-    /// returns: whether the frame was flat and had to be thickened
+    /// returns: whether the frame was flat and was thickened
     bool finish(double cells);
 
 private:
@@ -34,16 +37,16 @@ private:
     std::vector<double> laplacian_;
 };
 
-/// What the moment leaves of a Hessian: H less its part along the frame's inverse, as six numbers.
+/// The part of a Hessian that the moment does not have: H less its part along the inverse of the frame.
 [[nodiscard]] Symmetric3 without_moment(const Mat3& hessian, const Symmetric3& frame);
 
-/// Fills in the Hessians of all channels from the gradients that the volume has, by least squares over the neighbours on the
-/// lines: along a line from the values, across it from the differences of the gradients.
+/// Writes the Hessians of all channels by least squares over the neighbours on the lines: along a line from the values, across
+/// it from the differences of the volume's gradients.
 void fit_hessians(const PointLines& lines, RbfVolume& volume);
 
-/// An RBF volume of `count` points with the channels of a mesh, nothing filled in; its centers are yet to come.
+/// An RBF volume of `count` points with the channels of a mesh. Frames and channels are zero; there are no centres yet.
 ///
-/// throws: Error(InvalidInput) if they are too many
+/// throws: Error(InvalidInput) if there are too many points
 [[nodiscard]] RbfVolume empty_volume(const HexMesh& mesh, std::size_t count, const SampleOptions& options);
 
 }  // namespace subvol::detail

@@ -24,7 +24,7 @@ Eigen::Matrix3d symmetric(const Six& s) {
     return m;
 }
 
-/// The rows that turn six numbers into the product of their matrix with a vector.
+/// The matrix that takes the six numbers of a symmetric matrix M to the product M d.
 Eigen::Matrix<double, 3, 6> product_rows(const Eigen::Vector3d& d) {
     Eigen::Matrix<double, 3, 6> rows = Eigen::Matrix<double, 3, 6>::Zero();
     rows.row(0).head<3>() = d;
@@ -33,7 +33,7 @@ Eigen::Matrix<double, 3, 6> product_rows(const Eigen::Vector3d& d) {
     return rows;
 }
 
-/// Fits the Hessian of one point in coordinates in which its frame is a ball of sample intervals.
+/// Fits the Hessian of one point, in coordinates in which its frame is the ball of one sample interval.
 class HessianFit {
 public:
     void begin(const Symmetric3& frame, double radius) {
@@ -44,7 +44,7 @@ public:
         used_ = 0;
     }
 
-    /// along: ½ dᵀHd as the values say; gradient: H d as the gradients say
+    /// along: ½ dᵀHd from the values; gradient: H d from the gradients
     void add(const Eigen::Vector3d& offset, double along, const Eigen::Vector3d& gradient) {
         const Eigen::Vector3d d = root_.triangularView<Eigen::Lower>().solve(offset);
         const Eigen::Vector3d change = root_.transpose() * gradient;

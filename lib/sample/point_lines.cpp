@@ -12,10 +12,10 @@ namespace subvol::detail {
 
 namespace {
 
-/// The lines through one kind of point after the other; calls emit(a, b, cells about a's edge, cells about b's edge).
-class Stars {
+/// Finds the lines through a point of a mesh, or of its child by the topology of the mesh.
+class LineFinder {
 public:
-    Stars(const Topology& topology, bool child)
+    LineFinder(const Topology& topology, bool child)
         : t_(topology), first_(topology), child_(child), kinds_(classify_points(topology)), regular_(regular_points(topology)) {
         cell_of_rank_.resize(child ? topology.cells.size() : 0);
         parallel_each(cell_of_rank_.size(), [&](std::size_t c) { cell_of_rank_[t_.cell_rank[c]] = static_cast<Index>(c); });
@@ -23,6 +23,8 @@ public:
 
     [[nodiscard]] std::size_t size() const { return child_ ? first_.end : t_.point_count; }
 
+    /// Calls emit(a, b, cells_a, cells_b) for every line: its neighbours on both sides, kNone where it ends, and how many cells
+    /// have the edges to them.
     template <class Emit>
     void at(std::size_t point, const Emit& emit) const {
         if (point < first_.edges) {
@@ -36,7 +38,7 @@ public:
         }
     }
 
-    /// How many entries `at` makes, without a look at who the neighbours are where that is clear.
+    /// The number of entries that `at` makes; where it is always 6, without finding the neighbours.
     [[nodiscard]] std::size_t entries(std::size_t point) const {
         if (point >= first_.cells) return 6;
         if (point >= first_.faces && !sharp_inside(static_cast<Index>(point - first_.faces))) return 6;
@@ -57,13 +59,13 @@ private:
     [[nodiscard]] Index cell_point(Index c) const {
         return c == kNone ? kNone : static_cast<Index>(first_.cells + t_.cell_rank[c]);
     }
-    /// As many as a byte holds: beyond that weights need not be exact.
+    /// At most what fits into a byte: beyond that weights need not be exact.
     [[nodiscard]] unsigned cells_at_edge(Index e) const {
         return static_cast<unsigned>(std::min<std::size_t>(t_.edge_cells[e].size(), 255));
     }
     [[nodiscard]] unsigned cells_at_face(Index f) const { return t_.face_on_hull(f) ? 1 : 2; }
 
-    /// The edge at a vertex that goes on from another of its edges: the only one that shares no face with it.
+    /// The edge at a vertex that continues another of its edges: the only one that shares no face with it.
     [[nodiscard]] std::size_t opposite(Index vertex, std::size_t slot) const {
         const auto edges = t_.point_edges[vertex];
         if (edges.size() > 64) return kNoSlot;
@@ -78,7 +80,7 @@ private:
         return std::has_single_bit(apart) ? static_cast<std::size_t>(std::countr_zero(apart)) : kNoSlot;
     }
 
-    /// Whether a line may pass a vertex from one edge to another: not across the boundary or a crease.
+    /// Whether a line may continue through a vertex from one edge to another: not across the boundary or a crease.
     [[nodiscard]] bool passes(Index vertex, Index a, Index b) const {
         switch (kinds_[vertex]) {
             case PointKind::Interior:
@@ -100,7 +102,7 @@ private:
         for (std::size_t i = 0; i < edges.size(); ++i) {
             const std::size_t j = opposite(v, i);
             const bool pair = j != kNoSlot && passes(v, edges[i], edges[j]) && (regular_[v] || opposite(v, j) == i);
-            if (pair && j < i) continue;  // the other edge has told of it
+            if (pair && j < i) continue;  // this line was found at the other edge
             if (pair) {
                 emit(neighbour(i), neighbour(j), cells_at_edge(edges[i]), cells_at_edge(edges[j]));
             } else {
@@ -161,17 +163,17 @@ private:
 };
 
 PointLines collect(const Topology& topology, bool child) {
-    const Stars stars(topology, child);
+    const LineFinder finder(topology, child);
     PointLines lines;
-    lines.offsets.resize(stars.size() + 1);
+    lines.offsets.resize(finder.size() + 1);
     lines.offsets[0] = 0;
-    parallel_each(stars.size(), [&](std::size_t p) { lines.offsets[p + 1] = stars.entries(p); });
-    for (std::size_t p = 0; p < stars.size(); ++p) lines.offsets[p + 1] += lines.offsets[p];
+    parallel_each(finder.size(), [&](std::size_t p) { lines.offsets[p + 1] = finder.entries(p); });
+    for (std::size_t p = 0; p < finder.size(); ++p) lines.offsets[p + 1] += lines.offsets[p];
     lines.neighbours.resize(lines.offsets.back());
     lines.cells.resize(lines.offsets.back());
-    parallel_each(stars.size(), [&](std::size_t p) {
+    parallel_each(finder.size(), [&](std::size_t p) {
         std::size_t at = lines.offsets[p];
-        stars.at(p, [&](Index a, Index b, unsigned cells_a, unsigned cells_b) {
+        finder.at(p, [&](Index a, Index b, unsigned cells_a, unsigned cells_b) {
             lines.neighbours[at] = a;
             lines.neighbours[at + 1] = b;
             lines.cells[at] = static_cast<std::uint8_t>(cells_a);
@@ -205,7 +207,7 @@ PointLines LinesOfParts::finish(std::size_t points) {
     all.neighbours.resize(all.offsets.back());
     all.cells.resize(all.offsets.back());
     for (Part& part : parts_) {
-        const Part done = std::move(part);  // freed after its turn
+        const Part done = std::move(part);  // frees each part after its turn
         parallel_each(done.lines.size(), [&](std::size_t i) {
             if (!done.own[i]) return;
             const std::size_t from = done.lines.offsets[i], to = all.offsets[done.points[i]];

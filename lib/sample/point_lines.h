@@ -6,10 +6,11 @@
 namespace subvol::detail {
 
 /// The grid lines through every point of a mesh. Entries 2i and 2i+1 of a point are the neighbours on both sides along one
-/// line, or a neighbour and kNone where the line ends: at the boundary, at creases, about irregular edges.
+/// line, or a neighbour and kNone where the line ends: at the boundary, at creases, at irregular edges.
 ///
-/// offsets: a point's entries, always even
-/// cells:   how many cells have the edge from the point to the neighbour
+/// offsets:    point p has the entries offsets[p] to offsets[p+1], an even number
+/// neighbours: of each entry
+/// cells:      of each entry: how many cells have the edge from the point to the neighbour
 struct PointLines {
     FlatArray<std::size_t> offsets;
     FlatArray<Index> neighbours;
@@ -26,15 +27,15 @@ struct PointLines {
     }
 };
 
-/// Of the child of a mesh in the numbering of `refine`: the child's own topology is not needed.
+/// The lines of the child of a mesh, in the numbering of `refine`, without the child's topology.
 [[nodiscard]] PointLines lines_of_child(const Topology& parent);
 
-/// Of a mesh, put together from those of its parts.
+/// The lines of a mesh, assembled from those of its parts.
 class LinesOfParts {
 public:
     void add(const MeshPart& part);
 
-    /// points: how many the mesh has, each of them some part's own
+    /// points: of the mesh; every one of them must be the own point of a part
     [[nodiscard]] PointLines finish(std::size_t points);
 
 private:

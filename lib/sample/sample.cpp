@@ -37,7 +37,7 @@ void check(const SampleOptions& options) {
     validate(options.kernel);
     validate(options.value_kernel);
     if (!is_radial(options.kernel)) {
-        throw Error(ErrorCode::InvalidInput, "points need a radial kernel: their frames have no axes");
+        throw Error(ErrorCode::InvalidInput, "the kernel is not radial: frames define no axes for it", {}, "a radial kernel");
     }
     const double radius = support_radius(options.kernel);
     if (!(radius >= 1.2 && radius <= 4)) {
@@ -57,7 +57,7 @@ RefineOptions refinement(const SampleOptions& options, int levels) {
     return {.scheme = scheme, .levels = levels, .progress = options.progress};
 }
 
-/// The level whose points are just the samples, if there is one.
+/// The level whose points are exactly the samples, if there is one.
 std::optional<int> level_of_samples(const SampleOptions& options) {
     const auto intervals = static_cast<unsigned>(options.per_edge);
     const bool graded = options.spacing_world > 0 || options.footprint || options.tolerance > 0;
@@ -99,7 +99,7 @@ void mark_hull(const detail::MeshPart& part, std::vector<std::uint8_t>& on_hull)
     }
 }
 
-/// Its topology is needed part by part only.
+/// The samples are the control points. The topology is built part by part, to save memory.
 SampledLevel control_level(HexMesh control, const SampleOptions& options) {
     const std::size_t points = control.points.size();
     detail::LinesOfParts lines;
@@ -143,7 +143,7 @@ SampleResult sample_level(HexMesh control, int number, const SampleOptions& opti
     return result;
 }
 
-/// At counts that differ from edge to edge, or values that are not the scheme's.
+/// Samples at counts that differ from edge to edge, or with values that are not the scheme's.
 SampleResult sample_graded(const HexMesh& control, const SampleOptions& options) {
     const Topology topology = build_topology(control);
     detail::RefinedPoints refined = detail::refine_points(control, topology, refinement(options, 2));

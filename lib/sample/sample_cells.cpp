@@ -1,4 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
+// Kernels at any number of intervals on each edge. Vertices, edges, faces and cells are sampled one after the other, so that a
+// point shared by several cells gets one kernel.
+//
+//    ●───○───○───●     a face with 3 intervals along u and 2 along v:
+//    │   │   │   │     ● at vertices
+//    ○───□───□───○     ○ on edges: n − 1 points each
+//    │   │   │   │     □ on the face: (n_u − 1)(n_v − 1) points; in a cell (n_u − 1)(n_v − 1)(n_w − 1)
+//    ●───○───○───●
+//
+// Every cell about a point gives position and field there with their derivatives along u, v and w, per sample interval: by
+// quartics through the 5×5×5 points of the twice refined cell (cell_block.h). Positions and values of neighbouring cells agree;
+// their derivatives and intervals need not. One kernel follows from all of them (docs/adr/0004, docs/adr/0009):
+//
+//    frame       S = R² mean Σ J_a J_aᵀ, J_a the derivative of the position along axis a
+//    gradient    the least-squares solution g of J_aᵀ g = ∂_a f
+//    moment      R²/6 mean Σ (∂²_a f − g·∂²_a x)
+//    Hessian     mean J⁻ᵀ (∂²f − g·∂²x) J⁻¹, less the part that the moment has
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -28,7 +45,9 @@ Buckets<std::pair<Index, Index>> cells_of_points(const Topology& topology) {
         [](const auto& record) { return record.first; });
 }
 
-/// Where a point of an edge or face (one or two parameters from its first corner) lies in one of the cells about it.
+/// The parameters, in one of the cells about it, of a point on an edge or face.
+///
+/// origin, ends: the entity's first corner and that corner's neighbours along it; parameters: of the point between them
 template <std::size_t N>
 std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, const std::array<Index, N>& ends,
                               const std::array<double, N>& parameters) {
@@ -41,7 +60,7 @@ std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, co
     return uvw;
 }
 
-/// Writes one kernel from the jets of the cells about its point.
+/// Writes one kernel after the other, each from the jets of the cells about its point.
 class KernelWriter {
 public:
     KernelWriter(const Topology& topology, const SampleCounts& counts, const CellBlocks& blocks,
@@ -100,7 +119,7 @@ public:
     }
 
 private:
-    /// J⁻ᵀ (∂²f − g·∂²x) J⁻¹, nothing where the cell is flat.
+    /// J⁻ᵀ (∂²f − g·∂²x) J⁻¹; 0 where the cell is flat.
     [[nodiscard]] static Mat3 hessian_in(const CellBlocks::Jet& jet, std::size_t channel, const Vec3& g) {
         const Mat3 jacobian(jet.d_position[0], jet.d_position[1], jet.d_position[2]);
         const double size = glm::length(jacobian[0]) * glm::length(jacobian[1]) * glm::length(jacobian[2]);
@@ -116,7 +135,7 @@ private:
         return glm::transpose(inverse) * second * inverse;
     }
 
-    /// Control points keep their values whatever the rule.
+    /// Control points keep their values under every rule.
     void write_values(Index cell, const std::array<double, 3>& uvw) {
         const auto at_end = [](double t) { return t == 0 || t == 1; };
         const bool by_rule = options_.values != ValueRule::Scheme && !std::all_of(uvw.begin(), uvw.end(), at_end);
@@ -137,7 +156,7 @@ private:
     std::size_t point_ = 0;
     int cells_ = 0;
     std::vector<double> d_, dd_;
-    std::vector<CellBlocks::Jet> jets_;  // of the point's cells
+    std::vector<CellBlocks::Jet> jets_;  // of the cells about the point
 };
 
 /// Samples all entities of a mesh.

@@ -13,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostIntervals = 1024;  // a cell of 10⁹ points is a wrong unit, not a wish
+constexpr int kMostIntervals = 1024;  // a cell of 10⁹ points is more likely a wrong unit
 
 int intervals(double length, double spacing, const char* unit) {
     const double wanted = std::ceil(length / spacing);
@@ -26,7 +26,7 @@ int intervals(double length, double spacing, const char* unit) {
     return std::max(1, static_cast<int>(wanted));
 }
 
-/// The picture's side of the footprint rule: lengths in pixels, never too small.
+/// Lengths in pixels for the footprint rule; never smaller than what is seen.
 class Projection {
 public:
     Projection(const Footprint& footprint, double diagonal_world)
@@ -35,13 +35,13 @@ public:
           nearest_(kNearest * diagonal_world),
           slant_(std::sqrt(1 + glm::dot(view_.slopes(0, 0), view_.slopes(0, 0)))) {}
 
-    /// A length at `depth` as seen by the pixel that sees it longest: turned against the ray at the picture's corner.
+    /// The most pixels that a length at `depth` can cover: perpendicular to the ray through a corner of the picture.
     [[nodiscard]] double pixels(double length, double depth) const {
         return view_.perspective() ? length * slant_ / (view_.pixel() * std::max(depth, nearest_)) : length / view_.pixel();
     }
     [[nodiscard]] double depth(const Vec3& x) const { return view_.to_eye(x).z; }
 
-    /// Whether a cell's projected box is large enough to be refined, and within the picture.
+    /// Whether a cell gets more than one interval: its projected box is large enough and meets the picture.
     [[nodiscard]] bool counts(const HexMesh& mesh, const std::array<Index, 8>& cell) const {
         Vec2 low(std::numeric_limits<double>::infinity()), high(-low);
         double front = low.x, back = high.x;
@@ -55,13 +55,13 @@ public:
             high = glm::max(high, at);
         }
         if (view_.perspective() && back < nearest_) return false;  // behind the eye
-        if (view_.perspective() && front < nearest_) return true;  // about the eye
+        if (view_.perspective() && front < nearest_) return true;  // around the eye
         if (high.x < 0 || high.y < 0 || low.x > view_.width() || low.y > view_.height()) return false;
         return std::max(high.x - low.x, high.y - low.y) > footprint_.least_cell_px;
     }
 
 private:
-    static constexpr double kNearest = 1e-3;  // of the box's diagonal: what is nearer counts as this near
+    static constexpr double kNearest = 1e-3;  // the least depth, of the diagonal of the mesh's box
 
     const Footprint& footprint_;
     View view_;

@@ -27,8 +27,8 @@ struct LineStencil {
     }
 };
 
-/// The derivative at `p`, per interval, towards `ahead` on the line … back2, back, p, ahead, ahead2 …, exact for as high a
-/// degree as there are points, up to the fourth.
+/// The derivative at `p`, per interval, towards `ahead` on the line … back2, back, p, ahead, ahead2 …: exact for polynomials of
+/// as high a degree as the points allow, up to the fourth.
 void derive(const PointLines& lines, Index p, Index ahead, Index back, LineStencil& d) {
     const Index ahead2 = lines.after(ahead, p);
     if (back == kNone) {
@@ -58,7 +58,7 @@ public:
         dd_.resize(sources_.size());
     }
 
-    /// returns: whether the point's frame was flat
+    /// Returns whether the point's frame was flat.
     bool sample(Index p) {
         for (std::size_t c = 0; c < sources_.size(); ++c) volume_.channels[c].values[p] = static_cast<float>(sources_[c].at(p));
         sums_.begin(p);
@@ -78,7 +78,7 @@ public:
     }
 
 private:
-    /// The second difference of the neighbours of p; where there is but one, 2 (f(1) − f(0) − f′(0)) takes its place.
+    /// The second difference is that of the two neighbours of p; with one neighbour it is 2 (f(1) − f(0) − f′(0)).
     void add_line(Index p, Index a, Index b, double cells_a, double cells_b) {
         derive(lines_, p, a, b, stencil_);
         Vec3 step(0.0);

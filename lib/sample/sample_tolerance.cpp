@@ -29,8 +29,8 @@ std::vector<double> errors_of_cells(const RbfVolume& volume, const HexMesh& twic
     return errors;
 }
 
-/// More intervals where a cell at one of the edge's ends errs too much: errors fall with the square of the spacing, and a large
-/// kernel reaches into the next cell. Returns whether any.
+/// Gives more intervals to edges with a cell at one of their ends whose error is too large: errors fall with the square of the
+/// spacing, and a large kernel reaches into the next cell. Returns whether there was any.
 bool refine_intervals(const Topology& topology, const std::vector<double>& errors, double tolerance,
                       std::vector<int>& intervals) {
     std::vector<double> at_points(topology.point_count, 0);

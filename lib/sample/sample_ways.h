@@ -7,22 +7,23 @@
 
 namespace subvol::detail {
 
-/// One kernel at every point of a mesh whose points lie on the limit.
+/// One kernel at every point of a mesh whose points lie on the limit. Steps and gradients are fourth-order differences along
+/// the lines through a point, one-sided where a line ends.
 ///
-/// Steps and gradients come from fourth-order differences along the lines through a point, one-sided where a line ends;
-/// across_points: whether the limit is smooth across the points of a line; if not, every cell has derivatives of its own
+/// across_points: whether the limit is smooth across the points of a line; if not, each edge gives its own derivative
 [[nodiscard]] SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool across_points,
                                             const SampleOptions& options);
 
-/// Kernels at any counts of intervals, entity by entity. Values and derivatives are those of quartics through the cells of the
-/// twice refined mesh, whose points lie on the limit; a point has the mean over the cells about it.
+/// Kernels at any number of intervals on each edge, entity by entity. Values and derivatives are those of quartics through the
+/// cells of the twice refined mesh, whose points must lie on the limit.
 ///
-/// intervals: of each edge of the topology, which is that of `control`
+/// topology:  of `control`
+/// intervals: of each edge of the topology
 [[nodiscard]] SampleResult sample_in_cells(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
                                            std::vector<int> intervals, const SampleOptions& options);
 
-/// Samples with as many intervals as it takes until the field's first channel errs by less than options.tolerance at every
-/// point of the twice refined mesh, or has 64 intervals on every edge where it does not.
+/// Increases the intervals, in at most six rounds, until the error of the first channel is below options.tolerance at every
+/// point of the twice refined mesh, or the edges where it is not have 64 intervals.
 [[nodiscard]] SampleResult sample_to_tolerance(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
                                                const SampleOptions& options);
 

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::array<int, 3> kStrides{1, 4, 16};
 
-/// A node of the grid that is not one of the cell's corners: steps towards the cell, 0 along axes on which it stands beside it.
+/// A node of the 4×4×4 grid about a cell: its step towards the cell along each axis, 0 where it is not beyond the cell, and the
+/// number of axes along which it is.
 struct OuterNode {
     std::array<int, 3> inward{};
     int axes = 0;
@@ -31,7 +32,7 @@ struct OuterNode {
     }
 };
 
-/// Nodes that have three known ones next to them along an axis continue these as a quadratic; so do, then, their neighbours.
+/// Extrapolates quadratically to nodes that have three known ones next to them along an axis, and from there to further ones.
 void continue_lines(std::array<bool, 64>& known, double* nodes) {
     for (int sweep = 0; sweep < 3; ++sweep) {  // beyond one side of a box, beyond two, beyond three
         const std::array<bool, 64> before = known;
@@ -48,8 +49,8 @@ void continue_lines(std::array<bool, 64>& known, double* nodes) {
     }
 }
 
-/// Fills in the nodes that are no points: by lines where they can be continued; else beyond one side linearly, and beyond two
-/// or three by what these sides say: f(i,j) = f(i,0) + f(0,j) − f(0,0).
+/// Fills in the nodes that are not points of the mesh: quadratically along lines where possible; else linearly beyond one side
+/// of the cell, and beyond two or three from the values beyond each of them: f(i,j) = f(i,0) + f(0,j) − f(0,0).
 void extrapolate(const GridPoints& grid, double* nodes) {
     std::array<bool, 64> known;
     for (std::size_t n = 0; n < 64; ++n) known[n] = grid[n] != kNone;
@@ -144,7 +145,7 @@ std::vector<double> values_at_new_points(const HexMesh& mesh, std::string_view f
     const detail::ChildNumbering first(topology);
     const auto channels = detail::channels_of(bare);
     std::vector<double> values(first.end - old);
-    // Every cell writes its own point and those of the edges and faces that no smaller cell has.
+    // Every cell writes its own point, and those of its edges and faces that no cell with a smaller number has.
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, topology.cells.size(), 256), [&](const auto& range) {
         detail::RuleInCell in_cell(topology, channels, rule, kernel);
         for (std::size_t c = range.begin(); c != range.end(); ++c) {

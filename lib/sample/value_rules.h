@@ -17,7 +17,7 @@ struct ChannelView {
 
 [[nodiscard]] std::vector<ChannelView> channels_of(const HexMesh& mesh);
 
-/// Evaluates a rule in one cell after the other. Not for several threads at once.
+/// Evaluates a rule in one cell after the other. Not thread-safe.
 class RuleInCell {
 public:
     /// rule: Cubic or Paper. All references are kept.
@@ -37,7 +37,7 @@ private:
     const Kernel& kernel_;
     Index cell_ = kNone;
     GridPoints grid_;
-    std::vector<double> nodes_;  // 64 a channel
+    std::vector<double> nodes_;  // 64 for each channel
 };
 
 }  // namespace subvol::detail

@@ -8,8 +8,8 @@
 
 namespace subvol::detail {
 
-/// Weights c_j = δ_j0 − (4/m) cos(2πj/m) that continue data across a ring of m members to the side opposite member 0. In the
-/// regular ring of four they are exactly the member opposite.
+/// Weights c_j = δ_j0 − (4/m) cos(2πj/m) that extrapolate data on a ring of m members to the side opposite member 0. In the
+/// regular ring of four they select exactly the opposite member.
 class AntipodalWeights {
 public:
     AntipodalWeights() : table_(kTabulated + 1) {

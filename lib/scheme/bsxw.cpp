@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scheme of Bajaj, Schaefer, Warren and Xu [bsxw2002]: a trilinear split, then every point becomes the mean of the
-// centroids of the small hexes about it; on the boundary of the small quads, on creases of the small segments. Both steps in
-// one: a small hex's centroid is the trilinear point at 1/4 of its parent, and those about the same parent are averaged first.
+// The scheme of Bajaj, Schaefer, Warren and Xu [bsxw2002]: a trilinear split into small hexahedra, then every point becomes the
+// mean of the centroids of the small hexahedra around it; of the small quads on the boundary, of the small segments on creases.
+// Both steps are done at once: the centroid of a small hexahedron is the trilinear point of its parent a quarter of the way in
+// from a corner.
 #include "spline_scheme.h"
 #include "subvol/cell.h"
 

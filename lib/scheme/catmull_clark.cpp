@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Catmull-Clark solids [mj1996]: inside the means of cells, faces and edges; on the boundary the surface of Catmull and Clark,
-// on creases the cubic B-spline.
+// Catmull-Clark solids [mj1996]: weighted means of cells, faces and edges in the interior, Catmull-Clark surfaces on the
+// boundary, cubic B-splines on creases.
 #include "spline_scheme.h"
 
 namespace subvol::detail {
@@ -12,7 +12,7 @@ public:
     using SplineScheme::SplineScheme;
 
 private:
-    /// (C̄ + 3Ā + 3M̄ + V)/8
+    /// (C̄ + 3Ā + 3M̄ + V)/8 from the means of the cells' centres, the faces' centres and the edges' middles
     void interior_vertex(Index point, StencilBuilder& row) const override {
         const Topology& t = topology();
         std::size_t cells = 0, faces = 0;
@@ -27,7 +27,7 @@ private:
         row.add(point, 1.0 / 8);
     }
 
-    /// (C̄ + 2Ā + (n−3)M)/n over n faces; only means, so that it needs no ring.
+    /// (C̄ + 2Ā + (n−3)M)/n over n faces. Only means are needed, so the order of the ring does not matter.
     void interior_edge(Index edge, StencilBuilder& row) const override {
         const Topology& t = topology();
         const auto faces = t.edge_faces[edge];
@@ -38,7 +38,7 @@ private:
         add_mean(row, t.edges[edge], (n - 3) / n);
     }
 
-    /// V(1−β−γ) + βN̄₁ + γN̄₂ over the n neighbours along edges and the n across faces; β = 3/(2n), γ = 1/(4n)
+    /// V(1−β−γ) + βN̄₁ + γN̄₂ from the means over the n neighbours along edges and the n across faces; β = 3/(2n), γ = 1/(4n)
     void surface_vertex(Index point, StencilBuilder& row) const override {
         const Topology& t = topology();
         double n = 0;

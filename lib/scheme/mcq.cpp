@@ -1,6 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// MCQ-G: interpolatory subdivision of hexahedral meshes, MCQ inside and a generalisation of ours at irregular edges, boundaries
-// and creases. Terms that would lie beyond the boundary are replaced by quadratic extrapolation from their partner term.
+// MCQ-G: interpolatory subdivision of hexahedral meshes. Inside a grid it is MCQ [mcq2004, mnmq2007]; the rules at irregular
+// edges, boundaries and creases are ours (docs/schemes.md). Old points stay where they are. ω is the tension, 1/16 by default.
+//
+//    r ── q ── q ── r     The new point x of edge ab in a grid, in one of the two planes through the edge:
+//    │    │    │    │
+//    ○ ── a ─x─ b ── ○       x = 1/2 Σ{a,b} + ω/4 Σ q − ω/4 Σ r   over 8 points q and 8 points r
+//    │    │    │    │
+//    r ── q ── q ── r     The points q lie across the faces of the edge, the points r one step further along the edge.
+//
+// Points of faces and cells follow the same pattern (`regular_face`, `regular_cell`). Elsewhere "one step further" has no
+// unique meaning. Across an edge with a ring of m faces it is the antipodal term: the sum over the ring with the weights c_j of
+// antipode.h, which for m = 4 is the face opposite. Beyond a boundary it is a ghost: the quadratic extrapolation from the
+// points on this side and the term at the opposite end of the line.
 #include <algorithm>
 
 #include "antipode.h"
@@ -52,8 +63,7 @@ public:
     }
 
 private:
-    // --- the regular masks, as runs
-    // --------------------------------------------------------------------------------------------------------
+    // Rules in a grid: whole runs of equal weights.
 
     void regular_edge(Index edge, StencilBuilder& row) const {
         const auto [a, b] = topology_.edges[edge];
@@ -64,7 +74,7 @@ private:
             q[k++] = across_face(topology_, face, b);
         }
         k = 0;
-        for (const Index end : {a, b}) {  // beyond an end, the faces about the edge that goes on there
+        for (const Index end : {a, b}) {  // beyond an end, the faces of the edge that continues this one
             for (const Index face : topology_.edge_faces[continuation(edge, end)]) r[k++] = across_face(topology_, face, end);
         }
         row.add_run(topology_.edges[edge], 0.5);
@@ -109,7 +119,7 @@ private:
         row.add_run(q, -omega_ / 4);
     }
 
-    /// The edge that goes on beyond a regular end of an edge: the one of the six that shares no face with it.
+    /// The edge that continues this one beyond a regular end: the only one of the six there that shares no face with it.
     Index continuation(Index edge, Index end) const {
         Index left = edge;
         for (const Index e : topology_.point_edges[end]) left ^= e;
@@ -122,15 +132,15 @@ private:
         return left;
     }
 
-    // The terms of the rules are functions: they add themselves with a weight, or add nothing and return false where the mesh
-    // ends.
+    // Rules everywhere else. A term is a function that adds itself to a row with a given weight. It adds nothing and returns
+    // false where the mesh ends before the points that it needs.
 
     template <class Points>
     static void add(StencilBuilder& row, const Points& points, double weight) {
         for (const Index p : points) row.add(p, weight);
     }
 
-    /// weight · term, or its ghost: 3 near − 3 far + partner, without a known partner 2 near − far.
+    /// Adds weight · term, or its ghost where the mesh ends: 3 near − 3 far + partner; 2 near − far without a partner.
     template <class Points, class Term, class Partner>
     static void extrapolated(StencilBuilder& row, double weight, const Points& near, const Points& far, const Term& term,
                              const Partner& partner) {
@@ -140,7 +150,7 @@ private:
         add(row, far, quadratic ? -3 * weight : -weight);
     }
 
-    /// A pair of terms at the two ends of a line, each the other's partner.
+    /// Adds the two terms beyond the ends of a line; each is the partner of the other.
     template <class TermA, class TermB>
     static void both_ways(StencilBuilder& row, double weight, Index near_a, Index near_b, const TermA& beyond_a,
                           const TermB& beyond_b) {
@@ -149,10 +159,7 @@ private:
         extrapolated(row, weight, b, a, beyond_b, beyond_a);
     }
 
-    // --- terms
-    // -----------------------------------------------------------------------------------------------------------------
-
-    /// R^A: over the ring of faces about edge (a,d), the neighbours of d other than a, antipodally weighted.
+    /// The antipodal term across the edge from a to d: the neighbours of d in the ring of faces about that edge.
     [[nodiscard]] auto across_edge(Index face, Index a, Index d) const {
         return [=, this](StencilBuilder& row, double weight) {
             const Index edge = edge_in_face(face, a, d);
@@ -167,7 +174,7 @@ private:
         };
     }
 
-    /// R_g: over the ring of faces about an edge, their two points not on it, antipodally weighted.
+    /// The antipodal term across an edge of a face: the two points of each face of its ring that are not on the edge.
     [[nodiscard]] auto in_plane(Index face, Index edge) const {
         return [=, this](StencilBuilder& row, double weight) {
             if (!topology_.edge_has_ring[edge]) return false;
@@ -182,7 +189,8 @@ private:
         };
     }
 
-    /// S_g: in the cells next to those of the face, the two points diagonally opposite the edge.
+    /// Beyond an edge of a face, over and under its plane: in the cells next to the two cells of the face, the two points
+    /// diagonally opposite the edge.
     [[nodiscard]] auto diagonal(Index face, Index edge) const {
         return [=, this](StencilBuilder& row, double weight) {
             if (!topology_.edge_has_ring[edge]) return false;
@@ -196,7 +204,7 @@ private:
         };
     }
 
-    /// Across a side of a cell, the far points of its neighbour.
+    /// The far points of the neighbour across a side of a cell.
     [[nodiscard]] auto far_points(Index cell, std::size_t side) const {
         return [=, this](StencilBuilder& row, double weight) {
             const Index face = topology_.cell_faces[cell][side];
@@ -207,7 +215,7 @@ private:
         };
     }
 
-    /// A': the far end of the other crease edge at a.
+    /// The far end of the other crease edge at a.
     [[nodiscard]] auto along_crease(Index edge, Index a) const {
         return [=, this](StencilBuilder& row, double weight) {
             if (kinds_[a] != PointKind::Crease) return false;
@@ -219,7 +227,7 @@ private:
         };
     }
 
-    /// A*: over the ring of boundary edges at a smooth point, their far ends, antipodally weighted.
+    /// The antipodal term at a smooth point of the boundary: the far ends of the boundary edges around it.
     [[nodiscard]] auto across_spokes(Index edge, Index a) const {
         return [=, this](StencilBuilder& row, double weight) {
             if (kinds_[a] != PointKind::Smooth) return false;
@@ -234,6 +242,7 @@ private:
         };
     }
 
+    /// Across the edge from a to d, in the boundary surface: the neighbour of d in the next face.
     [[nodiscard]] auto across_surface_edge(Index face, Index a, Index d) const {
         return [=, this](StencilBuilder& row, double weight) {
             const Index edge = edge_in_face(face, a, d);
@@ -243,6 +252,7 @@ private:
         };
     }
 
+    /// Across an edge of a boundary face: the two far points of the next boundary face.
     [[nodiscard]] auto over_surface(Index face, Index edge) const {
         return [=, this](StencilBuilder& row, double weight) {
             if (topology_.edge_is_crease[edge]) return false;
@@ -251,7 +261,7 @@ private:
         };
     }
 
-    // --- inside -------------------------------------------------------------------------------------------------------------
+    // Rules of the interior.
 
     void interior_edge(Index edge, StencilBuilder& row) const {
         const auto [a, b] = topology_.edges[edge];
@@ -286,8 +296,7 @@ private:
         }
     }
 
-    // --- on the boundary
-    // ------------------------------------------------------------------------------------------------------
+    // Rules of the boundary: they use points of the boundary alone.
 
     void crease_edge(Index edge, StencilBuilder& row) const {
         const auto [a, b] = topology_.edges[edge];
@@ -317,15 +326,14 @@ private:
         }
     }
 
-    // --- neighbours within a face or a cell
-    // -----------------------------------------------------------------------------------
+    // Neighbours within a face or a cell.
 
-    /// The neighbour of `point` in a face, other than `not_this` (which must be its other neighbour).
-    Index beside(Index face, Index point, Index not_this) const {
+    /// The neighbour of `point` in a face that is not `other`; `other` must be its other neighbour.
+    Index beside(Index face, Index point, Index other) const {
         const auto& quad = topology_.faces[face];
         const std::size_t k = slot_of(quad, point);
         const Index next = quad[(k + 1) % 4];
-        return next == not_this ? quad[(k + 3) % 4] : next;
+        return next == other ? quad[(k + 3) % 4] : next;
     }
 
     Index edge_in_face(Index face, Index a, Index b) const {
@@ -340,6 +348,7 @@ private:
         return {beside(face, a, b), beside(face, b, a)};
     }
 
+    /// The edge of a cell diagonally opposite another.
     Pair opposite_edge(Index cell, Index edge) const {
         const std::size_t k = slot_of(topology_.cell_edges[cell], edge);
         // The four edges along an axis are listed 00, 10, 01, 11 over the other two axes: the opposite one is 3 − i.
@@ -357,7 +366,7 @@ private:
         return side_points(cell, slot_of(topology_.cell_faces[cell], face) ^ 1);
     }
 
-    /// In both cells of a face, the points over two of its points.
+    /// The points over two points of a face, in both of its cells.
     std::array<Index, 4> lifted(Index face, const Pair& points) const {
         std::array<Index, 4> result{};
         std::size_t count = 0;

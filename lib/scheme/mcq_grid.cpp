@@ -9,11 +9,11 @@ namespace {
 
 constexpr std::array<int, 3> kStride{1, 6, 36};
 
-/// The place of a term along an axis: on the new point's segment (or its own coordinate), one step off it, or one further
-/// along.
+/// Where a term lies along an axis: at the ends of the segment that the new point halves (or at its coordinate), one step
+/// beside it, or one step beyond the segment.
 enum class Reach : std::uint8_t { Here, Aside, Beyond };
 
-/// Offsets of the points whose axes have these reaches; `half`: the axes along which the new point lies between old ones.
+/// Offsets of the points that lie so along the three axes. half: the axes along which the new point lies between old ones
 std::vector<std::int16_t> offsets_of(const std::array<Reach, 3>& reach, std::size_t half) {
     std::vector<int> sums{0};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -64,7 +64,7 @@ McqGrid::McqGrid(double omega) {
 }
 
 void McqGrid::refine(std::size_t octant, std::size_t channels, std::span<const double> from, std::span<double> to) const {
-    // Along an axis the child's points stand at halves: from −1 on in a lower child, from −1/2 on in an upper one.
+    // Along an axis the child's points have half the spacing: they start at −1 in a lower child, at −1/2 in an upper one.
     const auto halves = [&](std::size_t axis, std::size_t i) { return i + 2 + (octant >> axis & 1); };
     for (std::size_t n = 0; n < kPoints; ++n) {
         const std::array<std::size_t, 3> at{halves(0, n % 6), halves(1, n / 6 % 6), halves(2, n / 36)};

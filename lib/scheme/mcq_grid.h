@@ -10,7 +10,7 @@
 namespace subvol::detail {
 
 /// MCQ in a grid, without topology: from the 6×6×6 points about a cell, two beyond it on every side, to those about one of its
-/// eight children. Entry i + 6j + 36k stands at (i−2, j−2, k−2) in the cell's parameters.
+/// eight children. Entry i + 6j + 36k lies at (i−2, j−2, k−2) in the cell's parameters.
 class McqGrid {
 public:
     static constexpr std::size_t kSide = 6, kPoints = kSide * kSide * kSide;
@@ -27,7 +27,7 @@ public:
         std::vector<std::int16_t> offsets;
     };
 
-    /// The masks by which axes are half way: u + 2v + 4w.
+    /// The mask of each kind of new point: bits u + 2v + 4w are set for the axes along which it lies half way.
     [[nodiscard]] const std::array<std::vector<Run>, 8>& masks() const { return masks_; }
 
 private:

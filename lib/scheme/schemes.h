@@ -16,7 +16,7 @@ class SchemeRules {
 public:
     virtual ~SchemeRules() = default;
 
-    /// Whether old points stay where they are; `vertex_point` is asked only if they do not.
+    /// Whether old points stay where they are. `vertex_point` is called only if they do not.
     [[nodiscard]] virtual bool interpolates() const { return true; }
     virtual void vertex_point(Index point, StencilBuilder& row) const { row.add(point, 1); }
     virtual void edge_point(Index edge, StencilBuilder& row) const = 0;
@@ -30,7 +30,7 @@ std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double ten
 std::unique_ptr<SchemeRules> make_catmull_clark_rules(const Topology& topology);
 std::unique_ptr<SchemeRules> make_bsxw_rules(const Topology& topology);
 
-/// The rules that the options name.
+/// The rules of the scheme that the options choose.
 ///
 /// throws: Error(InvalidInput) if the tension is not finite
 [[nodiscard]] std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme);

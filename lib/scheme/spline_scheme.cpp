@@ -37,7 +37,7 @@ void SplineScheme::edge_point(Index edge, StencilBuilder& row) const {
     }
 }
 
-/// A face is always as in a grid.
+/// Every interior face has two cells, as in a grid: one rule is enough.
 void SplineScheme::face_point(Index face, StencilBuilder& row) const {
     if (topology_.face_on_boundary(face)) return add_mean(row, topology_.faces[face], 1);
     std::array<Index, 8> cells;

@@ -6,8 +6,8 @@
 
 namespace subvol::detail {
 
-/// What schemes that generalise tricubic B-splines, (1,6,1)/8 and (1,1)/2 along each axis, have in common: all but the rules at
-/// irregular points and edges.
+/// The common part of the schemes that generalise tricubic B-splines, (1,6,1)/8 and (1,1)/2 along each axis: everything but the
+/// rules at irregular points and edges.
 class SplineScheme : public SchemeRules {
 public:
     /// Keeps a reference to the topology.

@@ -7,13 +7,13 @@
 
 namespace subvol::detail {
 
-/// How many rows a block has at most; patterns are numbered with 16 bits.
+/// The most rows of a block; patterns are numbered with 16 bits.
 inline constexpr std::size_t kBlockRows = 4096;
 
 /// Writes rows into a block one after the other. Rows with the same weights share a pattern.
 class StencilBlockWriter {
 public:
-    /// Forgets the rows written so far, keeps the memory.
+    /// Clears the block but keeps its memory.
     void start(std::size_t first_row);
     void push(const StencilRuns& row);
     [[nodiscard]] const StencilTable::Block& block() const { return block_; }
@@ -27,7 +27,7 @@ private:
     std::unordered_multimap<std::size_t, std::size_t> by_hash_;
 };
 
-/// A block's rows applied to data of the coarser points, into out (row i at out + i × channels).
+/// Applies a block's rows to data of the coarser points; row i goes to out + i × channels.
 void apply_block(const StencilTable::Block& block, const double* in, std::size_t channels, double* out);
 void apply_block(const StencilTable::Block& block, const float* in, std::size_t channels, float* out);
 

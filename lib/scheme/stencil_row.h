@@ -18,9 +18,9 @@ struct StencilRuns {
     std::span<const StencilTable::Run> runs;
 };
 
-/// Collects the terms of one stencil, in any order: the finished row does not depend on how its neighbourhood was walked.
+/// Collects the terms of one stencil in any order: the finished row does not depend on the order of its neighbours.
 ///
-/// A row is given either term by term, or whole as runs (by a rule that knows it is regular).
+/// A row is given either term by term or, where the mesh is regular, as whole runs.
 class StencilBuilder {
 public:
     void clear() {
@@ -31,7 +31,7 @@ public:
 
     void add(Index point, double weight) { terms_.emplace_back(point, weight); }
 
-    /// Points that all have this weight. Rows of one kind must give their runs in the same order.
+    /// Adds points of the same weight. Rows of one kind must add their runs in the same order.
     template <std::size_t N>
     void add_run(std::array<Index, N> points, double weight) {
         if (weight == 0) return;
@@ -49,7 +49,7 @@ public:
 private:
     using Term = std::pair<Index, double>;
 
-    /// Equal points are added up by ascending weight, then the terms are sorted by weight.
+    /// The terms of one point are added up in ascending order, then all terms are sorted by weight.
     void make_runs() {
         std::sort(terms_.begin(), terms_.end());
         std::size_t count = 0;

@@ -127,7 +127,7 @@ StencilTable StencilTable::after(const StencilTable& first) const {
                                                  " points cannot follow one that makes " + std::to_string(first.rows()));
     }
     const RowAccess first_rows(first), own_rows(*this);
-    // What both keep stays kept; from there on every row is composed.
+    // Points that both tables keep stay kept; all rows behind them are composed.
     const std::size_t kept = std::min(first.kept(), kept_);
     std::vector<Block> composed((rows_ - kept + kBlockRows - 1) / kBlockRows);
     each_block(composed, [&](std::size_t b) {

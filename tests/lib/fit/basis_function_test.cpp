@@ -27,7 +27,7 @@ double sum_over_support(const BasisFunction& basis, const F& f) {
     return sum;
 }
 
-TEST(BasisFunction, WedgeStandsForEveryPlaceOnce) {
+TEST(BasisFunction, WedgeHasEveryPlaceOnce) {
     std::vector<int> seen(wedge_size(3));
     for (int i = -3; i <= 3; ++i) {
         for (int j = -3; j <= 3; ++j) {
@@ -70,7 +70,7 @@ TEST(BasisFunction, McqTakesItsExactValues) {
 TEST(BasisFunction, McqHasItsMomentsAndMinimum) {
     const BasisFunction basis = sample_basis_function(Scheme::Mcq, 5);
     const double samples = 193.0 * 193 * 193;
-    // Sums of 157,000 terms, each rounded at 1e-16 of the sum: 1e-13 of it at most.
+    // Sums of 157,000 terms, each rounded at 1e-16 of the sum: an error of 1e-13 at most.
     EXPECT_EQ(sum_over_support(basis, [](double f) { return f; }), 32768);  // Σ over the lattice = 1 / its cell: ∫φ = 1
     EXPECT_NEAR(sum_over_support(basis, [](double f) { return f * f; }) / samples, .0018996672643604641, 1e-15);
     EXPECT_NEAR(sum_over_support(basis, [](double f) { return std::abs(f); }) / samples, .006733210714958662, 1e-15);

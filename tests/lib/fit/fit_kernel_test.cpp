@@ -26,7 +26,7 @@ struct Row {
     double float_rmse, float_mae, rmse, mae;
 };
 
-// Table 1 of [mnmq2007] with its parameters; the float and double figures are those of an independent prototype.
+// Table 1 of [mnmq2007] with its parameters; the errors in float and double are those of an independent prototype.
 const Row kTable1[] = {
     {"Gauss", GaussianKernel{.sigma = .43}, .000041, .006395, .002079, .006394634, .002079396, .00640214, .00209059},
     {"BC 1", bc(.382175, .253253, 1), .000054, .007339, .002144, .007338505, .002144303, .00734595, .00215553},
@@ -100,7 +100,7 @@ TEST(FitKernel, BcParametersWithoutTheSlipAreBetter) {
     }
 }
 
-/// Within 2 %, or half of the last digit printed.
+/// Within 2 %, or half a unit of the last printed digit.
 void expect_errors(const FitErrors& errors, double rmse, double mae, double max) {
     EXPECT_NEAR(errors.rmse, rmse, .02 * rmse + 5e-6);
     EXPECT_NEAR(errors.mae, mae, .02 * mae + 5e-6);

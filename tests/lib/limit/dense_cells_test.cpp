@@ -21,7 +21,7 @@ struct Grids {
 
 Grids dense(const HexMesh& mesh, const RefineOptions& options) {
     Grids grids{std::vector<std::vector<Vec3>>(mesh.cells.size()), std::vector<std::vector<double>>(mesh.cells.size())};
-    for_each_dense_cell(mesh, options, [&](const DenseCell& cell) {  // every cell writes its own place
+    for_each_dense_cell(mesh, options, [&](const DenseCell& cell) {  // every cell writes its own entry
         grids.points[cell.cell].assign(cell.points.begin(), cell.points.end());
         grids.values[cell.cell].assign(cell.values[0].begin(), cell.values[0].end());
     });
@@ -77,7 +77,7 @@ TEST(DenseCells, OfASelectionAreThoseOfAll) {
     EXPECT_THROW(for_each_dense_cell(mesh, options, none, [](const DenseCell&) {}), Error);
 }
 
-TEST(DenseCells, InLotsAreThoseOfAll) {
+TEST(DenseCells, InSeveralSelectionsAreThoseOfAll) {
     const HexMesh mesh = irregular();
     const RefineOptions options{.levels = 2};
     const Grids all = dense(mesh, options);
@@ -124,7 +124,7 @@ TEST(DenseCells, DoNotDependOnTheNumberOfThreads) {
 }
 
 TEST(DenseCells, FollowTheParametersOfTheCell) {
-    // On a box the scheme keeps linear functions, so the grid stands where its parameters say.
+    // On a box the scheme reproduces linear functions, so the nodes of the grid lie at their parameters.
     HexMesh mesh = test::make_box(2, 2, 2);
     test::add_field(mesh, "f", [](const Vec3& p) { return p.x + 10 * p.y + 100 * p.z; });
     for_each_dense_cell(mesh, {.levels = 2}, [&](const DenseCell& cell) {

@@ -81,7 +81,7 @@ TEST(LimitMcq, ReproducesCubicsWithTheirGradients) {
     const auto f = [](const Vec3& p) { return p.x * p.x * p.x - 2 * p.x * p.y * p.z + p.y * p.y * p.z - p.z + 1; };
     test::add_field(mesh, "f", f);
     std::mt19937 random(5);
-    std::uniform_real_distribution<double> inside(2, n - 2);  // every level loses a cell of its own size to the boundary
+    std::uniform_real_distribution<double> inside(2, n - 2);  // at every level the boundary affects a cell of that level
     std::vector<LimitQuery> queries;
     std::vector<Vec3> places;
     for (int i = 0; i < 200; ++i) {
@@ -125,7 +125,7 @@ TEST(LimitMcq, ConvergesWithTheSecondOrder) {
 }
 
 TEST(LimitMcq, AgreesWithTheVerticesOfFineLevels) {
-    // In a grid the evaluation goes down without topology: against refinement of the whole, in a bent box with another tension.
+    // In a grid the evaluation refines without topology: compared with the refined mesh, in a bent box with another tension.
     HexMesh mesh = test::make_box(6, 6, 6);
     test::jitter(mesh, .2, 6);
     test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(p.x * p.y) + p.z; });
@@ -143,7 +143,7 @@ TEST(LimitMcq, AgreesWithTheVerticesOfFineLevels) {
     }
 }
 
-TEST(LimitMcq, GoesThroughTheControlPoints) {
+TEST(LimitMcq, InterpolatesTheControlPoints) {
     const HexMesh mesh = irregular();
     std::vector<LimitQuery> queries;
     for (Index c = 0; c < mesh.cells.size(); ++c) queries.push_back({c, {1, 1, 0}});
@@ -209,8 +209,8 @@ TEST_P(MovingSchemes, LimitPointsStayWhereTheyAreUnderRefinement) {
     }
 }
 
-TEST_P(MovingSchemes, ConvergeWhereTheFirstGuessesAgree) {
-    // In an L of cells the trilinear guess at odd quarters is the same on the first levels: a cell point is the mean of
+TEST_P(MovingSchemes, ConvergeWhereTheFirstEstimatesAgree) {
+    // In an L of cells the trilinear estimate at odd quarters is the same on the first levels: a cell point is the mean of
     // corners.
     HexMesh mesh = test::make_box(2, 2, 1);
     mesh.cells.pop_back();
@@ -246,13 +246,13 @@ TEST(LimitMcq, JacobiansConvergeWhereValuesAreExactAtOnce) {
     const LimitSamples a = evaluate_limit(mesh, dyadic),
                        b = evaluate_limit(mesh, beside, {.tolerance = 1e-10, .max_levels = 12});
     for (std::size_t i = 0; i < dyadic.size(); ++i) {
-        for (int d = 0; d < 3; ++d) {  // the square root of the tolerance, of the diagonal 3.5, some times over
+        for (int d = 0; d < 3; ++d) {  // the square root of the tolerance, times the diagonal 3.5, times a few levels
             EXPECT_NEAR(glm::distance(a.jacobians[i][d], b.jacobians[i][d]), 0, .015);
         }
     }
 }
 
-TEST_P(MovingSchemes, LimitStencilsHoldWherePointsRepeatAboutAVertex) {
+TEST_P(MovingSchemes, LimitStencilsAreRightWherePointsOccurTwiceAboutAVertex) {
     HexMesh mesh;  // two cells that share two faces, about an edge with no more cells
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},   {0, 0, 1},
                    {1, 0, 1}, {1, 1, 1}, {0, 1, 1}, {-1, -1, 0}, {-1, -1, 1}};
@@ -299,7 +299,7 @@ TEST_P(EveryLimit, JacobiansAreDerivatives) {
         for (auto& q : behind) q.uvw[axis] -= kStep;
         const LimitSamples a = evaluate_limit(mesh, ahead, options), b = evaluate_limit(mesh, behind, options);
         for (std::size_t i = 0; i < queries.size(); ++i) {
-            // Second derivatives are bounded but for logarithms, so the difference quotient is good to a few steps.
+            // Second derivatives are bounded but for logarithms, so the difference quotient errs by a few steps.
             const Vec3 slope = (a.positions[i] - b.positions[i]) / (2 * kStep);
             EXPECT_NEAR(glm::distance(here.jacobians[i][axis], slope), 0, 5e-3);
             const double f_slope = (a.attributes[0].values[i] - b.attributes[0].values[i]) / (2 * kStep);
@@ -309,7 +309,7 @@ TEST_P(EveryLimit, JacobiansAreDerivatives) {
 }
 
 TEST_P(EveryLimit, NeighboursAgreeOnTheirFace) {
-    // The same place, asked for from both cells of a face.
+    // The same place, evaluated in both cells of a face.
     const HexMesh mesh = irregular();
     const Topology topology = build_topology(mesh);
     std::vector<LimitQuery> from_first, from_second;
@@ -332,7 +332,7 @@ TEST_P(EveryLimit, NeighboursAgreeOnTheirFace) {
     const LimitSamples a = evaluate_limit(mesh, from_first, options), b = evaluate_limit(mesh, from_second, options);
     for (std::size_t i = 0; i < from_first.size(); ++i) {
         EXPECT_NEAR(glm::distance(a.positions[i], b.positions[i]), 0,
-                    2e-6);  // the tolerance times the diagonal, some times over
+                    2e-6);  // the tolerance times the diagonal, times a few levels
     }
 }
 

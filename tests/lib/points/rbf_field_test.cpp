@@ -53,7 +53,7 @@ RbfVolume random_volume(std::size_t count, double scale = 1) {
     return volume;
 }
 
-/// What the documentation says, kernel by kernel.
+/// The documented formula, kernel by kernel.
 std::optional<double> direct_value(const RbfVolume& volume, const Vec3& x) {
     double sum = 0, weighted = 0;
     const auto& c = volume.channels[0];
@@ -90,7 +90,7 @@ TEST(RbfField, IsTheSumOverAllKernels) {
     }
 }
 
-TEST(RbfField, IsNothingWithoutKernels) {
+TEST(RbfField, HasNoValueWithoutKernels) {
     RbfVolume volume;
     volume.channels.resize(1);
     EXPECT_FALSE(RbfField(volume).value(Vec3(0)).has_value());
@@ -98,7 +98,7 @@ TEST(RbfField, IsNothingWithoutKernels) {
     EXPECT_TRUE(std::isnan(RbfField(random_volume(100)).evaluate(std::vector{Vec3(9)})[0]));
 }
 
-/// Points on a lattice with whatever a quadratic has there, kernels overlapping.
+/// Overlapping kernels on a lattice with the values and derivatives of a quadratic.
 RbfVolume lattice(double v, const Vec3& g, double q) {
     RbfVolume volume;
     for (int i = 0; i < 216; ++i) {
@@ -109,7 +109,7 @@ RbfVolume lattice(double v, const Vec3& g, double q) {
     return volume;
 }
 
-TEST(RbfField, ReproducesWhatEachKernelStandsFor) {
+TEST(RbfField, ReproducesTheQuadraticOfEachKernel) {
     constexpr double kFloat = 2e-6;  // values up to 30, stored as floats
     struct Case {
         double v;
@@ -154,8 +154,8 @@ TEST(RbfField, GradientsAreThoseOfTheValue) {
     }
 }
 
-TEST(RbfField, FollowsItsMeshAtAnyScaleOfCells) {
-    // A mesh whose edges differ by 1:1000 along x: kernels of every size beside each other.
+TEST(RbfField, FollowsItsMeshAtAnySizeOfCells) {
+    // A mesh whose edges differ by 1:1000 along x: kernels of very different sizes overlap.
     HexMesh mesh = test::make_box(12, 3, 3);
     for (auto& p : mesh.points) p = Vec3(.001 * std::pow(1.8, p.x), p.y, p.z);
     test::add_field(mesh, "f", [](const Vec3& p) { return .5 + .2 * p.x - p.y + .3 * p.z; });
@@ -184,7 +184,7 @@ TEST(RbfField, AnyNumberOfThreadsGivesTheSameBits) {
     }
 }
 
-TEST(RbfField, RefusesWhatIsNoVolume) {
+TEST(RbfField, RefusesInvalidVolumes) {
     const auto refuse = [](const std::string& part, const RbfVolume& volume, const RbfFieldOptions& options = {}) {
         test::expect_error(ErrorCode::InvalidInput, part, [&] { RbfField field(volume, options); });
     };
@@ -193,7 +193,7 @@ TEST(RbfField, RefusesWhatIsNoVolume) {
     refuse("least weight", good, {.least_weight = -1});
     RbfVolume bad = good;
     bad.frames.pop_back();
-    refuse("not one frame a point", bad);
+    refuse("number of frames", bad);
     bad = good;
     bad.channels[0].values[3] = NAN;
     refuse("point 3", bad);

@@ -204,7 +204,7 @@ TEST_F(PointsIo, VolumesThatAreNoneAreRefused) {
         change(volume);
         return error_of([&] { write_points(path("a.ply"), volume); });
     };
-    EXPECT_THAT(error_with([](RbfVolume& v) { v.frames.pop_back(); }), HasSubstr("not one frame a point"));
+    EXPECT_THAT(error_with([](RbfVolume& v) { v.frames.pop_back(); }), HasSubstr("number of frames"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].name = "density"; }), HasSubstr("two channels are named"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels.clear(); }), HasSubstr("no channel"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].moments.pop_back(); }), HasSubstr("\"Temp."));

@@ -14,7 +14,7 @@
 namespace subvol {
 namespace {
 
-/// A block whose field is flat but for a steep ball in one corner.
+/// A block whose field is constant but for a steep ball in one corner.
 HexMesh mesh_with_feature(Index n) {
     HexMesh mesh = test::make_box(n, n, n);
     for (auto& p : mesh.points) p *= 1.0 / double(n);
@@ -25,7 +25,7 @@ HexMesh mesh_with_feature(Index n) {
 TEST(Reduce, MeetsItsTargetOnIndependentSamples) {
     for (const std::string& name : {std::string("twist"), std::string("ball")}) {
         const HexMesh mesh = make_model(name, name == "ball" ? 8 : 16);
-        // Not those that the reduction was validated with: more of them, at other places.
+        // Not the samples that validated the reduction: more of them, at other places.
         const FieldSamples other = limit_samples_in_cells(mesh, "", 31'000, {.tolerance = 1e-4});
         for (const double rmse : {.05, .01}) {
             const auto reduced = reduce_rbf(mesh, "", {.rmse = rmse});
@@ -94,7 +94,7 @@ TEST(Refine, LowersTheErrorOfSampledKernels) {
     EXPECT_LT(moved.report.rmse_after, .9 * moved.report.rmse_before);
     EXPECT_EQ(fixed.volume.centers, start.centers);
     EXPECT_NE(moved.volume.centers, start.centers);
-    // What is gained on the samples is gained between them too.
+    // The error falls between the samples as well as at them.
     const double before = error_at_samples(start, other).rmse;
     EXPECT_LT(error_at_samples(fixed.volume, other).rmse, .6 * before);
     EXPECT_LT(error_at_samples(moved.volume, other).rmse, error_at_samples(fixed.volume, other).rmse);
@@ -102,7 +102,7 @@ TEST(Refine, LowersTheErrorOfSampledKernels) {
     EXPECT_EQ(moved.volume.boundary.triangles.size(), start.boundary.triangles.size());
 }
 
-TEST(Refine, LeavesKernelsThatNoSampleSees) {
+TEST(Refine, LeavesKernelsThatReachNoSample) {
     RbfVolume volume = sample_rbf_points(mesh_with_feature(6)).volume;
     FieldSamples samples = limit_samples_at_vertices(mesh_with_feature(6), "", 1);
     std::size_t kept = 0;

@@ -29,7 +29,7 @@ TEST_P(AffineFields, StayAffine) {
         for (std::size_t p = 0; p < fine.points.size(); ++p) {
             worst = std::max(worst, std::abs(fine.attributes[0].values[p] - affine(fine.points[p])));
         }
-        // Coordinates far from the origin are themselves rounded: relative to the box by so much.
+        // Coordinates far from the origin are rounded themselves: by this much relative to the box.
         const double rounding = glm::length(box.center()) / box.diagonal();
         EXPECT_LT(worst, 1e-13 * std::max(1.0, rounding)) << "scheme " << static_cast<int>(scheme);
     }

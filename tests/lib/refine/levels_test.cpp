@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several levels at once derive each level's topology from its parent; level by level it is built anew by sorting. Both must
+// Several levels at once derive the topology of each level from its parent; one level at a time builds it by sorting. Both must
 // give the same mesh, to the last bit and number.
 #include <gtest/gtest.h>
 
@@ -66,7 +66,7 @@ TEST_P(RefinedInLevels, CellsThatTouchAlongAnEdgeOrAtAPoint) {
 }
 
 TEST_P(RefinedInLevels, ARingOfThreeCells) {
-    // Closed upon itself: the far neighbour on one side is the same cell as on the other.
+    // A closed ring: the far neighbour on one side is the same cell as on the other.
     HexMesh mesh = test::make_box(1, 1, 3);
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         const double angle = 2 * std::acos(-1.0) / 3 * mesh.points[p].z, radius = 2 + mesh.points[p].x;

@@ -56,7 +56,7 @@ TEST_P(EveryScheme, CellsAloneAreRefinedAsInTheWholeMesh) {
     for (const int levels : {0, 1, 2, 3}) expect_same_as_global(mesh, {.scheme = {GetParam()}, .levels = levels});
 }
 
-TEST_P(EveryScheme, CreasesAndSharpFacesGoAlong) {
+TEST_P(EveryScheme, KeepsCreasesAndSharpFaces) {
     HexMesh mesh = with_field(test::make_box(5, 4, 4));
     for (auto& p : mesh.points) p += Vec3(.2 * std::sin(p.y + p.z), .3 * std::sin(p.x), .2 * std::cos(p.x * p.y));
     const auto id = [](Index i, Index j, Index k) { return i + 6 * (j + 5 * k); };
@@ -81,8 +81,8 @@ TEST(RefineCells, KeepsTheTagsOfThePart) {
     EXPECT_EQ(part.creases.size(), 2u) << "both halves of the one crease at the cell";
 }
 
-TEST(RefineCells, LeavesTagsAloneThatThePartCannotJudge) {
-    // The crease is one of the boundary only for a fin of one cell that is far from some of the cells asked for.
+TEST(RefineCells, AcceptsTagsThatThePartCannotCheck) {
+    // The crease is on the boundary only because of a fin of one cell, which is far from some of the selected cells.
     HexMesh mesh = with_field(test::make_box(4, 4, 1));
     const auto id = [](Index i, Index j, Index k) { return i + 5 * (j + 5 * k); };
     const Index a = id(2, 2, 0), b = id(2, 2, 1), n = static_cast<Index>(mesh.points.size());
@@ -97,16 +97,16 @@ TEST(RefineCells, LeavesTagsAloneThatThePartCannotJudge) {
     }
 }
 
-TEST(RefineCells, RefusesWhatIsNoMeshAnywhere) {
+TEST(RefineCells, RefusesInvalidMeshes) {
     HexMesh mesh = test::make_box(9, 1, 1);
     mesh.cells.push_back(mesh.cells[7]);
     test::expect_error(ErrorCode::InvalidInput, "cells 7 and 9", [&] { (void)refine_cells(mesh, std::vector<Index>{0}); });
 }
 
-TEST(RefineCells, RefusesCellsThatAreNotThere) {
+TEST(RefineCells, RefusesCellsThatDoNotExist) {
     const HexMesh mesh = test::make_box(2, 1, 1);
     test::expect_error(ErrorCode::InvalidInput, "there is no cell 2", [&] { (void)refine_cells(mesh, std::vector<Index>{2}); });
-    test::expect_error(ErrorCode::InvalidInput, "cell 1 is named twice", [&] {
+    test::expect_error(ErrorCode::InvalidInput, "cell 1 is listed twice", [&] {
         (void)refine_cells(mesh, std::vector<Index>{1, 1});
     });
 }

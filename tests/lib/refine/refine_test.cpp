@@ -143,7 +143,7 @@ TEST(Refine, AnExtrusionMovesNothingAlongItsAxis) {
 }
 
 TEST(Refine, CreasesStaySharp) {
-    // The edge of a wedge of two columns is smooth by default (two cells) and sharp when it is bent by more than asked.
+    // The edge of a wedge of two columns is smooth by default (two cells) and sharp if it is bent by more than the given angle.
     HexMesh mesh = test::make_box(2, 1, 2);
     for (auto& p : mesh.points) p.y += p.x == 1 ? .8 : 0;
     const HexMesh smooth = refine(mesh), sharp = refine(mesh, {.scheme = {.crease_angle_deg = 40}});

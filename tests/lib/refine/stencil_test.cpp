@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stencils of one MCQ-G step against known answers, worked out by independent prototypes.
+// The stencils of one MCQ-G step against those of independent prototypes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

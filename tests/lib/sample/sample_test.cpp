@@ -35,7 +35,7 @@ TEST(Sample, ASpacingGivesEachEdgeItsCount) {
     HexMesh mesh = test::make_box(2, 1, 1);
     for (auto& p : mesh.points) p.x *= 3;
     const auto result = sample_rbf_points(mesh, {.spacing_world = 1});
-    EXPECT_EQ(result.report.points, 7u * 2 * 2);  // x in steps of one, y and z ends only
+    EXPECT_EQ(result.report.points, 7u * 2 * 2);  // along x in steps of one, along y and z the ends alone
     EXPECT_EQ(result.report.on_edges, 2u * 2 * 4);
 }
 

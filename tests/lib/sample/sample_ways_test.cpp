@@ -34,7 +34,7 @@ double rmse_at(const RbfVolume& volume, const LimitSamples& limit) {
     return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
-/// Three random places a cell.
+/// Three random places per cell.
 std::vector<LimitQuery> places(std::size_t cells) {
     std::mt19937 random(5);
     const auto unit = [&] { return static_cast<double>(random()) * 0x1p-32; };
@@ -100,6 +100,22 @@ TEST(SampleWays, TheBoundaryIsThatOfTheRefinedMesh) {
     }
 }
 
+TEST(SampleWays, TheBoundaryDoesNotNeedSharpFacesInside) {
+    // All points of the sharp face belong to cells at the boundary, but neither of its two cells does.
+    HexMesh mesh = test::make_box(3, 3, 4);
+    test::jitter(mesh, .1, 5);
+    put_wave(mesh);
+    const auto id = [](Index i, Index j, Index k) { return i + 4 * (j + 4 * k); };
+    mesh.sharp_faces = {{id(1, 1, 2), id(2, 1, 2), id(2, 2, 2), id(1, 2, 2)}};
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
+        for (const int levels : {1, 2, 3}) {
+            const auto volume = sample_rbf_points(mesh, {.scheme = {scheme}, .boundary_levels = levels}).volume;
+            expect_same_triangles(volume.boundary,
+                                  boundary_surface(on_limit(refine(mesh, {.scheme = {scheme}, .levels = levels}), scheme)));
+        }
+    }
+}
+
 TEST(SampleWays, TheBoundaryIsAsFineAsHalfASampleInterval) {
     HexMesh mesh = test::make_nested_cubes(2);
     put_wave(mesh);
@@ -111,9 +127,8 @@ TEST(SampleWays, TheBoundaryIsAsFineAsHalfASampleInterval) {
     EXPECT_EQ(sample_rbf_points(mesh, {.per_edge = 16}).volume.boundary.triangles.size(), 256 * quads);  // and no finer
 }
 
-TEST(SampleWays, LinesAndCellsSeeTheGradientOfTheLimit) {
-    // Four intervals go by the lines of the refined mesh, three cell by cell. Inside, both are of fourth order in their
-    // spacing.
+TEST(SampleWays, LinesAndCellsFindTheGradientOfTheLimit) {
+    // Four intervals use the lines of the refined mesh, three the cells. Inside, both are of fourth order in their spacing.
     HexMesh mesh = test::make_box(6, 6, 6);
     for (Vec3& p : mesh.points) p = .2 * Vec3(p.x + .02 * p.y * p.y, p.y - .03 * p.x * p.z, p.z + .02 * p.x * p.y);
     put_wave(mesh);
@@ -166,7 +181,7 @@ TEST(SampleWays, FullCorrectionIsOfThirdOrderWhereTheMomentAloneIsOfSecond) {
     const double full = rmse(1, Correction::Full), full_half = rmse(2, Correction::Full);
     EXPECT_NEAR(std::log2(second / second_half), 2, .4);
     EXPECT_GT(std::log2(full / full_half), 2.7);
-    EXPECT_LT(full, second / 2);                     // at this spacing third derivatives have their part in both
+    EXPECT_LT(full, second / 2);                     // at this spacing third derivatives contribute to both errors
     const double cells = rmse(3, Correction::Full);  // cell by cell, with another formula for the Hessian
     EXPECT_LT(cells, full / 4);
 }
@@ -192,20 +207,20 @@ TEST(SampleWays, FootprintsCountEveryEntityOnce) {
     EXPECT_EQ(r.points, result.volume.size());
     EXPECT_EQ(r.points, r.at_vertices + r.on_edges + r.on_faces + r.in_cells);
     EXPECT_EQ(r.at_vertices, mesh.points.size());
-    EXPECT_GT(r.on_edges, build_topology(mesh).edges.size());  // 6 px an edge and more: one sample between at least
+    EXPECT_GT(r.on_edges, build_topology(mesh).edges.size());  // edges of 6 px and more have at least one sample
     // Neighbours are no farther apart than the spacing: along every edge, as the camera sees it.
     const View view(footprint.camera, footprint.width_px, footprint.height_px);
     const auto half = sample_rbf_points(
         mesh, {.footprint = Footprint{.camera = footprint.camera, .width_px = 120, .height_px = 120, .spacing_px = 3}});
-    EXPECT_GT(half.report.points, 4 * r.points);  // twice the pixels, up to eight times the points
+    EXPECT_GT(half.report.points, 4 * r.points);  // half the spacing gives up to eight times the points
     EXPECT_LT(half.report.points, 9 * r.points);
 }
 
-TEST(SampleWays, FootprintsLeaveAloneWhatIsSmallOrUnseen) {
+TEST(SampleWays, FootprintsLeaveSmallAndUnseenCellsAlone) {
     HexMesh mesh = test::make_box(2, 2, 2);
     test::add_field(mesh, "f", [](const Vec3& p) { return p.x; });
     Footprint footprint{.camera = {.eye = {1, 1, 50}, .target = {1, 1, 0}}, .width_px = 8, .height_px = 8};
-    EXPECT_EQ(sample_rbf_points(mesh, {.footprint = footprint}).report.points, 27u);  // a cell is a fifth of a pixel
+    EXPECT_EQ(sample_rbf_points(mesh, {.footprint = footprint}).report.points, 27u);  // a cell covers a fifth of a pixel
     footprint.width_px = footprint.height_px = 800;
     EXPECT_GT(sample_rbf_points(mesh, {.footprint = footprint}).report.points, 1000u);
     footprint.camera.target = {1, 1, 100};  // it looks away
@@ -221,7 +236,7 @@ TEST(SampleWays, ToleranceIsMetWithFewerSamplesThanEverywhere) {
     const LimitSamples limit = evaluate_limit(mesh, places(mesh.cells.size()));
     const auto values = RbfField(result.volume).evaluate(limit.positions);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        EXPECT_NEAR(values[i], limit.attributes[0].values[i], 2 * kTolerance);  // it is kept at 125 places a cell, not at these
+        EXPECT_NEAR(values[i], limit.attributes[0].values[i], 2 * kTolerance);  // it holds at 125 places per cell, not at these
     }
     int most = 1;
     while (true) {
@@ -245,7 +260,7 @@ TEST(SampleWays, RulesChangeValuesBetweenControlPointsOnly) {
         const auto points = sample_rbf_points(mesh, {.per_edge = 2, .values = rule}).volume;
         const auto expected = values_at_new_points(mesh, "", rule, SampleOptions{}.value_kernel);
         ASSERT_EQ(points.size(), mesh.points.size() + expected.size());
-        const std::size_t cells = points.size() - mesh.cells.size();  // the order of the cells' points is another
+        const std::size_t cells = points.size() - mesh.cells.size();  // the points of cells are in another order
         for (std::size_t i = 0; i < cells; ++i) {
             const bool control = i < mesh.points.size();
             const double value = control ? mesh.attributes[0].values[i] : expected[i - mesh.points.size()];
@@ -274,7 +289,7 @@ TEST(SampleWays, DoNotDependOnTheNumberOfThreads) {
     }
 }
 
-TEST(SampleWays, RefuseWhatCannotBe) {
+TEST(SampleWays, RefuseOptionsOutOfRange) {
     HexMesh mesh = test::make_box(1, 1, 1);
     test::add_field(mesh, "f", [](const Vec3& p) { return p.x; });
     EXPECT_THROW((void)sample_rbf_points(mesh, {.tolerance = -1}), Error);

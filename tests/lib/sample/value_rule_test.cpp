@@ -31,7 +31,7 @@ TEST(ValueRule, SchemeIsTheRefinement) {
 }
 
 TEST(ValueRule, CubicReproducesQuadraticsOnABoxToItsSides) {
-    // Catmull-Rom reproduces quadratics, and so do the ghosts beyond the sides.
+    // Catmull-Rom reproduces quadratics, and so does the extrapolation beyond the sides.
     HexMesh mesh = test::make_box(4, 4, 4);
     test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.x - p.y * p.z + 2 * p.z * p.z - p.x; });
     const HexMesh fine = refine(mesh);

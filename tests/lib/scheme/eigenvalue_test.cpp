@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The spectra of the schemes' local subdivision matrices, made from our stencils, against those of independent prototypes.
+// The spectra of the schemes' local subdivision matrices, from our stencils, against those of independent prototypes.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -14,11 +14,11 @@
 namespace subvol {
 namespace {
 
-/// The neighbourhood of a point: each triangle is a hex at the point, its vertices are the directions of the hex's edges. A
-/// closed surface makes an interior point, one with a rim a boundary point.
+/// The neighbourhood of a point: each triangle is a hexahedron at the point, its vertices are the directions of the
+/// hexahedron's edges. A closed surface gives an interior point, one with a rim a boundary point.
 using Link = std::vector<std::array<int, 3>>;
 
-/// Turns about a middle axis: `count` quads between the directions first, first+1, …; closed or not.
+/// A ring around a middle axis: `count` quads between the directions first, first+1, …; closed or not.
 Link turn(int axis, int first, int count, bool closed) {
     Link link;
     for (int i = 0; i < count; ++i) link.push_back({axis, first + i, first + (closed ? (i + 1) % count : i + 1)});
@@ -70,34 +70,34 @@ Link icosahedron() {
 /// Where a lattice point is: (direction, steps) for the up to three directions along which it is away from the middle.
 using Place = std::map<int, int>;
 
-/// The neighbourhood with `layers` layers of hexes, and the places of its points.
-struct Star {
+/// The neighbourhood with `layers` layers of hexahedra, and the places of its points.
+struct Neighbourhood {
     HexMesh mesh;
     std::vector<Place> places;
 };
 
-Star make_star(const Link& link, int layers) {
-    Star star;
+Neighbourhood make_neighbourhood(const Link& link, int layers) {
+    Neighbourhood result;
     std::map<Place, Index> ids;
     const auto point = [&](const std::array<int, 3>& directions, const std::array<int, 3>& steps) {
         Place place;
         for (std::size_t a = 0; a < 3; ++a) {
             if (steps[a] > 0) place[directions[a]] = steps[a];
         }
-        const auto [found, is_new] = ids.try_emplace(place, static_cast<Index>(star.places.size()));
-        if (is_new) star.places.push_back(place);
+        const auto [found, is_new] = ids.try_emplace(place, static_cast<Index>(result.places.size()));
+        if (is_new) result.places.push_back(place);
         return found->second;
     };
     for (const auto& triangle : link) {
         for (int cell = 0; cell < layers * layers * layers; ++cell) {
             const int i = cell % layers, j = cell / layers % layers, k = cell / (layers * layers);
             const auto at = [&](int u, int v, int w) { return point(triangle, {i + u, j + v, k + w}); };
-            star.mesh.cells.push_back({at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0),  //
-                                       at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)});
+            result.mesh.cells.push_back({at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0),  //
+                                         at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)});
         }
     }
-    star.mesh.points.resize(star.places.size());  // rules know nothing of positions
-    return star;
+    result.mesh.points.resize(result.places.size());  // the rules do not use positions
+    return result;
 }
 
 /// The places of the child's points in half steps, in the numbering of `refine`.
@@ -124,17 +124,17 @@ std::vector<Place> child_places(const Topology& topology, const std::vector<Plac
 
 /// The eigenvalues of the scheme on the first `layers` layers, by falling modulus.
 std::vector<std::complex<double>> spectrum(const Link& link, Scheme scheme, int layers) {
-    const Star star = make_star(link, layers + 1);  // one more, so that the rows know nothing of the end
+    const Neighbourhood around = make_neighbourhood(link, layers + 1);  // one more, so that its end has no effect on the rows
     const auto inside = [&](const Place& place) {
         return std::all_of(place.begin(), place.end(), [&](const auto& step) { return step.second <= layers; });
     };
     std::map<Place, Eigen::Index> number;
-    for (const Place& place : star.places) {
+    for (const Place& place : around.places) {
         if (inside(place)) number.emplace(place, static_cast<Eigen::Index>(number.size()));
     }
-    const Topology topology = build_topology(star.mesh);
+    const Topology topology = build_topology(around.mesh);
     const auto rows = test::stencils(topology, {scheme});
-    const auto places = child_places(topology, star.places);
+    const auto places = child_places(topology, around.places);
     const auto size = static_cast<Eigen::Index>(number.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
     Eigen::Index rows_found = 0;
@@ -143,7 +143,7 @@ std::vector<std::complex<double>> spectrum(const Link& link, Scheme scheme, int 
         if (row == number.end()) continue;
         ++rows_found;
         for (const auto& [p, weight] : rows[child]) {
-            const auto column = number.find(star.places[p]);
+            const auto column = number.find(around.places[p]);
             EXPECT_NE(column, number.end()) << "the neighbourhood is not invariant";
             if (column != number.end()) matrix(row->second, column->second) += weight;
         }
@@ -172,7 +172,7 @@ class Eigenvalues : public testing::TestWithParam<Case> {};
 
 TEST_P(Eigenvalues, AreThoseListed) {
     const auto& [name, scheme, link, leading, tolerance] = GetParam();
-    // Two layers hold the supports of all three schemes; further layers add only small eigenvalues.
+    // Two layers contain the supports of all three schemes; further layers add only small eigenvalues.
     const auto values = spectrum(link, scheme, 2);
     ASSERT_GT(values.size(), leading.size());
     EXPECT_NEAR(std::abs(values[0] - 1.0), 0, 1e-12) << "constants stay";
@@ -213,7 +213,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"InsideReentrantEdge7", Scheme::Mcq, inside_reentrant_edge(7), {.5011}}),
     [](const auto& each) { return each.param.name; });
 
-// On the boundary the surface scheme decides, which has the values of an irregular edge; the third direction adds 1/2.
+// On the boundary the eigenvalues are those of the surface scheme, which are the values of an irregular edge; the third
+// direction adds 1/2.
 INSTANTIATE_TEST_SUITE_P(
     CatmullClark, Eigenvalues,
     testing::Values(Case{"Regular", Scheme::CatmullClark, octahedron(), {.5, .5, .5, .25}},
@@ -245,7 +246,7 @@ INSTANTIATE_TEST_SUITE_P(Bsxw, Eigenvalues,
                                          Case{"VertexIcosahedron", Scheme::Bsxw, icosahedron(), {.629, .629, .629}, 5e-4}),
                          [](const auto& each) { return each.param.name; });
 
-// The tolerance is for the quadratics' 1/4: it is defective, so that rounding shows by its cube root.
+// The eigenvalue 1/4 of the quadratics is defective: rounding appears in it as its cube root.
 TEST(Eigenvalues, MoreLayersAddOnlySmallOnes) {
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw}) {
         const auto two = spectrum(tetrahedron(), scheme, 2), three = spectrum(tetrahedron(), scheme, 3);

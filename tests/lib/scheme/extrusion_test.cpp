@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The approximating schemes on extruded quad meshes: in section they are surface schemes, written out here on their own.
+// The approximating schemes on extruded quad meshes: in section they are surface schemes, which are implemented here again.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ HexMesh extrude(const Section& section, Index layers) {
     return mesh;
 }
 
-/// Every child point lies over its section's point, at the middle height of its parents; `exempt` leaves out what does not.
+/// Every child point lies over the point of its section, at the mean height of its parents, except those that `exempt` selects.
 template <class Exempt>
 void expect_extrusion(const Section& section, Scheme scheme, const std::map<Entity, Vec3>& expected, const Exempt& exempt) {
     const HexMesh mesh = extrude(section, 3), fine = refine(mesh, {.scheme = {scheme}});
@@ -143,7 +143,7 @@ TEST(CatmullClark, OfAnExtrusionIsTheSurfaceSchemeInSection) {
             const auto n = static_cast<double>(faces.size());
             return (mean(faces) + 2.0 * mean(middles) + (n - 3) * v) / n;
         };
-        // MacCracken and Joy's vertex rule knows no valence: on the line over an irregular point it is not the section's.
+        // The vertex rule of MacCracken and Joy does not depend on the valence: on the line over an irregular point it differs.
         const auto on_irregular_line = [&](const Entity& entity, double height) {
             return valence != 4 && entity == Entity{0} && (height == 1 || height == 2);
         };

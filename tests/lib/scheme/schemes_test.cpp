@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the approximating schemes promise: tricubic B-splines where the mesh is regular, their own averages elsewhere.
+// The approximating schemes: tricubic B-splines where the mesh is regular, their own averages elsewhere.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -19,7 +19,7 @@ constexpr double kRounding = 1e-13;  // a few hundred double operations on coord
 
 using test::irregular;
 
-/// Two hexes that share two faces: the edge between those lies inside but has no ring.
+/// Two hexahedra that share two faces: the edge between the faces is interior but has no ring.
 HexMesh two_about_an_edge() {
     HexMesh mesh = test::make_box(1, 1, 1);
     mesh.points.emplace_back(-.5, -.5, 0);
@@ -144,7 +144,7 @@ TEST_P(Approximating, ConvergesToTheTricubicSpline) {
         const auto inside = [&](long i) { return i >= std::lround(per_unit) && i <= std::lround((n - 1) * per_unit); };
         constexpr std::array<double, 3> kLimit{1.0 / 6, 4.0 / 6, 1.0 / 6};
         for (const auto& [key, value] : values) {
-            // One cell away from the boundary, whose fixed ends are no part of the spline.
+            // One cell away from the boundary, where the spline has fixed ends.
             if (!std::all_of(key.begin(), key.end(), inside)) continue;
             double limit = 0;
             for (long t = 0; t < 27; ++t) {
@@ -186,7 +186,7 @@ TEST_P(Approximating, KeepsTheFacesCreasesAndCornersOfABox) {
     }
 }
 
-TEST_P(Approximating, TheBoundaryKnowsNothingOfTheInside) {
+TEST_P(Approximating, TheBoundaryDoesNotDependOnTheInterior) {
     const HexMesh mesh = irregular();
     const Topology topology = build_topology(mesh);
     HexMesh other = mesh;
@@ -201,7 +201,7 @@ TEST_P(Approximating, TheBoundaryKnowsNothingOfTheInside) {
 }
 
 TEST_P(Approximating, TaggedCreasesStaySharp) {
-    // A ridge of two columns, smooth by default. Its ends have three creases when it is tagged, so that they are corners.
+    // A ridge of two columns, smooth by default. If it is tagged, its ends have three creases and are corners.
     HexMesh mesh = test::make_box(2, 1, 3);
     for (auto& p : mesh.points) p.y += p.x == 1 ? .8 : 0;
     const auto ridge_points = [](const HexMesh& m) {
@@ -214,7 +214,7 @@ TEST_P(Approximating, TaggedCreasesStaySharp) {
     EXPECT_EQ(ridge_points(refine(mesh, sharp)), 4 * 3 + 1);
 }
 
-TEST_P(Approximating, SharpFacesPartTheirTwoSides) {
+TEST_P(Approximating, SharpFacesSeparateTheirTwoSides) {
     const HexMesh box = test::make_box(4, 3, 3), split = refine(box, {.scheme = {Scheme::Linear}});
     HexMesh mesh = box;
     test::jitter(mesh, .1, 11);
@@ -235,7 +235,7 @@ TEST_P(Approximating, SharpFacesPartTheirTwoSides) {
 INSTANTIATE_TEST_SUITE_P(Schemes, Approximating, testing::Values(Scheme::CatmullClark, Scheme::Bsxw),
                          [](const auto& each) { return each.param == Scheme::CatmullClark ? "CatmullClark" : "Bsxw"; });
 
-// The scheme as it is told: a trilinear split, then the means of centroids; on the boundary and its creases within them.
+// The scheme as published: a trilinear split, then means of centroids; on the boundary and on creases of theirs alone.
 TEST(Bsxw, IsASplitAndAnAverage) {
     HexMesh creased = test::make_box(3, 2, 2);
     test::jitter(creased, .1, 5);

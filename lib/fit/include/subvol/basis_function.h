@@ -11,11 +11,11 @@
 
 namespace subvol {
 
-/// What one control vertex of a regular mesh adds to the field: the limit of the scheme from 1 at one vertex and 0 at all
-/// others, at the places (i, j, k)/2^level of the lattice.
+/// What one control vertex of a regular mesh adds to the field: the limit of the scheme for the value 1 at one vertex and 0 at
+/// all others, at the places (i, j, k)/2^level of the lattice.
 ///
 /// half_width: of the support, in sample intervals of the control mesh: 3 for MCQ, 2 for Catmull-Clark and BSXW, 1 for linear
-/// values:     its wedge, at wedge_index
+/// values:     of the wedge i ≥ j ≥ k ≥ 0, in the order of wedge_index
 struct BasisFunction {
     Scheme scheme = Scheme::Mcq;
     int level = 0;
@@ -32,8 +32,8 @@ struct BasisFunction {
     }
 };
 
-/// Samples the basis function of a scheme: MCQ by its masks, without rounding at ω = 1/16 (no value needs more than 53 bits);
-/// Catmull-Clark and BSXW are the tricubic B-spline, linear the trilinear hat.
+/// Samples the basis function of a scheme: that of MCQ by its masks, without rounding at ω = 1/16 (no value needs more than 53
+/// bits); that of Catmull-Clark and BSXW is the tricubic B-spline, that of linear the trilinear hat.
 ///
 /// level:   0 to 7
 /// tension: ω of MCQ

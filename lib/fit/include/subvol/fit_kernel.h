@@ -8,7 +8,7 @@
 
 namespace subvol {
 
-// How well kernels stand for a scheme's basis function. All errors are over the basis function's lattice in [−3,3]³, whatever
+// How well kernels approximate a scheme's basis function. All errors are over the basis function's lattice in [−3,3]³, whatever
 // its support: 193³ samples at level 5, as in [mnmq2007].
 
 struct FitErrors {
@@ -27,7 +27,7 @@ struct FitErrors {
 /// They lose .1 to 1 % of the sum.
 [[nodiscard]] FitErrors kernel_errors_float32(const BasisFunction& basis, const Kernel& kernel);
 
-/// Errors of the best function of the distance alone: no radial kernel has a smaller mse. (Its mae and max are not least.)
+/// Errors of the best function of the distance alone: no radial kernel has a smaller mse. Its mae and max are not the smallest.
 [[nodiscard]] FitErrors radial_bound(const BasisFunction& basis);
 
 /// Gaussian: of amplitude 1; ScaledGaussian: amplitude free; SeparableTable: one value a sample interval of the basis function
@@ -44,8 +44,8 @@ enum class KernelShape {
 };
 
 /// extent:    of the cubics in (0,3]; their pieces meet at half of it
-/// sign_slip: fit B and C with 2 + 3/2·B − C as the inner cubic coefficient, not 2 − 3/2·B − C: what explains the B and C that
-///            [mnmq2007] prints. Errors are those of the right kernel
+/// sign_slip: fit B and C with 2 + 3/2·B − C as the inner cubic coefficient instead of 2 − 3/2·B − C, which explains the values
+///            that [mnmq2007] prints. Errors are those of the correct kernel
 /// terms:     of a sum of Gaussians, 1 to 6; each is at least 1.25 times as wide as the one before
 struct FitOptions {
     double extent = 2;
@@ -53,7 +53,7 @@ struct FitOptions {
     int terms = 2;
 };
 
-/// parameters: how many numbers were fitted; iterations: of the search for those that are not linear, else 0
+/// parameters: how many numbers were fitted; iterations: of the search for the nonlinear ones, else 0
 struct FitReport {
     FitErrors errors;
     int parameters = 0;
@@ -66,10 +66,10 @@ struct KernelFit {
     FitReport report;
 };
 
-/// The kernel of a shape with the least mean squared error. Kernels that are cut off end at 3. Widths and radii are searched
-/// for from one start: a sum of more than two Gaussians may be the best of its neighbourhood only.
+/// The kernel of a shape with the least mean squared error. Kernels of infinite support are cut off at 3. Widths and radii are
+/// searched from one start: a sum of more than two Gaussians may be a local optimum.
 ///
-/// throws: Error(InvalidInput) if an option is out of range, or for a table above level 6
+/// throws: Error(InvalidInput) if an option is out of range, or for a table if the basis function is above level 6
 /// cost:   at level 5 below 1 s each
 /// source: linear parameters by least squares, the others by Levenberg-Marquardt with the linear ones projected out
 [[nodiscard]] KernelFit fit_kernel(const BasisFunction& basis, KernelShape shape, const FitOptions& options = {});
@@ -85,7 +85,7 @@ struct TuckerFit {
     FitReport report;
 };
 
-/// throws: Error(InvalidInput) if the rank is not 1 to 16, or above level 6
+/// throws: Error(InvalidInput) if the rank is not 1 to 16, or the basis function is above level 6
 /// source: higher-order orthogonal iteration from the higher-order singular value decomposition (De Lathauwer et al. 2000)
 [[nodiscard]] TuckerFit fit_tucker(const BasisFunction& basis, int rank);
 

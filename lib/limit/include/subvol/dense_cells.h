@@ -11,9 +11,10 @@
 
 namespace subvol {
 
-/// The grid that one control cell becomes: side³ vertices of the refined mesh, side = 2^levels + 1, u fastest, then v, then w.
+/// One control cell after refinement, as a grid: side³ vertices of the refined mesh, side = 2^levels + 1, u fastest, then v,
+/// then w.
 ///
-/// values: an attribute: side³ × channels numbers, vertex-major
+/// values: for each attribute side³ × channels numbers, vertex-major
 struct DenseCell {
     Index cell = 0;  // of the control mesh
     std::size_t side = 0;
@@ -21,16 +22,16 @@ struct DenseCell {
     std::vector<std::span<const double>> values;
 };
 
-/// Refines a mesh cell by cell: calls visit for every control cell with its grid, and keeps no more than a batch of cells in
-/// memory. Neighbouring grids agree bitwise in what they share, and with `refine`.
+/// Refines a mesh cell by cell: calls visit for every control cell with its grid, and keeps only a batch of cells per thread in
+/// memory. Neighbouring grids have the same bits where they meet, and the same as `refine`.
 ///
-/// visit:  is called from several threads at once and in no order; the spans are gone after the call
+/// visit:  called from several threads at once and in any order; the spans are valid during the call only
 /// throws: Error(InvalidInput) as `refine`
-/// cost:   parallel; memory: the mesh, and a thread some 50 MB, or what one cell takes: 300 bytes a vertex
+/// cost:   parallel; memory: the mesh, and per thread about 50 MB, or one cell if that is more: 300 bytes per vertex
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const std::function<void(const DenseCell&)>& visit);
 
 /// cells:    of the control mesh, without repetition; none: all
-/// on_limit: points and attributes are moved to the limit, as `on_limit` moves those of `refine`
+/// on_limit: points and attributes are moved to the limit, as by `on_limit` of the refined mesh
 struct DenseSelection {
     std::optional<std::vector<Index>> cells{};
     bool on_limit = false;
@@ -42,7 +43,7 @@ struct DenseSelection {
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
                          const std::function<void(const DenseCell&)>& visit);
 
-/// The same for one lot of cells of a mesh after the other: what is needed of the whole mesh is set up once.
+/// The same for several selections of cells of one mesh: what depends on the whole mesh is set up once.
 class DenseCells {
 public:
     /// throws: as `for_each_dense_cell`
@@ -54,7 +55,7 @@ public:
     /// cells: without repetition. throws: Error(InvalidInput) if a cell does not exist; Error(Cancelled)
     void for_each(std::span<const Index> cells, const std::function<void(const DenseCell&)>& visit) const;
 
-    /// To another level than that of the options.
+    /// To a level that differs from that of the options.
     void for_each(std::span<const Index> cells, int levels, const std::function<void(const DenseCell&)>& visit) const;
 
 private:

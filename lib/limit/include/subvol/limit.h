@@ -15,9 +15,9 @@ struct LimitQuery {
     Vec3 uvw{0.0};
 };
 
-/// tolerance:  relative to the diagonal of the mesh's box and to each attribute's range; what is not exact is refined until two
-///             levels differ by less; derivatives by less than its square root, of the same scale a cell
-/// max_levels: ≥ 2, where refinement ends at the latest
+/// tolerance:  relative to the diagonal of the mesh's box and to each attribute's range. What is not exact is refined until two
+///             levels differ by less, and their derivatives (per cell) by less than its square root
+/// max_levels: ≥ 2; refinement ends there in any case
 struct LimitOptions {
     SchemeOptions scheme{};
     double tolerance = 1e-6;
@@ -25,8 +25,8 @@ struct LimitOptions {
     Progress* progress = nullptr;
 };
 
-/// How the values came about: exact ones are those of regular Catmull-Clark and BSXW cells (tricubic B-splines) and of the
-/// linear scheme. `unconverged` ones had not reached the tolerance at max_levels.
+/// How many values were found in which way. Exact ones are those of regular Catmull-Clark and BSXW cells (tricubic B-splines)
+/// and of the linear scheme; `unconverged` ones had not reached the tolerance at max_levels.
 struct LimitReport {
     std::size_t exact = 0;
     std::size_t refined = 0;
@@ -42,7 +42,7 @@ struct LimitAttribute {
     std::vector<Vec3> derivatives;
 };
 
-/// One entry a query. jacobians: columns ∂x/∂u, ∂x/∂v, ∂x/∂w
+/// One entry per query. jacobians: columns ∂x/∂u, ∂x/∂v, ∂x/∂w
 struct LimitSamples {
     std::vector<Vec3> positions;
     std::vector<Mat3> jacobians;
@@ -53,23 +53,24 @@ struct LimitSamples {
 /// Position, Jacobian and attributes of the limit volume at places in control cells.
 ///
 /// Catmull-Clark and BSXW are evaluated as tricubic B-splines where the cell's surroundings are a grid (the boundary of a box
-/// included). Elsewhere, and everywhere for MCQ, the surroundings of the place are refined: MCQ's vertices lie on the limit,
-/// and between them it is interpolated tricubically; the error falls with the second power of the cell size, as the scheme's
-/// smoothness allows, and that of the Jacobian with the first. At an extraordinary vertex or edge the Jacobian is that of the
-/// last level.
-/// throws: Error(InvalidInput) as `refine`, or if a query names no cell or lies outside [0,1]³
+/// included). Elsewhere, and everywhere for MCQ, the surroundings of the place are refined: the vertices of MCQ lie on the
+/// limit, which is interpolated tricubically between them. The error falls with the second power of the cell size, as the
+/// smoothness of the scheme allows, that of the Jacobian with the first. At an extraordinary vertex or edge the Jacobian is
+/// that of the last level.
+///
+/// throws: Error(InvalidInput) as `refine`, or if a query names a cell that does not exist or lies outside [0,1]³
 /// cost:   parallel; queries in one cell share the work; bitwise the same for any number of threads
 [[nodiscard]] LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries,
                                           const LimitOptions& options = {});
 
-/// The limit positions of the vertices as stencils over the mesh's points; a table that keeps every point where the scheme
-/// interpolates.
+/// The limit positions of the vertices as stencils over the mesh's points. If the scheme interpolates, the table keeps every
+/// point.
 ///
-/// source: the dominant left eigenvector of each vertex's local subdivision matrix; in the regular case (1,4,1)/6 along each
-/// axis
+/// source: the dominant left eigenvector of each vertex's local subdivision matrix; in the regular case (1,4,1)/6 along
+///         each axis
 [[nodiscard]] StencilTable limit_stencils(const Topology& topology, Scheme scheme);
 
-/// The mesh with its points and attributes moved to the limit: what stands for the volume when it is shown or measured.
+/// The mesh with its points and attributes moved to the limit: the approximation of the volume that is shown or measured.
 [[nodiscard]] HexMesh on_limit(HexMesh mesh, Scheme scheme);
 
 }  // namespace subvol

@@ -9,9 +9,9 @@
 
 namespace subvol {
 
-/// position_world:   how far a new point may lie from the trilinear middle of its parent's points
-/// value_of_range:   how far a new value may, as a part of its attribute's range
-/// max_levels, max_cells: where the search ends at the latest
+/// position_world:        how far a new point may lie from the mean of the parent's points around it
+/// value_of_range:        the same for a new value, as a part of its attribute's range
+/// max_levels, max_cells: the search goes no further
 struct LimitLevelOptions {
     double position_world = 0;
     double value_of_range = 1e-3;
@@ -19,9 +19,10 @@ struct LimitLevelOptions {
     double max_cells = 3e7;
 };
 
-/// level:          the level whose trilinear cells stand for the limit
-/// position_world: how far the last new points lay from the cells before; value_of_range: new values
-/// converged:      both are within tolerance; otherwise the largest level came first, and is taken
+/// level:          the level whose trilinear cells approximate the limit
+/// position_world: how far the last new points lay from the cells of the level before
+/// value_of_range: the same for values
+/// converged:      both are within tolerance; otherwise `level` is the finest one within max_levels and max_cells
 struct LimitLevel {
     int level = 0;
     double position_world = 0;
@@ -29,22 +30,22 @@ struct LimitLevel {
     bool converged = false;
 };
 
-/// Looks for the lowest level at which no new point and no new value of the next one lies further than the tolerances from its
-/// trilinear cells. The error itself is about a third more: later levels add a quarter of the step each, where the field is
-/// smooth. Of each level only the control cells are refined that had not converged before it.
+/// Finds the lowest level for which all new points and values of the next level lie within the tolerances of its trilinear
+/// cells. The error to the limit is about a third more: where the field is smooth, each further level adds a quarter of the
+/// step before. At each level only the control cells that have not converged yet are refined.
 ///
 /// options.levels is not used.
 /// throws: Error(InvalidInput) as `for_each_dense_cell`
 [[nodiscard]] LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options);
 
-/// The limit as cells with 27 nodes each, triquadratic between them: they stand for the limit as well as trilinear cells of two
-/// more levels do where it is smooth.
+/// The limit as cells of 27 nodes, triquadratic between them. Where the limit is smooth they approximate it as well as
+/// trilinear cells of two more levels.
 ///
 /// level:          the level whose trilinear cells bound the volume
-/// cell_levels:    of each control cell: the level of its nodes, at least that and at least 1, the same for all if the scheme
-/// does
-///                 not interpolate; empty where the mesh has too many cells even for one level: they stay as they are
-/// position_world: how far the last new points lay from the trilinear cells; value_of_range: new values from the curved ones
+/// cell_levels:    the level of each control cell's nodes: at least `level` and at least 1; the same for all cells if the
+///                 scheme does not interpolate. Empty if the mesh has too many cells for one level: they stay as they are
+/// position_world: how far the last new points lay from the trilinear cells
+/// value_of_range: how far the last new values lay from the curved cells
 /// converged:      both are within tolerance
 struct LimitCells {
     int level = 0;
@@ -54,10 +55,10 @@ struct LimitCells {
     bool converged = false;
 };
 
-/// Looks for the lowest such levels: one for all cells by the tolerance of positions, so that they fit together, and one for
-/// each by that of values. There, what a further level brings to the curved cells has to be within tolerance, or a quarter of
-/// what their own level brought to the cells before, curved or trilinear: where the field is smooth, no more is left (up to
-/// three times as much at its kinks).
+/// Finds the lowest such levels: by the tolerance of positions one for all cells, so that they fit together, and by the
+/// tolerance of values one for each cell. A cell's level is enough if the new values of the next level lie within tolerance of
+/// its curved cells, or if a quarter of the distance of its own new values from the cells before, curved or trilinear, does:
+/// where the field is smooth, no more is left (up to three times as much at its kinks).
 ///
 /// options.levels is not used.
 /// throws: Error(InvalidInput) as `for_each_dense_cell`

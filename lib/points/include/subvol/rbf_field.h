@@ -11,7 +11,7 @@
 namespace subvol {
 
 /// channel:      which channel of the volume
-/// least_weight: where the sum of the weights is no more than this there is nothing, as in the splatter
+/// least_weight: where the sum of the weights is not above this the field has no value, as in the splatter
 struct RbfFieldOptions {
     std::size_t channel = 0;
     double least_weight = 0.02;
@@ -23,13 +23,14 @@ struct FieldJet {
     Vec3 gradient{0.0};
 };
 
-/// The field that an RBF volume stands for, at points: Σ wᵢ (vᵢ + gᵢ·d + mᵢ eᵢ + ½ dᵀHᵢd) / Σ wᵢ with d = x−μᵢ, eᵢ = dᵀ Sᵢ⁻¹ d,
-/// wᵢ the kernel at R√eᵢ inside eᵢ < 1. Satisfies `Field`. The boundary is not tested.
+/// The field of an RBF volume at points: Σ wᵢ (vᵢ + gᵢ·d + mᵢ eᵢ + ½ dᵀHᵢd) / Σ wᵢ with d = x−μᵢ, eᵢ = dᵀ Sᵢ⁻¹ d, wᵢ the kernel
+/// at R√eᵢ inside eᵢ < 1. Satisfies `Field`. The boundary is not tested.
 ///
-/// A copy of the kernels in a box tree: it does not refer to the volume. Kernels may differ in size and shape at will.
+/// It holds a copy of the kernels in a tree of boxes and does not refer to the volume. Kernels may differ in size and shape.
+///
 /// throws: Error(InvalidInput) as `validate`, if there is no such channel, or the kernel is not radial
-/// cost:   about 100 bytes and 0.3 µs a kernel to build, 1 µs of one core a point where 12 kernels overlap; thread-safe; sums
-///         run in the order of the tree, hence results are bitwise the same for any number of threads
+/// cost:   about 100 bytes and 0.3 µs per kernel to build, 1 µs of one core per point where 12 kernels overlap; thread-safe;
+///         sums are in the order of the tree, hence results are bitwise the same for any number of threads
 /// source: docs/science.md
 class RbfField {
 public:
@@ -40,10 +41,10 @@ public:
 
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
 
-    /// The exact gradient of `value` for the compact kernel; others are differenced.
+    /// The gradient of `value` is exact for the compact kernel and by differences for others.
     [[nodiscard]] std::optional<FieldJet> value_and_gradient(const Vec3& x) const;
 
-    /// Values at many points, in parallel; NaN where there is nothing.
+    /// Values at many points, in parallel; NaN where there is no value.
     [[nodiscard]] std::vector<double> evaluate(std::span<const Vec3> points) const;
 
 private:

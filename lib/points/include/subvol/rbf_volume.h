@@ -24,12 +24,11 @@ using Symmetric3 = std::array<float, 6>;
             static_cast<float>(m[1][1]), static_cast<float>(m[2][1]), static_cast<float>(m[2][2])};
 }
 
-/// One scalar channel. What a kernel stands for at x is values + gradients·d + moments·e + ½ dᵀ hessians d, with d = x−μ and
-/// e = dᵀ S⁻¹ d.
+/// One scalar channel. The contribution of a kernel at x is values + gradients·d + moments·e + ½ dᵀ hessians d, with d = x−μ
+/// and e = dᵀ S⁻¹ d.
 ///
 /// gradients: world⁻¹; moments: R²L/6, L the second moment H:JJᵀ of the field's Hessian H, in the units of the value
-/// hessians:  what is left of H when the part along S⁻¹ is taken out (world⁻²), one a point; none: that
-///            part is all
+/// hessians:  H without its part along S⁻¹ (world⁻²), one per point; empty: there is only that part
 struct RbfChannel {
     std::string name{};
     std::vector<float> values{};
@@ -38,12 +37,12 @@ struct RbfChannel {
     std::vector<Symmetric3> hessians{};
 };
 
-/// A subdivision volume as radial basis functions: what every renderer and exporter takes.
+/// A subdivision volume as radial basis functions: the input of every renderer and exporter.
 ///
 /// centers:  world
 /// frames:   S = R² J Jᵀ (world²), J's columns the world displacement per sample interval
-/// kernel:   of all points: its value at ρ = R√e is their weight, its support radius is the frames' R
-/// boundary: the solid's surface, outward; outside it there is nothing. Empty: the points have no known boundary
+/// kernel:   of all points: its value at ρ = R√e is their weight; its support radius is the R of the frames
+/// boundary: the solid's surface, outward; outside it there is nothing. Empty: the boundary is not known
 struct RbfVolume {
     std::vector<Vec3> centers;
     std::vector<Symmetric3> frames;
@@ -58,9 +57,9 @@ struct RbfVolume {
 /// The box of the boundary; of the centres if there is none.
 [[nodiscard]] Box box_of(const RbfVolume& volume);
 
-/// throws: Error(InvalidInput), naming the point from 0, unless there are as many of everything as points (Hessians: or none),
-///         there is a channel, channels have names of their own, numbers are finite, the kernel is valid, the frames' diagonals
-///         are positive and the triangles' corners there
+/// throws: Error(InvalidInput), naming the point counted from 0, unless every array has one entry per point (or, of Hessians,
+///         none), there is a channel, the names of channels differ, numbers are finite, the kernel is valid, the diagonals of
+///         the frames are positive and the corners of the triangles exist
 void validate(const RbfVolume& volume);
 
 }  // namespace subvol

@@ -11,8 +11,9 @@
 
 namespace subvol {
 
-/// How far a field is from samples: the root of the volume's mean squared error.
+/// How far the field of an RBF volume is from samples.
 ///
+/// rmse:      root of the mean squared error over the volume
 /// uncovered: samples where the field has no value; they do not count for rmse
 struct ErrorAtSamples {
     double rmse = 0;
@@ -22,12 +23,12 @@ struct ErrorAtSamples {
 
 [[nodiscard]] ErrorAtSamples error_at_samples(const RbfVolume& volume, const FieldSamples& samples);
 
-/// rmse:       to be reached, in units of the field, > 0
+/// rmse:       the target, in units of the field, > 0
 /// kernel:     of the result; radial
-/// overlap:    0.7 to 2; 1 is that of uniform samples: a box of side h gets the support R h, R that of the kernel
-/// max_points: where the growth ends at the latest
+/// overlap:    0.7 to 2; 1 is that of uniform samples: a box of side h gets the support radius R h, R that of the kernel
+/// max_points: no more kernels than these
 /// move:       kernels are also moved and resized (`refine_rbf`): about half as many, ten times as slow
-/// limit:      the scheme, and how exact the validation samples are; its `progress` is not used
+/// limit:      the scheme, and the accuracy of the validation samples; its `progress` is not used
 struct ReduceOptions {
     double rmse = 0.01;
     Kernel kernel{};
@@ -38,8 +39,8 @@ struct ReduceOptions {
     Progress* progress = nullptr;
 };
 
-/// rmse, validation: on the samples that made the volume, and on independent ones
-/// reached:          whether both meet the target and no sample is uncovered
+/// rmse, validation: errors at the samples that were fitted, and at independent ones
+/// reached:          both meet the target, and no sample is uncovered
 struct ReduceReport {
     std::size_t points = 0;
     std::size_t samples = 0;
@@ -55,13 +56,14 @@ struct ReduceResult {
     ReduceReport report;
 };
 
-/// Few kernels for a field: as many as the target error needs, where it needs them.
+/// Approximates a field with few kernels: as many as the target error needs, where it needs them.
 ///
-/// Top-down: the samples are halved, and again, each time where the error is largest, across the direction that helps most;
-/// each part gets one kernel with the frame of its covariance, so flat parts get flat kernels. All values, gradients and
-/// moments are fitted together to all samples, and what the fit leaves over tells which parts are halved next.
+/// Top-down: the samples are halved again and again, each time where the error is largest and across the direction in which
+/// that helps most. Each part gets one kernel whose frame is the covariance of the part, so flat parts get flat kernels. All
+/// values, gradients and moments are fitted together to all samples; the residuals decide which parts are halved next.
+///
 /// returns: a volume without boundary; its bounds are those of the samples
-/// throws:  Error(InvalidInput) for options out of range or samples that do not fit together
+/// throws:  Error(InvalidInput) for options out of range, or unless samples have one finite value and weight per point
 /// cost:    a round is O(samples · kernels over a point); bitwise the same for any number of threads
 [[nodiscard]] ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validation,
                                       const ReduceOptions& options = {});
@@ -72,9 +74,9 @@ struct ReduceResult {
 /// throws: as above, as `refine` and `scalar_field`
 [[nodiscard]] ReduceResult reduce_rbf(const HexMesh& mesh, std::string_view field, const ReduceOptions& options = {});
 
-/// move:       centres and sizes too, not values, gradients and moments alone
-/// iterations: at most, of the solver: conjugate gradients without `move`, Levenberg-Marquardt with it
-/// ridge:      how strongly terms that no sample sees are held, of a kernel's mean weight
+/// move:       also fit centres and sizes, not only values, gradients and moments
+/// iterations: the most of the solver: conjugate gradients without `move`, Levenberg-Marquardt with it
+/// ridge:      how strongly terms are held that no sample determines, as a part of a kernel's mean weight
 struct RbfRefineOptions {
     bool move = false;
     int iterations = 60;
@@ -82,7 +84,7 @@ struct RbfRefineOptions {
     Progress* progress = nullptr;
 };
 
-/// bytes: estimated, of what the solver held
+/// bytes: estimated memory of the solver
 struct RbfRefineReport {
     int iterations = 0;
     double rmse_before = 0, rmse_after = 0;
@@ -97,11 +99,13 @@ struct RbfRefineResult {
 
 /// Fits an RBF volume to samples by least squares, all kernels of its first channel together.
 ///
-/// With the centres and frames as they are this is one linear problem. With `move` each kernel may also shift and grow in its
-/// frame; that is nonlinear, and is solved by Ceres: sparse Cholesky up to 200 kernels, conjugate gradients beyond.
-/// returns: the volume with that one channel, without Hessians unless they were better; boundary and bounds are kept. Never
-///          worse on the samples than before
-/// throws:  Error(InvalidInput) for options out of range, no channel, or samples that do not fit together
+/// With fixed centres and frames this is one linear problem. With `move` each kernel may also shift and grow in its frame; that
+/// is nonlinear and is solved by Ceres: sparse Cholesky up to 200 kernels, conjugate gradients beyond.
+///
+/// returns: the volume with that one channel and without Hessians; boundary and bounds are kept. If the fit is worse at the
+///          samples than the volume was, the channel is returned unchanged
+/// throws:  Error(InvalidInput) for options out of range, no channel, or unless samples have one finite value and weight per
+///          point
 /// cost:    O(samples · kernels over a point) an iteration; bitwise the same for any number of threads
 /// source:  the idea of Weiler 05 and Jang 06; analytic derivatives
 [[nodiscard]] RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples,

@@ -11,21 +11,22 @@
 
 namespace subvol {
 
-/// How far a kernel follows the field: not at all, linearly, with the mean of its second derivatives, or with all of them.
+/// What a kernel has of the field beside its value: nothing, the gradient, also the mean of the second derivatives, or all
+/// second derivatives.
 enum class Correction { None, Gradient, Second, Full };
 
-/// Where the value of a sample between control points comes from.
+/// How the value of a sample between control points is found.
 ///
-/// Scheme: the subdivision scheme itself
+/// Scheme: by the subdivision scheme
 /// Cubic:  Catmull-Rom in the cell's parameters over the 4×4×4 control points about it
 /// Paper:  Σ w f / Σ w over the control points within a kernel's extent, in the cell's parameters [mnmq2007]
 ///
-/// Where the surroundings are no grid, `Cubic` extrapolates the points that are missing and `Paper` does without them.
+/// Where the surroundings are not a grid, `Cubic` extrapolates the missing points and `Paper` leaves them out.
 enum class ValueRule { Scheme, Cubic, Paper };
 
-/// Samples for a picture: a distance of `spacing_px` pixels at most between neighbours, where the camera sees them.
+/// Samples for a picture: neighbours that the camera sees are at most `spacing_px` pixels apart.
 ///
-/// least_cell_px: cells whose projected box is smaller than this both ways keep one interval
+/// least_cell_px: cells whose projected box is smaller than this in width and height keep one interval
 struct Footprint {
     Camera camera;
     int width_px = 512;
@@ -34,16 +35,15 @@ struct Footprint {
     double least_cell_px = 1.5;
 };
 
-/// per_edge:        sample intervals a cell edge, 1 to 64; 1 is one kernel a control vertex
+/// per_edge:        sample intervals per cell edge, 1 to 64; 1 is one kernel per control vertex
 /// spacing_world:   > 0: instead of per_edge, each edge gets ⌈length / spacing⌉ intervals
 /// footprint:       instead of both, each edge gets ⌈length in pixels / spacing⌉ intervals
-/// tolerance:       > 0: instead of these, as many intervals as it takes until the first channel errs by less, in its own unit,
-///                  at the points of the second refinement
-/// values:          where values between control points come from; gradients and moments come from the scheme
+/// tolerance:       > 0: instead of these, as many intervals as needed until the first channel's error, in its own unit, is
+///                  smaller at the points of the second refinement
+/// values:          how values between control points are found; gradients and moments are those of the scheme
 /// value_kernel:    of the rule `Paper`
-/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many that a quad of it is half a sample interval
-/// wide,
-///                  4 at most
+/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide,
+///                  at most 4
 struct SampleOptions {
     SchemeOptions scheme{};
     int per_edge = 1;
@@ -62,7 +62,7 @@ struct SampleReport {
     std::size_t points = 0;
     std::size_t at_vertices = 0, on_edges = 0, on_faces = 0, in_cells = 0;
     std::size_t flat_frames = 0;  // points whose Jacobian was singular and was thickened
-    double largest_error = 0;     // with a tolerance: of the first channel, at the points of the second refinement
+    double largest_error = 0;     // with a tolerance: of the first channel at the points of the second refinement
 };
 
 struct SampleResult {
@@ -70,18 +70,18 @@ struct SampleResult {
     SampleReport report;
 };
 
-/// Samples a subdivision volume into radial basis functions, each mesh entity by itself, so that shared points come once:
-/// N = V + Σ(nₑ−1) + Σ(n_u−1)(n_v−1) + Σ(n_u−1)(n_v−1)(n_w−1).
+/// Samples a subdivision volume into radial basis functions: vertices, edges, faces and cells by themselves, so that shared
+/// points occur once. Their number is N = V + Σ(nₑ−1) + Σ(n_u−1)(n_v−1) + Σ(n_u−1)(n_v−1)(n_w−1).
 ///
-/// A face takes, along each direction, the larger count of its two opposite edges, a cell the largest of its four. Geometry and
-/// values come from the scheme itself: exact if all edges have the same power of two of intervals, or where the sample is a
-/// vertex of the second refinement (moved to the limit), else interpolated in-cell by quartics through those vertices.
+/// Along each direction a face has the larger count of its two opposite edges, a cell the largest of its four. Geometry and
+/// values are those of the scheme: exact if all edges have the same power of two of intervals, or where the sample is a vertex
+/// of the second refinement (moved to the limit); else interpolated in the cell by quartics through those vertices.
 ///
 /// throws: Error(InvalidInput) for options out of range, and as `refine`
 /// source: docs/science.md
 [[nodiscard]] SampleResult sample_rbf_points(HexMesh mesh, const SampleOptions& options = {});
 
-/// What a rule makes of the first refinement's new points: the error of a rule is its difference from the scheme there.
+/// The values of a rule at the points that the first refinement adds. The error of a rule is its difference from the scheme.
 ///
 /// field:   as in `scalar_field`
 /// kernel:  of the rule `Paper`

@@ -5,14 +5,16 @@
 
 namespace subvol {
 
-/// Mcq: through the control points [mnmq2007]; CatmullClark: its generalisation to solids [mj1996]; Bsxw: trilinear split and
-/// averaging [bsxw2002]; Linear: the trilinear split alone
+/// Mcq:          interpolates the control points [mnmq2007]
+/// CatmullClark: Catmull-Clark solids [mj1996]
+/// Bsxw:         trilinear split and averaging [bsxw2002]
+/// Linear:       the trilinear split alone
 enum class Scheme { Mcq, CatmullClark, Bsxw, Linear };
 
-/// Whether a scheme's volume goes through its control points.
+/// Whether a scheme's volume passes through its control points.
 [[nodiscard]] bool interpolates(Scheme scheme);
 
-/// A scheme with its parameters: the same in everything that refines, samples or evaluates a volume.
+/// A scheme with its parameters, for all calls that refine, sample or evaluate a volume.
 ///
 /// tension:          ω of MCQ: 0 is the trilinear split; cubics are reproduced at 1/16 only
 /// crease_angle_deg: boundary edges bent by more than this become creases too; (0,180)

@@ -9,16 +9,16 @@
 
 namespace subvol {
 
-/// A sparse matrix by compressed rows: row r has columns[offsets[r] .. offsets[r+1]), ascending, with their weights.
+/// A sparse matrix in compressed rows: row r has columns[offsets[r] .. offsets[r+1]), ascending, with their weights.
 struct CsrMatrix {
     std::vector<std::size_t> offsets{0};
     std::vector<Index> columns;
     std::vector<double> weights;
 };
 
-/// The stencils of a refinement: every point of the finer level as weights over the points of the coarser one.
+/// The stencils of a refinement: every point of the finer level as a weighted sum of points of the coarser level.
 ///
-/// A row is stored as runs of points that have the same weight, and rows with the same weights share them: a regular row costs
+/// A row is stored as runs of points that have the same weight. Rows with the same weights share them, so a regular row costs
 /// little more than its point ids. Rows come in blocks of a few thousand, in the order of the finer points.
 class StencilTable {
 public:
@@ -29,7 +29,7 @@ public:
     };
 
     /// Consecutive rows. Pattern k is runs[pattern_offsets[k] .. pattern_offsets[k+1]); row i has the pattern row_patterns[i]
-    /// and takes as many entries of `points` as its runs count, behind those of the rows before it.
+    /// and uses as many entries of `points` as its runs count, after those of the rows before it.
     struct Block {
         std::size_t first_row = 0;
         std::vector<Index> points;
@@ -40,7 +40,7 @@ public:
 
     StencilTable() = default;
 
-    /// kept: how many leading points stay as they are; the blocks hold the rows from there on
+    /// kept: how many leading points stay as they are; the blocks hold the rows after them
     StencilTable(std::size_t columns, std::size_t kept, std::vector<Block> blocks);
 
     [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -50,7 +50,7 @@ public:
     [[nodiscard]] std::size_t bytes() const;
     [[nodiscard]] const std::vector<Block>& blocks() const { return blocks_; }
 
-    /// Applies the stencils to data of the coarser points, any number of channels, point-major. Sums are formed in double.
+    /// Applies the stencils to data of the coarser points: any number of channels, point-major. Sums are in double precision.
     ///
     /// in:     columns() × channels values
     /// out:    rows() × channels values, all written
@@ -59,7 +59,7 @@ public:
     void apply(std::span<const double> in, std::size_t channels, std::span<double> out) const;
     void apply(std::span<const float> in, std::size_t channels, std::span<float> out) const;
 
-    /// The same rows over the points that `first` starts from: first `first`, then this.
+    /// The composition: `first`, then this table. Its rows are over the points that `first` starts from.
     [[nodiscard]] StencilTable after(const StencilTable& first) const;
 
     [[nodiscard]] CsrMatrix csr() const;

@@ -7,19 +7,19 @@
 
 namespace subvol::detail {
 
-// A function that is even and symmetric in the axes is known from its wedge i ≥ j ≥ k ≥ 0.
+// A function that is even and symmetric in the axes is given by its wedge i ≥ j ≥ k ≥ 0.
 
 /// The place of a wedge's entry: i ≥ j ≥ k ≥ 0.
 [[nodiscard]] constexpr std::size_t wedge_index(std::size_t i, std::size_t j, std::size_t k) {
     return i * (i + 1) * (i + 2) / 6 + j * (j + 1) / 2 + k;
 }
 
-/// How many entries a wedge up to i = last has.
+/// The number of entries of a wedge up to i = last.
 [[nodiscard]] constexpr std::size_t wedge_size(std::size_t last) {
     return wedge_index(last + 1, 0, 0);
 }
 
-/// The wedge's entry that stands for any i, j, k.
+/// The place of the wedge's entry that is equal to that of any i, j, k.
 [[nodiscard]] inline std::size_t wedge_index_of(int i, int j, int k) {
     auto a = static_cast<std::size_t>(std::abs(i)), b = static_cast<std::size_t>(std::abs(j)),
          c = static_cast<std::size_t>(std::abs(k));
@@ -29,7 +29,7 @@ namespace subvol::detail {
     return wedge_index(a, b, c);
 }
 
-/// How many places i, j, k the wedge's entry stands for: 1 to 48.
+/// How many places i, j, k are equal to the wedge's entry: 1 to 48.
 [[nodiscard]] constexpr int wedge_multiplicity(std::size_t i, std::size_t j, std::size_t k) {
     const int orders = i == j && j == k ? 1 : i == j || j == k ? 3 : 6;
     return orders * (i > 0 ? 2 : 1) * (j > 0 ? 2 : 1) * (k > 0 ? 2 : 1);

@@ -9,7 +9,7 @@ namespace subvol::detail {
 
 /// The ellipsoid (x−μ)ᵀ S⁻¹ (x−μ) = 1 of a frame.
 ///
-/// half_axes:  world, longest first; none is below 10⁻⁶ of the longest, however flat the frame
+/// half_axes:  world, longest first; at least 10⁻⁶ of the longest, however flat the frame is
 /// directions: unit columns, right-handed
 struct PrincipalAxes {
     Vec3 half_axes{1.0};
