@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/detail/median_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace subvol::detail {
+namespace {
+
+std::vector<Box> random_boxes(std::size_t count) {
+    std::mt19937 random(static_cast<unsigned>(count));
+    std::uniform_real_distribution<double> place(0, 10), size(0, 1);
+    std::vector<Box> boxes(count);
+    for (Box& box : boxes) {
+        box.add(Vec3(place(random), place(random), 2 * place(random)));
+        box.add(box.lower + Vec3(size(random), size(random), size(random)));
+    }
+    return boxes;
+}
+
+MedianTree<Box> tree_of(const std::vector<Box>& boxes) {
+    std::vector<Vec3> centers;
+    for (const Box& box : boxes) centers.push_back(box.center());
+    return {centers, 4, [&](Index item) { return boxes[item]; }};
+}
+
+bool holds(const Box& box, const Vec3& x) {
+    return glm::all(glm::lessThanEqual(box.lower, x)) && glm::all(glm::lessThanEqual(x, box.upper));
+}
+
+TEST(MedianTree, FindsTheBoxesThatHoldAPoint) {
+    for (const std::size_t count : {1u, 3u, 17u, 3000u}) {
+        const std::vector<Box> boxes = random_boxes(count);
+        const MedianTree<Box> tree = tree_of(boxes);
+        ASSERT_EQ(tree.size(), count);
+        for (const Box& near : random_boxes(50)) {
+            const Vec3 x = near.center();
+            std::vector<Index> found, expected;
+            tree.visit_leaves([&](const Box& box) { return holds(box, x); },
+                              [&](std::size_t first, std::size_t last) {
+                                  for (std::size_t slot = first; slot < last; ++slot) {
+                                      if (holds(boxes[tree.item(slot)], x)) found.push_back(tree.item(slot));
+                                  }
+                                  return false;
+                              });
+            for (Index i = 0; i < count; ++i) {
+                if (holds(boxes[i], x)) expected.push_back(i);
+            }
+            std::ranges::sort(found);
+            EXPECT_EQ(found, expected);
+        }
+    }
+}
+
+TEST(MedianTree, EverySlotBelongsToOneLeaf) {
+    const MedianTree<Box> tree = tree_of(random_boxes(1001));
+    std::vector<Index> items;
+    std::size_t next = 0;
+    tree.visit_leaves([](const Box&) { return true; },
+                      [&](std::size_t first, std::size_t last) {
+                          EXPECT_EQ(first, next);
+                          EXPECT_LE(last - first, 4u);
+                          next = last;
+                          for (std::size_t slot = first; slot < last; ++slot) items.push_back(tree.item(slot));
+                          return false;
+                      });
+    std::ranges::sort(items);
+    std::vector<Index> all(1001);
+    std::iota(all.begin(), all.end(), Index{0});
+    EXPECT_EQ(items, all);
+}
+
+TEST(MedianTree, EndsAtTheFirstLeafThatIsEnoughAndHasNoneWithoutItems) {
+    std::size_t visits = 0;
+    const auto visit = [&](std::size_t, std::size_t) { return ++visits == 2; };
+    tree_of(random_boxes(100)).visit_leaves([](const Box&) { return true; }, visit);
+    EXPECT_EQ(visits, 2u);
+    const MedianTree<Box> none = tree_of({});
+    EXPECT_EQ(none.size(), 0u);
+    EXPECT_TRUE(none.box(0).empty());
+    EXPECT_EQ(none.slots(0), std::pair(std::size_t{0}, std::size_t{0}));
+}
+
+}  // namespace
+}  // namespace subvol::detail
