@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
 #include "number_type.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr Wording kWording{"vertex", "hex", 1};
+constexpr EntityNames kNames{"vertex", "hex", 1};
 
 // Sections by their numbers in the format.
 constexpr std::int64_t kDimension = 3;
@@ -44,8 +45,8 @@ public:
             read_cells(kPrisms, "prism", "a prism", found_.prisms);
             read_cells(kPyramids, "pyramid", "a pyramid", found_.pyramids);
         }
-        report_left_out(found_, left_out_, file_);
-        return finish(std::move(found_), in_, file_, kWording, options_);
+        add_left_out_warning(found_, left_out_, file_);
+        return assemble(std::move(found_), in_, file_, kNames, options_);
     }
 
 private:
@@ -117,13 +118,13 @@ private:
     template <std::size_t N>
     void read_cells(std::int64_t section, std::string_view name, std::string_view kind, FileCells<N>& into) {
         if (!sections_.contains(section)) return;
-        const Wording wording{kWording.point, name, kWording.first};
+        const EntityNames names{kNames.point_word, name, kNames.first};
         const std::size_t count = count_in(section, {name}, (N + 1) * size_of(integer_));
         into.corners.resize(count);
         for (std::size_t c = 0; c < count; ++c) {
             const Place place{name, static_cast<std::int64_t>(c + 1), count};
             for (Index& corner : into.corners[c]) corner = read_corner(place);
-            check_corners(in_, in_.position(), into.corners[c], c, wording, kind);
+            check_corners(in_, in_.position(), into.corners[c], c, names, kind);
             number(place, integer_);
         }
     }

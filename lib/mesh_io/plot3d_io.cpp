@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
+#include "ghost_cells.h"
 #include "number_type.h"
 #include "structured_grid.h"
 #include "subvol/error.h"
@@ -148,7 +150,6 @@ void read_block(Numbers& in, const Layout& layout, const StructuredGrid& grid, M
     }
     for (const Vec3& point : points) add_point(found, point, in.position());
     for (std::size_t p = 0; layout.blanks && p < count; ++p) {
-        constexpr double kHiddenPoint = 2;  // as VTK says it
         ghosts.values.push_back(in.integer({"blank"}) == 0 ? kHiddenPoint : 0);
     }
     in.mark();
@@ -191,7 +192,7 @@ void read_flow(std::string_view text, std::string_view file, const Layout& place
 }  // namespace
 
 ReadResult read_plot3d(std::string_view text, std::string_view file, const ReadOptions& options, const Plot3dFlow& flow) {
-    constexpr Wording kWording{"point", "cell", 0};
+    constexpr EntityNames kNames{"point", "cell", 0};
     TextScanner in(text, file, TextScanner::Comments::None);
     if (text.empty()) in.fail("the file is empty");
     const auto layout = layout_of(in, kPlaces);
@@ -203,12 +204,12 @@ ReadResult read_plot3d(std::string_view text, std::string_view file, const ReadO
     Numbers numbers(in, layout->encoding);
     static_cast<void>(read_sizes(numbers, layout->several));
     MeshFile found;
-    FileArray ghosts{"vtkGhostType", 1, false, {}};
+    FileArray ghosts{std::string(kGhostArray), 1, false, {}};
     for (const StructuredGrid& grid : layout->blocks) read_block(numbers, *layout, grid, found, ghosts);
     if (!flow.text.empty()) read_flow(flow.text, flow.file, *layout, found);
     if (layout->blanks) found.arrays.push_back(std::move(ghosts));
-    report_left_out(found, "", file);
-    return finish(std::move(found), in, file, kWording, options);
+    add_left_out_warning(found, "", file);
+    return assemble(std::move(found), in, file, kNames, options);
 }
 
 }  // namespace subvol::detail

@@ -3,15 +3,16 @@
 #include <limits>
 #include <map>
 
+#include "assemble.h"
 #include "exodus_file.h"
-#include "mesh_file.h"
+#include "formats.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr Wording kWording{"node", "element", 1};
+constexpr EntityNames kNames{"node", "element", 1};
 
 // A block of elements of one type. number: as its variables are named, from 1; first: its first element among all
 struct Block {
@@ -63,7 +64,7 @@ public:
         for (Block& block : blocks_) take(block);
         list_left_out();
         read_variables();
-        return finish(std::move(found_), in_, file_, kWording, options_);
+        return assemble(std::move(found_), in_, file_, kNames, options_);
     }
 
 private:
@@ -130,14 +131,14 @@ private:
             const std::size_t number = block.first + e;
             for (std::size_t k = 0; k < N; ++k) corners[k] = corner(nodes[e * block.nodes + k], number);
             into.numbers.push_back(static_cast<Index>(number));
-            check_corners(in_, 0, corners, number, kWording, kind);
+            check_corners(in_, 0, corners, number, kNames, kind);
         }
     }
 
     [[nodiscard]] Index corner(std::int64_t node, std::size_t element) const {
         const std::size_t count = found_.points.size();
         if (node < 1 || static_cast<std::uint64_t>(node) > count) {
-            exodus_.fail(kWording.name_cell(element) + ": there is no node " + std::to_string(node),
+            exodus_.fail(kNames.cell(element) + ": there is no node " + std::to_string(node),
                          "nodes are 1 to " + std::to_string(count));
         }
         return static_cast<Index>(node - 1);
@@ -152,7 +153,7 @@ private:
         for (const auto& [type, count] : left_out_) {
             list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + in_quotes(type);
         }
-        report_left_out(found_, list, file_);
+        add_left_out_warning(found_, list, file_);
     }
 
     void read_variables() {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 
+#include "assemble.h"
+#include "formats.h"
 #include "gmsh_data.h"
 #include "gmsh_elements.h"
-#include "mesh_file.h"
 
 namespace subvol::detail {
 
@@ -26,7 +27,7 @@ public:
         }
         if (found_.points.empty()) in_.fail("there is no $Nodes section, or it is empty");
         list_left_out();
-        return finish(std::move(found_), in_, file_, wording_, options_);
+        return assemble(std::move(found_), in_, file_, names_, options_);
     }
 
 private:
@@ -76,10 +77,11 @@ private:
             read_elements();
         } else if (keyword == "$NodeData") {
             if (found_.points.empty()) in_.fail("$NodeData come before $Nodes");
-            read_gmsh_data(in_, values_, false, nodes_, std::vector<std::uint8_t>(nodes_.size(), 1), found_);
+            const std::vector<std::uint8_t> all(nodes_.size(), 1);
+            read_gmsh_data(in_, values_, {.at_cells = false, .numbers = nodes_, .needed = all}, found_);
         } else if (keyword == "$ElementData") {
             if (!has_elements_) in_.fail("$ElementData come before $Elements");
-            read_gmsh_data(in_, values_, true, elements_, taken_, found_);
+            read_gmsh_data(in_, values_, {.at_cells = true, .numbers = elements_, .needed = taken_}, found_);
         } else {
             skip_section(keyword);
             return;
@@ -124,12 +126,12 @@ private:
             reserve_nodes(count);
             for (std::size_t n = 0; n < count; ++n) {
                 read_node_number(count, NumberType::Int32);
-                read_point(values_, found_, wording_, count);
+                read_point(values_, found_, names_, count);
             }
         } else {
             read_blocks("$Nodes", nodes_, [&](std::size_t count) { read_node_block(count); });
         }
-        wording_.point_numbers = nodes_.all();
+        names_.point_numbers = nodes_.all();
         if (const auto twice = nodes_.sort()) in_.fail("there are two nodes " + std::to_string(*twice));
     }
 
@@ -156,7 +158,7 @@ private:
         for (std::size_t n = 0; layout_ == Layout::V41 && n < count; ++n) read_node_number(of, number_type());
         for (std::size_t n = 0; n < count; ++n) {
             if (layout_ == Layout::V40) read_node_number(of, number_type());
-            read_point(values_, found_, wording_, of);
+            read_point(values_, found_, names_, of);
             for (std::int64_t k = 0; parametric && k < dimension; ++k) values_.real({"parameter of a node"});
         }
     }
@@ -264,7 +266,7 @@ private:
         for (std::size_t k = N; k < element.nodes; ++k) values_.integer(place, number_type());
         curved_ += element.nodes > N;
         into.numbers.push_back(static_cast<Index>(number));
-        check_corners(in_, position, corners, number, wording_, kind);
+        check_corners(in_, position, corners, number, names_, kind);
     }
 
     void list_left_out() {
@@ -276,7 +278,7 @@ private:
         for (const auto& [one, rest] : left_out_) {
             list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);
         }
-        report_left_out(found_, list, file_);
+        add_left_out_warning(found_, list, file_);
     }
 
     TextScanner in_;
@@ -285,7 +287,7 @@ private:
     GmshValues values_;
     Layout layout_ = Layout::V2;
     MeshFile found_;
-    Wording wording_{"node", "element", 1};
+    EntityNames names_{"node", "element", 1};
     GmshNumbers nodes_;
     GmshNumbers elements_;
     std::vector<std::uint8_t> taken_;  // of each element whether it is a cell

@@ -67,13 +67,13 @@ void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, 
                             bool curved) {
     if (corners.size() > N && curved) ++curved_;
     if (corners.size() < N || (corners.size() > N && !curved)) {
-        in_.fail_at(position, kVtkWording.name_cell(next_) + " has " + std::to_string(corners.size()) + " corners",
+        in_.fail_at(position, kVtkNames.cell(next_) + " has " + std::to_string(corners.size()) + " corners",
                     std::string(kind) + " has " + std::to_string(N));
     }
     auto& taken = into.corners.emplace_back();
     std::copy_n(corners.begin(), N, taken.begin());
     into.numbers.push_back(static_cast<Index>(next_));
-    check_corners(in_, position, taken, next_, kVtkWording, kind);
+    check_corners(in_, position, taken, next_, kVtkNames, kind);
 }
 
 void VtkCellSorter::report(std::string_view file) {
@@ -93,7 +93,7 @@ void VtkCellSorter::report(std::string_view file) {
                 counted(count, known ? names->second[0] : "cell", known ? names->second[1] : "cells") + " (VTK type " +
                 std::to_string(type) + ")";
     }
-    report_left_out(found_, list, file);
+    add_left_out_warning(found_, list, file);
 }
 
 }  // namespace subvol::detail

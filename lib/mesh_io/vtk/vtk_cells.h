@@ -7,11 +7,12 @@
 #include <string>
 
 #include "mesh_file.h"
+#include "subvol/mesh_io.h"
 
 namespace subvol::detail {
 
 /// How VTK counts: from 0.
-inline constexpr Wording kVtkWording{"point", "cell", 0};
+inline constexpr EntityNames kVtkNames{"point", "cell", 0};
 
 /// Sorts the cells of VTK by what can be done with them.
 class VtkCellSorter {

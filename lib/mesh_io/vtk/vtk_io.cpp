@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
 #include "vtk_arrays.h"
 #include "vtk_blocks.h"
 #include "vtk_cells.h"
@@ -52,7 +53,7 @@ public:
             sort_cells(sorter);
         }
         sorter.report(file_);
-        return finish(std::move(found_), in_, file_, kVtkWording, options_);
+        return assemble(std::move(found_), in_, file_, kVtkNames, options_);
     }
 
 private:
@@ -107,7 +108,7 @@ private:
         const std::size_t count = in_.count({"POINTS"});
         values_.begin(values_.read_type("POINTS"));
         found_.points.reserve(std::min(count, values_.room() / 3));
-        for (std::size_t p = 0; p < count; ++p) read_point(values_, found_, kVtkWording, 0);
+        for (std::size_t p = 0; p < count; ++p) read_point(values_, found_, kVtkNames, 0);
     }
 
     void read_cells() {

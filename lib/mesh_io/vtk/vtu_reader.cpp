@@ -3,7 +3,8 @@
 #include <limits>
 #include <pugixml.hpp>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
 #include "vtk_cells.h"
 #include "vtk_xml_grid.h"
 
@@ -37,7 +38,7 @@ public:
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
         sorter_.report(file_);
-        return finish(std::move(found_), xml_.in(), file_, kVtkWording, options_);
+        return assemble(std::move(found_), xml_.in(), file_, kVtkNames, options_);
     }
 
 private:
@@ -108,10 +109,9 @@ private:
         arrays_.each_integer(connectivity, [&](std::span<const std::int64_t> some) {
             for (const std::int64_t corner : some) {
                 if (corner < 0 || corner >= points) {
-                    arrays_.fail(
-                        connectivity,
-                        kVtkWording.name_cell(cells_before_ + c) + ": there is no point with index " + std::to_string(corner),
-                        "there are " + std::to_string(points) + " points, counted from 0");
+                    arrays_.fail(connectivity,
+                                 kVtkNames.cell(cells_before_ + c) + ": there is no point with index " + std::to_string(corner),
+                                 "there are " + std::to_string(points) + " points, counted from 0");
                 }
                 corners.push_back(static_cast<Index>(first_point + static_cast<std::size_t>(corner)));
                 ++end;

@@ -341,13 +341,30 @@ TEST_F(MeshIo, WhatAFormatCannotHoldIsSaid) {
 }
 
 TEST_F(MeshIo, UnknownFormatsAndMissingFilesAreRefused) {
-    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("a.obj"))); }), HasSubstr("\".obj\" files cannot be read"));
-    EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }), HasSubstr("\".vtk\" files cannot be written"));
+    EXPECT_THAT(
+        error_of([&] { static_cast<void>(read_mesh(path("a.obj"))); }),
+        HasSubstr("\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti: VTK XML; "
+                  ".msh: Gmsh; .xyz, .p3d: Plot3D; .e, .exo, .ex2, .g: Exodus II)"));
+    EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }),
+                HasSubstr("\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML)"));
     const auto missing = [&] { static_cast<void>(read_mesh(path("none.mesh"))); };
     EXPECT_THAT(error_of(missing, ErrorCode::Io), HasSubstr("none.mesh: cannot be read: No such file"));
     std::filesystem::create_directory(path("folder.mesh"));
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("folder.mesh"))); }, ErrorCode::Io), HasSubstr("directory"));
     EXPECT_THAT(error_of([&] { write_mesh(path("no/a.vtu"), kBox); }, ErrorCode::Io), HasSubstr("does not exist"));
+}
+
+TEST_F(MeshIo, ListedExtensionsAreThoseThatAreReadAndWritten) {
+    for (const std::string& extension : readable_mesh_extensions()) {
+        const auto missing = [&] { static_cast<void>(read_mesh(path("none" + extension))); };
+        EXPECT_THAT(error_of(missing, ErrorCode::Io), HasSubstr("cannot be read: No such file"));
+    }
+    for (const std::string& extension : writable_mesh_extensions()) {
+        write_mesh(path("a" + extension), kBox);
+        EXPECT_EQ(read_mesh(path("a" + extension)).mesh.cells, kBox.cells);
+    }
+    EXPECT_THAT(readable_mesh_extensions(), testing::Contains(".exo"));
+    EXPECT_THAT(writable_mesh_extensions(), ElementsAre(".mesh", ".vtu"));
 }
 
 TEST_F(MeshIo, MeshesThatAreNotSoundAreNotWritten) {
