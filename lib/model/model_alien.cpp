@@ -4,7 +4,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -57,4 +57,4 @@ constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 2, .amount = 0.
 constinit const Solid kAlien{
     .distance = alien, .transition = kCellTransition, .half = {18, 12.5, 32}, .main = 2, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

@@ -2,10 +2,13 @@
 #include <array>
 #include <cmath>
 
-#include "model_parts.h"
+#include "model_block.h"
 #include "subvol/model.h"
 
 namespace subvol {
+
+using namespace detail;
+
 namespace {
 
 constexpr double kCore = 0.5;   // size of the inner cube: its faces' centres lie at this radius
@@ -102,7 +105,7 @@ std::optional<double> BallField::value(const Vec3& x) const {
     return density(x);
 }
 
-HexMesh model::make_ball(Index resolution) {
+HexMesh detail::model::make_ball(Index resolution) {
     const Index layers = (resolution + 1) / 2;
     HexMesh mesh = parameter_block({resolution, resolution, resolution});
     const std::vector<Vec3> cube = mesh.points;

@@ -4,7 +4,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -61,4 +61,4 @@ constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 0, .amount = 0.
 constinit const Solid kCar{
     .distance = car, .transition = kCellTransition, .half = {44, 25, 19.5}, .main = 0, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

@@ -3,11 +3,13 @@
 #include <array>
 #include <cmath>
 
-#include "model_deformation.h"
-#include "model_parts.h"
+#include "model_block.h"
 #include "subvol/model.h"
 
 namespace subvol {
+
+using namespace detail;
+
 namespace {
 
 constexpr double kThroat = 0.21;      // radius where the gas is as fast as sound
@@ -142,7 +144,7 @@ std::optional<double> NozzleField::value(const Vec3& x) const {
     return density(p);
 }
 
-HexMesh model::make_nozzle(Index resolution) {
+HexMesh detail::model::make_nozzle(Index resolution) {
     const Index across = std::max<Index>(1, (resolution + 2) / 4), rings = std::max<Index>(1, (5 * resolution + 24) / 48);
     HexMesh mesh = extruded(o_grid(across, rings), resolution);
     Attribute field{.name = "density", .channels = 1, .values = {}};

@@ -4,7 +4,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -80,4 +80,4 @@ constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 0, .amount = 0.
 constinit const Solid kTrain1{
     .distance = train, .transition = kCellTransition, .half = {56, 22, 23.5}, .main = 0, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

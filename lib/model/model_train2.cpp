@@ -5,7 +5,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -66,4 +66,4 @@ constexpr std::array<Deformation, 3> kDeformation{Sway{.along = 0, .towards = 1,
 constinit const Solid kTrain2{
     .distance = train, .transition = kCellTransition, .half = {76, 20, 16.5}, .main = 0, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model
