@@ -38,7 +38,7 @@ public:
 private:
     [[nodiscard]] Index edge_point(Index e) const { return static_cast<Index>(n_.first.edges + e); }
     [[nodiscard]] Index face_point(Index f) const { return static_cast<Index>(n_.first.faces + f); }
-    [[nodiscard]] Index cell_point(Index c) const { return static_cast<Index>(n_.first.cells + p_.cell_rank[c]); }
+    [[nodiscard]] Index cell_point(Index c) const { return static_cast<Index>(n_.first.cells + p_.cell_ordinal[c]); }
 
     void fill_edges() {
         t_.edges.resize(n_.edge_c + n_.face_cell_offsets.back());
@@ -204,7 +204,7 @@ private:
 
     /// By their sorted faces: the smallest one is a quarter of a parent's face, so cells stand old point by old point.
     void rank_cells() {
-        t_.cell_rank.resize(t_.cells.size());
+        t_.cell_ordinal.resize(t_.cells.size());
         std::vector<Index> offsets(p_.point_count + 1, 0);
         parallel_each(p_.point_count, [&](std::size_t v) {
             std::size_t sides = 0;  // three faces of every cell at the point
@@ -225,7 +225,7 @@ private:
                 }
                 if (cells[0] != kNone && cells[1] != kNone && keys[1] < keys[0]) std::swap(cells[0], cells[1]);
                 for (const Index c : cells) {
-                    if (c != kNone) t_.cell_rank[c] = next++;
+                    if (c != kNone) t_.cell_ordinal[c] = next++;
                 }
             }
         });

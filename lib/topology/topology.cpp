@@ -121,7 +121,7 @@ bool has_single_cell(const Topology& topology, Index edge) {
 }
 
 /// The default rule, and the mesh's own tags.
-void mark_creases(Topology& topology, detail::TagCheck check) {
+void mark_creases(Topology& topology, detail::InteriorCreases interior) {
     topology.edge_is_crease.assign(topology.edges.size(), 0);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
         if (!topology.edge_on_boundary[e]) continue;
@@ -133,7 +133,7 @@ void mark_creases(Topology& topology, detail::TagCheck check) {
     for (const auto& [a, b] : topology.creases) {
         const auto e = topology.find_edge(a, b);
         if (!e || !topology.edge_on_boundary[*e]) {
-            if (check == detail::TagCheck::Part) continue;
+            if (interior == detail::InteriorCreases::Ignore) continue;
             throw Error(ErrorCode::InvalidInput,
                         "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge", "crease",
                         "creases are edges of the boundary");
@@ -143,7 +143,7 @@ void mark_creases(Topology& topology, detail::TagCheck check) {
 }
 
 /// Cells differ in their faces, and face numbers do not depend on the order of the cells.
-void rank_cells(Topology& topology) {
+void number_cells(Topology& topology) {
     struct Key {
         std::array<Index, 6> faces;
         Index cell;
@@ -157,9 +157,9 @@ void rank_cells(Topology& topology) {
             sink(Key{faces, static_cast<Index>(c)});
         },
         [](const Key& key) { return key.faces[0]; });
-    topology.cell_rank.resize(topology.cells.size());
+    topology.cell_ordinal.resize(topology.cells.size());
     parallel_each(sorted.records.size(),
-                  [&](std::size_t rank) { topology.cell_rank[sorted.records[rank].cell] = static_cast<Index>(rank); });
+                  [&](std::size_t n) { topology.cell_ordinal[sorted.records[n].cell] = static_cast<Index>(n); });
 }
 
 }  // namespace
@@ -187,12 +187,12 @@ std::optional<Index> Topology::find_edge(Index a, Index b) const {
     return static_cast<Index>(found - edges.begin());
 }
 
-Topology detail::build_topology(const HexMesh& mesh, TagCheck check) {
+Topology detail::build_topology(const HexMesh& mesh, InteriorCreases interior) {
     Topology topology;
     topology.point_count = mesh.points.size();
     topology.cells = mesh.cells;
     detail::build_faces(topology);
-    rank_cells(topology);
+    number_cells(topology);
     build_edges(topology);
     build_edge_offsets(topology);
     build_cell_edges(topology);
@@ -201,12 +201,12 @@ Topology detail::build_topology(const HexMesh& mesh, TagCheck check) {
     mark_boundary(topology);
     detail::order_edge_rings(topology);
     topology.creases = mesh.creases;
-    mark_creases(topology, check);
+    mark_creases(topology, interior);
     return topology;
 }
 
 Topology build_topology(const HexMesh& mesh) {
-    return detail::build_topology(mesh, detail::TagCheck::Whole);
+    return detail::build_topology(mesh, detail::InteriorCreases::Refuse);
 }
 
 }  // namespace subvol

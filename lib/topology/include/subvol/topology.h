@@ -44,7 +44,7 @@ struct Topology {
     std::vector<std::uint8_t> point_on_boundary;
     std::vector<std::uint8_t> edge_has_ring;   // interior edges whose cells form one ring of at least three
     std::vector<std::uint8_t> edge_is_crease;  // boundary edges kept sharp: one cell, non-manifold, or tagged
-    FlatArray<Index> cell_rank;                // a number for each cell that does not depend on the order of the cells
+    FlatArray<Index> cell_ordinal;             // a number for each cell that does not depend on the order of the cells
     std::vector<std::uint8_t> face_is_sharp;
     std::vector<std::array<Index, 2>> creases;
     std::size_t nonmanifold_edges = 0;  // boundary edges with other than two boundary faces
