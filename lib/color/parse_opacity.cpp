@@ -5,10 +5,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "knots.h"
+#include "knot_values.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
-#include "value_range.h"
 
 namespace subvol {
 

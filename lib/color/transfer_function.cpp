@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include "knots.h"
+#include "knot_values.h"
 #include "subvol/error.h"
-#include "value_range.h"
 
 namespace subvol {
 

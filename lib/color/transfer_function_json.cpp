@@ -4,9 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "color_curve.h"
-#include "knots.h"
-#include "sharp_curve.h"
+#include "curves.h"
+#include "knot_values.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
 

@@ -3,11 +3,11 @@
 #include <span>
 #include <utility>
 
-#include "color_curve.h"
+#include "curves.h"
+#include "knot_values.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
-#include "value_range.h"
 
 namespace subvol {
 

@@ -8,7 +8,6 @@
 
 #include "text_scanner.h"
 #include "vtu_arrays.h"
-#include "xml_tags.h"
 
 namespace subvol::detail {
 

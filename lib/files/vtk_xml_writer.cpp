@@ -9,6 +9,7 @@
 #include <cassert>
 #include <vector>
 
+#include "subvol/detail/text_codes.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
@@ -17,20 +18,6 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 17;  // bytes that are compressed by themselves
 constexpr std::size_t kAtOnce = 32;      // blocks, by all threads
-
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::size_t whole = bytes.size() / 3 * 3;
-    std::string text((bytes.size() + 2) / 3 * 4, '=');
-    const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
-    const auto put = [&](std::size_t i, unsigned characters) {
-        const unsigned bits = (byte(i) << 16) | (byte(i + 1) << 8) | byte(i + 2);
-        for (unsigned k = 0; k < characters; ++k) text[i / 3 * 4 + k] = kDigits[(bits >> (18 - 6 * k)) & 63];
-    };
-    for (std::size_t i = 0; i < whole; i += 3) put(i, 4);
-    if (whole < bytes.size()) put(whole, static_cast<unsigned>(bytes.size() - whole) + 1);
-    return text;
-}
 
 std::string zipped(std::span<const std::byte> bytes) {
     uLongf size = compressBound(bytes.size());
@@ -45,27 +32,8 @@ std::string zipped(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::string xml_escaped(std::string_view text) {
-    std::string result;
-    for (const char c : without_controls(text)) {  // XML has none
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return result;
+std::string attribute_value(std::string_view text) {
+    return xml_escaped(without_controls(text));
 }
 
 VtkXmlWriter::VtkXmlWriter(OutputFile& out, const std::string& data_set) : out_(out), data_set_(data_set) {
@@ -79,7 +47,7 @@ VtkXmlWriter::VtkXmlWriter(OutputFile& out, const std::string& data_set) : out_(
 // known when all are written. So no more than some blocks are in memory.
 void VtkXmlWriter::write_array(const char* type, std::string_view name, std::size_t components, std::size_t bytes,
                                const Fill& fill) {
-    line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
+    line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + attribute_value(name) + "\" NumberOfComponents=\"" +
          std::to_string(components) + "\" format=\"binary\">");
     const std::size_t count = (bytes + kBlock - 1) / kBlock;
     std::vector<std::uint64_t> header{count, kBlock, bytes % kBlock};
@@ -113,7 +81,7 @@ void VtkXmlWriter::write_array(const char* type, std::string_view name, std::siz
 
 // VTK's form: the characters' numbers, a 0 behind each string.
 void VtkXmlWriter::strings(std::string_view name, std::span<const std::string> values) {
-    std::string text = "<Array type=\"String\" Name=\"" + xml_escaped(name) + "\" NumberOfTuples=\"" +
+    std::string text = "<Array type=\"String\" Name=\"" + attribute_value(name) + "\" NumberOfTuples=\"" +
                        std::to_string(values.size()) + "\" format=\"ascii\">\n";
     for (const auto& value : values) {
         for (const char c : value) text += std::to_string(int{static_cast<signed char>(c)}) + " ";

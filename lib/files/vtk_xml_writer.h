@@ -13,7 +13,8 @@
 
 namespace subvol::detail {
 
-[[nodiscard]] std::string xml_escaped(std::string_view text);
+/// A text as the value of an attribute: escaped, with an underscore for each control character, which XML does not allow.
+[[nodiscard]] std::string attribute_value(std::string_view text);
 
 template <class Number>
 inline constexpr const char* kVtkType = nullptr;

@@ -9,18 +9,19 @@
 #include <array>
 #include <limits>
 
+#include "subvol/detail/text_codes.h"
+
 namespace subvol::detail {
 
 namespace {
 
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr unsigned char kNoDigit = 64;
 
 constexpr auto kDigitOf = [] {
     std::array<unsigned char, 256> table{};
     table.fill(kNoDigit);
-    for (std::size_t d = 0; d < kDigits.size(); ++d)
-        table[static_cast<unsigned char>(kDigits[d])] = static_cast<unsigned char>(d);
+    for (std::size_t d = 0; d < kBase64Digits.size(); ++d)
+        table[static_cast<unsigned char>(kBase64Digits[d])] = static_cast<unsigned char>(d);
     return table;
 }();
 

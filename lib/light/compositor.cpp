@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "absorb_pieces.h"
+#include "absorption.h"
 
 namespace subvol::detail {
 

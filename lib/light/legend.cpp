@@ -11,12 +11,12 @@
 #include <sstream>
 #include <utility>
 
+#include "knot_values.h"
 #include "output_file.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
 #include "subvol/optics.h"
 #include "subvol/srgb.h"
-#include "value_range.h"
 
 namespace subvol {
 

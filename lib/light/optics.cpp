@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "piece_depth.h"
+#include "absorption.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -92,7 +92,7 @@ void check_names(const RbfVolume& volume) {
 }
 
 void write_point_data(VtkXmlWriter& out, const RbfVolume& volume) {
-    out.line("<PointData Scalars=\"" + xml_escaped(volume.channels.front().name) + "\">");
+    out.line("<PointData Scalars=\"" + attribute_value(volume.channels.front().name) + "\">");
     for (const auto& channel : volume.channels) {
         out.array<float>(channel.name, 1, channel.values);
         out.array(channel.name + kVtpGradient, 3, flat(channel.gradients));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "piece_depth.h"
+#include "absorption.h"
 
 #include <algorithm>
 #include <array>
