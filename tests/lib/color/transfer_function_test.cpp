@@ -210,7 +210,7 @@ TEST(ParseOpacity, ARepeatedValueIsAJump) {
     EXPECT_NEAR(ramp_at(knots, 1 + 1e-8), 0.8, 1e-9);
     const auto last = parse_opacity("0%:0,100%:0,100%:1", 0, 1);
     EXPECT_NEAR(ramp_at(last, 1 - 1e-8), 0, 1e-9);
-    EXPECT_NEAR(ramp_at(last, 1), 1 - 1e-6, 1e-9);  // the most that optics take
+    EXPECT_NEAR(ramp_at(last, 1), 1 - 1e-6, 1e-9);  // the largest opacity of Optics
     EXPECT_NO_THROW(validate({{{0, Vec3(1)}}, parse_opacity("0:0,0:1,1:1,1:0", 0, 1)}));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gmsh, version 2, ASCII; what the versions have in common.
+// Gmsh, version 2, ASCII, and what all versions have in common.
 
 #include <gmock/gmock.h>
 

@@ -24,7 +24,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Coordinates that no short decimal hits: a round trip must give back every bit.
+// Coordinates that are no short decimals: a round trip must give back every bit.
 HexMesh awkward_box() {
     HexMesh mesh = make_box(2, 2, 2);
     for (Vec3& x : mesh.points) x = {x.x / 3 + 1e-17, x.y * std::sqrt(2.0) * 1e6, x.z / 7e9 - 4.9406564584124654e-324};
@@ -109,7 +109,7 @@ TEST_F(MeshIo, VtkReadsEveryKindOfArray) {
     EXPECT_EQ(result.mesh.find_attribute("a b")->values[0], 7);
     EXPECT_EQ(result.fields[1].components, 2);
     EXPECT_EQ(result.fields[3].name, "n");
-    EXPECT_DOUBLE_EQ(result.fields[3].max, std::sqrt(3.0));  // of vectors the length counts
+    EXPECT_DOUBLE_EQ(result.fields[3].max, std::sqrt(3.0));  // of vectors, the range of the lengths
     EXPECT_EQ(result.fields[5].min, -3);
     EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("\"names\" ignored")));
 }
@@ -226,7 +226,7 @@ TEST_F(MeshIo, OtherCellsAreSplitWithTheirValues) {
     for (std::size_t p = 0; p < s.size(); ++p) {
         const Vec3 at = result.mesh.points[p];
         EXPECT_DOUBLE_EQ(x[p], at.x);  // means keep what is linear
-        // Inside a cell and on the hull its own value; between the hexes, whose children are equal, the mean.
+        // Inside a cell and on the hull the cell's own value; between the hexes, whose children are equal, the mean.
         if (at.z == 1) continue;
         EXPECT_DOUBLE_EQ(s[p], at.z > 1 ? 10 : at.x < 1 ? 20 : at.x > 1 ? 30 : 25);
     }
@@ -292,7 +292,7 @@ TEST_F(MeshIo, NamesInLatin1BecomeUtf8) {
 
 // ---- writers, files
 
-// The values of an array in a file that holds it as base64 of what zlib compressed, in one block.
+// The values of an array that a file holds as base64, compressed by zlib in one block.
 template <class T>
 std::vector<T> compressed(const std::string& file, const std::string& name) {
     const auto array = file.find("Name=\"" + name + "\"");
@@ -332,7 +332,7 @@ TEST_F(MeshIo, VtuHoldsTheMeshToTheBit) {
     EXPECT_EQ(compressed<double>(file, "velocity"), mesh.attributes[1].values);
 }
 
-TEST_F(MeshIo, WhatAFormatCannotHoldIsSaid) {
+TEST_F(MeshIo, AWarningListsWhatAFormatCannotHold) {
     HexMesh mesh = kBox;
     mesh.attributes.push_back({"density", 1, std::vector<double>(27)});
     mesh.creases.push_back({0, 1});
@@ -374,7 +374,7 @@ TEST_F(MeshIo, MeshesThatAreNotSoundAreNotWritten) {
     EXPECT_EQ(file_count(), 0u);
 }
 
-// As on a full disk: what is written is more than may be written.
+// Simulates a full disk: limits the size of files.
 class FileSizeLimit {
 public:
     explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -128,7 +128,7 @@ TEST_F(MeshbIo, CutAnywhereItIsRefused) {
     meshb.vertices(kBox);
     meshb.hexahedra(kBox);
     const std::string text = meshb.text();
-    const std::size_t end = text.size() - 12;  // the section End says nothing
+    const std::size_t end = text.size() - 12;  // the section End has no contents
     for (std::size_t length = 0; length < end; ++length) EXPECT_NE(read_error(text.substr(0, length)), "no error") << length;
 }
 

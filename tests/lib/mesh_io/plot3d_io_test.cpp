@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plot3D's grids and flows, which do not say how they are encoded.
+// Plot3D's grids and flows: the files do not state their encoding.
 
 #include <gmock/gmock.h>
 

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 class PointsText : public TempFolder {
 protected:
-    /// The sentence about a file with this text.
+    /// The error message for a file with this text.
     std::string error_of_text(const std::string& name, const std::string& text) const {
         const auto file = write(name, text);
         return error_of([&] { static_cast<void>(read_points(file)); });
@@ -31,7 +31,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// Independent of the writer: the properties in another order, others among them, a list that nobody knows, big-endian.
+// A file that our writer would not write: the properties in another order, unknown ones and an unknown list among them, big-endian.
 TEST_F(PointsText, PlyOfOtherMakers) {
     const std::string properties =
         "property uchar red\nproperty float syy\nproperty double z\nproperty float sxx\nproperty float sxy\n"
@@ -117,7 +117,7 @@ TEST_F(PointsText, PlyThatIsWrong) {
         EXPECT_THAT(said, HasSubstr("b.ply")) << from << " -> " << to;
     }
     EXPECT_THAT(error_of_text("b.ply", ""), HasSubstr("not a PLY file"));
-    // No properties, so that no row takes a byte.
+    // Without properties the rows take no bytes, so the file size does not limit their number.
     EXPECT_THAT(error_of_text("b.ply",
                               "ply\nformat ascii 1.0\ncomment kernel {\"type\":\"compact\"}\nelement vertex 1000000000000\n"
                               "end_header\n"),
