@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct ValueRange {
 /// throws: Error(InvalidInput) if the range is not finite or min > max
 inline ValueRange usable_range(double min, double max) {
     if (!std::isfinite(min) || !std::isfinite(max) || min > max || !std::isfinite(max - min)) {
-        throw Error(ErrorCode::InvalidInput, "the field's range is not finite or upside down", "transfer function");
+        throw Error(ErrorCode::InvalidInput, "the field's range is not finite or its minimum is above its maximum",
+                    "transfer function");
     }
     constexpr double kNarrow = 1e-12;  // relative: in a narrower range neighbouring knots would round to the same value
     const double magnitude = std::max({std::abs(min), std::abs(max), 1e-300});
@@ -57,6 +59,18 @@ void part_equal_values(std::vector<Knot>& knots) {
         }
     }
     knots = std::move(parted);
+}
+
+/// The value of the piecewise linear function through knots, which is constant beyond them. number(knot): its value at a knot
+template <class Knot, class Number>
+auto interpolated(const std::vector<Knot>& knots, double value, const Number& number) {
+    const auto next =
+        std::upper_bound(knots.begin(), knots.end(), value, [](double v, const Knot& knot) { return v < knot.value; });
+    if (next == knots.begin()) return number(*next);
+    const auto last = std::prev(next);
+    if (next == knots.end()) return number(*last);
+    const double s = (value - last->value) / (next->value - last->value);
+    return (1 - s) * number(*last) + s * number(*next);
 }
 
 }  // namespace subvol::detail

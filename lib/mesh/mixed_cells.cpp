@@ -135,7 +135,7 @@ private:
         return static_cast<Index>(offsets.size() - 2);
     }
 
-    // Slots are passed through in the order in which `collect` filled them.
+    // The slots are visited in the order in which `collect` filled them.
     template <class Shape, class Cells>
     void add_children(const Shape& shape, const Cells& cells) {
         for (const auto& cell : cells) {
@@ -166,7 +166,7 @@ private:
     UniqueKeys<2> edges_;
     UniqueKeys<4> faces_;
     UniqueKeys<8> cells_;
-    std::vector<Index> new_points_;  // of each point that is used
+    std::vector<Index> new_points_;  // for each point, kNone if it is not used
     Index first_edge_ = 0, first_face_ = 0, first_cell_ = 0;
     std::size_t edge_slot_ = 0, face_slot_ = 0, cell_slot_ = 0;
     HexSplit result_;

@@ -232,7 +232,7 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
     MixedCells others = take_others(found);
     if (!others.empty() && options.other_cells == OtherCells::Refuse) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(result.mesh.cells.size(), others), std::string(file),
-                    "only hexahedra are wanted");
+                    "only hexahedra are allowed");
     }
     origin.cell_numbers = take_numbers(found);
     turn_hexes(result);

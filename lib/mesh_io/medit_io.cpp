@@ -140,7 +140,7 @@ private:
         return static_cast<Index>(index - 1);
     }
 
-    // A section of another program may begin with anything; of the cells that are left out the count is told.
+    // Sections of other programs may begin with anything; the count of cells that are left out must be right, for the warning.
     std::size_t count_of_left_out(std::string_view keyword) {
         if (kVolumeCells.contains(keyword)) return in_.count({keyword});
         std::size_t count = 0;
@@ -153,7 +153,7 @@ private:
         while (!in_.at_end() && !is_keyword(in_.peek())) in_.word();
     }
 
-    // How the cells that are no hexes are called, and the other sections; a section that is empty is not worth a word.
+    // Warns of the cells and of the other sections that are left out, except empty ones.
     void list_left_out() {
         std::string cells;
         std::string sections;
@@ -217,7 +217,7 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const He
     std::vector<std::string> warnings;
     std::string names;
     for (const auto& attribute : mesh.attributes) names += (names.empty() ? "\"" : ", \"") + attribute.name + "\"";
-    if (!names.empty()) warnings.push_back(".mesh holds no attributes: " + names + " not written");
+    if (!names.empty()) warnings.push_back(".mesh cannot hold attributes: " + names + " not written");
     if (!mesh.creases.empty()) warnings.push_back(counted(mesh.creases.size(), "crease", "creases") + " not written");
     return warnings;
 }

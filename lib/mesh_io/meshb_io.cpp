@@ -20,7 +20,7 @@ constexpr std::int64_t kHexahedra = 10;
 constexpr std::int64_t kPyramids = 49;
 constexpr std::int64_t kEnd = 54;
 
-// MEDIT's binary files: sections that each say where the next one begins.
+// MEDIT's binary files: sections, each of which has the position of the next one.
 class MeshbReader {
 public:
     MeshbReader(std::string_view text, std::string_view file, const ReadOptions& options)
@@ -50,10 +50,11 @@ public:
     }
 
 private:
-    // The number 1 tells the order of the bytes. Version 2: reals of 8 bytes; 3: positions too; 4: integers too.
+    // The file begins with the number 1, from which the byte order follows. In version 1 all numbers have 4 bytes; in version 2
+    // reals have 8, in 3 also positions, in 4 also integers.
     void read_header() {
         if (in_.bytes_left() == 0) in_.fail("the file is empty");
-        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"order of bytes"});
+        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"byte order"});
         for (const std::endian order : {std::endian::little, std::endian::big}) {
             order_ = order;
             if (integer_from(one, NumberType::Int32, order) == 1) break;
@@ -68,7 +69,7 @@ private:
         integer_ = version < 4 ? NumberType::Int32 : NumberType::Int64;
     }
 
-    // The next section always begins further on: the walk ends.
+    // Each section begins after the one before it, so the loop ends.
     void find_sections() {
         while (in_.bytes_left() > 0) {
             const std::int64_t section = number({"section"}, NumberType::Int32);
@@ -79,9 +80,9 @@ private:
                 in_.fail("there is a second section of the kind " + std::to_string(section));
             }
             if (next == 0) return;
-            if (next <= static_cast<std::int64_t>(begin)) in_.fail("the sections go round in a circle");
+            if (next <= static_cast<std::int64_t>(begin)) in_.fail("a section begins before the one that names it");
             if (static_cast<std::size_t>(next) > in_.position() + in_.bytes_left()) {
-                in_.fail("the next section is said to begin at byte " + std::to_string(next) + ", behind the end of the file");
+                in_.fail("the next section should begin at byte " + std::to_string(next) + ", after the end of the file");
             }
             in_.seek(static_cast<std::size_t>(next));
         }
@@ -91,7 +92,8 @@ private:
         return integer_from(in_.bytes(size_of(type), place), type, order_);
     }
 
-    // How many things a section has, each of so many bytes: no more than the rest of the file holds.
+    // Reads the count at the beginning of a section. bytes: of each item; refuses a count that the rest of the file is too
+    // short for
     std::size_t count_in(std::int64_t section, const Place& place, std::size_t bytes) {
         in_.seek(sections_[section]);
         const std::size_t count = in_.as_count(number(place, integer_), place);
@@ -157,7 +159,7 @@ private:
     NumberType real_ = NumberType::Float64;
     NumberType position_ = NumberType::Int32;
     NumberType integer_ = NumberType::Int32;
-    std::map<std::int64_t, std::size_t> sections_;  // where the count of each stands
+    std::map<std::int64_t, std::size_t> sections_;  // the position of the count of each
     MeshFile found_;
     std::string left_out_;
 };

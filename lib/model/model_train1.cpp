@@ -63,7 +63,7 @@ double cow_catcher(const Vec3& m) {
     return kBlend.join({wedge, beam});
 }
 
-/// A steam engine driving to +x, 106 long, its wheels' rims at z = -21; left and right alike.
+/// A steam engine driving to +x, 106 long, its wheels' rims at z = -21; left and right are mirror images.
 double train(const Vec3& q) {
     const Vec3 m(q.x, std::abs(q.y), q.z);
     const double frame = box(m - Vec3(-2, 0, -10), {46, 9, 4});

@@ -94,7 +94,7 @@ void mark_boundary(Topology& topology) {
     }
 }
 
-/// Tagged faces that lie on the hull are sharp as they are.
+/// Marks the tagged faces. On the hull a tag changes nothing, since the hull is boundary in any case.
 void mark_sharp_faces(Topology& topology, std::span<const std::array<Index, 4>> tagged) {
     if (tagged.empty()) return;
     topology.face_is_sharp.assign(topology.faces.size(), 0);
@@ -103,14 +103,14 @@ void mark_sharp_faces(Topology& topology, std::span<const std::array<Index, 4>> 
         if (!f) {
             std::string text;
             for (const Index p : points) text += (text.empty() ? "" : " ") + std::to_string(p);
-            throw Error(ErrorCode::InvalidInput, "points " + text + " are no face", "sharp face",
+            throw Error(ErrorCode::InvalidInput, "points " + text + " are not a face", "sharp face",
                         "four points of a face of a cell, in cyclic order");
         }
         topology.face_is_sharp[*f] = 1;
     }
 }
 
-/// Whether one cell alone lies between two boundary faces about the edge. About an edge inside, the faces are a ring.
+/// Whether a single cell lies between two boundary faces at the edge. At an edge inside the hull the faces are a ring.
 bool has_single_cell(const Topology& topology, Index edge) {
     const auto faces = topology.edge_faces[edge];
     const bool ring = faces.size() == topology.edge_cells[edge].size();
@@ -120,7 +120,7 @@ bool has_single_cell(const Topology& topology, Index edge) {
     return false;
 }
 
-/// The default rule, and the mesh's own tags.
+/// Marks creases by the default rule and by the tags of the mesh.
 void mark_creases(Topology& topology, detail::InteriorCreases interior) {
     topology.edge_is_crease.assign(topology.edges.size(), 0);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
@@ -135,14 +135,15 @@ void mark_creases(Topology& topology, detail::InteriorCreases interior) {
         if (!e || !topology.edge_on_boundary[*e]) {
             if (interior == detail::InteriorCreases::Ignore) continue;
             throw Error(ErrorCode::InvalidInput,
-                        "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge", "crease",
+                        "points " + std::to_string(a) + " and " + std::to_string(b) + " are not a boundary edge", "crease",
                         "creases are edges of the boundary");
         }
         topology.edge_is_crease[*e] = 1;
     }
 }
 
-/// Cells differ in their faces, and face numbers do not depend on the order of the cells.
+/// Numbers the cells in the order of their sorted face numbers. No two cells have the same faces, and face numbers do not
+/// depend on the order of the cells; hence neither do these numbers.
 void number_cells(Topology& topology) {
     struct Key {
         std::array<Index, 6> faces;

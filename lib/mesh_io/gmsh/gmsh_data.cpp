@@ -19,7 +19,8 @@ struct DataHeader {
     std::size_t lines = 0;
 };
 
-// Texts (the first is the name), real numbers (times), integers (step, components, lines): words in a binary file too.
+// Texts (the first is the name), real numbers (times) and integers (step, components, lines), which are words even in a binary
+// file.
 DataHeader read_header(TextScanner& in, const std::string& section) {
     DataHeader header;
     const std::size_t texts = in.count({"texts of " + section});

@@ -10,7 +10,7 @@ namespace subvol::detail {
 /// The nodes or the elements that a data section has values for.
 ///
 /// at_cells: they are the elements
-/// numbers:  theirs in the file
+/// numbers:  the numbers that the file gives them
 /// needed:   a flag for each: whether it must have a value. If one of these has none, the array is left out with a warning
 struct GmshEntities {
     bool at_cells;

@@ -136,7 +136,8 @@ TEST(MixedCells, PyramidsTurnAllIntoTetrahedraFirst) {
 
 TEST(MixedCells, VolumeIsKeptAndNeighboursFit) {
     constexpr std::size_t n = 3;
-    // A square of the hull becomes 4 quads, or 2 triangles of 3 quads each. If two cells did not fit together there would be more.
+    // A square of the hull becomes 4 quads, or 2 triangles of 3 quads each. If two cells did not fit together there would be
+    // more.
     const std::vector<std::pair<Mixed, std::size_t>> cases{{box_of_tets(n), 6 * n * n * 6},
                                                            {box_of_prisms(n), 2 * n * n * 6 + 4 * n * n * 4},
                                                            {chessboard_of_pyramids(n), 6 * n * n * 6}};

@@ -101,7 +101,7 @@ const std::vector<Bad> kBad{
     {"62_nan_density.vtk", "array \"density\": the value at point 5 is not finite"},
     {"66_polydata.vtk", "POLYDATA is not a volume mesh"},
     {"67_index_out_of_range.vtk", "line 41: cell 7: there is no point with index 27"},
-    {"84_offset_past_end.vtu", "line 4: array \"connectivity\": its offset 1000000000 lies behind the appended data"},
+    {"84_offset_past_end.vtu", "line 4: array \"connectivity\": its offset 1000000000 is beyond the appended data"},
     {"85_truncated_appended.vtu", "line 4: array \"Points\": its 324 bytes go beyond the end of the data"},
     {"86_corrupt_zlib.vtu", "line 4: array \"connectivity\": block 1 of 1: decompression failed"},
     {"87_connectivity_out_of_range.vtu", "cell 7: there is no point with index 4000000000"},

@@ -90,7 +90,7 @@ TEST_F(ExodusIo, CurvedCellsGiveTheirCorners) {
         block.connectivity.resize(nodes, 1);
         const ReadResult result = read({.points = cube.points, .blocks = {block}});
         EXPECT_EQ(result.mesh.cells, cube.cells);
-        EXPECT_THAT(result.warnings, ElementsAre("1 element has more nodes than corners: the corners alone are taken"));
+        EXPECT_THAT(result.warnings, ElementsAre("1 element has more nodes than corners: only the corners are used"));
     }
 }
 

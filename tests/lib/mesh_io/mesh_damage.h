@@ -35,7 +35,8 @@ protected:
         std::mt19937 random(seed);
         int refused = 0;
         for (int run = 0; run < kRuns; ++run) {
-            const auto file = write(std::to_string(run) + extension, damaged(text, random));  // a new file each time: truncating one is slow
+            const auto file =
+                write(std::to_string(run) + extension, damaged(text, random));  // a new file each time: truncating one is slow
             try {
                 validate(read_mesh(file).mesh);
             } catch (const Error& error) {

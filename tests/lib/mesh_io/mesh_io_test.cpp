@@ -180,7 +180,7 @@ TEST_F(MeshIo, VtkErrorsNameThePlace) {
         {" 25 26\n", " 25\n", "array \"s\": value 26: unexpected end of file"},
         {" 25 26\n", " 25 26 27\n", "line 54: a keyword is expected, not \"27\""},
         {" 24 25 26\n", " 24 nan 26\n", "array \"s\": the value at point 25 is not finite"},
-        {"POINT_DATA 27\n", "", "SCALARS stands before POINT_DATA or CELL_DATA"},
+        {"POINT_DATA 27\n", "", "SCALARS comes before POINT_DATA or CELL_DATA"},
     };
     for (const auto& [from, to, message] : cases) {
         EXPECT_THAT(read_error("a.vtk", replaced(good, from, to)), HasSubstr(message)) << from << " -> " << to;

@@ -122,7 +122,7 @@ TEST_F(StructuredIo, XmlErrorsOfParallelPlanes) {
                 HasSubstr("it has 3 values (4 are needed: the coordinates along an axis)"));
     EXPECT_THAT(read_error("a.vtr", replaced(good, "<Coordinates>", "<Other>")), HasSubstr("not well-formed XML"));
     EXPECT_THAT(read_error("a.vtr", grid_file(vtu, "RectilinearGrid", "", "<Piece Extent=\"0 3 0 2 0 4\"/>")),
-                HasSubstr("the piece has not three arrays of Coordinates"));
+                HasSubstr("the piece does not have three arrays of Coordinates"));
     const auto image = [&](const std::string& attributes, const std::string& extent) {
         return read_error("a.vti", grid_file(vtu, "ImageData", attributes, "<Piece Extent=\"" + extent + "\"/>"));
     };

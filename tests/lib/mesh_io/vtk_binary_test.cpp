@@ -136,7 +136,7 @@ TEST_F(VtkBinary, HexahedraWithPointsOnTheirEdgesGiveTheirCorners) {
                              big(std::vector<std::int32_t>{12}) + "\n";
     const ReadResult result = read(text);
     EXPECT_EQ(result.mesh.cells, mesh.cells);
-    EXPECT_THAT(result.warnings, ElementsAre("1 cell has more points than corners: the corners alone are taken"));
+    EXPECT_THAT(result.warnings, ElementsAre("1 cell has more points than corners: only the corners are used"));
 }
 
 TEST_F(VtkBinary, ErrorsNameTheByte) {

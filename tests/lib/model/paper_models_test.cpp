@@ -265,7 +265,8 @@ TEST(Nozzle, ConvergesAndDivergesWhileTheGasGetsFaster) {
     EXPECT_GT(wall_radius(-1), 1.8 * throat);
     EXPECT_GT(wall_radius(1), 1.8 * throat);
     EXPECT_NEAR(throat_at, 0.27, 0.02);
-    // At the throat the speed is that of sound, √(1/6) of the gas's greatest possible speed; at the outlet (Mach 3) it is √(1.8/2.8).
+    // At the throat the speed is that of sound, √(1/6) of the gas's greatest possible speed; at the outlet (Mach 3) it is
+    // √(1.8/2.8).
     EXPECT_NEAR((NozzleField::density({throat_at, 0, 0}) + 1) / 2, std::sqrt(1 / 6.0) / std::sqrt(1.8 / 2.8), 0.01);
 }
 

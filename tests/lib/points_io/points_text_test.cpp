@@ -31,7 +31,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// A file that our writer would not write: the properties in another order, unknown ones and an unknown list among them, big-endian.
+// A file that our writer would not write: the properties in another order, unknown ones and an unknown list among them,
+// big-endian.
 TEST_F(PointsText, PlyOfOtherMakers) {
     const std::string properties =
         "property uchar red\nproperty float syy\nproperty double z\nproperty float sxx\nproperty float sxy\n"
@@ -90,20 +91,20 @@ TEST_F(PointsText, PlyThatIsWrong) {
     const std::vector<std::array<std::string, 3>> mistakes{
         {"ply\n", "pla\n", "line 1: not a PLY file"},
         {"format ascii", "format ebcdic", "line 2: format \"ebcdic\" is unknown"},
-        {"comment kernel ", "comment ", "no comment that says the kernel"},
+        {"comment kernel ", "comment ", "no comment with the kernel"},
         {"1.43", "-1.43", "'radius' is -1.43"},
         {"\"compact\"", "\"wide\"", "there is no type 'wide'"},
-        {"comment kernel {", "comment kernel ", "no JSON"},
+        {"comment kernel {", "comment kernel ", "not JSON"},
         {"element vertex 3", "element vertex 1000000000000", "there is room for"},
-        {"element vertex 3", "element vertex 99999999999999999999999", "is no count"},
-        {"element vertex 3", "element vertex -3", "is no count"},
+        {"element vertex 3", "element vertex 99999999999999999999999", "is not a count"},
+        {"element vertex 3", "element vertex -3", "is not a count"},
         {"element vertex 3", "element vertex 4", "line "},
         {"element vertex 3", "element corner 3", "there is no element vertex"},
-        {"property double x\n", "property quad x\n", "\"quad\" is no type"},
+        {"property double x\n", "property quad x\n", "\"quad\" is not a type"},
         {"property float sxy\n", "property float other\n", "has no property \"sxy\""},
         {"property float sxy\n", "property float sxx\n", "\"sxx\" is not one number a row"},
         {"property float value\n", "property list uchar float value\n", "\"vertex\" "},
-        {"end_header\n", "end\n", "\"end\" is no key"},
+        {"end_header\n", "end\n", "\"end\" is not a key"},
         {first_number, "1e999", "point 0: a coordinate is not finite"},
         {"end_header\n", "end_header\nx ", "\"vertex\" 0 of 3: a number is expected, not \"x\""},
         {"3 0 2 1", "4 0 2 1 1", "not 3 corners"},
@@ -133,12 +134,12 @@ TEST_F(PointsText, VtpThatIsWrong) {
         {"type=\"PolyData\"", "type=\"ImageData\"", "\"ImageData\" is not a PolyData"},
         {"<PolyData>", "<Poly>", "not well-formed XML"},
         {"NumberOfPoints=\"3\"", "NumberOfPoints=\"4000000000\"", "values"},
-        {"NumberOfPoints=\"3\"", "NumberOfPoints=\"many\"", "NumberOfPoints is missing or no count"},
+        {"NumberOfPoints=\"3\"", "NumberOfPoints=\"many\"", "NumberOfPoints is missing or not a count"},
         {"Name=\"frame\"", "Name=\"other\"", "no array \"frame\""},
         {"Name=\"density.moment\"", "Name=\"other\"", "no array \"density.moment\""},
         {"Name=\"kernel\"", "Name=\"other\"", "no array \"kernel\""},
         {"<FieldData>", "<Other>", "not well-formed XML"},
-        {"123 34", "91 34", "no JSON"},
+        {"123 34", "91 34", "not JSON"},
         {"Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"binary\">",
          "Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"ascii\">1</DataArray><DataArray>", "18 are needed: 6 a point"},
         {"format=\"binary\"", "format=\"appended\"", "there are no appended data"},

@@ -36,7 +36,7 @@ struct TwistField {
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
 };
 
-/// The exact field of the `nozzle` model: the speed of a gas from rest (-1) to the fastest (1), in a bent nozzle.
+/// The exact field of the `nozzle` model: the speed of a gas in a bent nozzle, from rest (-1) to the greatest (1).
 struct NozzleField {
     /// (s, u, v): s in [-1,1] along the axis; (u,v) in the unit disk, the wall at its rim.
     [[nodiscard]] static Vec3 parameter(const Vec3& x);
@@ -45,7 +45,7 @@ struct NozzleField {
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
 };
 
-/// The exact field of the `ball` model: a smooth function of the position in [-1,1], inside the unit ball.
+/// The exact field of the `ball` model: a smooth function of the position with values in [-1,1], inside the unit ball.
 struct BallField {
     [[nodiscard]] static double density(const Vec3& x);
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
