@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One of the readers of meshes; what it reads has to be valid and fit to be measured, with either set of options.
 
+#include "formats.h"
 #include "input.h"
-#include "mesh_file.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol::fuzz {

@@ -50,6 +50,10 @@ std::optional<double> weld_distance(const CommonOptions& options) {
 
 }  // namespace
 
+std::string input_help() {
+    return "a mesh (" + join(readable_mesh_extensions()) + "), or model:NAME or model:NAME:RESOLUTION";
+}
+
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
     const bool model = input.starts_with(kModelPrefix);

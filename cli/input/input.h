@@ -12,8 +12,8 @@
 
 namespace subvol::cli {
 
-inline constexpr const char* kInputHelp =
-    "a mesh (.mesh, .meshb, .vtk, .vtu, .vts, .msh, .exo, .xyz), or model:NAME or model:NAME:RESOLUTION";
+/// What an argument FILE may be, for its help: a mesh with one of the extensions that the library reads, or a model.
+[[nodiscard]] std::string input_help();
 
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
 [[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);

@@ -59,7 +59,7 @@ public:
                "  subvol info model:ball\n"
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
                "  subvol info --gl") {
-        app().add_option("FILE", input_, text(kInputHelp, ", or a .vdb file, or points (.ply, .vtp)"));
+        app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp)"));
         app().add_flag("--gl", gl_, "what OpenGL there is to splat with");
         app()
             .add_option("--at", points_, "print the value of a .vdb file's grid there (repeatable)")

@@ -22,7 +22,7 @@ public:
                "  subvol points model:ball -o ball.vdb                (Houdini; as well)\n"
                "  subvol points model:ball -o dense.ply --per-edge 2 --splats\n"
                "  subvol points smoke.vdb -o smoke.ply --threshold 0  (a kernel a voxel; --spacing for fewer)") {
-        app().add_option("FILE", input_, text(kInputHelp, "; or a .vdb grid of floats"))->required();
+        app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
         app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb)")->type_name("FILE")->required();
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
         app().add_flag("--splats", splats_, ".ply: for viewers of Gaussian splats too; the surface is then beside it");

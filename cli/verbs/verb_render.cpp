@@ -31,7 +31,7 @@ public:
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
                "  subvol render smoke.vdb -o smoke.png                    (its voxels as kernels)") {
         app()
-            .add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
+            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
             ->required();
         app()
             .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")

@@ -15,7 +15,7 @@ public:
         : Verb(program, "subdivide", "Refine a mesh; every level splits a cell into eight.",
                "  subvol subdivide model:ball -o fine.vtu --levels 2\n"
                "  subvol subdivide part.mesh -o fine.vtu --density \"exp(-(x^2+y^2+z^2))\"") {
-        app().add_option("FILE", input_, kInputHelp)->required();
+        app().add_option("FILE", input_, input_help())->required();
         app()
             .add_option("-o,--output", output_, "the mesh to write (.vtu with its fields, .mesh without)")
             ->type_name("FILE")

@@ -55,7 +55,7 @@ public:
                "  subvol vdb rest.vtu --to bent.vtu -o 'bend_##.vdb' --frames 24\n"
                "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
                "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G") {
-        app().add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb)"))->required();
+        app().add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb)"))->required();
         app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
         add_size_options();
         refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the limit");

@@ -15,6 +15,4 @@ namespace subvol::detail {
 /// throws: Error(Io) if it cannot be read, Error(InvalidInput) if it is larger than 16 MiB
 [[nodiscard]] std::string png_uri(const std::filesystem::path& file);
 
-[[nodiscard]] std::string base64(std::string_view bytes);
-
 }  // namespace subvol::detail

@@ -28,10 +28,11 @@ struct Buckets {
     FlatArray<Record> records;
 };
 
-/// Sorts what `emit(i, sink)` gives for i in [0, count): into buckets by `bucket(record)`, each bucket by operator<.
+/// Sorts the records that emit(i, sink) passes to sink(record) for i in [0, count): into buckets by bucket(record), and within
+/// a bucket by operator<.
 ///
-/// emit is called twice for every i and must give the same records both times. Records must differ from each other, so that the
-/// result does not depend on the number of threads.
+/// emit is called twice for every i and must give the same records both times. All records must differ, so that the result does
+/// not depend on the number of threads.
 template <class Record, class Emit, class Bucket>
 Buckets<Record> bucket_sort(std::size_t count, std::size_t bucket_count, const Emit& emit, const Bucket& bucket) {
     Buckets<Record> result;
@@ -58,7 +59,7 @@ Buckets<Record> bucket_sort(std::size_t count, std::size_t bucket_count, const E
     return result;
 }
 
-/// Starts of the groups of equal keys in sorted records, plus the end.
+/// The starts of the groups of equal keys in sorted records, plus the end.
 template <class Record, class Same>
 FlatArray<std::size_t> group_starts(const FlatArray<Record>& records, const Same& same) {
     FlatArray<std::size_t> starts;

@@ -6,11 +6,10 @@
 
 namespace subvol::detail {
 
-/// Runs work with parallel loops of its own from within a parallel loop.
+/// Runs work that has parallel loops, from within a parallel loop.
 ///
-/// A thread that waits for a loop of the work takes up no other part of the outer one meanwhile, and its memory with it. And
-/// when another part of the outer loop throws, the work still runs to its end: TBB would leave its loops half done without a
-/// word.
+/// While a thread waits for one of these inner loops, it does not start another part of the outer loop, which would need memory
+/// too. And if another part of the outer loop throws, the work is still completed: TBB would cancel its loops silently.
 template <class Work>
 void run_nested(const Work& work) {
     tbb::this_task_arena::isolate([&] {

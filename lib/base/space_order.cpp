@@ -12,7 +12,7 @@
 namespace subvol::detail {
 namespace {
 
-constexpr double kSteps = 1023;  // 10 bits an axis
+constexpr double kSteps = 1023;  // 10 bits per axis
 
 std::uint32_t spread(std::uint32_t x) {
     x = (x | x << 16) & 0x030000ffU;
@@ -33,7 +33,7 @@ std::vector<Index> space_order(std::span<const Vec3> points) {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 1024), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const Vec3 p = scale * (points[i] - box.lower);
-            // Points may be anything, not a number too; then they only come in a worse order.
+            // Points need not be finite: the order is then only less local.
             const auto key = [](double x) { return spread(x > 0 ? static_cast<std::uint32_t>(std::min(x, kSteps)) : 0); };
             keys[i] = {key(p.x) | key(p.y) << 1 | key(p.z) << 2, static_cast<Index>(i)};
         }

@@ -50,7 +50,7 @@ Vec3 mix_hsv(Vec3 a, Vec3 b, double s) {
     return rgb_from_hsv(mixed);
 }
 
-// VTK's constants for D65, four digits: other digits would give other colours than ParaView shows.
+// VTK's constants for D65, with four digits: more digits would give other colours than ParaView's.
 constexpr Vec3 kWhite{0.9505, 1.000, 1.089};
 
 double lab_from_ratio(double t) {
@@ -78,7 +78,7 @@ Vec3 rgb_from_lab(const Vec3& lab) {
     const Vec3 linear(3.2406 * x - 1.5372 * y - 0.4986 * z, -0.9689 * x + 1.8758 * y + 0.0415 * z,
                       0.0557 * x - 0.2040 * y + 1.0570 * z);
     const Vec3 rgb(srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z));
-    // A colour that no screen shows is darkened until it is one.
+    // A colour outside the gamut of sRGB is darkened until it is inside.
     return clamp_to_unit(rgb / std::max({rgb.x, rgb.y, rgb.z, 1.0}));
 }
 
@@ -101,7 +101,7 @@ double angle_between(double a, double b) {
     return d > kPi ? 2 * kPi - d : d;
 }
 
-/// A hue for a colour without any, so that hue turns evenly on the way to it.
+/// A hue for an unsaturated colour, such that the hue changes evenly on the way to it.
 double hue_towards(const Msh& saturated, double m) {
     if (saturated.m >= m - 0.1) return saturated.h;
     const double spin = saturated.s * std::sqrt(m * m - saturated.m * saturated.m) / (saturated.m * std::sin(saturated.s));

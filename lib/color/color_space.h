@@ -8,13 +8,13 @@
 
 namespace subvol::detail {
 
-/// How colours between two knots are mixed, as VTK does it.
+/// How to mix the colours of two knots, as in VTK.
 ///
 /// Diverging: in a polar form of Lab, through white between two saturated colours of different hue
-/// Step:      the second colour all the way
+/// Step:      the second colour on the whole interval
 enum class ColorSpace { Rgb, Hsv, Lab, Diverging, Step };
 
-/// A space by the name that ParaView gives it; "Lab/CIEDE2000", which follows a path of equal differences, is taken as Lab.
+/// A space by its name in ParaView. "Lab/CIEDE2000", a path of equal colour differences, is read as Lab.
 [[nodiscard]] std::optional<ColorSpace> color_space_named(std::string_view name);
 
 /// The colour between two colours, all sRGB in [0,1].

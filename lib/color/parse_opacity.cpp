@@ -5,10 +5,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "knots.h"
+#include "knot_values.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
-#include "value_range.h"
 
 namespace subvol {
 
@@ -42,7 +41,7 @@ public:
         const bool part = !place.empty() && place.back() == '%';
         if (part) place.remove_suffix(1);
         const auto value = number_in(place), alpha = number_in(text_.substr(colon + 1));
-        if (!value || !alpha) refuse(value ? "the opacity is no number" : "the value is no number", kForm);
+        if (!value || !alpha) refuse(value ? "the opacity is not a number" : "the value is not a number", kForm);
         if (!(*alpha >= 0 && *alpha <= 1)) refuse("the opacity is out of range", "[0,1]");
         return {part ? range.at(*value / 100) : *value, *alpha};
     }

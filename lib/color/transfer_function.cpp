@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include "knots.h"
+#include "knot_values.h"
 #include "subvol/error.h"
-#include "value_range.h"
 
 namespace subvol {
 
@@ -40,7 +39,7 @@ TransferFunction stretched(const TransferFunction& function, double min, double 
     if (!(width > 0)) return result;
     for (auto& knot : result.color) knot.value = to.at((knot.value - first) / width);
     for (auto& knot : result.opacity) knot.value = to.at((knot.value - first) / width);
-    // Where the new range is narrow for its distance from 0, neighbours may have become one.
+    // In a range that is narrow compared with its distance from 0, neighbouring knots may have been rounded to one value.
     part_equal_values(result.color);
     part_equal_values(result.opacity);
     validate(result);

@@ -4,9 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "color_curve.h"
-#include "knots.h"
-#include "sharp_curve.h"
+#include "curves.h"
+#include "knot_values.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
 
@@ -36,7 +35,7 @@ json map_named(const json& maps, const std::string& name, const std::string& fil
         if (name_of(map) == name) return map;
         if (++others <= kShown) names += (names.empty() ? "" : ", ") + name_of(map);
     }
-    refuse(file, "holds no colour map '" + name + "'", names + (others > kShown ? ", …" : ""));
+    refuse(file, "has no colour map '" + name + "'", names + (others > kShown ? ", …" : ""));
 }
 
 json read_color_map(const std::string& file, const std::string& name) {
@@ -47,23 +46,23 @@ json read_color_map(const std::string& file, const std::string& name) {
         document = json::parse(stream);
     } catch (const json::exception& e) {
         refuse(file, e.what());
-    } catch (const std::ios_base::failure&) {  // a folder, for one
+    } catch (const std::ios_base::failure&) {  // for example, it is a folder
         throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }
-    // ParaView writes an array of colour maps; a bare one is as clear.
+    // ParaView writes an array of colour maps; a single map without the array is accepted too.
     if (document.is_object()) document = json::array({std::move(document)});
     if (!document.is_array() || document.empty() || !document.front().is_object()) {
-        refuse(file, "holds no colour map", "an array with one object that has RGBPoints");
+        refuse(file, "has no colour map", "an array with one object that has RGBPoints");
     }
     return name.empty() ? json(document.front()) : map_named(document, name, file);
 }
 
-/// The numbers at a key, four of them a knot.
+/// The numbers at a key, four for each knot.
 std::vector<double> read_quadruples(const json& map, const std::string& file, const std::string& key) {
     const auto found = map.find(key);
     if (found == map.end()) refuse(file, "key '" + key + "' is missing");
     if (!found->is_array() || found->empty() || found->size() % 4 != 0) {
-        refuse(file, "key '" + key + "' is not an array of four numbers a knot");
+        refuse(file, "key '" + key + "' is not an array of four numbers for each knot");
     }
     std::vector<double> numbers;
     numbers.reserve(found->size());
@@ -82,7 +81,7 @@ ColorSpace read_color_space(const json& map, const std::string& file) {
     return *space;
 }
 
-/// As in the file: encoded, and values may repeat.
+/// The knots as in the file: in sRGB, and values may repeat.
 ColorKnots read_colors(const json& map, const std::string& file) {
     const std::vector<double> n = read_quadruples(map, file, "RGBPoints");
     ColorKnots knots;
@@ -110,7 +109,7 @@ OpacityKnots default_opacity(const ColorKnots& colors) {
     return {{first, 0.5}};
 }
 
-/// Refuses what the file's knots have wrong, by their numbers in the file.
+/// Validates the knots; errors name their numbers in the file.
 void check(const ColorKnots& colors, const OpacityKnots& opacities, const std::string& file) {
     TransferFunction function{colors, opacities};
     part_equal_values(function.color);

@@ -3,11 +3,11 @@
 #include <span>
 #include <utility>
 
-#include "color_curve.h"
+#include "curves.h"
+#include "knot_values.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
-#include "value_range.h"
 
 namespace subvol {
 
@@ -22,8 +22,8 @@ struct Entry {
     Rgb rgb;
 };
 
-// sRGB. N. J. Smith, S. van der Walt, E. Firing, matplotlib 2.0 (CC0): of its 256 entries those between which straight lines in
-// linear light are right to 1/512.
+// sRGB. N. J. Smith, S. van der Walt, E. Firing, matplotlib 2.0 (CC0). Of its 256 entries, these are enough for straight lines
+// in linear light to be right to 1/512.
 constexpr std::array<Entry, 31> kViridis{{
     {0, {0.267004, 0.004874, 0.329415}},   {7, {0.276022, 0.044167, 0.370164}},   {14, {0.281446, 0.084320, 0.407414}},
     {22, {0.283187, 0.125848, 0.444960}},  {32, {0.278826, 0.175490, 0.483397}},  {44, {0.265145, 0.232956, 0.516599}},

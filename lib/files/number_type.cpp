@@ -17,7 +17,7 @@ T number_at(const char* bytes, std::endian order) {
     return std::bit_cast<T>(own);
 }
 
-// Calls `call` with a number of the C++ type that stands for `type`.
+// Calls `call` with a number of the C++ type that corresponds to `type`.
 template <class Call>
 auto with_type(NumberType type, const Call& call) {
     switch (type) {

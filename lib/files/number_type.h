@@ -9,7 +9,7 @@
 
 namespace subvol::detail {
 
-/// How a number lies in a binary file.
+/// The type of a number in a binary file.
 enum class NumberType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 
 [[nodiscard]] std::size_t size_of(NumberType type);
@@ -17,7 +17,7 @@ enum class NumberType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64
 
 /// The number that `bytes` begins with.
 [[nodiscard]] double real_from(std::string_view bytes, NumberType type, std::endian order);
-/// The same for integer types; a number beyond 2^63 comes out negative, which no count or index may be.
+/// The same for integer types; a number of 2^63 or more becomes negative, which is not valid as a count or an index.
 [[nodiscard]] std::int64_t integer_from(std::string_view bytes, NumberType type, std::endian order);
 
 /// All numbers of a block of bytes.

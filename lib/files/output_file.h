@@ -11,7 +11,7 @@
 
 namespace subvol::detail {
 
-/// A file to be written whole or not at all. Every failure, a full disk too, is an Error(Io) that names the file.
+/// A file that appears complete or not at all. Every failure, such as a full disk, is an Error(Io) that names the file.
 class OutputFile {
 public:
     explicit OutputFile(const std::filesystem::path& target);
@@ -24,13 +24,13 @@ public:
     void write_values(std::span<const T> values) {
         write({reinterpret_cast<const char*>(values.data()), values.size_bytes()});
     }
-    /// How many bytes are written: where the next one goes.
+    /// The number of bytes written so far.
     [[nodiscard]] std::uint64_t position() const;
-    /// Writes over what stands at a position already.
+    /// Overwrites bytes that are already written.
     void overwrite(std::uint64_t position, std::string_view text);
-    /// Flushes; nothing can be written after that.
+    /// Closes the file; nothing can be written afterwards.
     void close();
-    /// Closes and gives the file its name.
+    /// Closes the file and gives it its final name.
     void commit();
 
 private:

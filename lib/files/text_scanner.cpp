@@ -23,7 +23,7 @@ bool is_space(char c) {
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-// How long a UTF-8 sequence with this first byte is; 0 if none begins so.
+// The length of a UTF-8 sequence by its first byte; 0 if no sequence begins with that byte.
 std::size_t sequence_length(unsigned char first) {
     if (first < 0x80) return 1;
     if (first >= 0xC2 && first < 0xE0) return 2;
@@ -50,7 +50,7 @@ std::string describe(const Place& place) {
     return text;
 }
 
-// from_chars knows no leading plus.
+// from_chars does not accept a leading plus.
 std::string_view without_plus(std::string_view word) {
     const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
     return plus ? word.substr(1) : word;
@@ -135,7 +135,7 @@ double TextScanner::real(const Place& place) {
     double value = 0;
     auto [stop, error] = std::from_chars(digits.data(), end, value);
     if (error == std::errc::result_out_of_range && stop == end) {
-        // Too small is as good as zero, too large is infinite: the wider exponent tells them apart.
+        // Out of the range of double: the wider exponent of long double distinguishes too small, which is 0, from too large.
         long double wide = std::numeric_limits<long double>::infinity();
         if (std::from_chars(digits.data(), end, wide).ec == std::errc()) return static_cast<double>(wide);
         return std::numeric_limits<double>::infinity();
@@ -159,7 +159,7 @@ std::int64_t TextScanner::integer(const Place& place) {
 
 std::size_t TextScanner::count(const Place& place) {
     const std::size_t value = as_count(integer(place), place);
-    if (value > text_.size()) {  // whatever is counted takes a character
+    if (value > text_.size()) {  // each item takes at least one character
         fail(describe(place) + ": count out of range: " + std::to_string(value),
              "the file has " + std::to_string(text_.size()) + " bytes");
     }
@@ -175,7 +175,7 @@ std::size_t TextScanner::as_count(std::int64_t value, const Place& place) const 
 }
 
 std::size_t TextScanner::room_for(std::size_t words) const {
-    // A word takes a character and the space after it, which the last one may lack.
+    // Each word takes at least one character and a space, which may be missing after the last one.
     return (text_.size() - next_ + 1) / (2 * words);
 }
 

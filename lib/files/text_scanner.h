@@ -13,27 +13,27 @@ namespace subvol::detail {
 /// throws: Error(Io) if it cannot be opened or read
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// Where a number belongs, for the error sentence: "vertex 13 of 27". number < 0: `what` alone; of = 0: no total
+/// The entity that a number belongs to, for error messages: "vertex 13 of 27". number: < 0 for none; of: the total, 0 for none
 struct Place {
     std::string_view what;
     std::int64_t number = -1;
     std::size_t of = 0;
 };
 
-/// Takes a text apart into words and numbers separated by white space. The text must outlive the scanner.
+/// Splits a text into words and numbers that are separated by white space. The text must outlive the scanner.
 ///
-/// Every failure is an Error(InvalidInput) that names the file and the line (in binary data the byte); lines are only counted
-/// then. The decimal point is a point in every locale. Copying a scanner remembers a place in the text.
+/// Every failure is an Error(InvalidInput) that names the file and the line, in binary data the byte; lines are counted only
+/// when an error occurs. The decimal point does not depend on the locale. A copy of a scanner keeps a place in the text.
 class TextScanner {
 public:
     enum class Comments { None, Hash };  // Hash: from # to the end of the line
 
-    /// file: its name, for messages. A byte order mark is passed over.
+    /// file: its name, for messages. A byte order mark is skipped.
     TextScanner(std::string_view text, std::string_view file, Comments comments);
 
-    /// From now on failures name the byte instead of the line: a line means nothing in binary data.
+    /// From now on errors name the byte instead of the line, for binary data.
     void name_bytes() { places_ = Places::Bytes; }
-    /// From now on failures name the file alone: what is read has been taken out of it by a library.
+    /// From now on errors name only the file: the values are read by a library, so their place is unknown.
     void name_no_place() { places_ = Places::None; }
 
     [[nodiscard]] bool at_end();
@@ -42,33 +42,33 @@ public:
     [[nodiscard]] std::string_view peek();
     /// The rest of the line without its end.
     std::string_view line();
-    /// Exactly so many bytes, whatever they are.
+    /// The next `count` bytes, white space included.
     std::string_view bytes(std::size_t count, const Place& place);
     /// Goes to an offset into the text.
     void seek(std::size_t position) { next_ = start_ = position; }
 
-    /// A number, perhaps not finite; one that overflows a double is infinite.
+    /// A number, possibly not finite; one that overflows a double is infinite.
     double real(const Place& place);
     std::int64_t integer(const Place& place);
-    /// A number of things to come: not negative, at most what an Index can count.
+    /// The number of items that follow: not negative, and within the range of Index.
     std::size_t count(const Place& place);
-    /// The last number, checked as `count` does.
+    /// The last number that was read, checked as `count` does.
     [[nodiscard]] std::size_t as_count(std::int64_t value, const Place& place) const;
 
-    /// How many bytes the text has.
+    /// The size of the text in bytes.
     [[nodiscard]] std::size_t size() const { return text_.size(); }
-    /// What is left.
+    /// The rest of the text.
     [[nodiscard]] std::string_view rest() const { return text_.substr(next_); }
-    /// How many bytes are left.
+    /// The size of the rest of the text in bytes.
     [[nodiscard]] std::size_t bytes_left() const { return text_.size() - next_; }
-    /// How many things of `words` words each the rest of the text can hold at most: the limit of any allocation.
+    /// The largest number of items, of `words` words each, that the rest of the text can have: a limit for allocations.
     [[nodiscard]] std::size_t room_for(std::size_t words) const;
 
     /// The start of the last word or line, as an offset into the text.
     [[nodiscard]] std::size_t position() const { return start_; }
     [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const;
     [[noreturn]] void fail_at(std::size_t position, const std::string& message, const std::string& allowed = {}) const;
-    /// `fail` for a word that is not what stands there; an empty word is the end of the text.
+    /// Fails because a word differs from what is expected. found: empty at the end of the text
     [[noreturn]] void fail_word(const Place& place, std::string_view expected, std::string_view found) const;
 
 private:
@@ -82,15 +82,15 @@ private:
     std::size_t start_ = 0;
 };
 
-/// A piece of a file, in quotes, fit for a message: printable and short.
+/// A part of a file in quotes for messages: unprintable characters are replaced, a long text is cut.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 [[nodiscard]] std::string upper_case(std::string_view text);
 
-/// The text itself if it is UTF-8, else taken as Latin-1 and converted.
+/// The text itself if it is UTF-8; otherwise it is converted from Latin-1.
 [[nodiscard]] std::string as_utf8(std::string_view text);
 
-/// With an underscore for every control character.
+/// The text with an underscore in place of each control character.
 [[nodiscard]] std::string without_controls(std::string_view text);
 
 /// "1 hexahedron", "8 hexahedra"

@@ -25,7 +25,7 @@ void VtkXml::fail_at(const pugi::xml_node& node, const std::string& message, con
     in_.fail_at(place(node), message, allowed);
 }
 
-// Appended data need not be well-formed XML: the parser is given what stands before them.
+// Appended data need not be well-formed XML: the parser only gets the text before them.
 pugi::xml_node VtkXml::parse(const std::string& type, const std::string& needed) {
     if (in_.at_end()) in_.fail("the file is empty");
     const std::size_t tag = text_.find(kAppendedTag);
@@ -85,7 +85,7 @@ void VtkXml::read_encoding(const pugi::xml_node& root) {
 
 std::size_t VtkXml::count(const pugi::xml_node& piece, const char* name) const {
     const auto count = number_attribute(piece, name);
-    if (!count) fail_at(piece, std::string(name) + " is missing or no count");
+    if (!count) fail_at(piece, std::string(name) + " is missing or not a count");
     if (*count >= kNone) fail_at(piece, std::string(name) + ": count out of range: " + std::to_string(*count));
     return *count;
 }

@@ -8,14 +8,13 @@
 
 #include "text_scanner.h"
 #include "vtu_arrays.h"
-#include "xml_tags.h"
 
 namespace subvol::detail {
 
-/// A VTK XML file, parsed: its elements and the values of its arrays. Every failure is an Error(InvalidInput) with the place.
+/// A VTK XML file: its elements and the values of its arrays. Every failure is an Error(InvalidInput) that names the place.
 class VtkXml {
 public:
-    /// text, file: must outlive it; type: of the data set that is wanted; needed: what that is, for the message
+    /// text, file: must outlive it; type: of the expected data set; needed: a description of it, for the error message
     VtkXml(std::string_view text, std::string_view file, const std::string& type, const std::string& needed);
     VtkXml(const VtkXml&) = delete;
     VtkXml& operator=(const VtkXml&) = delete;
@@ -25,17 +24,17 @@ public:
     [[nodiscard]] const VtuArrays& arrays() const { return arrays_; }
     [[nodiscard]] const TextScanner& in() const { return in_; }
 
-    /// How many bytes its arrays can have at most when they are decompressed.
+    /// The largest possible size of all arrays after decompression, in bytes.
     [[nodiscard]] std::size_t most_bytes() const { return largest_size(encoding_.compressor, text_.size()); }
 
-    /// An attribute that counts points or cells.
+    /// The value of an attribute that counts points or cells.
     [[nodiscard]] std::size_t count(const pugi::xml_node& piece, const char* name) const;
     /// The array of that name; fails if there is none.
     [[nodiscard]] pugi::xml_node array(const pugi::xml_node& parent, const char* name) const;
-    /// The array of the points' coordinates, three each.
+    /// The array of the points' coordinates, three for each.
     [[nodiscard]] pugi::xml_node coordinates(const pugi::xml_node& piece, std::size_t points) const;
     void expect_size(const pugi::xml_node& array, std::size_t size, std::size_t needed, const std::string& what) const;
-    /// Where an element stands in the text.
+    /// The offset of an element in the text.
     [[nodiscard]] std::size_t place(const pugi::xml_node& node) const { return arrays_.place(node); }
     [[noreturn]] void fail_at(const pugi::xml_node& node, const std::string& message, const std::string& allowed = {}) const;
 

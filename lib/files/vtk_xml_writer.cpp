@@ -9,33 +9,20 @@
 #include <cassert>
 #include <vector>
 
+#include "subvol/detail/text_codes.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBlock = 1 << 17;  // bytes that are compressed by themselves
-constexpr std::size_t kAtOnce = 32;      // blocks, by all threads
-
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const std::size_t whole = bytes.size() / 3 * 3;
-    std::string text((bytes.size() + 2) / 3 * 4, '=');
-    const auto byte = [&](std::size_t i) { return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u; };
-    const auto put = [&](std::size_t i, unsigned characters) {
-        const unsigned bits = (byte(i) << 16) | (byte(i + 1) << 8) | byte(i + 2);
-        for (unsigned k = 0; k < characters; ++k) text[i / 3 * 4 + k] = kDigits[(bits >> (18 - 6 * k)) & 63];
-    };
-    for (std::size_t i = 0; i < whole; i += 3) put(i, 4);
-    if (whole < bytes.size()) put(whole, static_cast<unsigned>(bytes.size() - whole) + 1);
-    return text;
-}
+constexpr std::size_t kBlock = 1 << 17;  // bytes that are compressed together
+constexpr std::size_t kAtOnce = 32;      // blocks that all threads compress before the next ones are begun
 
 std::string zipped(std::span<const std::byte> bytes) {
     uLongf size = compressBound(bytes.size());
     std::string result(size, '\0');
-    // The fastest level: a higher one gains some percent of numbers that are mostly noise.
+    // The fastest level: higher ones gain only a few percent, since the last digits of numbers are mostly noise.
     [[maybe_unused]] const int done = compress2(reinterpret_cast<Bytef*>(result.data()), &size,
                                                 reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_SPEED);
     assert(done == Z_OK);
@@ -45,27 +32,8 @@ std::string zipped(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::string xml_escaped(std::string_view text) {
-    std::string result;
-    for (const char c : without_controls(text)) {  // XML has none
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return result;
+std::string attribute_value(std::string_view text) {
+    return xml_escaped(without_controls(text));
 }
 
 VtkXmlWriter::VtkXmlWriter(OutputFile& out, const std::string& data_set) : out_(out), data_set_(data_set) {
@@ -75,11 +43,12 @@ VtkXmlWriter::VtkXmlWriter(OutputFile& out, const std::string& data_set) : out_(
          "\" header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<" + data_set + ">");
 }
 
-// The header: how many blocks, their size, that of the last one if it is not full, and the compressed size of each, which is
-// known when all are written. So no more than some blocks are in memory.
+// An array begins with a header: the number of blocks, their size, the size of the last one if it is not full, and the
+// compressed size of each. These sizes are known only at the end: the header is then overwritten, so that no more than kAtOnce
+// blocks need to be in memory.
 void VtkXmlWriter::write_array(const char* type, std::string_view name, std::size_t components, std::size_t bytes,
                                const Fill& fill) {
-    line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + xml_escaped(name) + "\" NumberOfComponents=\"" +
+    line("<DataArray type=\"" + std::string(type) + "\" Name=\"" + attribute_value(name) + "\" NumberOfComponents=\"" +
          std::to_string(components) + "\" format=\"binary\">");
     const std::size_t count = (bytes + kBlock - 1) / kBlock;
     std::vector<std::uint64_t> header{count, kBlock, bytes % kBlock};
@@ -89,7 +58,7 @@ void VtkXmlWriter::write_array(const char* type, std::string_view name, std::siz
     };
     const std::uint64_t place = out_.position();
     out_.write(header_text());
-    std::string data;  // what is not written yet: groups of three bytes go together
+    std::string data;  // not written yet: base64 encodes groups of three bytes
     for (std::size_t first = 0; first < count; first += kAtOnce) {
         std::vector<std::string> blocks(std::min(kAtOnce, count - first));
         tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
@@ -111,9 +80,9 @@ void VtkXmlWriter::write_array(const char* type, std::string_view name, std::siz
     line("\n</DataArray>");
 }
 
-// VTK's form: the characters' numbers, a 0 behind each string.
+// VTK's form: character codes, with a 0 after each string.
 void VtkXmlWriter::strings(std::string_view name, std::span<const std::string> values) {
-    std::string text = "<Array type=\"String\" Name=\"" + xml_escaped(name) + "\" NumberOfTuples=\"" +
+    std::string text = "<Array type=\"String\" Name=\"" + attribute_value(name) + "\" NumberOfTuples=\"" +
                        std::to_string(values.size()) + "\" format=\"ascii\">\n";
     for (const auto& value : values) {
         for (const char c : value) text += std::to_string(int{static_cast<signed char>(c)}) + " ";

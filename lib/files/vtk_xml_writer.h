@@ -13,7 +13,8 @@
 
 namespace subvol::detail {
 
-[[nodiscard]] std::string xml_escaped(std::string_view text);
+/// A text as the value of an attribute: escaped, with an underscore for each control character, which XML does not allow.
+[[nodiscard]] std::string attribute_value(std::string_view text);
 
 template <class Number>
 inline constexpr const char* kVtkType = nullptr;
@@ -26,8 +27,8 @@ inline constexpr const char* kVtkType<std::uint8_t> = "UInt8";
 template <>
 inline constexpr const char* kVtkType<std::int64_t> = "Int64";
 
-/// Writes a VTK XML file, element by element. Its arrays stand where they belong, compressed by zlib and in base64: small, and
-/// well-formed XML. Appended data, whoever wrote them, ParaView 5.11 cannot read with the later versions of expat.
+/// Writes a VTK XML file, element by element. Arrays are inline, compressed by zlib and in base64: small, and well-formed XML.
+/// They are not appended to the file, since ParaView 5.11 cannot read appended data with recent versions of expat.
 class VtkXmlWriter {
 public:
     /// Begins the file. out: must outlive it; data_set: "PolyData" and the like
@@ -42,7 +43,7 @@ public:
                         std::memcpy(block.data(), reinterpret_cast<const std::byte*>(values.data()) + first, block.size());
                     });
     }
-    /// The same for values that are made as they are written. value(i): the value of that number; called by several threads
+    /// The same for values that are computed while they are written. value(i): the i-th value; called by several threads
     template <class Number, class Value>
     void made_array(std::string_view name, std::size_t components, std::size_t count, const Value& value) {
         write_array(kVtkType<Number>, name, components, count * sizeof(Number),
@@ -56,7 +57,7 @@ public:
     /// An array of strings, for FieldData.
     void strings(std::string_view name, std::span<const std::string> values);
 
-    /// Ends the file; it is then to be committed.
+    /// Ends the file; the caller then commits `out`.
     void end();
 
 private:

@@ -38,6 +38,27 @@ void each_word(TextScanner in, const std::string& name, const std::function<void
 
 }  // namespace
 
+XmlTags::XmlTags(std::string_view text) {
+    constexpr std::size_t kShort = 64;  // characters; a text of no more is kept
+    std::size_t begin = 0;
+    while (begin < text.size()) {
+        // A tag and the text after it. Within a comment it need not be a tag, but there nothing is lost either.
+        const std::size_t end = std::min(text.find('<', begin + 1), text.size());
+        const std::string_view part = text.substr(begin, end - begin);
+        const std::size_t tag_end = part.rfind('>');
+        const std::size_t word = tag_end == std::string_view::npos ? tag_end : part.find_first_not_of(" \t\r\n", tag_end + 1);
+        const bool is_long = word != std::string_view::npos && part.size() - word > kShort;
+        tags_ += is_long ? part.substr(0, word + 1) : part;
+        begin = end;
+        if (is_long) cuts_.push_back({tags_.size(), begin - tags_.size()});
+    }
+}
+
+std::size_t XmlTags::place(std::size_t offset) const {
+    const auto behind = std::ranges::upper_bound(cuts_, offset, {}, &Cut::offset);
+    return offset + (behind == cuts_.begin() ? 0 : std::prev(behind)->length);
+}
+
 std::optional<std::uint64_t> number_attribute(const pugi::xml_node& node, const char* name) {
     std::string_view text = node.attribute(name).as_string();
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
@@ -112,7 +133,7 @@ NumberType VtuArrays::type_of(const pugi::xml_node& array) const {
     return type->second;
 }
 
-// As it stands in the file: neither XML's entities nor its line ends matter to numbers and base64.
+// The text as in the file: numbers and base64 have no XML entities, and line ends do not matter.
 std::string_view VtuArrays::content(const pugi::xml_node& array) const {
     for (const auto& child : array.children()) {
         const bool cdata = child.type() == pugi::node_cdata;
@@ -126,7 +147,7 @@ std::string_view VtuArrays::content(const pugi::xml_node& array) const {
 TextScanner VtuArrays::words(const pugi::xml_node& array) const {
     const std::string_view found = content(array);
     if (found.empty()) return {found, file_, TextScanner::Comments::None};
-    // Over all that stands before too, so that a failure finds its line.
+    // The scanner includes the text before the array, so that errors name the right line.
     const auto begin = static_cast<std::size_t>(found.data() - text_.data());
     TextScanner in(text_.substr(0, begin + found.size()), file_, TextScanner::Comments::None);
     in.seek(begin);
@@ -141,7 +162,7 @@ ByteSource VtuArrays::source(const pugi::xml_node& array) const {
     const auto offset = number_attribute(array, "offset");
     if (!offset) fail(array, "it has no offset into the appended data");
     if (*offset >= encoding_.appended.size()) {
-        fail(array, "its offset " + std::to_string(*offset) + " lies behind the appended data",
+        fail(array, "its offset " + std::to_string(*offset) + " is beyond the appended data",
              "the file has " + std::to_string(encoding_.appended.size()) + " bytes of them");
     }
     return {encoding_.appended.substr(*offset), encoding_.appended_base64};
@@ -158,7 +179,8 @@ void VtuArrays::fail_bytes(const pugi::xml_node& array, std::uint64_t bytes, con
          "at most " + std::to_string(from.left()) + " bytes are left");
 }
 
-// Compressed: how many blocks, their size, that of the last one if it is not full, and the compressed size of each.
+// Compressed data begin with the number of blocks, their size, the size of the last one if it is not full, and the compressed
+// size of each.
 VtuArrays::Layout VtuArrays::layout(const pugi::xml_node& array, ByteSource& from) const {
     const std::uint64_t first = header_number(array, from);
     if (encoding_.compressor == Compressor::None) {
@@ -180,7 +202,7 @@ void VtuArrays::each_block(const pugi::xml_node& array, const TakeBytes& take) c
     ByteSource from = source(array);
     const Layout found = layout(array, from);
     const std::size_t size = size_of(type_of(array));
-    std::string bytes;  // what ends within a value waits for the next block
+    std::string bytes;  // the beginning of a value that ends in the next block
     const auto take_whole = [&](std::string_view block) {
         bytes += block;
         const std::size_t whole = bytes.size() / size * size;
@@ -193,7 +215,8 @@ void VtuArrays::each_block(const pugi::xml_node& array, const TakeBytes& take) c
         compressed_blocks(array, found, std::move(from), take_whole);
     }
     if (!bytes.empty()) {
-        fail(array, "its " + std::to_string(found.bytes) + " bytes are no whole number of values of " + std::to_string(size));
+        fail(array, "its " + std::to_string(found.bytes) + " bytes are not a whole number of values of " +
+                        std::to_string(size) + " bytes");
     }
 }
 

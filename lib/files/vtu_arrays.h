@@ -14,13 +14,12 @@
 #include "number_type.h"
 #include "text_scanner.h"
 #include "vtu_bytes.h"
-#include "xml_tags.h"
 
 namespace subvol::detail {
 
 /// How a VTK XML file stores its arrays.
 ///
-/// appended: what follows the underscore of AppendedData; empty if there is none
+/// appended: the text after the underscore of AppendedData; empty if there is none
 struct VtuEncoding {
     std::endian order = std::endian::little;
     NumberType header = NumberType::UInt32;
@@ -29,17 +28,39 @@ struct VtuEncoding {
     bool appended_base64 = false;
 };
 
-/// Reads the values of DataArray elements, however they are stored. in: over the whole file, for the places of failures
+/// A shortened copy of a long text for an XML parser: of the text between two tags only the beginning of the first word is
+/// kept, so that arrays are not in memory twice.
+class XmlTags {
+public:
+    /// text: need not outlive it
+    explicit XmlTags(std::string_view text = {});
+
+    /// The shortened text, which the parser may change in place.
+    [[nodiscard]] std::string& text() { return tags_; }
+
+    /// The offset in the whole text that belongs to an offset in `text()`.
+    [[nodiscard]] std::size_t place(std::size_t offset) const;
+
+private:
+    struct Cut {
+        std::size_t offset;  // in tags_
+        std::size_t length;  // of all the text that is left out up to here
+    };
+    std::string tags_;
+    std::vector<Cut> cuts_;
+};
+
+/// Reads the values of DataArray elements in every encoding. in: a scanner of the whole file, for error messages
 class VtuArrays {
 public:
     VtuArrays(std::string_view text, std::string_view file, const TextScanner& in, const XmlTags& tags,
               const VtuEncoding& encoding)
         : text_(text), file_(file), in_(in), tags_(tags), encoding_(encoding) {}
 
-    /// How many values an array has by its own account. The caller knows how many there should be.
+    /// The number of values of an array; the caller compares it with the expected number before it reads them.
     [[nodiscard]] std::size_t size(const pugi::xml_node& array) const;
 
-    /// Calls take(values) for some values of an array after the other, until it was all of them: never is it all in memory.
+    /// Calls take(values) for consecutive parts of an array, so that the whole array need not be in memory.
     void each_real(const pugi::xml_node& array, const std::function<void(std::span<const double>)>& take) const;
     void each_integer(const pugi::xml_node& array, const std::function<void(std::span<const std::int64_t>)>& take) const;
 
@@ -47,14 +68,14 @@ public:
     [[nodiscard]] std::vector<double> reals(const pugi::xml_node& array) const;
     [[nodiscard]] std::vector<std::int64_t> integers(const pugi::xml_node& array) const;
 
-    /// Where an element stands in the text.
+    /// The offset of an element in the text.
     [[nodiscard]] std::size_t place(const pugi::xml_node& node) const;
     [[noreturn]] void fail(const pugi::xml_node& array, const std::string& message, const std::string& allowed = {}) const;
 
 private:
-    /// bytes:      of all values
-    /// block, last: bytes of a compressed block, and of the last one, when they are decompressed
-    /// compressed: bytes of each compressed block
+    /// bytes:       of all values
+    /// block, last: bytes of a block, and of the last block, after decompression
+    /// compressed:  bytes of each compressed block
     struct Layout {
         std::uint64_t bytes = 0, block = 0, last = 0;
         std::vector<std::uint64_t> compressed = {};
@@ -79,7 +100,8 @@ private:
     const VtuEncoding& encoding_;
 };
 
-/// An attribute that is a count or an offset; white space around it is VTK's habit. nothing: it is missing or no such number
+/// The value of an attribute that is a count or an offset; VTK may put white space around it. Nothing if it is missing or not
+/// such a number.
 [[nodiscard]] std::optional<std::uint64_t> number_attribute(const pugi::xml_node& node, const char* name);
 
 /// The name of a DataArray for messages, in quotes.

@@ -9,18 +9,19 @@
 #include <array>
 #include <limits>
 
+#include "subvol/detail/text_codes.h"
+
 namespace subvol::detail {
 
 namespace {
 
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr unsigned char kNoDigit = 64;
 
 constexpr auto kDigitOf = [] {
     std::array<unsigned char, 256> table{};
     table.fill(kNoDigit);
-    for (std::size_t d = 0; d < kDigits.size(); ++d)
-        table[static_cast<unsigned char>(kDigits[d])] = static_cast<unsigned char>(d);
+    for (std::size_t d = 0; d < kBase64Digits.size(); ++d)
+        table[static_cast<unsigned char>(kBase64Digits[d])] = static_cast<unsigned char>(d);
     return table;
 }();
 
@@ -73,7 +74,7 @@ std::size_t ByteSource::left() const {
     return base64_ ? decoded_.size() + text_.size() / 4 * 3 : text_.size();
 }
 
-// The most of it: groups without white space or padding, as many as are wanted whole.
+// The fast path for most of the text: groups without white space and padding, as long as whole groups are needed.
 void ByteSource::take_whole_groups(std::string& bytes, std::size_t count) {
     const auto digit = [&](std::size_t i) { return kDigitOf[static_cast<unsigned char>(text_[i])]; };
     std::size_t next = 0;
@@ -86,7 +87,7 @@ void ByteSource::take_whole_groups(std::string& bytes, std::size_t count) {
     text_.remove_prefix(next);
 }
 
-// Four characters are three bytes; each = at the end is one fewer.
+// Four characters encode three bytes; each = at the end stands for one byte less.
 bool ByteSource::decode_group() {
     unsigned bits = 0;
     int digits = 0;
@@ -120,8 +121,8 @@ std::optional<Compressor> compressor_named(std::string_view name) {
 }
 
 std::size_t largest_size(Compressor compressor, std::size_t compressed) {
-    // What one bit or byte of each format can stand for at most, rounded up: deflate 258 bytes by 2 bits, LZMA 273 by some 0.3
-    // bits, LZ4 255 by a byte.
+    // The largest expansion of a byte in each format, rounded up: deflate 258 bytes from 2 bits, LZMA 273 from about 0.3 bits,
+    // LZ4 255 from a byte.
     constexpr std::array<std::size_t, 4> kMostByOne{1, 1040, 8192, 256};
     constexpr std::size_t kAtLeast = 64;
     return (compressed + kAtLeast) * kMostByOne[static_cast<std::size_t>(compressor)];

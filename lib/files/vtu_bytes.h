@@ -7,17 +7,17 @@
 
 namespace subvol::detail {
 
-/// Takes bytes one after the other from a text that holds them raw or in base64.
+/// Reads bytes from a text that has them raw or in base64.
 ///
-/// Base64 may be several pieces, each padded by itself, with white space between.
+/// Base64 may consist of several pieces, each with padding, with white space between them.
 class ByteSource {
 public:
     ByteSource(std::string_view text, bool base64) : text_(text), base64_(base64) {}
 
-    /// Exactly so many bytes; nothing if there are fewer, or if a character is not of base64.
+    /// The next `count` bytes; nothing if there are fewer, or if a character is not base64.
     [[nodiscard]] std::optional<std::string> take(std::size_t count);
 
-    /// How many bytes are left at most.
+    /// An upper bound for the number of bytes left.
     [[nodiscard]] std::size_t left() const;
 
 private:
@@ -26,20 +26,19 @@ private:
 
     std::string_view text_;
     bool base64_;
-    std::string decoded_;  // of the last group of four characters, what has not been taken
+    std::string decoded_;  // bytes of the last group of four characters that have not been taken
 };
 
 /// VTK's names for compressors.
 enum class Compressor { None, Zlib, Lzma, Lz4 };
 
-/// nothing: VTK has no compressor of that name, or it is not supported. name: as in the file, empty for none
+/// The compressor of that name; nothing if it is unknown or not supported. name: as in the file, empty for none
 [[nodiscard]] std::optional<Compressor> compressor_named(std::string_view name);
 
-/// The most that so many compressed bytes can become.
+/// The largest size that so many compressed bytes can decompress to.
 [[nodiscard]] std::size_t largest_size(Compressor compressor, std::size_t compressed);
 
-/// size: that of the result
-/// returns: nothing if the bytes are damaged or become more or less than `size`
+/// Decompresses a block. Nothing if the bytes are damaged or if their decompressed size is not `size`.
 [[nodiscard]] std::optional<std::string> decompressed(Compressor compressor, std::string_view bytes, std::size_t size);
 
 }  // namespace subvol::detail

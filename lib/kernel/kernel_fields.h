@@ -5,7 +5,7 @@
 
 namespace subvol::detail {
 
-// What each kernel consists of, told once: visit(name, value) for every field.
+// The fields of each kernel, listed once: each_field calls visit(name, value) for every field.
 
 template <class Visit>
 void each_field(CompactKernel& k, Visit&& visit) {

@@ -15,15 +15,15 @@ using std::exp;
 using std::min;
 using std::sqrt;
 
-/// The formulas of kernel_formulas.glsl in double precision, over one kernel's table: members, so that they read it.
+/// The formulas of kernel_formulas.glsl in double precision: members, so that they can read the table of one kernel.
 struct KernelFormulas {
     using real = double;
     using real3 = Vec3;
     using real4 = glm::dvec4;
 
-    int kind = 0;  // the `type` that the functions ask for
+    int kind = 0;  // the argument `type` of the functions
     real4 parameters{};
-    std::span<const double> first, second{};  // the table, in two parts because a sum of Gaussians holds it so
+    std::span<const double> first, second{};  // the table, in two parts because a sum of Gaussians stores it that way
 
     real kernel_table(int i) const {
         const auto at = static_cast<std::size_t>(i);
@@ -34,7 +34,7 @@ struct KernelFormulas {
 #include "subvol/kernel_formulas.glsl"
 };
 
-/// Views the kernel's tables: not to be kept longer than the kernel.
+/// Refers to the kernel's tables, so the kernel must outlive the result.
 [[nodiscard]] KernelFormulas formulas_of(const Kernel& kernel);
 
 /// std::visit with lambdas.

@@ -7,7 +7,8 @@
 #include "kernel_formulas.h"
 #include "subvol/kernel.h"
 
-// Every kernel has a closed form: Gaussians by erf, powers of ρ by a recurrence, tables as the lines they are.
+// Every kernel has an integral in closed form: Gaussians by erf, powers of ρ by a recurrence, tables as piecewise linear
+// functions.
 
 namespace subvol {
 
@@ -17,7 +18,7 @@ using detail::KernelFormulas;
 
 constexpr int kPowers = 9;
 
-/// A polynomial in s = ρ/scale, from the piece before it up to `end`.
+/// A polynomial in s = ρ/scale, from the end of the piece before it to `end`.
 struct Piece {
     double end;
     std::array<double, kPowers> coefficients;
@@ -63,7 +64,7 @@ double antiderivative(const std::array<double, kPowers>& c, double r, double z) 
     return sum;
 }
 
-/// ∫ from 0 to z, z ≥ 0, at distance r from the kernel's middle.
+/// ∫ from 0 to z, z ≥ 0, at distance r from the kernel's centre.
 double from_middle(const Profile& profile, double r, double z) {
     double sum = 0, from = 0;
     for (const Piece& piece : profile.pieces) {
@@ -105,7 +106,7 @@ double weighted_gaussian_integral(KernelFormulas f, double z0, double z1) {
     return (p.z + p.w * variance) * gaussian_integral(p.y, z0, z1) - p.w * variance * ends;
 }
 
-/// ∫ of a function that is linear between the table's places, from 0 to |z|, with z's sign.
+/// ∫ of a function that is linear between the places of the table, from 0 to |z|, with the sign of z.
 template <class Value>
 double signed_table_integral(const KernelFormulas& f, const Value& value, double z) {
     const double step = f.parameters.x / (f.parameters.y - 1), end = std::abs(z);

@@ -24,7 +24,7 @@ void read(const std::string& name, const json& item, double& value) {
 }
 
 void read(const std::string& name, const json& item, std::size_t& value) {
-    if (!item.is_number_unsigned()) refuse("'" + name + "' is not a whole number from 0");
+    if (!item.is_number_unsigned()) refuse("'" + name + "' is not a non-negative integer");
     value = item.get<std::size_t>();
 }
 
@@ -39,7 +39,7 @@ json parse_object(std::string_view text) {
     try {
         object = json::parse(text);
     } catch (const json::exception& e) {
-        refuse(std::string("no JSON: ") + e.what());
+        refuse(std::string("not JSON: ") + e.what());
     }
     if (!object.is_object()) refuse("not an object", "{\"type\": \"gaussian\", \"sigma\": 0.43, …}");
     return object;

@@ -77,7 +77,7 @@ nlohmann::json read_json_object(const std::string& file) {
         json = nlohmann::json::parse(stream);
     } catch (const nlohmann::json::exception& e) {
         throw Error(ErrorCode::InvalidInput, e.what(), file);
-    } catch (const std::ios_base::failure&) {  // a folder, for one
+    } catch (const std::ios_base::failure&) {  // for example, it is a folder
         throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }
     if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not a JSON object", file);

@@ -10,7 +10,9 @@
 
 namespace subvol::detail {
 
-/// throws: Error(InvalidInput) if the camera can see nothing
+/// Validates a camera.
+///
+/// throws: Error(InvalidInput) if its numbers define no view
 void validate(const Camera& camera);
 
 inline void require(bool ok, const char* message, const char* allowed = "") {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMargin = 1.05;  // the box takes at most 1/1.05 of the picture
 
-/// Turns about the axis along a unit vector through a centre.
+/// A rotation about the axis through a centre along a unit vector.
 class Turn {
 public:
     Turn(const Vec3& axis, const Vec3& center, double angle)
@@ -42,7 +42,7 @@ std::vector<Vec3> corners_of(const Box& box) {
     return corners;
 }
 
-/// Fits to the points, which lie about the box's centre, no farther from it than the box's corners.
+/// Fits a camera to points around the box's centre that are no farther from it than the box's corners.
 Camera fit(const Camera& camera, std::span<const Vec3> points, const Box& box, double aspect) {
     validate(camera);
     require(!box.empty(), "there is no box to look at");

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "absorb_pieces.h"
+#include "absorption.h"
 
 namespace subvol::detail {
 
 namespace {
-constexpr std::size_t kVector = 8;  // the widest
+constexpr std::size_t kVector = 8;  // lanes of the widest vectors
 }  // namespace
 
 Compositor::Compositor(const Optics& optics, double opaque)
@@ -51,7 +51,7 @@ void Compositor::add_across_knots(double front, double back, double length) {
 }
 
 void Compositor::composite_pieces() {
-    // What stands behind the last piece shares its vector: it has to be the same each time.
+    // The rest of the last vector is cleared, so that it is the same each time.
     for (std::size_t i = count_; i < kPieces && i % kVector != 0; ++i) alpha_front_[i] = alpha_back_[i] = length_[i] = 0;
     alignas(64) Row mean, whole;
     absorb_pieces({alpha_front_.data(), alpha_back_.data(), length_.data()}, count_, mean.data(), whole.data());
@@ -60,7 +60,7 @@ void Compositor::composite_pieces() {
             close_run();
             run_ = span_of_[i];
         }
-        // In registers as far as one span goes.
+        // Local variables, which stay in registers for all pieces of one span.
         double color = run_color_, step = run_step_, passed = transmittance_;
         for (; i < count_ && span_of_[i] == run_ && !(passed < opaque_); ++i) {
             // C_f (1−Ψ) + C_b (Ψ−ζ), with mean = 1−Ψ and whole = 1−ζ.

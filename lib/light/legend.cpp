@@ -11,19 +11,19 @@
 #include <sstream>
 #include <utility>
 
+#include "knot_values.h"
 #include "output_file.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
 #include "subvol/optics.h"
 #include "subvol/srgb.h"
-#include "value_range.h"
 
 namespace subvol {
 
 using namespace detail;
 namespace {
 
-// Pixels. Room for half a label on either side of the bar, and for the opacity's own labels on its left.
+// Pixels, with room for half a label on either side of the bar, and for the labels of the opacity on its left.
 constexpr int kLeft = 56, kRight = 36, kTop = 34, kCurve = 64, kGap = 6, kBar = 18, kBottom = 30;
 constexpr int kBarTop = kTop + kCurve + kGap, kBarEnd = kBarTop + kBar;
 constexpr int kColors = 128;  // along the bar, besides the knots
@@ -90,7 +90,7 @@ private:
     [[nodiscard]] static double y(double alpha) { return kTop + (1 - alpha) * kCurve; }
     [[nodiscard]] bool inside(double value) const { return value > range_.min && value < range_.max; }
 
-    /// SVG mixes the colours of stops in sRGB: with enough of them it does not matter.
+    /// SVG interpolates between stops in sRGB; there are enough of them to make that invisible.
     void append_colors(pugi::xml_node svg) const {
         std::set<double> values;
         for (int i = 0; i <= kColors; ++i) values.insert(range_.at(static_cast<double>(i) / kColors));

@@ -5,7 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "piece_depth.h"
+#include "absorption.h"
+#include "knot_values.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -15,24 +16,14 @@ using namespace detail;
 namespace {
 
 constexpr double kMaxAlpha = 1 - 1e-6;
-constexpr double kOpaque = 1e-16;  // below it what lies behind does not change a double
+constexpr double kOpaque = 1e-16;  // below this, what lies behind does not change a double
 
-double number_of(const TransferFunction::OpacityKnot& knot) {
-    return std::min(knot.alpha, kMaxAlpha);
-}
-Vec3 number_of(const TransferFunction::ColorKnot& knot) {
-    return knot.rgb;
+double alpha_at(const TransferFunction& function, double value) {
+    return interpolated(function.opacity, value, [](const auto& knot) { return std::min(knot.alpha, kMaxAlpha); });
 }
 
-template <class Knot>
-auto interpolate(const std::vector<Knot>& knots, double value) {
-    const auto next =
-        std::upper_bound(knots.begin(), knots.end(), value, [](double v, const Knot& knot) { return v < knot.value; });
-    if (next == knots.begin()) return number_of(knots.front());
-    const auto last = std::prev(next);
-    if (next == knots.end()) return number_of(*last);
-    const double s = (value - last->value) / (next->value - last->value);
-    return (1 - s) * number_of(*last) + s * number_of(*next);
+Vec3 color_at(const TransferFunction& function, double value) {
+    return interpolated(function.color, value, [](const auto& knot) { return knot.rgb; });
 }
 
 std::vector<double> merged_knots(const TransferFunction& function) {
@@ -56,14 +47,12 @@ Optics::Optics(TransferFunction function, double opacity_unit_world)
     double integral = 0;
     for (std::size_t i = 0; i <= knots_.size(); ++i) {
         const double begin = knots_[i > 0 ? i - 1 : 0];
-        Span span{.begin = begin,
-                  .alpha = interpolate(function_.opacity, begin),
-                  .color = interpolate(function_.color, begin),
-                  .integral = integral};
+        Span span{
+            .begin = begin, .alpha = alpha_at(function_, begin), .color = color_at(function_, begin), .integral = integral};
         if (i > 0 && i < knots_.size()) {
             span.inverse_width = 1 / (knots_[i] - begin);
-            span.alpha_step = interpolate(function_.opacity, knots_[i]) - span.alpha;
-            span.color_step = interpolate(function_.color, knots_[i]) - span.color;
+            span.alpha_step = alpha_at(function_, knots_[i]) - span.alpha;
+            span.color_step = color_at(function_, knots_[i]) - span.color;
             integral += piece_depth(span.alpha, span.alpha + span.alpha_step, (knots_[i] - begin) / unit_);
         }
         span.transparent = !(span.alpha > 0) && !(span.alpha_step > 0);

@@ -52,7 +52,7 @@ PreintegratedTable make_preintegrated_table(const Optics& optics) {
     constexpr int kCells = PreintegratedTable::kCells;
     constexpr double kCounts = 1 << 30;
     PreintegratedTable table{.min = optics.knots().front(), .max = optics.knots().back(), .rows = {}, .visible = {}};
-    if (!(table.min < table.max)) table.max = table.min + 1;  // a constant function: any range shows it
+    if (!(table.min < table.max)) table.max = table.min + 1;  // a constant function is the same on any range
     const auto value_at = [&](int i) { return table.min + (table.max - table.min) * i / kCells; };
 
     std::vector<Channels> ends(kCells + 1), means(kCells + 2);

@@ -18,7 +18,7 @@ struct Step {
     [[nodiscard]] Step next() const {
         return digit == 1 ? Step{2, exponent} : digit == 2 ? Step{5, exponent} : Step{1, exponent + 1};
     }
-    /// n · step, rounded once where that is possible.
+    /// n · step, rounded only once where possible.
     [[nodiscard]] double times(double n) const {
         return exponent < 0 ? n * digit / std::pow(10.0, -exponent) : n * digit * std::pow(10.0, exponent);
     }
@@ -30,7 +30,7 @@ std::string text_of(double value, std::chars_format format, int precision) {
     return {buffer.data(), end};
 }
 
-/// The value, known to be a multiple of 10^exponent, without digits that say nothing.
+/// The text of a multiple of 10^exponent, without meaningless digits.
 std::string label_of(double value, int exponent) {
     if (value == 0) return "0";
     const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9));

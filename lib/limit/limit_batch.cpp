@@ -188,7 +188,7 @@ void BatchEvaluator::finish(const PatchSource& source, std::vector<OpenQuery> op
     for (int level = 1; !open.empty(); ++level) {
         patch = refine_patch(patch, options_.scheme, 2);
         for (OpenQuery& at : open) enter_child(at);
-        evaluate_level(patch.mesh, build_topology(patch.mesh, TagCheck::Part), level, open);
+        evaluate_level(patch.mesh, build_topology(patch.mesh, InteriorCreases::Ignore), level, open);
         patch = sub_patch(patch, number_cells(open), 2);
     }
 }

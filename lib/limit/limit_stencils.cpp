@@ -85,7 +85,7 @@ private:
         detail::each_face_at(topology_, vertex,
                              [&](Index face, std::size_t k) { add(topology_.faces[face][(k + 2) % 4], first_.faces + face); });
         detail::each_cell_at(topology_, vertex, [&](Index cell, std::size_t) {
-            add(detail::across_cell(topology_, cell, vertex), first_.cells + topology_.cell_rank[cell]);
+            add(detail::across_cell(topology_, cell, vertex), first_.cells + topology_.cell_ordinal[cell]);
         });
         order_.resize(points_.size());
         for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;

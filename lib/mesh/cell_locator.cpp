@@ -165,7 +165,7 @@ std::optional<Vec3> CellLocator::invert(const Vec3& start, const Vec3& p) const 
         const Vec3 across = glm::cross(j[1], j[2]);
         const double determinant = glm::dot(j[0], across);
         if (determinant == 0.0) return std::nullopt;
-        // Cramer's rule; a value that is not finite fails the comparison above until the steps are used up.
+        // Cramer's rule. A value that is not finite never passes the comparison above, so the loop ends after all steps.
         uvw += Vec3(glm::dot(residual, across), glm::dot(j[0], glm::cross(residual, j[2])),
                     glm::dot(j[0], glm::cross(j[1], residual))) /
                determinant;

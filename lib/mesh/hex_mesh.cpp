@@ -32,7 +32,7 @@ std::vector<std::uint8_t> used_points(const HexMesh& mesh) {
     return used;
 }
 
-/// Whether a cell has 8 different points below the count; without branches, as nearly all have.
+/// Whether a cell has 8 different points below the count; without branches, since nearly all cells are valid.
 bool is_valid(const std::array<Index, 8>& cell, std::size_t points) {
     bool wrong = false;
     for (std::size_t k = 0; k < 8; ++k) {

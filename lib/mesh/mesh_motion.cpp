@@ -11,7 +11,7 @@ bool same_cells(const HexMesh& a, const HexMesh& b) {
 
 Attribute velocity_between(const HexMesh& before, const HexMesh& after, double time, const std::string& name) {
     if (!same_cells(before, after)) {
-        throw Error(ErrorCode::InvalidInput, "a velocity is between meshes of the same cells; these have others");
+        throw Error(ErrorCode::InvalidInput, "a velocity needs two meshes with the same cells; these differ");
     }
     if (!(time > 0)) throw Error(ErrorCode::InvalidInput, "the time between two meshes is not positive");
     Attribute velocity{name, 3, {}};

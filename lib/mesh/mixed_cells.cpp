@@ -1,8 +1,240 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/mixed_cells.h"
-
 #include "mixed_cells_split.h"
+
+#include <algorithm>
+#include <compare>
+#include <numeric>
+#include <string>
+
+#include "bucket_sort.h"
+#include "cell_shapes.h"
+#include "cut_cells.h"
 #include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+// The sorted corners of an edge, a face or a cell, which identify it; the rest of the array is kNone.
+template <std::size_t N>
+using Key = std::array<Index, N>;
+
+// of_slot: for each slot of a list of keys, the place of its key in `keys`
+template <std::size_t N>
+struct UniqueKeys {
+    std::vector<Key<N>> keys;  // each once, sorted
+    std::vector<Index> of_slot;
+};
+
+template <std::size_t N>
+UniqueKeys<N> unique_keys(const std::vector<Key<N>>& slots, std::size_t point_count) {
+    struct Record {
+        Key<N> key;
+        std::size_t slot;
+        auto operator<=>(const Record&) const = default;
+    };
+    const auto sorted = bucket_sort<Record>(
+        slots.size(), point_count,
+        [&](std::size_t i, const auto& sink) {
+            sink(Record{slots[i], i});
+        },
+        [](const Record& record) { return std::size_t{record.key[0]}; });
+    UniqueKeys<N> result;
+    result.of_slot.resize(slots.size());
+    for (const Record& record : sorted.records) {
+        if (result.keys.empty() || result.keys.back() != record.key) result.keys.push_back(record.key);
+        result.of_slot[record.slot] = static_cast<Index>(result.keys.size() - 1);
+    }
+    return result;
+}
+
+template <std::size_t N>
+std::string list(const Key<N>& key) {
+    std::string text;
+    for (const Index p : key) text += p == kNone ? "" : " " + std::to_string(p);
+    return text;
+}
+
+class Splitter {
+public:
+    Splitter(std::size_t point_count, std::vector<std::array<Index, 8>>&& hexes, MixedCells&& others)
+        : point_count_(point_count), hexes_(std::move(hexes)), others_(std::move(others)) {}
+
+    HexSplit split() {
+        collect(kHexShape, hexes_);
+        collect(kTetShape, others_.tets);
+        collect(kPrismShape, others_.prisms);
+        edges_ = unique_keys(edge_slots_, point_count_);
+        faces_ = unique_keys(face_slots_, point_count_);
+        cells_ = unique_keys(cell_slots_, point_count_);
+        refuse_twins();
+        number_points();
+        add_children(kHexShape, hexes_);
+        add_children(kTetShape, others_.tets);
+        add_children(kPrismShape, others_.prisms);
+        return std::move(result_);
+    }
+
+private:
+    template <class Shape, class Cells>
+    void collect(const Shape& shape, const Cells& cells) {
+        for (const auto& cell : cells) {
+            for (const auto& [a, b] : shape.edges)
+                edge_slots_.push_back({std::min(cell[a], cell[b]), std::max(cell[a], cell[b])});
+            for (const auto& face : shape.faces) {
+                Key<4> key{cell[face[0]], cell[face[1]], cell[face[2]], face[2] == face[3] ? kNone : cell[face[3]]};
+                std::sort(key.begin(), key.end());
+                face_slots_.push_back(key);
+            }
+            Key<8> key;
+            key.fill(kNone);
+            std::copy(cell.begin(), cell.end(), key.begin());
+            std::sort(key.begin(), key.end());
+            cell_slots_.push_back(key);
+        }
+    }
+
+    void refuse_twins() const {
+        if (cells_.keys.size() == cell_slots_.size()) return;
+        std::vector<std::uint8_t> seen(cells_.keys.size());
+        for (const Index cell : cells_.of_slot) {
+            if (seen[cell]++ == 0) continue;
+            throw Error(ErrorCode::InvalidInput, "two cells have the same corners: points" + list(cells_.keys[cell]),
+                        "splitting into hexahedra", "points are counted from 0");
+        }
+    }
+
+    void number_points() {
+        new_points_.assign(point_count_, kNone);
+        for (const auto& key : cells_.keys) {
+            for (const Index p : key) {
+                if (p != kNone) new_points_[p] = 0;
+            }
+        }
+        for (Index p = 0; p < point_count_; ++p) {
+            if (new_points_[p] != kNone) new_points_[p] = add_point(Key<1>{p});
+        }
+        first_edge_ = add_points(edges_.keys);
+        first_face_ = add_points(faces_.keys);
+        first_cell_ = add_points(cells_.keys);
+    }
+
+    template <std::size_t N>
+    Index add_points(const std::vector<Key<N>>& keys) {
+        const std::size_t first = result_.sources.size();
+        if (first + keys.size() >= kNone) throw Error(ErrorCode::InvalidInput, "too many cells to be split into hexahedra");
+        for (const auto& key : keys) add_point(key);
+        return static_cast<Index>(first);
+    }
+
+    template <std::size_t N>
+    Index add_point(const Key<N>& of) {
+        auto& [offsets, values] = result_.sources;
+        values.insert(values.end(), of.begin(), std::find(of.begin(), of.end(), kNone));
+        offsets.push_back(values.size());
+        return static_cast<Index>(offsets.size() - 2);
+    }
+
+    // The slots are visited in the order in which `collect` filled them.
+    template <class Shape, class Cells>
+    void add_children(const Shape& shape, const Cells& cells) {
+        for (const auto& cell : cells) {
+            for (std::size_t v = 0; v < Shape::kCorners; ++v) {
+                const auto [a, b, c] = shape.corner_edges[v];
+                const auto edge = [&](std::size_t end) {
+                    return first_edge_ + edges_.of_slot[edge_slot_ + shape.edge_between(v, end)];
+                };
+                const auto face = [&](std::size_t end, std::size_t other) {
+                    return first_face_ + faces_.of_slot[face_slot_ + shape.face_through(v, end, other)];
+                };
+                result_.cells.push_back({new_points_[cell[v]], edge(a), face(a, b), edge(b), edge(c), face(a, c),
+                                         first_cell_ + cells_.of_slot[cell_slot_], face(b, c)});
+            }
+            result_.parents.insert(result_.parents.end(), Shape::kCorners, static_cast<Index>(cell_slot_));
+            edge_slot_ += shape.edges.size();
+            face_slot_ += shape.faces.size();
+            ++cell_slot_;
+        }
+    }
+
+    std::size_t point_count_;
+    std::vector<std::array<Index, 8>> hexes_;
+    MixedCells others_;
+    std::vector<Key<2>> edge_slots_;
+    std::vector<Key<4>> face_slots_;
+    std::vector<Key<8>> cell_slots_;
+    UniqueKeys<2> edges_;
+    UniqueKeys<4> faces_;
+    UniqueKeys<8> cells_;
+    std::vector<Index> new_points_;  // for each point, kNone if it is not used
+    Index first_edge_ = 0, first_face_ = 0, first_cell_ = 0;
+    std::size_t edge_slot_ = 0, face_slot_ = 0, cell_slot_ = 0;
+    HexSplit result_;
+};
+
+template <std::size_t N>
+void check(std::size_t point_count, const std::vector<std::array<Index, N>>& cells, const std::string& kind) {
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        auto sorted = cells[c];
+        std::sort(sorted.begin(), sorted.end());
+        const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+        const std::string where = kind + " " + std::to_string(c);
+        if (sorted.back() >= point_count) {
+            throw Error(ErrorCode::InvalidInput, "there is no point " + std::to_string(sorted.back()), where);
+        }
+        if (twice != sorted.end()) {
+            throw Error(ErrorCode::InvalidInput, "point " + std::to_string(*twice) + " is a corner twice", where);
+        }
+    }
+}
+
+}  // namespace
+
+HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 8>> hexes, MixedCells others) {
+    check(points.size(), hexes, "hexahedron");
+    check(points.size(), others.tets, "tetrahedron");
+    check(points.size(), others.prisms, "prism");
+    check(points.size(), others.pyramids, "pyramid");
+    const std::size_t count = hexes.size() + others.tets.size() + others.prisms.size() + others.pyramids.size();
+    if (count == 0) throw Error(ErrorCode::InvalidInput, "there is no cell to be split into hexahedra");
+    if (points.size() >= kNone || count >= kNone / 8) {
+        throw Error(ErrorCode::InvalidInput, "too many cells to be split into hexahedra");
+    }
+    orient_mixed(points, hexes, others);
+    if (others.pyramids.empty()) return Splitter(points.size(), std::move(hexes), std::move(others)).split();
+
+    CutCells cut = cut_to_tets(hexes, others);
+    MixedCells tets;
+    tets.tets = std::move(cut.tets);
+    HexSplit result = Splitter(points.size(), {}, std::move(tets)).split();
+    for (Index& parent : result.parents) parent = cut.parents[parent];
+    result.tets_cut = cut.parents.size();
+    return result;
+}
+
+std::vector<Vec3> means(const IndexRows& sources, std::span<const Vec3> points) {
+    std::vector<Vec3> result(sources.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        Vec3 sum(0);
+        for (const Index p : sources[i]) sum += points[p];
+        result[i] = sum / static_cast<double>(sources[i].size());
+    }
+    return result;
+}
+
+std::vector<double> means(const IndexRows& sources, std::span<const double> values, std::size_t channels) {
+    std::vector<double> result(sources.size() * channels);
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+        for (std::size_t k = 0; k < channels; ++k) {
+            double sum = 0;
+            for (const Index p : sources[i]) sum += values[p * channels + k];
+            result[i * channels + k] = sum / static_cast<double>(sources[i].size());
+        }
+    }
+    return result;
+}
+
+}  // namespace subvol::detail
 
 namespace subvol {
 

@@ -9,11 +9,11 @@
 
 namespace subvol::detail {
 
-/// How a mixed mesh becomes one of hexahedra, apart from any values.
+/// The split of a mixed mesh into hexahedra, without any values.
 ///
 /// sources:  the points of the mixed mesh whose mean each new point is
-/// parents:  of each cell its parent's place among the hexes, tets, prisms and pyramids, counted through
-/// tets_cut: into how many tetrahedra all cells were cut first; 0 if there was no need
+/// parents:  the number of each cell's parent, counted through the hexes, tets, prisms and pyramids
+/// tets_cut: the number of tetrahedra into which all cells were cut first; 0 if that was not necessary
 struct HexSplit {
     IndexRows sources;
     std::vector<std::array<Index, 8>> cells;
@@ -21,10 +21,10 @@ struct HexSplit {
     std::size_t tets_cut = 0;
 };
 
-/// As `split_into_hexes`, of which it is the larger part; throws the same.
+/// The main part of `split_into_hexes`; throws the same.
 [[nodiscard]] HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 8>> hexes, MixedCells others);
 
-/// The values of the new points.
+/// The values of the new points: means over their sources.
 [[nodiscard]] std::vector<Vec3> means(const IndexRows& sources, std::span<const Vec3> points);
 [[nodiscard]] std::vector<double> means(const IndexRows& sources, std::span<const double> values, std::size_t channels);
 

@@ -7,20 +7,17 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::string_view kArray = "vtkGhostType";
-// Bits of the array: of cells a duplicate, one that is refined, a hidden one; of points a hidden one.
-constexpr unsigned kLeftOutCell = 1 | 8 | 32;
-constexpr unsigned kHiddenPoint = 2;
+constexpr unsigned kLeftOutCell = kDuplicateCell | kRefinedCell | kHiddenCell;
 
 bool is_ghosts(const FileArray& array) {
-    return array.name == kArray && array.components == 1;
+    return array.name == kGhostArray && array.components == 1;
 }
 
 bool has_bit(double value, unsigned bits) {
     return value >= 1 && value < 256 && (static_cast<unsigned>(value) & bits) != 0;
 }
 
-// Keeps the cells of one kind that `keeps` says of their place in the list.
+// Removes the cells for which keeps(cells, place in the list) is false. Returns how many.
 template <std::size_t N, class Keeps>
 std::size_t filter(FileCells<N>& cells, const Keeps& keeps) {
     std::size_t kept = 0;
@@ -38,7 +35,9 @@ std::size_t filter(FileCells<N>& cells, const Keeps& keeps) {
 
 template <class Keeps>
 std::size_t filter_all(MeshFile& found, const Keeps& keeps) {
-    return filter(found.hexes, keeps) + filter(found.tets, keeps) + filter(found.prisms, keeps) + filter(found.pyramids, keeps);
+    std::size_t dropped = 0;
+    each_kind(found, [&](auto& cells) { dropped += filter(cells, keeps); });
+    return dropped;
 }
 
 void drop_by_cells(MeshFile& found, const std::vector<double>& ghosts) {

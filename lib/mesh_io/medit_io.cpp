@@ -4,7 +4,8 @@
 #include <map>
 #include <set>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
 #include "output_file.h"
 #include "subvol/error.h"
 
@@ -12,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr Wording kWording{"vertex", "hex", 1};
+constexpr EntityNames kNames{"vertex", "hex", 1};
 
 bool is_keyword(std::string_view word) {
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -47,7 +48,7 @@ public:
             read_cells(keyword);
         }
         list_left_out();
-        return finish(std::move(found_), in_, file_, kWording, options_);
+        return assemble(std::move(found_), in_, file_, kNames, options_);
     }
 
 private:
@@ -92,14 +93,14 @@ private:
         const std::size_t count = in_.count({"Vertices"});
         found_.points.reserve(std::min(count, in_.room_for(4)));
         for (std::size_t v = 0; v < count; ++v) {
-            read_point(in_, found_, kWording, count);
+            read_point(in_, found_, kNames, count);
             in_.integer({"reference of vertex", static_cast<std::int64_t>(v + 1), count});
         }
     }
 
     void read_cells(std::string_view keyword) {
         if (keyword == "Hexahedra") {
-            read_cells(keyword, kWording, "a hexahedron", found_.hexes.corners);
+            read_cells(keyword, kNames, "a hexahedron", found_.hexes.corners);
         } else if (keyword == "Tetrahedra") {
             read_cells(keyword, {"vertex", "tetrahedron", 1}, "a tetrahedron", found_.tets.corners);
         } else if (keyword == "Pyramids") {
@@ -110,21 +111,21 @@ private:
     }
 
     template <std::size_t N>
-    void read_cells(std::string_view keyword, const Wording& wording, std::string_view kind,
+    void read_cells(std::string_view keyword, const EntityNames& names, std::string_view kind,
                     std::vector<std::array<Index, N>>& cells) {
         const std::size_t count = in_.count({keyword});
-        const std::string reference = "reference of " + std::string(wording.cell);
+        const std::string reference = "reference of " + std::string(names.cell_word);
         cells.reserve(cells.size() + std::min(count, in_.room_for(N + 1)));
         for (std::size_t c = 0; c < count; ++c) {
             const auto number = static_cast<std::int64_t>(c + 1);
             auto& cell = cells.emplace_back();
             std::size_t position = 0;
             for (std::size_t k = 0; k < N; ++k) {
-                cell[k] = read_vertex_index({wording.cell, number, count});
+                cell[k] = read_vertex_index({names.cell_word, number, count});
                 if (k == 0) position = in_.position();
             }
             in_.integer({reference, number, count});
-            check_corners(in_, position, cell, c, wording, kind);
+            check_corners(in_, position, cell, c, names, kind);
         }
     }
 
@@ -139,7 +140,7 @@ private:
         return static_cast<Index>(index - 1);
     }
 
-    // A section of another program may begin with anything; of the cells that are left out the count is told.
+    // Sections of other programs may begin with anything; the count of cells that are left out must be right, for the warning.
     std::size_t count_of_left_out(std::string_view keyword) {
         if (kVolumeCells.contains(keyword)) return in_.count({keyword});
         std::size_t count = 0;
@@ -152,7 +153,7 @@ private:
         while (!in_.at_end() && !is_keyword(in_.peek())) in_.word();
     }
 
-    // How the cells that are no hexes are called, and the other sections; a section that is empty is not worth a word.
+    // Warns of the cells and of the other sections that are left out, except empty ones.
     void list_left_out() {
         std::string cells;
         std::string sections;
@@ -167,7 +168,7 @@ private:
                 list += counted(count, volume->second[0], volume->second[1]);
             }
         }
-        report_left_out(found_, cells, file_);
+        add_left_out_warning(found_, cells, file_);
         if (!sections.empty()) found_.warnings.push_back("sections ignored: " + sections);
     }
 
@@ -216,7 +217,7 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const He
     std::vector<std::string> warnings;
     std::string names;
     for (const auto& attribute : mesh.attributes) names += (names.empty() ? "\"" : ", \"") + attribute.name + "\"";
-    if (!names.empty()) warnings.push_back(".mesh holds no attributes: " + names + " not written");
+    if (!names.empty()) warnings.push_back(".mesh cannot hold attributes: " + names + " not written");
     if (!mesh.creases.empty()) warnings.push_back(counted(mesh.creases.size(), "crease", "creases") + " not written");
     return warnings;
 }

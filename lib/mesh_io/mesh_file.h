@@ -2,18 +2,19 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "subvol/mesh_io.h"
-#include "subvol/mixed_cells.h"
+#include "subvol/index.h"
+#include "subvol/vec.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
 
-/// An array as a file holds it. at_cells: one tuple a cell of the file (of any kind), else one a point
+/// An array of a file. at_cells: one tuple for each cell of the file, of any kind; else one for each point
 struct FileArray {
     std::string name;
     int components = 1;
@@ -21,17 +22,17 @@ struct FileArray {
     std::vector<double> values;
 };
 
-/// The cells of one kind. numbers: the place of each among all the cells of the file, from 0; empty where no array asks for it
+/// The cells of one kind. numbers: the number of each among all cells of the file, from 0; empty if no array needs it
 template <std::size_t N>
 struct FileCells {
     std::vector<std::array<Index, N>> corners;
     std::vector<Index> numbers;
 };
 
-/// What a reader found, before it becomes a mesh.
+/// The contents of a file as a reader found them; `assemble` makes a mesh of them.
 ///
-/// prisms:     in either handedness, for formats differ; as MixedCells else
-/// not_finite: points with a coordinate that is not finite, and where the text has it: an error if a cell uses the point
+/// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
+/// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
 struct MeshFile {
     struct NotFinite {
         std::size_t point;
@@ -47,84 +48,54 @@ struct MeshFile {
     std::vector<std::string> warnings;
 };
 
-/// How a format calls and counts its points and cells. point_numbers: of each point, if they are not counted from `first`
-struct Wording {
-    std::string_view point;
-    std::string_view cell;
+/// Calls call(cells) for the FileCells of each kind.
+template <class File, class Call>
+void each_kind(File& file, const Call& call) {
+    call(file.hexes);
+    call(file.tets);
+    call(file.prisms);
+    call(file.pyramids);
+}
+
+/// A format's words for a point and a cell, and the number that it gives to the first of them, for messages.
+///
+/// point_numbers: the number of each point where they are not consecutive
+struct EntityNames {
+    std::string_view point_word;
+    std::string_view cell_word;
     std::size_t first;
     std::span<const std::int64_t> point_numbers = {};
 
-    [[nodiscard]] std::string name_point(std::size_t p) const {
-        return std::string(point) + " " +
+    /// "vertex 13" for point 12 of a format that counts from 1.
+    [[nodiscard]] std::string point(std::size_t p) const {
+        return std::string(point_word) + " " +
                (point_numbers.empty() ? std::to_string(p + first) : std::to_string(point_numbers[p]));
     }
-    [[nodiscard]] std::string name_cell(std::size_t c) const { return std::string(cell) + " " + std::to_string(c + first); }
+    [[nodiscard]] std::string cell(std::size_t c) const { return std::string(cell_word) + " " + std::to_string(c + first); }
 };
 
-/// Reads MEDIT ASCII.
-[[nodiscard]] ReadResult read_medit(std::string_view text, std::string_view file, const ReadOptions& options);
+/// Appends a point. position: where it was read in the text
+void add_point(MeshFile& file, const Vec3& point, std::size_t position);
 
-/// Reads MEDIT binary, versions 1 to 4.
-[[nodiscard]] ReadResult read_meshb(std::string_view text, std::string_view file, const ReadOptions& options);
-
-/// Reads legacy VTK, ASCII or BINARY, of every type but POLYDATA and FIELD.
-[[nodiscard]] ReadResult read_legacy_vtk(std::string_view text, std::string_view file, const ReadOptions& options);
-
-/// Reads VTK XML, UnstructuredGrid.
-[[nodiscard]] ReadResult read_vtu(std::string_view text, std::string_view file, const ReadOptions& options);
-
-/// Reads VTK XML, StructuredGrid, RectilinearGrid or ImageData: their cells are hexahedra.
-[[nodiscard]] ReadResult read_vts(std::string_view text, std::string_view file, const ReadOptions& options);
-[[nodiscard]] ReadResult read_vtr(std::string_view text, std::string_view file, const ReadOptions& options);
-[[nodiscard]] ReadResult read_vti(std::string_view text, std::string_view file, const ReadOptions& options);
-
-/// A file of the flow that belongs to a Plot3D grid; without a text there is none.
-struct Plot3dFlow {
-    std::string_view text;
-    std::string_view file;
-};
-
-/// Reads Plot3D's whole grids in three dimensions: text, Fortran's records or plain bytes, in either order and precision, of
-/// one or several blocks, with blanks or without.
-[[nodiscard]] ReadResult read_plot3d(std::string_view text, std::string_view file, const ReadOptions& options,
-                                     const Plot3dFlow& flow = {});
-
-/// Reads Gmsh, versions 2, 4.0 and 4.1, ASCII and binary.
-[[nodiscard]] ReadResult read_gmsh(std::string_view text, std::string_view file, const ReadOptions& options);
-
-/// Reads Exodus II, the last time step.
-///
-/// throws: Error(MissingCapability) for a file of HDF5 if this library is built without netCDF's
-[[nodiscard]] ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options);
-
-/// Appends a point that stands at a place in the text.
-void add_point(MeshFile& into, const Vec3& point, std::size_t position);
-
-/// Reads three coordinates of the point that comes next and appends it. in: a TextScanner or VtkValues; of: as in Place
+/// Reads three coordinates and appends them as a point. in: a TextScanner, VtkValues or GmshValues; of: as in Place
 template <class Numbers>
-void read_point(Numbers& in, MeshFile& into, const Wording& wording, std::size_t of) {
-    const Place place{wording.point, static_cast<std::int64_t>(into.points.size() + wording.first), of};
+void read_point(Numbers& in, MeshFile& file, const EntityNames& names, std::size_t of) {
+    const Place place{names.point_word, static_cast<std::int64_t>(file.points.size() + names.first), of};
     Vec3 point;
     for (int i = 0; i < 3; ++i) point[i] = in.real(place);
-    add_point(into, point, in.position());
+    add_point(file, point, in.position());
 }
 
-/// Refuses a cell that has a corner twice. position: its place in the text; cell: its number, from 0; kind: "a hexahedron"
+/// Refuses a cell with the same corner twice. position: of the cell in the text; cell: its number, from 0; kind: "a hexahedron"
 void check_corners(const TextScanner& in, std::size_t position, std::span<const Index> corners, std::size_t cell,
-                   const Wording& wording, std::string_view kind);
+                   const EntityNames& names, std::string_view kind);
 
-/// Tells of the cells that are left out, as a list with their counts; refuses a file without any others.
-void report_left_out(MeshFile& found, const std::string& list, std::string_view file);
+/// Appends a warning about the cells that the reader left out; refuses a file that has no other cells.
+///
+/// list: their kinds and counts, such as "4 lines, 2 quads"; empty if there are none
+void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file);
 
-/// Makes the mesh of what was found: ghosts dropped, points welded, left-handed hexes turned, other cells split, cell arrays
-/// carried over to the points, all checked.
-[[nodiscard]] ReadResult finish(MeshFile&& found, const TextScanner& in, std::string_view file, const Wording& wording,
-                                const ReadOptions& options);
-
-/// Writes MEDIT ASCII, version 2.
-std::vector<std::string> write_medit(const std::filesystem::path& path, const HexMesh& mesh);
-
-/// Writes VTK XML, UnstructuredGrid, compressed.
-std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexMesh& mesh);
+/// A flag for each point: whether a cell uses it.
+[[nodiscard]] std::vector<std::uint8_t> used_points(const MeshFile& found);
 
 }  // namespace subvol::detail

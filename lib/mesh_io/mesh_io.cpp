@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "mesh_file.h"
+#include "formats.h"
 #include "subvol/error.h"
+#include "text_scanner.h"
 
 namespace subvol {
 
@@ -12,16 +13,37 @@ using namespace detail;
 
 namespace {
 
-std::string format_of(const std::filesystem::path& path) {
-    return upper_case(path.extension().string());
+bool is_left_out(const MeshFormat& format, bool writable_only) {
+    return writable_only && !format.write;
 }
 
-// The flow has the grid's name.
-ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptions& options) {
-    const std::filesystem::path flow = std::filesystem::path(path).replace_extension(".q");
-    const std::string grid_text = read_text(path), flow_file = flow.string();
-    const std::string flow_text = std::filesystem::exists(flow) ? read_text(flow) : std::string();
-    return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
+// ".mesh: MEDIT; .xyz, .p3d: Plot3D"; neighbouring formats of one name share an entry.
+std::string list_formats(bool writable_only) {
+    std::string list;
+    std::string_view name;
+    for (const MeshFormat& format : mesh_formats()) {
+        if (is_left_out(format, writable_only)) continue;
+        const bool new_entry = format.name != name;
+        if (new_entry && !name.empty()) list += ": " + std::string(name) + "; ";
+        name = format.name;
+        for (const std::string_view extension : format.extensions) {
+            if (extension.empty()) continue;
+            const bool first = new_entry && extension == format.extensions.front();
+            list += (first ? "" : ", ") + std::string(extension);
+        }
+    }
+    return list + ": " + std::string(name);
+}
+
+std::vector<std::string> list_extensions(bool writable_only) {
+    std::vector<std::string> extensions;
+    for (const MeshFormat& format : mesh_formats()) {
+        if (is_left_out(format, writable_only)) continue;
+        for (const std::string_view extension : format.extensions) {
+            if (!extension.empty()) extensions.emplace_back(extension);
+        }
+    }
+    return extensions;
 }
 
 [[noreturn]] void refuse_format(const std::filesystem::path& path, const std::string& verb, const std::string& allowed) {
@@ -36,29 +58,24 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
         throw Error(ErrorCode::InvalidInput, "points cannot be welded within " + std::to_string(*options.weld), path.string(),
                     "0 or a length");
     }
-    const std::string format = format_of(path);
-    if (format == ".MESH") return read_medit(read_text(path), path.string(), options);
-    if (format == ".MESHB") return read_meshb(read_text(path), path.string(), options);
-    if (format == ".VTK") return read_legacy_vtk(read_text(path), path.string(), options);
-    if (format == ".VTU") return read_vtu(read_text(path), path.string(), options);
-    if (format == ".VTS") return read_vts(read_text(path), path.string(), options);
-    if (format == ".VTR") return read_vtr(read_text(path), path.string(), options);
-    if (format == ".VTI") return read_vti(read_text(path), path.string(), options);
-    if (format == ".XYZ" || format == ".P3D") return read_grid_and_flow(path, options);
-    if (format == ".MSH") return read_gmsh(read_text(path), path.string(), options);
-    if (format == ".E" || format == ".EXO" || format == ".EX2" || format == ".G") {
-        return read_exodus(read_text(path), path.string(), options);
-    }
-    refuse_format(path, "read",
-                  ".mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti: VTK XML; .msh: Gmsh; .xyz, .p3d: Plot3D; "
-                  ".e, .exo, .ex2, .g: Exodus II");
+    const MeshFormat* format = format_of(path);
+    if (!format) refuse_format(path, "read", list_formats(false));
+    return format->read(path, options);
 }
 
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh) {
-    const std::string format = format_of(path);
-    if (format != ".MESH" && format != ".VTU") refuse_format(path, "written", ".mesh: MEDIT ASCII; .vtu: VTK XML");
+    const MeshFormat* format = format_of(path);
+    if (!format || !format->write) refuse_format(path, "written", list_formats(true));
     validate(mesh);
-    return format == ".MESH" ? write_medit(path, mesh) : write_vtu(path, mesh);
+    return format->write(path, mesh);
+}
+
+std::vector<std::string> readable_mesh_extensions() {
+    return list_extensions(false);
+}
+
+std::vector<std::string> writable_mesh_extensions() {
+    return list_extensions(true);
 }
 
 }  // namespace subvol

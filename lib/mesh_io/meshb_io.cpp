@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
 #include "number_type.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr Wording kWording{"vertex", "hex", 1};
+constexpr EntityNames kNames{"vertex", "hex", 1};
 
 // Sections by their numbers in the format.
 constexpr std::int64_t kDimension = 3;
@@ -19,7 +20,7 @@ constexpr std::int64_t kHexahedra = 10;
 constexpr std::int64_t kPyramids = 49;
 constexpr std::int64_t kEnd = 54;
 
-// MEDIT's binary files: sections that each say where the next one begins.
+// MEDIT's binary files: sections, each of which has the position of the next one.
 class MeshbReader {
 public:
     MeshbReader(std::string_view text, std::string_view file, const ReadOptions& options)
@@ -44,15 +45,16 @@ public:
             read_cells(kPrisms, "prism", "a prism", found_.prisms);
             read_cells(kPyramids, "pyramid", "a pyramid", found_.pyramids);
         }
-        report_left_out(found_, left_out_, file_);
-        return finish(std::move(found_), in_, file_, kWording, options_);
+        add_left_out_warning(found_, left_out_, file_);
+        return assemble(std::move(found_), in_, file_, kNames, options_);
     }
 
 private:
-    // The number 1 tells the order of the bytes. Version 2: reals of 8 bytes; 3: positions too; 4: integers too.
+    // The file begins with the number 1, from which the byte order follows. In version 1 all numbers have 4 bytes; in version 2
+    // reals have 8, in 3 also positions, in 4 also integers.
     void read_header() {
         if (in_.bytes_left() == 0) in_.fail("the file is empty");
-        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"order of bytes"});
+        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"byte order"});
         for (const std::endian order : {std::endian::little, std::endian::big}) {
             order_ = order;
             if (integer_from(one, NumberType::Int32, order) == 1) break;
@@ -67,7 +69,7 @@ private:
         integer_ = version < 4 ? NumberType::Int32 : NumberType::Int64;
     }
 
-    // The next section always begins further on: the walk ends.
+    // Each section begins after the one before it, so the loop ends.
     void find_sections() {
         while (in_.bytes_left() > 0) {
             const std::int64_t section = number({"section"}, NumberType::Int32);
@@ -78,9 +80,9 @@ private:
                 in_.fail("there is a second section of the kind " + std::to_string(section));
             }
             if (next == 0) return;
-            if (next <= static_cast<std::int64_t>(begin)) in_.fail("the sections go round in a circle");
+            if (next <= static_cast<std::int64_t>(begin)) in_.fail("a section begins before the one that names it");
             if (static_cast<std::size_t>(next) > in_.position() + in_.bytes_left()) {
-                in_.fail("the next section is said to begin at byte " + std::to_string(next) + ", behind the end of the file");
+                in_.fail("the next section should begin at byte " + std::to_string(next) + ", after the end of the file");
             }
             in_.seek(static_cast<std::size_t>(next));
         }
@@ -90,7 +92,8 @@ private:
         return integer_from(in_.bytes(size_of(type), place), type, order_);
     }
 
-    // How many things a section has, each of so many bytes: no more than the rest of the file holds.
+    // Reads the count at the beginning of a section. bytes: of each item; refuses a count that the rest of the file is too
+    // short for
     std::size_t count_in(std::int64_t section, const Place& place, std::size_t bytes) {
         in_.seek(sections_[section]);
         const std::size_t count = in_.as_count(number(place, integer_), place);
@@ -117,13 +120,13 @@ private:
     template <std::size_t N>
     void read_cells(std::int64_t section, std::string_view name, std::string_view kind, FileCells<N>& into) {
         if (!sections_.contains(section)) return;
-        const Wording wording{kWording.point, name, kWording.first};
+        const EntityNames names{kNames.point_word, name, kNames.first};
         const std::size_t count = count_in(section, {name}, (N + 1) * size_of(integer_));
         into.corners.resize(count);
         for (std::size_t c = 0; c < count; ++c) {
             const Place place{name, static_cast<std::int64_t>(c + 1), count};
             for (Index& corner : into.corners[c]) corner = read_corner(place);
-            check_corners(in_, in_.position(), into.corners[c], c, wording, kind);
+            check_corners(in_, in_.position(), into.corners[c], c, names, kind);
             number(place, integer_);
         }
     }
@@ -156,7 +159,7 @@ private:
     NumberType real_ = NumberType::Float64;
     NumberType position_ = NumberType::Int32;
     NumberType integer_ = NumberType::Int32;
-    std::map<std::int64_t, std::size_t> sections_;  // where the count of each stands
+    std::map<std::int64_t, std::size_t> sections_;  // the position of the count of each
     MeshFile found_;
     std::string left_out_;
 };

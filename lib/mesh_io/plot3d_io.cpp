@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
+#include "ghost_cells.h"
 #include "number_type.h"
 #include "structured_grid.h"
 #include "subvol/error.h"
@@ -11,18 +13,20 @@ namespace subvol::detail {
 
 namespace {
 
-// How numbers lie in a file. Sizes are in bytes, or in words of a text, of which Fortran's marks around a record are none.
+// The encoding of numbers. Sizes are in bytes, in a text file in words.
+//
+// mark: size of the length that Fortran writes before and after each record; 0 if there is none
 struct Encoding {
     bool text = false;
     std::endian order = std::endian::little;
     std::size_t integer = 4, real = 4, mark = 0;
 };
 
-// Nothing in the format says which of these a file is: the one whose size is the file's.
+// The layout of a file. The file does not state it: it is the first layout that gives the size of the file.
 struct Layout {
     Encoding encoding;
-    bool several = false;  // blocks, so that their number comes first
-    bool blanks = false;   // an integer a point, 0 where there is no flow
+    bool several = false;  // the file begins with the number of blocks
+    bool blanks = false;   // one integer for each point, 0 where there is no flow
     std::vector<StructuredGrid> blocks;
 };
 
@@ -91,8 +95,8 @@ std::optional<std::vector<StructuredGrid>> read_sizes(Numbers& in, bool several)
     return blocks;
 }
 
-// The size of a file: the header, then a record a block with so many reals and integers a point; before it `extra` reals, if
-// any.
+// The size of a file with this layout: the header, then for each block a record with so many reals and integers per point,
+// after a record of `extra` reals if there are any.
 std::size_t size_of_file(const Layout& layout, std::size_t reals, std::size_t integers, std::size_t extra) {
     const Encoding& encoding = layout.encoding;
     const auto record = [&](std::size_t size) { return size + 2 * encoding.mark; };
@@ -105,7 +109,7 @@ std::size_t size_of_file(const Layout& layout, std::size_t reals, std::size_t in
     return size;
 }
 
-// What is read: the places (3 reals a point, perhaps an integer), or the flow (5 reals a point, 4 before each block).
+// The kinds of files: coordinates (3 reals per point, perhaps an integer) and flow (5 reals per point, 4 before each block).
 struct Kind {
     std::size_t reals, extra;
 };
@@ -138,7 +142,7 @@ std::optional<Layout> layout_of(const TextScanner& in, const Kind& kind) {
     return std::nullopt;
 }
 
-// All x of a block, then all y, then all z, then its blanks.
+// Reads all x of a block, then all y, then all z, then its blanks.
 void read_block(Numbers& in, const Layout& layout, const StructuredGrid& grid, MeshFile& found, FileArray& ghosts) {
     const std::size_t first = found.points.size(), count = grid.point_count();
     std::vector<Vec3> points(count);
@@ -148,20 +152,19 @@ void read_block(Numbers& in, const Layout& layout, const StructuredGrid& grid, M
     }
     for (const Vec3& point : points) add_point(found, point, in.position());
     for (std::size_t p = 0; layout.blanks && p < count; ++p) {
-        constexpr double kHiddenPoint = 2;  // as VTK says it
         ghosts.values.push_back(in.integer({"blank"}) == 0 ? kHiddenPoint : 0);
     }
     in.mark();
     add_hexes(found, grid, first, found.hexes.corners.size());
 }
 
-// Densities, the momenta's three components, energies: one after the other for all points of a block.
+// For each block the file has the densities of all points, then each of the three components of momentum, then the energies.
 void read_flow(std::string_view text, std::string_view file, const Layout& places, MeshFile& found) {
     const TextScanner in(text, file, TextScanner::Comments::None);
     const auto layout = layout_of(in, kFlow);
     const auto same = [](const StructuredGrid& a, const StructuredGrid& b) { return a.points == b.points; };
     if (!layout || !std::ranges::equal(layout->blocks, places.blocks, same)) {
-        found.warnings.push_back("the flow in " + std::string(file) + " is not of these blocks: ignored");
+        found.warnings.push_back("the flow in " + std::string(file) + " does not have these blocks: ignored");
         return;
     }
     Numbers numbers(in, layout->encoding);
@@ -191,24 +194,25 @@ void read_flow(std::string_view text, std::string_view file, const Layout& place
 }  // namespace
 
 ReadResult read_plot3d(std::string_view text, std::string_view file, const ReadOptions& options, const Plot3dFlow& flow) {
-    constexpr Wording kWording{"point", "cell", 0};
+    constexpr EntityNames kNames{"point", "cell", 0};
     TextScanner in(text, file, TextScanner::Comments::None);
     if (text.empty()) in.fail("the file is empty");
     const auto layout = layout_of(in, kPlaces);
     if (!layout) {
-        throw Error(ErrorCode::InvalidInput, "not a Plot3D grid: its size is not that of the blocks that it would begin with",
+        throw Error(ErrorCode::InvalidInput,
+                    "not a Plot3D grid: the size of the file does not match the sizes of the blocks at its beginning",
                     std::string(file), "whole grids in three dimensions, as text, records or plain bytes");
     }
     if (!layout->encoding.text) in.name_bytes();
     Numbers numbers(in, layout->encoding);
     static_cast<void>(read_sizes(numbers, layout->several));
     MeshFile found;
-    FileArray ghosts{"vtkGhostType", 1, false, {}};
+    FileArray ghosts{std::string(kGhostArray), 1, false, {}};
     for (const StructuredGrid& grid : layout->blocks) read_block(numbers, *layout, grid, found, ghosts);
     if (!flow.text.empty()) read_flow(flow.text, flow.file, *layout, found);
     if (layout->blanks) found.arrays.push_back(std::move(ghosts));
-    report_left_out(found, "", file);
-    return finish(std::move(found), in, file, kWording, options);
+    add_left_out_warning(found, "", file);
+    return assemble(std::move(found), in, file, kNames, options);
 }
 
 }  // namespace subvol::detail

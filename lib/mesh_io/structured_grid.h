@@ -7,13 +7,13 @@
 
 namespace subvol::detail {
 
-/// A block of points and of the hexahedra between them, both counted along i first, then along j, then along k.
+/// A block of points and the hexahedra between them, both counted along i first, then j, then k.
 ///
-/// points: how many there are along each
+/// points: their number along i, j and k
 struct StructuredGrid {
     std::array<std::size_t, 3> points{};
 
-    /// How many; kNone if they are more than an Index can count.
+    /// The number of points and of cells; kNone if it is out of the range of Index.
     [[nodiscard]] std::size_t point_count() const;
     [[nodiscard]] std::size_t cell_count() const;
 };
@@ -21,13 +21,14 @@ struct StructuredGrid {
 /// "3 x 4 x 5 points"
 [[nodiscard]] std::string size_text(const StructuredGrid& grid);
 
-/// How many points a grid may have whose points its file does not list: few, or as many as the file can hold values for.
+/// A limit for the points of a grid that the file does not list one by one: a fixed number, plus one for each value that the
+/// file can have.
 [[nodiscard]] std::size_t most_points(std::size_t values);
 
-/// Appends the points of a grid whose planes are parallel to the axes. at: where they cut each axis
+/// Appends the points of a grid with planes perpendicular to the axes. at: the coordinates of the planes on each axis
 void add_points(MeshFile& into, const std::array<std::vector<double>, 3>& at, std::size_t position);
 
-/// Appends the hexahedra. first_point, first_cell: the numbers of the block's first ones among all of the file
+/// Appends the hexahedra. first_point, first_cell: the numbers in the file of the first point and cell of the block
 void add_hexes(MeshFile& into, const StructuredGrid& grid, std::size_t first_point, std::size_t first_cell);
 
 }  // namespace subvol::detail

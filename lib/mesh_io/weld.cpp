@@ -13,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-// The cube of a lattice that a point lies in, as wide as the tolerance; without one the coordinates themselves.
+// The cube of a lattice that holds a point: as wide as the tolerance. Without a tolerance, the coordinates themselves.
 using Cube = std::array<double, 3>;
 
 struct CubeHash {
@@ -29,7 +29,7 @@ public:
     Welder(std::span<const Vec3> points, double tolerance)
         : points_(points), tolerance_(tolerance), before_(points.size(), kNone) {}
 
-    /// The first of the points that stayed so far at the place of `p`; `p` itself, which then stays, if there is none.
+    /// The first of the points kept so far that `p` coincides with; `p` itself, which is then kept, if there is none.
     Index join(Index p) {
         const Cube home = cube_of(points_[p]);
         const Index found = tolerance_ > 0 ? first_around(p, home) : first_in(p, home);
@@ -66,20 +66,17 @@ private:
     std::span<const Vec3> points_;
     double tolerance_;
     std::unordered_map<Cube, Index, CubeHash> last_in_;
-    std::vector<Index> before_;  // of each point that stayed the one before in its cube
+    std::vector<Index> before_;  // for each point that is kept, the one before it in its cube
 };
 
 template <class Call>
 void for_each_cell(MeshFile& found, const Call& call) {
-    std::ranges::for_each(found.hexes.corners, call);
-    std::ranges::for_each(found.tets.corners, call);
-    std::ranges::for_each(found.prisms.corners, call);
-    std::ranges::for_each(found.pyramids.corners, call);
+    each_kind(found, [&](auto& cells) { std::ranges::for_each(cells.corners, call); });
 }
 
 }  // namespace
 
-void weld_points(MeshFile& found, double tolerance, std::string_view file, const Wording& wording) {
+void weld_points(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names) {
     std::vector<Index> joined(found.points.size(), kNone);
     for_each_cell(found, [&](const auto& cell) {
         for (const Index p : cell) joined[p] = p;
@@ -96,8 +93,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
             for (std::size_t j = 0; j < k; ++j) {
                 if (cell[j] != joined[cell[k]]) continue;
                 throw Error(ErrorCode::InvalidInput,
-                            "a cell has " + wording.name_point(cell[j]) + " and " + wording.name_point(cell[k]) +
-                                ", which would be welded",
+                            "a cell has " + names.point(cell[j]) + " and " + names.point(cell[k]) + ", which would be welded",
                             std::string(file), "a smaller tolerance, or no welding");
             }
             cell[k] = joined[cell[k]];

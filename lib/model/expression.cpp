@@ -63,7 +63,7 @@ void check_finite(const std::string& expression, std::span<const Vec3> points, s
 }  // namespace
 
 std::vector<double> evaluate_expression(const std::string& expression, std::span<const Vec3> points) {
-    constexpr std::size_t kGrain = 16384;  // points a parser: many enough that building it does not count
+    constexpr std::size_t kGrain = 16384;  // points per parser: enough to make the cost of building it negligible
     std::vector<double> values(points.size());
     try {
         Evaluator(expression).check(expression);

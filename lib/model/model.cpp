@@ -3,11 +3,14 @@
 
 #include <array>
 
-#include "model_parts.h"
+#include "model_block.h"
 #include "model_solid.h"
 #include "subvol/error.h"
 
 namespace subvol {
+
+using namespace detail;
+
 namespace {
 
 constexpr int kMinResolution = 2, kMaxResolution = 512;

@@ -4,7 +4,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -39,7 +39,7 @@ double leg(const Vec3& m) {
         {rod(m, {3.5, 0, -15}, {5.5, 0, -26.6}, 2.8, 2.1), ellipsoid(m - Vec3(6, -2.2, -27.6), {3.6, 5.6, 2.6})});
 }
 
-/// A visitor who looks to -y, 61 high; left and right alike.
+/// A visitor who looks to -y, 61 high; left and right are mirror images.
 double alien(const Vec3& q) {
     const Vec3 m(std::abs(q.x), q.y, q.z);
     const double neck = rod(m, {0, 0, 2}, {0, 0, -5}, 2.4, 2.8);
@@ -57,4 +57,4 @@ constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 2, .amount = 0.
 constinit const Solid kAlien{
     .distance = alien, .transition = kCellTransition, .half = {18, 12.5, 32}, .main = 2, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

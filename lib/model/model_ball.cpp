@@ -2,16 +2,20 @@
 #include <array>
 #include <cmath>
 
-#include "model_parts.h"
+#include "model_block.h"
 #include "subvol/model.h"
 
 namespace subvol {
+
+using namespace detail;
+
 namespace {
 
-constexpr double kCore = 0.5;   // size of the inner cube: its faces' centres lie at this radius
-constexpr double kBulge = 0.5;  // of the inner cube towards a sphere; .5 makes the worst scaled Jacobian best (.74)
+constexpr double kCore = 0.5;  // size of the inner cube: the radius of its faces' centres
+constexpr double kBulge =
+    0.5;  // how far the inner cube is rounded towards a sphere; .5 gives the best worst scaled Jacobian (.74)
 
-/// The cube [-1,1]³ onto the unit ball, its surface onto the sphere; smooth.
+/// Maps the cube [-1,1]³ smoothly onto the unit ball, its surface onto the sphere.
 /// Source: P. Nowell, "Mapping a cube to a sphere" (2005).
 Vec3 ball_from_cube(const Vec3& p) {
     const Vec3 s = p * p;
@@ -59,7 +63,7 @@ private:
     std::vector<Index> lattice_ids_;
 };
 
-/// Layers of points from the core's surface (already in the mesh, with parameters in `cube`) to the sphere.
+/// Adds layers of points from the core's surface (which is already in the mesh, with parameters in `cube`) to the sphere.
 void add_shell_points(HexMesh& mesh, const std::vector<Vec3>& cube, const Shell& shell, Index layers) {
     for (Index layer = 1; layer <= layers; ++layer) {
         const double t = static_cast<double>(layer) / static_cast<double>(layers);
@@ -102,7 +106,7 @@ std::optional<double> BallField::value(const Vec3& x) const {
     return density(x);
 }
 
-HexMesh model::make_ball(Index resolution) {
+HexMesh detail::model::make_ball(Index resolution) {
     const Index layers = (resolution + 1) / 2;
     HexMesh mesh = parameter_block({resolution, resolution, resolution});
     const std::vector<Vec3> cube = mesh.points;

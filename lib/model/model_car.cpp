@@ -4,7 +4,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -12,13 +12,13 @@ constexpr Vec3 kWheel{24, 17.5, -10};  // centre of the left front wheel; the ot
 
 double hull(const Vec3& m) {
     const double tub = box(m - Vec3(0, 0, -5), {38.5, 18, 6.5}, 4);
-    const Vec3 narrow(m.x, 0.6 * m.y, m.z);  // what is round in it is wider than high
+    const Vec3 narrow(m.x, 0.6 * m.y, m.z);  // round parts are wider than high in it
     const double bonnet = rod(narrow, {12, 0, 0}, {32, 0, -3}, 4.5, 3.5);
     const double boot = rod(narrow, {-20, 0, 0}, {-34, 0, -2}, 4.5, 3.5);
     return kBlend.join({tub, bonnet, boot});
 }
 
-/// Narrower towards the roof, on four corner posts and one in the middle of each side.
+/// The cabin is narrower towards the roof, and has posts at its four corners and in the middle of each side.
 double cabin(const Vec3& m) {
     const Vec3 level(0, 0, 7.5);  // of the windows
     const double shell = box(m - Vec3(-5, 0, 7), {22, 16, 9.5}, 4);
@@ -41,7 +41,7 @@ double lamps(const Vec3& m) {
     return kBlend.join({ball(m - Vec3(37, 11, -1.5), 4.2), box(m - Vec3(-38.5, 13, -3), {1.6, 2.2, 2.6})});
 }
 
-/// A toy car driving to +x, 83 long; left and right alike.
+/// A toy car driving to +x, 83 long; left and right are mirror images.
 double car(const Vec3& q) {
     const Vec3 m(q.x, std::abs(q.y), q.z);
     const Vec3 quarter(std::abs(m.x), m.y, m.z);  // front and rear have the same wheels and bumpers
@@ -61,4 +61,4 @@ constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 0, .amount = 0.
 constinit const Solid kCar{
     .distance = car, .transition = kCellTransition, .half = {44, 25, 19.5}, .main = 0, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

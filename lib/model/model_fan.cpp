@@ -5,7 +5,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -43,4 +43,4 @@ constexpr std::array<Deformation, 2> kDeformation{Twist{.axis = 2, .rate = 0.011
 constinit const Solid kFan{
     .distance = fan, .transition = kCellTransition, .half = {28, 10, 28}, .main = 2, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

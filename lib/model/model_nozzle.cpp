@@ -3,39 +3,41 @@
 #include <array>
 #include <cmath>
 
-#include "model_deformation.h"
-#include "model_parts.h"
+#include "model_block.h"
 #include "subvol/model.h"
 
 namespace subvol {
+
+using namespace detail;
+
 namespace {
 
 constexpr double kThroat = 0.21;      // radius where the gas is as fast as sound
-constexpr double kCore = 0.5;         // half the core square's side, of the radius
-constexpr double kBulge = 0.5;        // of the core's square towards a disk
+constexpr double kCore = 0.5;         // half the side of the core square, relative to the radius
+constexpr double kBulge = 0.5;        // how far the core square is rounded towards a disk, in [0,1]
 constexpr double kBoundaryLayer = 6;  // exponent of the profile across the flow: the layer takes about a tenth of the radius
 
 constexpr std::array<model::Deformation, 2> kDeformation{model::Sway{.along = 0, .towards = 1, .amount = 0.1, .rate = 2.2},
                                                          model::Bend{.along = 0, .towards = 2, .radius = 2.6}};
 
-/// From .15 at the inlet to 3 at the outlet, where the cross-sections are about the same.
+/// The Mach number: from .15 at the inlet to 3 at the outlet, which have about the same cross-section.
 double mach(double s) {
     return std::exp(-0.3993 + 1.4979 * s);
 }
 
-/// Of the cross-section at s: the isentropic relation of area and Mach number for a heat capacity ratio of 1.4.
+/// The radius of the cross-section at s, by the isentropic relation of area and Mach number for a heat capacity ratio of 1.4.
 double radius(double s) {
     const double m = mach(s), temperature = (1 + 0.2 * m * m) / 1.2;
     return kThroat * std::sqrt(temperature * temperature * temperature / m);
 }
 
-/// Of the core of the flow, relative to the fastest a gas at rest can become.
+/// The speed in the core of the flow, relative to the greatest speed that a gas from rest can reach.
 double core_speed(double s) {
     const double m2 = mach(s) * mach(s);
     return std::sqrt(0.2 * m2 / (1 + 0.2 * m2));
 }
 
-/// The square [-1,1]² onto the unit disk, its rim onto the circle; smooth.
+/// Maps the square [-1,1]² smoothly onto the unit disk, its rim onto the circle.
 Vec2 disk_from_square(const Vec2& p) {
     return {p.x * std::sqrt(1 - 0.5 * p.y * p.y), p.y * std::sqrt(1 - 0.5 * p.x * p.x)};
 }
@@ -71,7 +73,7 @@ void add_core(Section& section, Index n) {
     }
 }
 
-/// The core's points are given as those of the square.
+/// Adds rings around the core, whose points are still those of the square.
 void add_rings(Section& section, const std::vector<Index>& inner, Index rings) {
     const auto around = static_cast<Index>(inner.size()), core = static_cast<Index>(section.points.size());
     const auto point = [&](Index layer, Index k) { return layer == 0 ? inner[k] : core + (layer - 1) * around + k; };
@@ -142,7 +144,7 @@ std::optional<double> NozzleField::value(const Vec3& x) const {
     return density(p);
 }
 
-HexMesh model::make_nozzle(Index resolution) {
+HexMesh detail::model::make_nozzle(Index resolution) {
     const Index across = std::max<Index>(1, (resolution + 2) / 4), rings = std::max<Index>(1, (5 * resolution + 24) / 48);
     HexMesh mesh = extruded(o_grid(across, rings), resolution);
     Attribute field{.name = "density", .channels = 1, .values = {}};

@@ -3,7 +3,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 // In world units, in which two cells of the default lattice are .0625 long.
@@ -39,4 +39,4 @@ constexpr std::array<Deformation, 2> kDeformation{Twist{.axis = 2, .rate = 0.654
 constinit const Solid kPawn{
     .distance = pawn, .transition = kTransition, .half = {0.5, 0.5, 1}, .main = 2, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

@@ -4,7 +4,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -63,7 +63,7 @@ double cow_catcher(const Vec3& m) {
     return kBlend.join({wedge, beam});
 }
 
-/// A steam engine driving to +x, 106 long, its wheels' rims at z = -21; left and right alike.
+/// A steam engine driving to +x, 106 long, its wheels' rims at z = -21; left and right are mirror images.
 double train(const Vec3& q) {
     const Vec3 m(q.x, std::abs(q.y), q.z);
     const double frame = box(m - Vec3(-2, 0, -10), {46, 9, 4});
@@ -80,4 +80,4 @@ constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 0, .amount = 0.
 constinit const Solid kTrain1{
     .distance = train, .transition = kCellTransition, .half = {56, 22, 23.5}, .main = 0, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

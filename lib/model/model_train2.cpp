@@ -5,7 +5,7 @@
 
 #include "model_solid.h"
 
-namespace subvol::model {
+namespace subvol::detail::model {
 namespace {
 
 constexpr Blend kBlend = kCellBlend;
@@ -49,7 +49,7 @@ double wagon(const Vec3& m) {
     return kBlend.join({hull, roof, bogie(m - Vec3(-58, 0, -8.8)), bogie(m - Vec3(-19, 0, -8.8))});
 }
 
-/// A streamlined engine driving to +x and its wagon, 144 long; left and right alike.
+/// A streamlined engine driving to +x and its wagon, 144 long; left and right are mirror images.
 double train(const Vec3& q) {
     const Vec3 m(q.x, std::abs(q.y), q.z);
     const double coupling = rod(m, {-8, 0, -8}, {10, 0, -8}, 2.2, 2.2);
@@ -66,4 +66,4 @@ constexpr std::array<Deformation, 3> kDeformation{Sway{.along = 0, .towards = 1,
 constinit const Solid kTrain2{
     .distance = train, .transition = kCellTransition, .half = {76, 20, 16.5}, .main = 0, .deformation = kDeformation};
 
-}  // namespace subvol::model
+}  // namespace subvol::detail::model

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "model_deformation.h"
-#include "model_parts.h"
+#include "model_block.h"
 #include "subvol/model.h"
 
 namespace subvol {
+
+using namespace detail;
+
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -47,7 +49,7 @@ std::optional<double> TwistField::value(const Vec3& x) const {
     return density(p);
 }
 
-HexMesh model::make_twist(Index resolution) {
+HexMesh detail::model::make_twist(Index resolution) {
     HexMesh mesh = parameter_block({resolution, resolution, resolution});
     Attribute field{.name = "density", .channels = 1, .values = {}};
     field.values.reserve(mesh.points.size());

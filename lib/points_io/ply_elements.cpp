@@ -15,7 +15,7 @@ const std::map<std::string_view, NumberType> kTypes{
     {"int32", NumberType::Int32},    {"uint32", NumberType::UInt32},  {"float32", NumberType::Float32},
     {"float64", NumberType::Float64}};
 
-/// One line of the header, word by word; what fails is said of the header's own place.
+/// One line of the header, word by word; errors name the place in the header.
 class HeaderLine {
 public:
     HeaderLine(const TextScanner& in, std::string_view line) : in_(in), rest_(line) {}
@@ -28,7 +28,7 @@ public:
         return found;
     }
 
-    /// Goes behind a word if that comes next.
+    /// Skips the next word if it is the expected one.
     bool skips(std::string_view expected) {
         const std::string_view before = rest_;
         if (word() == expected) return true;
@@ -41,7 +41,7 @@ public:
     NumberType type() {
         const std::string_view name = word();
         const auto type = kTypes.find(name);
-        if (type == kTypes.end()) in_.fail(in_quotes(name) + " is no type of a property", "such as float or uchar");
+        if (type == kTypes.end()) in_.fail(in_quotes(name) + " is not a type of a property", "such as float or uchar");
         return type->second;
     }
 
@@ -56,7 +56,7 @@ public:
         TextScanner number(digits, "", TextScanner::Comments::None);
         const bool whole = !digits.empty() && digits.size() < 19 &&
                            std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
-        if (!whole) in_.fail(in_quotes(digits) + " is no count");
+        if (!whole) in_.fail(in_quotes(digits) + " is not a count");
         return static_cast<std::size_t>(number.integer({"count"}));
     }
 
@@ -143,13 +143,13 @@ PlyHeader read_ply_header(TextScanner& in) {
             std::string name = line.name();
             header.elements.push_back({std::move(name), line.count(), {}});
         } else if (key == "property") {
-            if (header.elements.empty()) in.fail("a property stands before the first element");
+            if (header.elements.empty()) in.fail("a property comes before the first element");
             header.elements.back().properties.push_back(read_property(line));
         } else if (key != "obj_info") {
-            in.fail(in_quotes(key) + " is no key of a PLY header", "element, property, comment, end_header");
+            in.fail(in_quotes(key) + " is not a key of a PLY header", "element, property, comment, end_header");
         }
     }
-    if (!has_format) in.fail("the header names no format");
+    if (!has_format) in.fail("the header does not name a format");
     return header;
 }
 

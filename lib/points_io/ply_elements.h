@@ -13,7 +13,7 @@
 
 namespace subvol::detail {
 
-/// counts: the type of the lengths if it is a list of numbers, else nothing
+/// counts: the type of the lengths if the property is a list; nothing if it is a single number
 struct PlyProperty {
     std::string name;
     NumberType type;
@@ -33,12 +33,12 @@ struct PlyHeader {
     std::vector<PlyElement> elements;
 };
 
-/// Reads to the end of the header's last line. in: at the start of the file
+/// Reads the header to the end of its last line. in: at the start of the file
 ///
-/// throws: Error(InvalidInput), as all of this file
+/// throws: Error(InvalidInput), as does everything in this file
 [[nodiscard]] PlyHeader read_ply_header(TextScanner& in);
 
-/// The values of a property, in the order of the rows. lengths: of a list, a row each
+/// The values of a property, in the order of the rows. lengths: of the lists, one for each row
 struct PlyColumn {
     std::vector<double> values;
     std::vector<std::size_t> lengths;
@@ -46,7 +46,7 @@ struct PlyColumn {
 
 using PlyTable = std::map<std::string, PlyColumn, std::less<>>;
 
-/// Reads the rows of the element that comes next, keeping the properties whose names are `wanted`.
+/// Reads the rows of the next element and keeps the properties with the names in `wanted`.
 [[nodiscard]] PlyTable read_ply_element(TextScanner& in, const PlyHeader& header, const PlyElement& element,
                                         const std::set<std::string, std::less<>>& wanted);
 

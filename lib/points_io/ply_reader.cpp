@@ -64,7 +64,7 @@ private:
                 std::from_chars(value.data(), value.data() + value.size(), triangles_beside_);
             }
         }
-        if (!has_kernel) in_.fail("the header has no comment that says the kernel", "write points with subvol");
+        if (!has_kernel) in_.fail("the header has no comment with the kernel", "write points with subvol");
         if (volume_.channels.empty()) volume_.channels.push_back({.name = "value"});
     }
 
@@ -85,7 +85,7 @@ private:
         if (found == table.end()) {
             in_.fail("element " + in_quotes(element.name) + " has no property " + in_quotes(name));
         }
-        // A list, or the same name twice, would have another number of values.
+        // A list, or a name that occurs twice, has another number of values.
         if (found->second.values.size() != element.count || !found->second.lengths.empty()) {
             in_.fail("element " + in_quotes(element.name) + ": property " + in_quotes(name) + " is not one number a row");
         }
@@ -101,7 +101,7 @@ private:
         return points;
     }
 
-    // One tuple a row; numbers that are not there are 0, and without any there are no tuples.
+    // One tuple for each row. Missing numbers are 0; if all are missing, there are no tuples.
     template <std::size_t N>
     [[nodiscard]] std::vector<std::array<float, N>> tuples(const PlyTable& table, const PlyElement& element,
                                                            const std::array<const char*, N>& names,
@@ -126,7 +126,7 @@ private:
         }
     }
 
-    // Gradients and moments that are not there are 0: a kernel then stands for its value alone.
+    // Missing gradients and moments are 0: a kernel then represents a constant.
     void take_channel(const PlyTable& table, const PlyElement& element, const std::string& suffix, RbfChannel& channel) const {
         for (const double value : column(table, element, "value" + suffix)) channel.values.push_back(static_cast<float>(value));
         channel.gradients = tuples(table, element, kGradient, suffix);
@@ -145,7 +145,7 @@ private:
         if (found == table.end()) in_.fail("element \"boundary_triangle\" has no property \"vertex_indices\"");
         const auto& [corners, lengths] = found->second;
         const bool all_three = std::all_of(lengths.begin(), lengths.end(), [](std::size_t length) { return length == 3; });
-        if (!all_three || corners.size() != 3 * element.count) in_.fail("a boundary triangle has not 3 corners");
+        if (!all_three || corners.size() != 3 * element.count) in_.fail("a boundary triangle does not have 3 corners");
         volume_.boundary.triangles.resize(element.count);
         for (std::size_t i = 0; i < corners.size(); ++i) {
             if (!(corners[i] >= 0 && corners[i] < static_cast<double>(kNone))) {

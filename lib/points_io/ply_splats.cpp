@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "knot_values.h"
 #include "subvol/detail/principal_axes.h"
 #include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
@@ -16,23 +17,12 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kConstantHarmonic = 0.28209479177387814;  // √(1/4π): a viewer's colour is .5 + this · f_dc
-constexpr double kLeastOpacity = 1.0 / 255;                // what a viewer can still show; the logit of 0 is infinite
-
-/// Between the knots of one list; knot(i) is the pair of value and result.
-template <class Knots, class Result>
-auto interpolated(const Knots& knots, double value, const Result& result) {
-    const auto after = std::find_if(knots.begin(), knots.end(), [&](const auto& knot) { return knot.value > value; });
-    if (after == knots.begin()) return result(*after);
-    const auto before = after - 1;
-    if (after == knots.end()) return result(*before);
-    const double t = (value - before->value) / (after->value - before->value);
-    return (1 - t) * result(*before) + t * result(*after);
-}
+constexpr double kLeastOpacity = 1.0 / 255;                // the least that a viewer can show; the logit of 0 is infinite
 
 }  // namespace
 
 double gaussian_width(const Kernel& kernel) {
-    constexpr int kSteps = 32;  // an octant of the support, at midpoints
+    constexpr int kSteps = 32;  // midpoints along each axis of an octant of the support
     const double radius = support_radius(kernel), step = radius / kSteps;
     double sum = 0;
     for (int k = 0; k < kSteps; ++k) {

@@ -15,11 +15,11 @@ inline constexpr std::array<std::string_view, 11> kSplatProperties{"scale_0", "s
 
 using PlySplat = std::array<float, kSplatProperties.size()>;
 
-/// σ of the Gaussian that has the kernel's height and integral, as a part of the support radius.
+/// σ of the Gaussian with the height and the integral of the kernel, in units of the support radius.
 [[nodiscard]] double gaussian_width(const Kernel& kernel);
 
-/// What viewers of Gaussian splats draw for each kernel: logarithms of its axes, its turn w x y z, the logit of its opacity and
-/// the constant term of its colour, of the first channel.
+/// For each kernel the Gaussian that viewers of splats draw: the logarithms of its axes, its rotation as a quaternion w x y z,
+/// the logit of its opacity and the constant term of its colour, both of the first channel.
 [[nodiscard]] std::vector<PlySplat> ply_splats(const RbfVolume& volume);
 
 }  // namespace subvol::detail

@@ -15,7 +15,7 @@ namespace {
 
 const char* const kBinary = std::endian::native == std::endian::little ? "binary_little_endian" : "binary_big_endian";
 
-/// Puts numbers one after the other in either encoding; as text each with as few digits as give it back exactly.
+/// Writes numbers in either encoding; as text, each with the fewest digits that reproduce it exactly.
 class NumberWriter {
 public:
     NumberWriter(OutputFile& out, bool ascii) : out_(out), ascii_(ascii) {}
@@ -58,7 +58,7 @@ private:
     std::string buffer_;
 };
 
-/// Header and rows of the vertices, the same properties in the same order.
+/// The vertices: the properties in the header and in the rows have the same order.
 class VertexElement {
 public:
     VertexElement(const RbfVolume& volume, bool splats) : volume_(volume), with_splats_(splats) {

@@ -8,7 +8,7 @@
 
 namespace subvol::detail {
 
-/// One format each; volumes are valid before they are written, and checked after they are read.
+/// The writers and readers of one format each. The caller validates volumes before they are written and after they are read.
 void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options);
 void write_vtp(const std::filesystem::path& path, const RbfVolume& volume);
 [[nodiscard]] RbfVolume read_ply(std::string_view text, const std::filesystem::path& path);

@@ -25,7 +25,8 @@ bool is_points_file(const std::filesystem::path& path) {
 }
 
 void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
-    if (!is_points_file(path)) throw Error(ErrorCode::InvalidInput, "points cannot be written so", path.string(), kFormats);
+    if (!is_points_file(path))
+        throw Error(ErrorCode::InvalidInput, "points cannot be written in this format", path.string(), kFormats);
     validate(volume);
     if (format_of(path) == ".PLY") {
         write_ply(path, volume, options);
@@ -35,7 +36,8 @@ void write_points(const std::filesystem::path& path, const RbfVolume& volume, co
 }
 
 RbfVolume read_points(const std::filesystem::path& path) {
-    if (!is_points_file(path)) throw Error(ErrorCode::InvalidInput, "points cannot be read so", path.string(), kFormats);
+    if (!is_points_file(path))
+        throw Error(ErrorCode::InvalidInput, "points cannot be read from this format", path.string(), kFormats);
     const std::string text = read_text(path);
     try {
         RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path) : read_vtp(text, path);

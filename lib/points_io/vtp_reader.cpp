@@ -46,7 +46,7 @@ public:
         return volume;
     }
 
-    /// How many triangles the boundary beside has.
+    /// The number of triangles in the file of the boundary.
     [[nodiscard]] std::size_t boundary_triangles() const {
         const auto values = xml_.arrays().integers(xml_.array(xml_.data_set().child("FieldData"), kVtpTriangles));
         return values.empty() ? 0 : static_cast<std::size_t>(std::max<std::int64_t>(values.front(), 0));
@@ -86,7 +86,7 @@ private:
         return tuples;
     }
 
-    // Symmetric ones, in our order.
+    // Symmetric tensors, in our order of components.
     [[nodiscard]] std::vector<Symmetric3> tensors(const std::string& name, std::size_t count) const {
         auto tensors = tuples<6>(name, count);
         for (auto& tensor : tensors) {
@@ -96,7 +96,7 @@ private:
         return tensors;
     }
 
-    // One at least; the characters' numbers, a 0 behind each string.
+    // At least one string; the array has character codes, with a 0 after each string.
     [[nodiscard]] std::vector<std::string> strings(const char* name) const {
         const auto array = xml_.array(xml_.data_set().child("FieldData"), name);
         std::vector<std::string> strings;

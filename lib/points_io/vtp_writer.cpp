@@ -35,7 +35,7 @@ void write_piece(VtkXmlWriter& out, const std::vector<Vec3>& points, std::size_t
     out.line("</Points>");
 }
 
-/// Cells that have all the same number of corners.
+/// Writes cells that all have the same number of corners.
 void write_cells(VtkXmlWriter& out, const std::string& kind, std::span<const std::int64_t> connectivity, std::size_t corners) {
     std::vector<std::int64_t> offsets(connectivity.size() / corners);
     for (std::size_t c = 0; c < offsets.size(); ++c) offsets[c] = static_cast<std::int64_t>(corners * (c + 1));
@@ -64,7 +64,7 @@ void write_tensors(VtkXmlWriter& out, const std::string& name, const std::vector
     out.array(name, 6, flat(in_order));
 }
 
-/// The ellipsoids for people to look at: √S as nine components, and the radius of the ball of its volume.
+/// Writes the ellipsoids for display: √S as nine components, and the radius of the ball with the same volume.
 void write_shapes(VtkXmlWriter& out, const RbfVolume& volume) {
     std::vector<std::array<float, 9>> roots(volume.size());
     std::vector<float> sizes(volume.size());
@@ -80,7 +80,7 @@ void write_shapes(VtkXmlWriter& out, const RbfVolume& volume) {
     out.array<float>(kVtpSize, 1, sizes);
 }
 
-// A channel without Hessians needs their name too: another array of that name would be read for them.
+// The name for Hessians must be free even in a channel without them: an array of that name would be read as its Hessians.
 void check_names(const RbfVolume& volume) {
     std::set<std::string> names{kVtpFrame, kVtpEllipsoid, kVtpSize};
     for (const auto& channel : volume.channels) {
@@ -92,7 +92,7 @@ void check_names(const RbfVolume& volume) {
 }
 
 void write_point_data(VtkXmlWriter& out, const RbfVolume& volume) {
-    out.line("<PointData Scalars=\"" + xml_escaped(volume.channels.front().name) + "\">");
+    out.line("<PointData Scalars=\"" + attribute_value(volume.channels.front().name) + "\">");
     for (const auto& channel : volume.channels) {
         out.array<float>(channel.name, 1, channel.values);
         out.array(channel.name + kVtpGradient, 3, flat(channel.gradients));

@@ -56,7 +56,7 @@ std::array<Index, 27> lattice_points(const Topology& parent, Index cell) {
                 points[i] = static_cast<Index>(first.faces + parent.cell_faces[cell][k]);
                 break;
             case LatticePlace::Cell:
-                points[i] = static_cast<Index>(first.cells + parent.cell_rank[cell]);
+                points[i] = static_cast<Index>(first.cells + parent.cell_ordinal[cell]);
                 break;
         }
     }

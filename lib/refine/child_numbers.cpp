@@ -18,7 +18,7 @@ ChildNumbers::ChildNumbers(const Topology& of)
 /// The cells of a face in the order of their cell points.
 std::array<Index, 2> ChildNumbers::cells_by_rank(Index f) const {
     auto cells = parent.face_cells[f];
-    if (cells[1] != kNone && parent.cell_rank[cells[1]] < parent.cell_rank[cells[0]]) std::swap(cells[0], cells[1]);
+    if (cells[1] != kNone && parent.cell_ordinal[cells[1]] < parent.cell_ordinal[cells[0]]) std::swap(cells[0], cells[1]);
     return cells;
 }
 

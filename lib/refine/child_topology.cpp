@@ -50,7 +50,7 @@ public:
 private:
     [[nodiscard]] Index edge_point(Index e) const { return static_cast<Index>(n_.first.edges + e); }
     [[nodiscard]] Index face_point(Index f) const { return static_cast<Index>(n_.first.faces + f); }
-    [[nodiscard]] Index cell_point(Index c) const { return static_cast<Index>(n_.first.cells + p_.cell_rank[c]); }
+    [[nodiscard]] Index cell_point(Index c) const { return static_cast<Index>(n_.first.cells + p_.cell_ordinal[c]); }
 
     void fill_edges() {
         t_.edges.resize(n_.edge_count());
@@ -217,7 +217,7 @@ private:
     /// Cells are ranked by their sorted faces. The smallest face is a quarter of a parent face, so all cells at one old point
     /// come before those at the next.
     void rank_cells() {
-        t_.cell_rank.resize(t_.cells.size());
+        t_.cell_ordinal.resize(t_.cells.size());
         std::vector<Index> offsets(p_.point_count + 1, 0);
         parallel_each(p_.point_count, [&](std::size_t v) {
             std::size_t sides = 0;  // every cell at the point has three of its faces there
@@ -238,7 +238,7 @@ private:
                 }
                 if (cells[0] != kNone && cells[1] != kNone && keys[1] < keys[0]) std::swap(cells[0], cells[1]);
                 for (const Index c : cells) {
-                    if (c != kNone) t_.cell_rank[c] = next++;
+                    if (c != kNone) t_.cell_ordinal[c] = next++;
                 }
             }
         });

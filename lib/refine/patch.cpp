@@ -246,7 +246,7 @@ Patch PatchSource::cut(std::span<const Index> cells, int layers) const {
 }
 
 Patch refine_patch(const Patch& patch, const SchemeOptions& scheme, int layers) {
-    const Topology topology = build_topology(patch.mesh, TagCheck::Part);
+    const Topology topology = build_topology(patch.mesh, InteriorCreases::Ignore);
     const SchemeRows rows(topology, scheme);
     const std::size_t parents = layers == 0 ? patch.wanted : patch.first_layer;
     std::vector<std::array<Index, 8>> cells;

@@ -16,7 +16,8 @@ SchemeRows::SchemeRows(const Topology& topology, const SchemeOptions& scheme)
         throw Error(ErrorCode::InvalidInput, "the refined mesh needs " + std::to_string(first_.end) + " points", {},
                     "at most " + std::to_string(kNone - 1) + ": use fewer levels");
     }
-    parallel_each(topology.cells.size(), [&](std::size_t c) { cell_of_rank_[topology.cell_rank[c]] = static_cast<Index>(c); });
+    parallel_each(topology.cells.size(),
+                  [&](std::size_t c) { cell_of_rank_[topology.cell_ordinal[c]] = static_cast<Index>(c); });
 }
 
 void SchemeRows::write_row(std::size_t point, StencilBuilder& row) const {

@@ -18,7 +18,7 @@ public:
     LineFinder(const Topology& topology, bool child)
         : t_(topology), first_(topology), child_(child), kinds_(classify_points(topology)), regular_(regular_points(topology)) {
         cell_of_rank_.resize(child ? topology.cells.size() : 0);
-        parallel_each(cell_of_rank_.size(), [&](std::size_t c) { cell_of_rank_[t_.cell_rank[c]] = static_cast<Index>(c); });
+        parallel_each(cell_of_rank_.size(), [&](std::size_t c) { cell_of_rank_[t_.cell_ordinal[c]] = static_cast<Index>(c); });
     }
 
     [[nodiscard]] std::size_t size() const { return child_ ? first_.end : t_.point_count; }
@@ -57,7 +57,7 @@ private:
     [[nodiscard]] Index edge_point(Index e) const { return static_cast<Index>(first_.edges + e); }
     [[nodiscard]] Index face_point(Index f) const { return static_cast<Index>(first_.faces + f); }
     [[nodiscard]] Index cell_point(Index c) const {
-        return c == kNone ? kNone : static_cast<Index>(first_.cells + t_.cell_rank[c]);
+        return c == kNone ? kNone : static_cast<Index>(first_.cells + t_.cell_ordinal[c]);
     }
     /// At most what fits into a byte: beyond that weights need not be exact.
     [[nodiscard]] unsigned cells_at_edge(Index e) const {

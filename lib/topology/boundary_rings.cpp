@@ -63,7 +63,7 @@ Index other_boundary_face(const Topology& topology, Index edge, Index face) {
 void ring_of_spokes(const Topology& topology, Index point, Index start, std::vector<Index>& ring) {
     ring.clear();
     Index edge = start;
-    // A canonical sense of turning: over the smaller of the start's two faces.
+    // The direction is fixed: across the smaller of the two faces at `start`.
     const auto [f0, f1] = boundary_faces_of(topology, start);
     Index face = std::min(f0, f1);
     do {

@@ -11,30 +11,30 @@ namespace subvol::detail {
 
 enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
 
-/// Every point's place on the boundary: smooth without crease edges, on a crease with exactly two, else a corner; a point where
-/// several fans of boundary faces touch is a corner.
+/// The kind of every point. On the boundary it is smooth without crease edges, on a crease with exactly two of them, else a
+/// corner. A point where several fans of boundary faces touch is a corner too.
 std::vector<PointKind> classify_points(const Topology& topology);
 
-/// A flag a point: inside, with six edges of four cells each.
+/// A flag for each point: whether it is inside, with six edges of four cells each.
 std::vector<std::uint8_t> regular_points(const Topology& topology);
 
-/// The boundary face on the other side of a boundary edge that is no crease.
+/// The boundary face on the other side of a boundary edge that is not a crease.
 Index other_boundary_face(const Topology& topology, Index edge, Index face);
 
 /// The boundary faces of a boundary edge (two where it is manifold).
 std::pair<Index, Index> boundary_faces_of(const Topology& topology, Index edge);
 
-/// The boundary edges about a smooth boundary point in cyclic order, starting at `start`, written to `ring`.
+/// Writes the boundary edges at a smooth boundary point to `ring`, in cyclic order, starting at `start`.
 void ring_of_spokes(const Topology& topology, Index point, Index start, std::vector<Index>& ring);
 
-/// Position of an element that a small array holds once.
+/// The position of an element that occurs once in a small array.
 inline std::size_t slot_of(std::span<const Index> range, Index element) {
     return static_cast<std::size_t>(std::find(range.begin(), range.end(), element) - range.begin());
 }
 
 template <std::size_t N>
 std::size_t slot_of(const std::array<Index, N>& range, Index element) {
-    std::uint32_t slot = 0;  // without branches: which slot it is cannot be foretold
+    std::uint32_t slot = 0;  // without branches, which would be unpredictable
     for (std::uint32_t k = 1; k < N; ++k) slot |= range[k] == element ? k : 0;
     return slot;
 }

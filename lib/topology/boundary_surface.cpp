@@ -20,7 +20,7 @@ Surface boundary_surface(const HexMesh& mesh) {
 }
 
 Surface detail::boundary_surface_where(const HexMesh& mesh, const std::function<bool(const std::array<Index, 4>&)>& where) {
-    Topology topology;  // of its faces only
+    Topology topology;  // only its faces are built
     topology.point_count = mesh.points.size();
     topology.cells = mesh.cells;
     detail::build_faces(topology);

@@ -9,12 +9,13 @@ namespace subvol::detail {
 
 namespace {
 
-/// The faces about one edge, walked from cell to cell.
+/// A walk over the faces around one edge, from cell to cell.
 class RingWalk {
 public:
     RingWalk(const Topology& topology, std::span<const Index> faces) : topology_(topology), left_(faces.begin(), faces.end()) {}
 
-    /// Fans from hull face to hull face, then closed rings; appends to `faces` and `cells`. Returns the closed rings.
+    /// Walks fans from hull face to hull face, then closed rings; appends to `faces` and `cells`. Returns the number of closed
+    /// rings.
     int run(std::vector<Index>& faces, std::vector<Index>& cells) {
         while (const auto start = next_start(true)) walk(*start, topology_.face_cells[*start][0], faces, cells);
         int rings = 0;
@@ -33,7 +34,7 @@ private:
         return std::nullopt;
     }
 
-    /// The other face of `cell` about this edge; a cell has exactly two.
+    /// The other face of `cell` at this edge; a cell has exactly two.
     [[nodiscard]] Index other_face(Index cell, Index face) const {
         for (const Index f : topology_.cell_faces[cell]) {
             if (f != face && std::find(all_.begin(), all_.end(), f) != all_.end()) return f;
@@ -41,7 +42,7 @@ private:
         return kNone;
     }
 
-    /// The cell through which a closed ring goes to the smaller of the start's two neighbours.
+    /// The first cell of a closed ring: the one towards the smaller of the two neighbours of the face `start`.
     [[nodiscard]] Index first_cell(Index start) const {
         const auto [c0, c1] = topology_.face_cells[start];
         const Index f0 = other_face(c0, start), f1 = other_face(c1, start);
@@ -83,7 +84,7 @@ void order_edge_rings(Topology& topology) {
     auto& cells = topology.edge_cells;
     cells.offsets.assign(count + 1, 0);
     parallel_each(count, [&](std::size_t e) {
-        std::size_t sides = 0;  // each cell about the edge has two of its faces
+        std::size_t sides = 0;  // each cell at the edge has two of its faces
         for (const Index f : topology.edge_faces[e]) sides += topology.face_on_hull(f) ? 1 : 2;
         cells.offsets[e + 1] = sides / 2;
     });

@@ -18,7 +18,7 @@ inline constexpr std::array<std::array<std::size_t, 3>, 8> kCornerEdges = [] {
     return edges;
 }();
 
-/// Calls visit(face, k) once for every face at a point, which is the face's point k.
+/// Calls visit(face, k) once for every face at a point; the point is the face's point k.
 template <class Visit>
 void each_face_at(const Topology& topology, Index point, const Visit& visit) {
     for (const Index edge : topology.point_edges[point]) {
@@ -31,7 +31,7 @@ void each_face_at(const Topology& topology, Index point, const Visit& visit) {
     }
 }
 
-/// Calls visit(cell, k) once for every cell at a point, which is the cell's corner k.
+/// Calls visit(cell, k) once for every cell at a point; the point is the cell's corner k.
 template <class Visit>
 void each_cell_at(const Topology& topology, Index point, const Visit& visit) {
     for (const Index edge : topology.point_edges[point]) {
@@ -61,8 +61,8 @@ inline Index across_face(const Topology& topology, Index face, Index point) {
     return quad[(slot_of(quad, point) + 2) % 4];
 }
 
-/// The point of a cell across its centre from one of its points. Those of a side are the points of the opposite side, those of
-/// an edge the points of the edge diagonally opposite.
+/// The point of a cell across its centre from one of its points. So the points of a side give those of the opposite side, and
+/// the points of an edge those of the edge diagonally opposite.
 inline Index across_cell(const Topology& topology, Index cell, Index point) {
     constexpr std::array<std::size_t, 8> kAntipode{6, 7, 4, 5, 2, 3, 0, 1};
     return topology.cells[cell][kAntipode[slot_of(topology.cells[cell], point)]];

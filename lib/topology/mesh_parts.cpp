@@ -18,8 +18,8 @@ std::size_t part_count(std::size_t points) {
     return std::clamp<std::size_t>(points / size, 1, kMostParts);
 }
 
-/// The slab of each point, across the longest side of the box, so that each slab has as many points. Neighbours are near each
-/// other in space, however they are numbered.
+/// The slab of each point. The slabs divide the longest side of the box so that each has about as many points. Neighbouring
+/// points are near each other in space, even if their numbers are not.
 std::vector<std::uint8_t> slabs_of(const HexMesh& mesh, std::size_t count) {
     constexpr std::size_t kBins = std::size_t{1} << 16;
     const Box box = bounds(mesh);
@@ -75,7 +75,7 @@ public:
     }
 
 private:
-    /// Marks their points in numbers_.
+    /// The cells and tags with a point of the slab; marks the points of these cells in numbers_.
     [[nodiscard]] HexMesh cells_about(std::size_t slab) {
         const auto about = [&](const auto& entity) {
             return std::ranges::any_of(entity, [&](Index p) { return slabs_[p] == slab; });
@@ -102,7 +102,7 @@ private:
         try {
             return build_topology(cut);
         } catch (const Error&) {
-            static_cast<void>(build_topology(mesh_));  // tells of it in the numbers of the whole
+            static_cast<void>(build_topology(mesh_));  // throws with the numbers of the whole mesh
             throw;
         }
     }
@@ -110,8 +110,8 @@ private:
     const HexMesh& mesh_;
     std::size_t count_;
     std::vector<std::uint8_t> slabs_;
-    std::vector<std::array<std::uint8_t, 2>> reach_;  // of each cell: its first and its last slab
-    std::vector<Index> numbers_;                      // of the points in the part that is made
+    std::vector<std::array<std::uint8_t, 2>> reach_;  // the first and the last slab of each cell
+    std::vector<Index> numbers_;                      // of the points in the part that is being made
 };
 
 }  // namespace

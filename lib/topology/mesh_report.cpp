@@ -43,7 +43,7 @@ void add(ShapeReport& report, const CellQuality& cell) {
     report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, cell.min_scaled_jacobian);
 }
 
-/// The edges whose smaller point is the part's own.
+/// Counts the edges whose smaller point is the part's own.
 void count_edges(const detail::MeshPart& part, MeshReport& report) {
     const Topology& topology = part.topology;
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
@@ -58,7 +58,7 @@ void count_edges(const detail::MeshPart& part, MeshReport& report) {
     }
 }
 
-/// The faces whose smallest point is the part's own.
+/// Counts the faces whose smallest point is the part's own.
 void count_faces(const detail::MeshPart& part, MeshReport& report) {
     const Topology& topology = part.topology;
     for (std::size_t f = 0; f < topology.faces.size(); ++f) {
@@ -84,7 +84,7 @@ void count_points(const detail::MeshPart& part, MeshReport& report) {
 }  // namespace
 
 ShapeReport measure_cells(const HexMesh& mesh) {
-    constexpr std::size_t kPart = 4096;  // summed part by part, so that rounding does not depend on the threads
+    constexpr std::size_t kPart = 4096;  // cells that are summed together, so that rounding does not depend on the threads
     std::vector<ShapeReport> parts((mesh.cells.size() + kPart - 1) / kPart);
     tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
         for (std::size_t c = i * kPart; c < std::min(mesh.cells.size(), (i + 1) * kPart); ++c) {
@@ -105,7 +105,7 @@ ShapeReport measure_cells(const HexMesh& mesh) {
 
 MeshReport inspect(const HexMesh& mesh) {
     validate(mesh);
-    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {  // tags are the schemes' business
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {  // tags matter only to schemes
         HexMesh untagged;
         untagged.points = mesh.points;
         untagged.cells = mesh.cells;

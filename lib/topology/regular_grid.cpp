@@ -11,7 +11,7 @@ namespace subvol::detail {
 
 namespace {
 
-/// A cell turned so that its corners stand in the parameters of another: corner u + 2v + 4w.
+/// A cell with its corners in the order of the parameters of another cell: corner u + 2v + 4w.
 struct TurnedCell {
     Index cell = 0;
     std::array<Index, 8> corners;
@@ -56,7 +56,7 @@ std::optional<TurnedCell> step(const Topology& topology, const TurnedCell& from,
     return std::nullopt;
 }
 
-/// Puts a cell's corners into a grid of `layers` cells about the center; false if another point is there already.
+/// Puts a cell's corners into a grid of `layers` cells around the centre; false if another point is there already.
 bool put(const TurnedCell& cell, const std::array<int, 3>& offset, int layers, std::span<Index> grid) {
     for (std::size_t k = 0; k < 8; ++k) {
         std::size_t node = 0, stride = 1;
@@ -69,7 +69,7 @@ bool put(const TurnedCell& cell, const std::array<int, 3>& offset, int layers, s
     return true;
 }
 
-/// Fills a grid with the cells that can be stepped to; false if they do not fit together.
+/// Fills a grid with the cells that can be reached by steps; false if they do not fit together.
 bool fill(const Topology& topology, Index cell, int layers, std::span<Index> grid) {
     std::fill(grid.begin(), grid.end(), kNone);
     const TurnedCell center = as_it_is(topology, cell);
@@ -88,7 +88,7 @@ bool fill(const Topology& topology, Index cell, int layers, std::span<Index> gri
     return true;
 }
 
-/// What is missing must be whole layers.
+/// Whether only whole layers are missing.
 bool has_whole_layers(const GridPoints& grid) {
     const auto at = [&](std::size_t i, std::size_t j, std::size_t k) { return grid[i + 4 * j + 16 * k] == kNone; };
     for (std::size_t k = 0; k < 4; ++k) {

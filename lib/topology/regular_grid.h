@@ -5,18 +5,19 @@
 
 namespace subvol::detail {
 
-/// The points of a cell's surroundings as a 4×4×4 grid: entry i + 4j + 16k stands at (i−1, j−1, k−1) in the cell's parameters,
-/// so that the cell's own corners are those with i, j, k in {1, 2}. Layers beyond a flat boundary are kNone.
+/// The points around a cell as a 4×4×4 grid: entry i + 4j + 16k is the point at (i−1, j−1, k−1) in the cell's parameters, so
+/// that the cell's own corners are those with i, j, k in {1, 2}. Layers beyond a flat boundary are kNone.
 using GridPoints = std::array<Index, 64>;
 
-/// The grid about a cell if its surroundings are regular: inside, or at the sides, edges and corners of a box.
+/// Finds the grid around a cell. False unless the cells around it are regular: as inside a box, or at its sides, edges and
+/// corners.
 [[nodiscard]] bool regular_grid(const Topology& topology, Index cell, GridPoints& grid);
 
-/// The part of that grid that any cell has: its own corners and the points across its six sides, the others kNone.
+/// The part of that grid that exists for any cell: its own corners and the points across its six sides; the others are kNone.
 void cross_grid(const Topology& topology, Index cell, GridPoints& grid);
 
-/// Two cells further on every side, entry i + 6j + 36k at (i−2, j−2, k−2): false unless the cell and all its neighbours are
-/// inside and regular.
+/// The same with two cells on every side: entry i + 6j + 36k is at (i−2, j−2, k−2). False unless the cell and all its
+/// neighbours are inside and regular.
 using WideGridPoints = std::array<Index, 216>;
 [[nodiscard]] bool wide_grid(const Topology& topology, Index cell, WideGridPoints& grid);
 

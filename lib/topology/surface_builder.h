@@ -10,14 +10,14 @@
 
 namespace subvol::detail {
 
-/// The quad of a cell's side, counter-clockwise from outside, its smallest id first.
+/// The quad of a cell's side, counter-clockwise seen from outside, its smallest id first.
 [[nodiscard]] std::array<Index, 4> outward_quad(const Topology& topology, Index cell, Index face);
 
-/// As `boundary_surface`, of the faces that `where` selects by their points.
+/// `boundary_surface` of the faces for whose points `where` is true.
 [[nodiscard]] Surface boundary_surface_where(const HexMesh& mesh,
                                              const std::function<bool(const std::array<Index, 4>&)>& where);
 
-/// A surface's triangles and, in the order of their first use, the points of the mesh that they need.
+/// Collects the triangles of a surface and the points of the mesh that they use, in the order of their first use.
 class SurfaceBuilder {
 public:
     explicit SurfaceBuilder(std::size_t mesh_points) : renumbered_(mesh_points, kNone) {}

@@ -28,7 +28,8 @@ void tag_creases(HexMesh& mesh, double angle_deg) {
         if (!topology.edge_on_boundary[e] || topology.edge_is_crease[e]) continue;
         const auto [f0, f1] = detail::boundary_faces_of(topology, edge);
         const auto [a, b] = topology.edges[e];
-        // Both quads are run through from a to b for one and from b to a for the other: their normals then agree on a plane.
+        // One quad is oriented so that its edge goes from a to b, the other from b to a: on a plane their normals are then
+        // equal.
         const auto normal = [&](Index face, Index from, Index to) {
             const auto& q = topology.faces[face];
             const std::size_t k = detail::slot_of(q, from);

@@ -94,7 +94,7 @@ void mark_boundary(Topology& topology) {
     }
 }
 
-/// Tagged faces that lie on the hull are sharp as they are.
+/// Marks the tagged faces. On the hull a tag changes nothing, since the hull is boundary in any case.
 void mark_sharp_faces(Topology& topology, std::span<const std::array<Index, 4>> tagged) {
     if (tagged.empty()) return;
     topology.face_is_sharp.assign(topology.faces.size(), 0);
@@ -103,14 +103,14 @@ void mark_sharp_faces(Topology& topology, std::span<const std::array<Index, 4>> 
         if (!f) {
             std::string text;
             for (const Index p : points) text += (text.empty() ? "" : " ") + std::to_string(p);
-            throw Error(ErrorCode::InvalidInput, "points " + text + " are no face", "sharp face",
+            throw Error(ErrorCode::InvalidInput, "points " + text + " are not a face", "sharp face",
                         "four points of a face of a cell, in cyclic order");
         }
         topology.face_is_sharp[*f] = 1;
     }
 }
 
-/// Whether one cell alone lies between two boundary faces about the edge. About an edge inside, the faces are a ring.
+/// Whether a single cell lies between two boundary faces at the edge. At an edge inside the hull the faces are a ring.
 bool has_single_cell(const Topology& topology, Index edge) {
     const auto faces = topology.edge_faces[edge];
     const bool ring = faces.size() == topology.edge_cells[edge].size();
@@ -120,8 +120,8 @@ bool has_single_cell(const Topology& topology, Index edge) {
     return false;
 }
 
-/// The default rule, and the mesh's own tags.
-void mark_creases(Topology& topology, detail::TagCheck check) {
+/// Marks creases by the default rule and by the tags of the mesh.
+void mark_creases(Topology& topology, detail::InteriorCreases interior) {
     topology.edge_is_crease.assign(topology.edges.size(), 0);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {
         if (!topology.edge_on_boundary[e]) continue;
@@ -133,17 +133,18 @@ void mark_creases(Topology& topology, detail::TagCheck check) {
     for (const auto& [a, b] : topology.creases) {
         const auto e = topology.find_edge(a, b);
         if (!e || !topology.edge_on_boundary[*e]) {
-            if (check == detail::TagCheck::Part) continue;
+            if (interior == detail::InteriorCreases::Ignore) continue;
             throw Error(ErrorCode::InvalidInput,
-                        "points " + std::to_string(a) + " and " + std::to_string(b) + " are no boundary edge", "crease",
+                        "points " + std::to_string(a) + " and " + std::to_string(b) + " are not a boundary edge", "crease",
                         "creases are edges of the boundary");
         }
         topology.edge_is_crease[*e] = 1;
     }
 }
 
-/// Cells differ in their faces, and face numbers do not depend on the order of the cells.
-void rank_cells(Topology& topology) {
+/// Numbers the cells in the order of their sorted face numbers. No two cells have the same faces, and face numbers do not
+/// depend on the order of the cells; hence neither do these numbers.
+void number_cells(Topology& topology) {
     struct Key {
         std::array<Index, 6> faces;
         Index cell;
@@ -157,9 +158,9 @@ void rank_cells(Topology& topology) {
             sink(Key{faces, static_cast<Index>(c)});
         },
         [](const Key& key) { return key.faces[0]; });
-    topology.cell_rank.resize(topology.cells.size());
+    topology.cell_ordinal.resize(topology.cells.size());
     parallel_each(sorted.records.size(),
-                  [&](std::size_t rank) { topology.cell_rank[sorted.records[rank].cell] = static_cast<Index>(rank); });
+                  [&](std::size_t n) { topology.cell_ordinal[sorted.records[n].cell] = static_cast<Index>(n); });
 }
 
 }  // namespace
@@ -187,12 +188,12 @@ std::optional<Index> Topology::find_edge(Index a, Index b) const {
     return static_cast<Index>(found - edges.begin());
 }
 
-Topology detail::build_topology(const HexMesh& mesh, TagCheck check) {
+Topology detail::build_topology(const HexMesh& mesh, InteriorCreases interior) {
     Topology topology;
     topology.point_count = mesh.points.size();
     topology.cells = mesh.cells;
     detail::build_faces(topology);
-    rank_cells(topology);
+    number_cells(topology);
     build_edges(topology);
     build_edge_offsets(topology);
     build_cell_edges(topology);
@@ -201,12 +202,12 @@ Topology detail::build_topology(const HexMesh& mesh, TagCheck check) {
     mark_boundary(topology);
     detail::order_edge_rings(topology);
     topology.creases = mesh.creases;
-    mark_creases(topology, check);
+    mark_creases(topology, interior);
     return topology;
 }
 
 Topology build_topology(const HexMesh& mesh) {
-    return detail::build_topology(mesh, detail::TagCheck::Whole);
+    return detail::build_topology(mesh, detail::InteriorCreases::Refuse);
 }
 
 }  // namespace subvol

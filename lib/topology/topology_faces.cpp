@@ -40,7 +40,7 @@ std::string name_cells(const Topology& topology, Index a, Index b) {
     for (std::size_t i = 0; i < sharing.size(); ++i) {
         for (std::size_t j = i + 1; j < sharing.size(); ++j) {
             const auto text = name_cells(topology, sharing[i].cell, sharing[j].cell);
-            if (!text.empty()) throw Error(ErrorCode::InvalidInput, text, {}, "each cell may be there once");
+            if (!text.empty()) throw Error(ErrorCode::InvalidInput, text, {}, "each cell may be listed once");
         }
     }
     std::string points, cells;
@@ -52,13 +52,13 @@ std::string name_cells(const Topology& topology, Index a, Index b) {
                 {}, "at most two cells share a face");
 }
 
-/// Two cells with the same corners and no third neighbour share all six faces, which no face shows by itself.
+/// Two cells with the same corners and no third neighbour share all six faces, which cannot be seen at any one face.
 void refuse_twins(const Topology& topology) {
     for (const auto& sides : topology.cell_faces) {
         const auto first = topology.face_cells[sides[0]];
         if (first[1] == kNone) continue;
         if (std::all_of(sides.begin(), sides.end(), [&](Index f) { return topology.face_cells[f] == first; })) {
-            throw Error(ErrorCode::InvalidInput, name_cells(topology, first[0], first[1]), {}, "each cell may be there once");
+            throw Error(ErrorCode::InvalidInput, name_cells(topology, first[0], first[1]), {}, "each cell may be listed once");
         }
     }
 }

@@ -16,16 +16,17 @@ void build_faces(Topology& topology);
 /// Puts the faces of every edge into ring order and fills edge_cells and edge_has_ring.
 void order_edge_rings(Topology& topology);
 
-/// The faces of one edge (ascending) walked from cell to cell: fans from hull face to hull face, then closed rings.
+/// Walks the faces of one edge (ascending) from cell to cell: fans from hull face to hull face, then closed rings.
 ///
 /// returns: the number of closed rings
 int walk_edge_ring(const Topology& topology, std::span<const Index> edge_faces, std::vector<Index>& ring_faces,
                    std::vector<Index>& ring_cells);
 
-/// Whether creases must be edges of the boundary, as they must in a whole mesh. In a part of a mesh a crease may lie inside
-/// where the cells that made it boundary are cut off: at the part's outer cells, whose rules are not evaluated.
-enum class TagCheck { Whole, Part };
+/// What to do with tagged creases that are not on the boundary. In a whole mesh they are refused. In a part of a mesh, a crease
+/// is off the boundary where the cells that put it there are cut off: only among the outermost cells of the part, whose rules
+/// are not evaluated. There it is ignored.
+enum class InteriorCreases { Refuse, Ignore };
 
-[[nodiscard]] Topology build_topology(const HexMesh& mesh, TagCheck check);
+[[nodiscard]] Topology build_topology(const HexMesh& mesh, InteriorCreases interior);
 
 }  // namespace subvol::detail

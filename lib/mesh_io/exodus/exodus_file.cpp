@@ -8,7 +8,7 @@ namespace subvol::detail {
 
 namespace {
 
-// netCDF fills names up with zeros or blanks.
+// netCDF pads names with zeros or blanks.
 std::string trimmed(std::string_view text) {
     text = text.substr(0, text.find('\0'));
     return as_utf8(text.substr(0, text.find_last_not_of(' ') + 1));
@@ -42,7 +42,7 @@ const NetcdfVariable& ExodusFile::checked(const std::string& name, const std::ve
     }
     expect_room(count, size_of(variable.type), name);
     std::size_t values = 1;
-    bool too_many = false;  // so that no product gets too large
+    bool too_many = false;  // so that no product overflows
     for (std::size_t d = 0; d < variable.lengths.size(); ++d) {
         const std::size_t length = variable.lengths[d];
         if (d < places.size()) {
@@ -52,7 +52,7 @@ const NetcdfVariable& ExodusFile::checked(const std::string& name, const std::ve
         too_many = too_many || (length > 0 && values > count / length);
         if (!too_many) values *= length;
     }
-    if (too_many || values != count) fail(name + " has not the " + std::to_string(count) + " values that are needed");
+    if (too_many || values != count) fail(name + " does not have the " + std::to_string(count) + " values that are needed");
     return variable;
 }
 
@@ -64,13 +64,13 @@ void ExodusFile::expect_room(std::size_t things, std::size_t bytes, const std::s
 std::vector<double> ExodusFile::reals(const std::string& variable, const std::vector<std::size_t>& places,
                                       std::size_t count) const {
     const NetcdfVariable& found = checked(variable, places, count);
-    if (found.characters) fail(variable + " is not of numbers");
+    if (found.characters) fail(variable + " does not consist of numbers");
     return reals_from(source_->values(found, places), found.type, std::endian::native);
 }
 
 std::vector<std::int64_t> ExodusFile::integers(const std::string& variable, std::size_t count) const {
     const NetcdfVariable& found = checked(variable, {}, count);
-    if (found.characters || !is_integer(found.type)) fail(variable + " is not of integers");
+    if (found.characters || !is_integer(found.type)) fail(variable + " does not consist of integers");
     return integers_from(source_->values(found, {}), found.type, std::endian::native);
 }
 

@@ -3,17 +3,22 @@
 #include <limits>
 #include <map>
 
+#include "assemble.h"
 #include "exodus_file.h"
-#include "mesh_file.h"
+#include "formats.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr Wording kWording{"node", "element", 1};
+constexpr EntityNames kNames{"node", "element", 1};
 
-// A block of elements of one type. number: as its variables are named, from 1; first: its first element among all
+// A block of elements of one type.
+//
+// number: in the names of its variables, from 1
+// first:  the number of its first element among all, from 0
+// taken:  it is read as cells
 struct Block {
     std::size_t number, first, size, nodes;
     std::string type;
@@ -29,7 +34,7 @@ bool is_axis(std::string_view name, char axis) {
     return !name.empty() && (name.back() == axis || name.back() == axis - 'A' + 'a');
 }
 
-// Exodus has scalars alone: three in a row that end in X, Y and Z are one vector.
+// Exodus has only scalars: three consecutive ones whose names end in X, Y and Z are read as a vector.
 std::vector<Variable> with_vectors(const std::vector<std::string>& names) {
     std::vector<Variable> variables;
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -63,7 +68,7 @@ public:
         for (Block& block : blocks_) take(block);
         list_left_out();
         read_variables();
-        return finish(std::move(found_), in_, file_, kWording, options_);
+        return assemble(std::move(found_), in_, file_, kNames, options_);
     }
 
 private:
@@ -75,7 +80,7 @@ private:
         std::vector<std::vector<double>> axes;
         for (std::size_t a = 0; a < 3; ++a) {
             const std::string name = std::string("coord") + "xyz"[a];
-            // In the first versions all are one variable.
+            // The first versions have one variable for all coordinates.
             axes.push_back(exodus_.has(name) ? exodus_.reals(name, {}, count) : exodus_.reals("coord", {a}, count));
         }
         found_.points.reserve(count);
@@ -113,7 +118,7 @@ private:
         }
     }
 
-    // The nodes in the middle of edges, faces and the element come behind the corners.
+    // The corners come first, then the nodes in the middle of edges, faces and the element.
     template <std::size_t N>
     void take_as(FileCells<N>& into, Block& block, std::string_view kind) {
         block.taken = true;
@@ -130,14 +135,14 @@ private:
             const std::size_t number = block.first + e;
             for (std::size_t k = 0; k < N; ++k) corners[k] = corner(nodes[e * block.nodes + k], number);
             into.numbers.push_back(static_cast<Index>(number));
-            check_corners(in_, 0, corners, number, kWording, kind);
+            check_corners(in_, 0, corners, number, kNames, kind);
         }
     }
 
     [[nodiscard]] Index corner(std::int64_t node, std::size_t element) const {
         const std::size_t count = found_.points.size();
         if (node < 1 || static_cast<std::uint64_t>(node) > count) {
-            exodus_.fail(kWording.name_cell(element) + ": there is no node " + std::to_string(node),
+            exodus_.fail(kNames.cell(element) + ": there is no node " + std::to_string(node),
                          "nodes are 1 to " + std::to_string(count));
         }
         return static_cast<Index>(node - 1);
@@ -146,13 +151,13 @@ private:
     void list_left_out() {
         if (curved_ > 0) {
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
-                                      " more nodes than corners: the corners alone are taken");
+                                      " more nodes than corners: only the corners are used");
         }
         std::string list;
         for (const auto& [type, count] : left_out_) {
             list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + in_quotes(type);
         }
-        report_left_out(found_, list, file_);
+        add_left_out_warning(found_, list, file_);
     }
 
     void read_variables() {
@@ -190,7 +195,8 @@ private:
         return exodus_.reals("vals_nod_var", {step_, variable - 1}, nodes);  // as in the first versions
     }
 
-    // One an element of the file, not a number where a block that is left out has none; nothing if one that is taken has none.
+    // One value for each element of the file: NaN where a block that is left out has none. Empty if a block that is taken has
+    // none.
     [[nodiscard]] std::vector<double> element_values(std::size_t variable) const {
         std::vector<double> values(elements_, std::numeric_limits<double>::quiet_NaN());
         for (const Block& block : blocks_) {

@@ -13,7 +13,7 @@ namespace {
 constexpr std::endian kOrder = std::endian::big;
 constexpr std::size_t kPadding = 4;
 
-// By the number that the format gives to a type, from 1; the second of them is of characters.
+// The types in the order of their numbers in the format, from 1. Number 2 means characters.
 constexpr std::array kTypes{NumberType::Int8,    NumberType::UInt8,   NumberType::Int16, NumberType::Int32,
                             NumberType::Float32, NumberType::Float64, NumberType::UInt8, NumberType::UInt16,
                             NumberType::UInt32,  NumberType::Int64,   NumberType::UInt64};
@@ -38,7 +38,8 @@ public:
             if (!within) in.fail_at(std::min(variable.begin, end), "values go beyond the end of the file");
         };
         std::size_t offset = 0, count = 1;
-        for (std::size_t d = variable.record ? 1 : 0; d < variable.lengths.size(); ++d) {  // the record is not in the block
+        for (std::size_t d = variable.record ? 1 : 0; d < variable.lengths.size();
+             ++d) {  // the first dimension is that of the records
             const std::size_t length = variable.lengths[d];
             expect(length == 0 || offset <= end / length);
             offset = offset * length + (d < places.size() ? places[d] : 0);
@@ -73,7 +74,7 @@ private:
         find_records(records);
     }
 
-    // All numbers of lists and lengths; of version 5 they are longer.
+    // A number in a list or a length: 4 bytes, in version 5 8.
     std::int64_t number(const Place& place) {
         const NumberType type = version_ == 5 ? NumberType::Int64 : NumberType::Int32;
         return integer_from(in_.bytes(size_of(type), place), type, kOrder);
@@ -87,13 +88,13 @@ private:
 
     enum Tag : std::int64_t { Dimensions = 10, Variables = 11, Attributes = 12 };
 
-    // Each of its elements takes some bytes of the file: the loop ends.
+    // Each element takes at least a byte of the file, so the loop ends.
     template <class ReadElement>
     void read_list(Tag expected, std::string_view what, const ReadElement& read_element) {
         const std::int64_t found = tag();
         const std::size_t elements = count({what});
         if (found == 0 && elements == 0) return;
-        if (found != expected) in_.fail("netCDF: no list of " + std::string(what) + " stands here");
+        if (found != expected) in_.fail("netCDF: a list of " + std::string(what) + " is expected here");
         for (std::size_t e = 0; e < elements; ++e) read_element();
     }
 
@@ -118,7 +119,7 @@ private:
         in_.fail("netCDF: there is no type " + std::to_string(number));
     }
 
-    // Name and text; no text if it is of numbers.
+    // Reads the name and the text of an attribute; no text if it consists of numbers.
     std::pair<std::string, std::optional<std::string>> read_attribute() {
         const std::string name = this->name();
         const std::int64_t kind = tag();
@@ -149,12 +150,12 @@ private:
         count({"size of a variable"});
         const NumberType offset = version_ == 1 ? NumberType::Int32 : NumberType::Int64;
         const std::int64_t begin = integer_from(in_.bytes(size_of(offset), {"begin of a variable"}), offset, kOrder);
-        if (begin < 0) in_.fail("netCDF: a variable begins nowhere");
+        if (begin < 0) in_.fail("netCDF: a variable has a negative position");
         variable.begin = static_cast<std::size_t>(begin);
         variables.emplace(name, variable);
     }
 
-    // A record is one value block of each variable over the unlimited dimension; none can be longer than the file.
+    // A record has the values of each variable at one place of the unlimited dimension; it cannot be longer than the file.
     void find_records(std::int64_t announced) {
         std::size_t first = in_.size(), all = 0, last = 0;
         for (const auto& [name, variable] : variables) {
@@ -169,8 +170,8 @@ private:
             record_bytes_ += padded(last);
             ++all;
         }
-        if (all == 1) record_bytes_ = last;  // the one exception from padding
-        // A file that was written as a stream does not say how many there are.
+        if (all == 1) record_bytes_ = last;  // the only variable is not padded
+        // A file that was written as a stream does not have the number of records.
         std::size_t records = 0;
         if (announced >= 0) records = static_cast<std::size_t>(announced);
         if (announced < 0 && record_bytes_ > 0) records = (in_.size() - first) / record_bytes_;
@@ -182,7 +183,7 @@ private:
 
     TextScanner in_;
     char version_ = 0;
-    std::vector<std::size_t> lengths_;  // of the dimensions, as they are numbered
+    std::vector<std::size_t> lengths_;  // of the dimensions, by their numbers
     std::vector<std::string> names_;
     std::optional<std::size_t> unlimited_;
     std::size_t record_bytes_ = 0;

@@ -14,9 +14,9 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kMostOfDeflate = 1040;  // 1032 and what blocks need
+constexpr std::size_t kMostOfDeflate = 1040;  // 1032, and some bytes for the blocks
 
-// The library is not thread-safe: of two files in two threads one waits for the other.
+// The library is not thread-safe: only one thread at a time may use it.
 std::mutex& library_mutex() {
     static std::mutex mutex;
     return mutex;
@@ -37,7 +37,7 @@ constexpr std::array<std::pair<nc_type, NumberType>, 11> kTypes{{{NC_BYTE, Numbe
 class Netcdf4 : public NetcdfSource {
 public:
     Netcdf4(std::string_view bytes, std::string_view file) : lock_(library_mutex()), file_(file) {
-        // The library asks for a pointer to what may be changed, and does not change what is opened to be read.
+        // The library takes a pointer to non-const, but does not change a file that is opened for reading.
         void* memory = const_cast<char*>(bytes.data());
         check(nc_open_mem(std::string(file).c_str(), NC_NOWRITE, bytes.size(), memory, &id_));
         try {
@@ -84,7 +84,7 @@ private:
         }
     }
 
-    // Those of types that users define are left out.
+    // Reads a variable; those of user-defined types are left out.
     void read_variable(int number) {
         std::array<char, NC_MAX_NAME + 1> name{};
         nc_type type = NC_NAT;

@@ -12,11 +12,12 @@
 
 namespace subvol::detail {
 
-/// A variable of a netCDF file: a block of numbers, or of characters.
+/// A variable of a netCDF file: a block of numbers or of characters.
 ///
-/// lengths: of its dimensions, the slowest first; texts: its attributes that are text
-/// begin:   in a classic file the byte where its values begin, or of a record variable those of the first record
-/// number:  that netCDF's library gives it
+/// lengths: of its dimensions, the slowest first
+/// texts:   its text attributes
+/// begin:   in a classic file the byte at which its values begin; for a record variable those of the first record
+/// number:  its number in the netCDF library
 struct NetcdfVariable {
     NumberType type = NumberType::Int8;
     bool characters = false;
@@ -36,23 +37,23 @@ public:
     std::map<std::string, std::size_t, std::less<>> dimensions;
     std::map<std::string, NetcdfVariable, std::less<>> variables;
 
-    /// The bytes of the values at given places along the first dimensions, at all along the others; in this machine's order. Of
-    /// a record variable one place at least is given. The caller has checked that there is such a place, and that the file can
-    /// hold that many values.
+    /// The bytes of the values at given places along the first dimensions and at all places along the others, in this machine's
+    /// byte order. For a record variable at least one place is given. The caller has checked that the places exist and that the
+    /// file can have that many values.
     ///
     /// throws: Error(InvalidInput) if the file is too short or damaged there
     [[nodiscard]] virtual std::string values(const NetcdfVariable& variable, std::span<const std::size_t> places) const = 0;
 
-    /// How many bytes of values one byte of the file can stand for at most.
+    /// The largest number of bytes of values that one byte of the file can decompress to.
     [[nodiscard]] virtual std::size_t growth() const = 0;
 };
 
 /// A file of the classic format: CDF-1, CDF-2 or CDF-5. bytes, file: must outlive it
 [[nodiscard]] std::unique_ptr<NetcdfSource> open_classic_netcdf(std::string_view bytes, std::string_view file);
 
-/// A file of netCDF-4, which is HDF5, by netCDF's own library.
+/// A netCDF-4 file, which is HDF5, by the netCDF library.
 ///
-/// throws: Error(MissingCapability) if this library is built without that one
+/// throws: Error(MissingCapability) if the build has no netCDF library
 [[nodiscard]] std::unique_ptr<NetcdfSource> open_netcdf4(std::string_view bytes, std::string_view file);
 
 }  // namespace subvol::detail

@@ -19,7 +19,8 @@ struct DataHeader {
     std::size_t lines = 0;
 };
 
-// Texts (the first is the name), real numbers (times), integers (step, components, lines): words in a binary file too.
+// Texts (the first is the name), real numbers (times) and integers (step, components, lines), which are words even in a binary
+// file.
 DataHeader read_header(TextScanner& in, const std::string& section) {
     DataHeader header;
     const std::size_t texts = in.count({"texts of " + section});
@@ -45,8 +46,8 @@ DataHeader read_header(TextScanner& in, const std::string& section) {
 
 }  // namespace
 
-void read_gmsh_data(TextScanner& in, GmshValues& values, bool at_cells, const GmshNumbers& numbers,
-                    std::span<const std::uint8_t> needed, MeshFile& found) {
+void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& entities, MeshFile& found) {
+    const auto& [at_cells, numbers, needed] = entities;
     const std::string entity = at_cells ? "element" : "node";
     const DataHeader header = read_header(in, at_cells ? "$ElementData" : "$NodeData");
     const std::string what = "array " + in_quotes(header.name) + ": line";

@@ -7,11 +7,18 @@
 
 namespace subvol::detail {
 
-/// Reads the section $NodeData or $ElementData, whose keyword was the last word, as an array.
+/// The nodes or the elements that a data section has values for.
 ///
-/// numbers: those of the nodes or of the elements
-/// needed:  of each whether it has to have a value; without one the array is left out, and a warning says so
-void read_gmsh_data(TextScanner& in, GmshValues& values, bool at_cells, const GmshNumbers& numbers,
-                    std::span<const std::uint8_t> needed, MeshFile& found);
+/// at_cells: they are the elements
+/// numbers:  the numbers that the file gives them
+/// needed:   a flag for each: whether it must have a value. If one of these has none, the array is left out with a warning
+struct GmshEntities {
+    bool at_cells;
+    const GmshNumbers& numbers;
+    std::span<const std::uint8_t> needed;
+};
+
+/// Reads the section $NodeData or $ElementData, whose keyword was the last word, and appends it as an array.
+void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& entities, MeshFile& found);
 
 }  // namespace subvol::detail

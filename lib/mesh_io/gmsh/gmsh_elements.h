@@ -7,17 +7,17 @@
 
 namespace subvol::detail {
 
-/// What an element of Gmsh is taken for.
+/// The kind of cell that a Gmsh element is read as.
 enum class GmshShape { Other, Hexahedron, Tetrahedron, Prism, Pyramid };
 
-/// nodes: those in the middle of edges, faces and the element come behind the corners
+/// A type of elements. nodes: their number; the corners come first, then those in the middle of edges, faces and the element
 struct GmshElement {
     std::size_t nodes;
     std::string_view one, many;
     GmshShape shape = GmshShape::Other;
 };
 
-/// By the number that Gmsh gives to a type.
+/// The types of elements by Gmsh's number.
 inline const std::map<std::int64_t, GmshElement> kGmshElements{
     {1, {2, "line", "lines"}},
     {2, {3, "triangle", "triangles"}},

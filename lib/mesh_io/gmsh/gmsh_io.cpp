@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
 
+#include "assemble.h"
+#include "formats.h"
 #include "gmsh_data.h"
 #include "gmsh_elements.h"
-#include "mesh_file.h"
 
 namespace subvol::detail {
 
 namespace {
 
-// How nodes and elements are laid out: 2 one by one; 4.0 and 4.1 in blocks, one for each entity of the geometry.
+// The layout of nodes and elements: version 2 lists them one by one, 4.0 and 4.1 in blocks, one for each entity of the
+// geometry.
 enum class Layout { V2, V40, V41 };
 
 class GmshReader {
@@ -26,7 +28,7 @@ public:
         }
         if (found_.points.empty()) in_.fail("there is no $Nodes section, or it is empty");
         list_left_out();
-        return finish(std::move(found_), in_, file_, wording_, options_);
+        return assemble(std::move(found_), in_, file_, names_, options_);
     }
 
 private:
@@ -45,18 +47,18 @@ private:
         read_end("$MeshFormat");
     }
 
-    // A binary file tells the order of its bytes by the number 1.
+    // A binary file has the number 1, from which the byte order follows.
     void read_order(std::int64_t data_size) {
         if (data_size != 8) in_.fail("numbers of " + std::to_string(data_size) + " bytes are not supported", "8 are");
         in_.line();
-        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"order of bytes"});
+        const std::string_view one = in_.bytes(size_of(NumberType::Int32), {"byte order"});
         for (const std::endian order : {std::endian::little, std::endian::big}) {
             if (integer_from(one, NumberType::Int32, order) == 1) values_.set_binary(order);
         }
-        if (!values_.binary()) in_.fail("the order of bytes cannot be told", "the number 1 is expected behind the format");
+        if (!values_.binary()) in_.fail("the byte order is unknown", "the number 1 is expected after the format");
     }
 
-    // The word that was read last, as it stands there.
+    // The word that was read last, as text.
     [[nodiscard]] std::string number_word() const {
         TextScanner again = in_;
         again.seek(in_.position());
@@ -76,10 +78,11 @@ private:
             read_elements();
         } else if (keyword == "$NodeData") {
             if (found_.points.empty()) in_.fail("$NodeData come before $Nodes");
-            read_gmsh_data(in_, values_, false, nodes_, std::vector<std::uint8_t>(nodes_.size(), 1), found_);
+            const std::vector<std::uint8_t> all(nodes_.size(), 1);
+            read_gmsh_data(in_, values_, {.at_cells = false, .numbers = nodes_, .needed = all}, found_);
         } else if (keyword == "$ElementData") {
             if (!has_elements_) in_.fail("$ElementData come before $Elements");
-            read_gmsh_data(in_, values_, true, elements_, taken_, found_);
+            read_gmsh_data(in_, values_, {.at_cells = true, .numbers = elements_, .needed = taken_}, found_);
         } else {
             skip_section(keyword);
             return;
@@ -87,7 +90,7 @@ private:
         read_end(keyword);
     }
 
-    // Names of physical groups, entities of the geometry and remarks are not worth a word, data are.
+    // Only data give a warning: names of physical groups, entities of the geometry and comments are not needed.
     void skip_section(std::string_view keyword) {
         const std::string end = "$End" + std::string(keyword.substr(1));
         while (!in_.at_end()) {
@@ -98,10 +101,10 @@ private:
         in_.fail_word({keyword}, end, "");
     }
 
-    // In a binary file of version 4.1 numbers of nodes and elements, and how many there are, take 8 bytes.
+    // In a binary file of version 4.1 the numbers of nodes and elements, and their counts, have 8 bytes.
     [[nodiscard]] NumberType number_type() const { return layout_ == Layout::V41 ? NumberType::UInt64 : NumberType::Int32; }
 
-    // How many in all, then block by block. read_block(count) reads one, of so many in all
+    // Reads the total count, then block by block. read_block(count): reads a block; count: the total count
     template <class ReadBlock>
     void read_blocks(const std::string& section, const GmshNumbers& numbers, const ReadBlock& read_block) {
         values_.begin();
@@ -124,12 +127,12 @@ private:
             reserve_nodes(count);
             for (std::size_t n = 0; n < count; ++n) {
                 read_node_number(count, NumberType::Int32);
-                read_point(values_, found_, wording_, count);
+                read_point(values_, found_, names_, count);
             }
         } else {
             read_blocks("$Nodes", nodes_, [&](std::size_t count) { read_node_block(count); });
         }
-        wording_.point_numbers = nodes_.all();
+        names_.point_numbers = nodes_.all();
         if (const auto twice = nodes_.sort()) in_.fail("there are two nodes " + std::to_string(*twice));
     }
 
@@ -143,7 +146,8 @@ private:
         nodes_.add(values_.integer({"number of node", static_cast<std::int64_t>(nodes_.size() + 1), of}, type));
     }
 
-    // 4.1: all numbers, then all places; 4.0: each number with its place. A place may have parameters on its curve or surface.
+    // Version 4.1 lists all numbers, then all coordinates; 4.0 each number with its coordinates. Parameters on the curve or
+    // surface of the geometry may follow the coordinates.
     void read_node_block(std::size_t of) {
         const std::int64_t first = values_.integer({"block of $Nodes"});
         const std::int64_t second = values_.integer({"block of $Nodes"});
@@ -156,7 +160,7 @@ private:
         for (std::size_t n = 0; layout_ == Layout::V41 && n < count; ++n) read_node_number(of, number_type());
         for (std::size_t n = 0; n < count; ++n) {
             if (layout_ == Layout::V40) read_node_number(of, number_type());
-            read_point(values_, found_, wording_, of);
+            read_point(values_, found_, names_, of);
             for (std::int64_t k = 0; parametric && k < dimension; ++k) values_.real({"parameter of a node"});
         }
     }
@@ -182,7 +186,7 @@ private:
         } else {
             read_blocks("$Elements", elements_, [&](std::size_t count) { read_element_block(count); });
         }
-        static_cast<void>(elements_.sort());  // numbers that are there twice matter to no one but to data
+        static_cast<void>(elements_.sort());  // numbers that occur twice matter only to data
     }
 
     [[nodiscard]] Place next_element(std::size_t of) const {
@@ -197,7 +201,7 @@ private:
         return element->second;
     }
 
-    // Number, type, tags and nodes.
+    // Reads an element: number, type, tags and nodes.
     void read_element_line(std::size_t of) {
         const Place place = next_element(of);
         const std::int64_t number = in_.integer(place);
@@ -207,7 +211,7 @@ private:
         take(element, number, place);
     }
 
-    // Elements of one type and with equally many tags.
+    // Reads a run of elements of one type with the same number of tags.
     void read_element_run(std::size_t of) {
         const GmshElement& element = element_of(values_.integer(next_element(of)));
         const std::size_t count = values_.count(next_element(of));
@@ -221,7 +225,7 @@ private:
         }
     }
 
-    // Elements of one type on one entity of the geometry.
+    // Reads a block: elements of one type on one entity of the geometry.
     void read_element_block(std::size_t of) {
         values_.integer({"block of $Elements"});
         values_.integer({"block of $Elements"});
@@ -264,19 +268,19 @@ private:
         for (std::size_t k = N; k < element.nodes; ++k) values_.integer(place, number_type());
         curved_ += element.nodes > N;
         into.numbers.push_back(static_cast<Index>(number));
-        check_corners(in_, position, corners, number, wording_, kind);
+        check_corners(in_, position, corners, number, names_, kind);
     }
 
     void list_left_out() {
         if (curved_ > 0) {
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
-                                      " more nodes than corners: the corners alone are taken");
+                                      " more nodes than corners: only the corners are used");
         }
         std::string list;
         for (const auto& [one, rest] : left_out_) {
             list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);
         }
-        report_left_out(found_, list, file_);
+        add_left_out_warning(found_, list, file_);
     }
 
     TextScanner in_;
@@ -285,10 +289,10 @@ private:
     GmshValues values_;
     Layout layout_ = Layout::V2;
     MeshFile found_;
-    Wording wording_{"node", "element", 1};
+    EntityNames names_{"node", "element", 1};
     GmshNumbers nodes_;
     GmshNumbers elements_;
-    std::vector<std::uint8_t> taken_;  // of each element whether it is a cell
+    std::vector<std::uint8_t> taken_;  // a flag for each element: whether it is read as a cell
     std::size_t curved_ = 0;
     std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;
     bool has_elements_ = false;

@@ -12,16 +12,16 @@
 
 namespace subvol::detail {
 
-/// The numbers that a file gives to its nodes, or to its elements: any, but each once. Most often they are 1, 2, 3…
+/// The numbers of the nodes, or of the elements, of a file: arbitrary but unique. Most often they are 1, 2, 3…
 class GmshNumbers {
 public:
     void add(std::int64_t number) { numbers_.push_back(number); }
     void reserve(std::size_t count) { numbers_.reserve(count); }
     [[nodiscard]] std::size_t size() const { return numbers_.size(); }
-    /// In the order in which they came.
+    /// In the order of `add`.
     [[nodiscard]] std::span<const std::int64_t> all() const { return numbers_; }
 
-    /// Behind the last one, before any is looked for. returns: a number that is there twice
+    /// To be called after the last `add` and before `find`. returns: a number that occurs twice
     std::optional<std::int64_t> sort() {
         places_.reserve(numbers_.size());
         for (Index n = 0; n < numbers_.size(); ++n) places_.emplace_back(numbers_[n], n);
@@ -31,7 +31,7 @@ public:
         return twice == places_.end() ? std::nullopt : std::optional(twice->first);
     }
 
-    /// The place of a number in the order in which they came; kNone if it is none of them.
+    /// The place of a number in the order of `add`; kNone if it does not occur.
     [[nodiscard]] Index find(std::int64_t number) const {
         const auto guess = static_cast<std::uint64_t>(number) - 1;
         if (guess < places_.size() && places_[guess].first == number) return places_[guess].second;

@@ -8,7 +8,7 @@
 
 namespace subvol::detail {
 
-/// The numbers of Gmsh: words of the text, or in a binary file numbers between its lines.
+/// Reads the numbers of a Gmsh file: words of the text or, in a binary file, bytes between its lines.
 class GmshValues {
 public:
     explicit GmshValues(TextScanner& in) : in_(in) {}
@@ -19,12 +19,12 @@ public:
     }
     [[nodiscard]] bool binary() const { return order_.has_value(); }
 
-    /// Numbers begin here: in a binary file behind the end of the line.
+    /// To be called before the numbers of a section: in a binary file they begin after the end of the line.
     void begin() {
         if (order_) in_.line();
     }
 
-    /// type: how the number lies in a binary file, Int32 or UInt64
+    /// type: of the number in a binary file, Int32 or UInt64
     std::int64_t integer(const Place& place, NumberType type = NumberType::Int32) {
         return order_ ? integer_from(in_.bytes(size_of(type), place), type, *order_) : in_.integer(place);
     }
@@ -36,13 +36,13 @@ public:
         return order_ ? real_from(in_.bytes(size_of(kType), place), kType, *order_) : in_.real(place);
     }
 
-    /// How many numbers the rest of the file can hold at most.
+    /// An upper bound for how many numbers are left in the file.
     [[nodiscard]] std::size_t room() const { return order_ ? in_.bytes_left() / size_of(NumberType::Int32) : in_.room_for(1); }
     [[nodiscard]] std::size_t position() const { return in_.position(); }
 
 private:
     TextScanner& in_;
-    std::optional<std::endian> order_;  // of a binary file
+    std::optional<std::endian> order_;  // set if the file is binary
 };
 
 }  // namespace subvol::detail

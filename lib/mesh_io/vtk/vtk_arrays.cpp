@@ -10,7 +10,7 @@ namespace subvol::detail {
 
 namespace {
 
-// Attribute sections that are laid out alike: KEYWORD name type, then the values.
+// Attribute sections with the same layout, KEYWORD name type, then the values; and their numbers of components.
 const std::map<std::string_view, std::size_t> kComponents{
     {"VECTORS", 3}, {"NORMALS", 3}, {"TENSORS", 9}, {"TENSORS6", 6}, {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}, {"EDGE_FLAGS", 1}};
 
@@ -23,7 +23,7 @@ int hex_digit(char c) {
     return digit;
 }
 
-// VTK writes the odd characters of a name as %20 and the like.
+// VTK encodes special characters in a name, such as a space as %20.
 std::string decoded(std::string_view name) {
     std::string result;
     for (std::size_t i = 0; i < name.size(); ++i) {
@@ -64,7 +64,7 @@ bool VtkArrayReader::read_section(const std::string& keyword) {
     const bool known = plain != kComponents.end() || keyword == "SCALARS" || keyword == "LOOKUP_TABLE" ||
                        keyword == "COLOR_SCALARS" || keyword == "TEXTURE_COORDINATES";
     if (!known) return false;
-    if (!in_data_) in_.fail(keyword + " stands before POINT_DATA or CELL_DATA");
+    if (!in_data_) in_.fail(keyword + " comes before POINT_DATA or CELL_DATA");
     if (plain != kComponents.end()) {
         read_attribute(keyword, plain->second);
     } else if (keyword == "SCALARS") {
@@ -87,7 +87,7 @@ void VtkArrayReader::read_attribute(const std::string& keyword, std::size_t comp
 void VtkArrayReader::read_scalars() {
     const std::string name(in_.word());
     const VtkType type = values_.read_type("SCALARS " + in_quotes(name));
-    // The number of components may be left out: it is there if more stands on the line.
+    // The number of components is optional: it is there if the line goes on.
     std::size_t components = 1;
     TextScanner ahead = in_;
     if (ahead.line().find_first_not_of(" \t\r") != std::string_view::npos) {
@@ -120,7 +120,7 @@ void VtkArrayReader::read_lookup_table() {
 }
 
 void VtkArrayReader::read_field() {
-    in_.word();  // the field's name says nothing
+    in_.word();  // the name of the field is not used
     const std::size_t arrays = in_.count({"FIELD"});
     for (std::size_t a = 0; a < arrays; ++a) {
         if (upper_case(in_.peek()) == "METADATA") {

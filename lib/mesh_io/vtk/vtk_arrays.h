@@ -10,20 +10,20 @@
 
 namespace subvol::detail {
 
-/// Skips what follows the word METADATA: the lines up to an empty one.
+/// Skips the lines after the word METADATA, up to an empty one.
 void skip_metadata(TextScanner& in);
 
-/// The arrays of legacy VTK: the sections behind POINT_DATA and CELL_DATA, and FIELD anywhere.
+/// Reads the arrays of legacy VTK: the sections after POINT_DATA and CELL_DATA, and FIELD anywhere.
 class VtkArrayReader {
 public:
     VtkArrayReader(TextScanner& in, VtkValues& values, MeshFile& found) : in_(in), values_(values), found_(found) {}
 
-    /// Reads the section whose keyword (in capitals) was the last word, if it is one of arrays.
+    /// Reads the section whose keyword (in capitals) was the last word, if it has arrays.
     ///
-    /// returns: whether it was
+    /// returns: whether it has
     bool read_section(const std::string& keyword);
 
-    /// The arrays that follow have one tuple a point, or one a cell.
+    /// To be called at POINT_DATA or CELL_DATA. tuples: of each array that follows
     void start_data(bool at_cells, std::size_t tuples);
 
 private:

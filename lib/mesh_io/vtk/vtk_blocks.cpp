@@ -53,7 +53,7 @@ void VtkBlock::add_points(const TextScanner& in, MeshFile& into) {
     if (lists_points() || has_points_) return;
     has_points_ = true;
     expect_cells(in);
-    constexpr std::size_t kBits = 8;  // a value takes one at least
+    constexpr std::size_t kBits = 8;  // a value takes at least one
     if (grid_.point_count() > most_points(kBits * in.size())) {
         in.fail("DIMENSIONS: " + size_text(grid_) + " are more than the file can have values for");
     }

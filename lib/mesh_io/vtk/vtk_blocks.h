@@ -9,21 +9,21 @@
 
 namespace subvol::detail {
 
-/// The block of hexahedra of a structured data set of legacy VTK: its points are listed (STRUCTURED_GRID), given by where its
-/// planes cut the axes (RECTILINEAR_GRID), or evenly spaced (STRUCTURED_POINTS).
+/// The block of hexahedra of a structured data set of legacy VTK. Its points are listed (STRUCTURED_GRID), or given by the
+/// coordinates of its planes on each axis (RECTILINEAR_GRID), or evenly spaced (STRUCTURED_POINTS).
 class VtkBlock {
 public:
-    /// nothing: the data set is not structured. type: its name in capitals
+    /// Nothing if the data set is not structured. type: its name in capitals
     [[nodiscard]] static std::optional<VtkBlock> of(const std::string& type);
 
-    /// Reads the section whose keyword (in capitals) was the last word, if it is one of this data set.
+    /// Reads the section whose keyword (in capitals) was the last word, if it belongs to this data set.
     ///
-    /// returns: whether it was
+    /// returns: whether it does
     bool read_section(const std::string& keyword, TextScanner& in, VtkValues& values);
 
-    /// Appends the points, once, if they are not listed in a section POINTS.
+    /// Appends the points unless they are listed in a section POINTS; further calls do nothing.
     void add_points(const TextScanner& in, MeshFile& into);
-    /// Appends the hexahedra; fails if the points are not as many as they should be, or none.
+    /// Appends the hexahedra; fails if the number of points is wrong, or if there are no cells.
     void add_cells(const TextScanner& in, MeshFile& into) const;
 
     [[nodiscard]] bool lists_points() const { return kind_ == Kind::Points; }

@@ -9,7 +9,7 @@ namespace {
 
 enum CellType : std::int64_t { kTetrahedron = 10, kVoxel = 11, kHexahedron = 12, kWedge = 13, kPyramid = 14 };
 
-// The linear type of each that has points in the middle of edges, faces or the cell: they come behind the corners.
+// The linear type of each type with points in the middle of edges, faces or the cell, which come after the corners.
 const std::map<std::int64_t, std::int64_t> kLinear{
     {24, kTetrahedron}, {71, kTetrahedron}, {78, kTetrahedron}, {25, kHexahedron}, {29, kHexahedron}, {33, kHexahedron},
     {72, kHexahedron},  {79, kHexahedron},  {26, kWedge},       {31, kWedge},      {32, kWedge},      {73, kWedge},
@@ -39,11 +39,11 @@ void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corne
     const bool curved = linear != kLinear.end();
     const std::int64_t type = curved ? linear->second : type_in_file;
     const bool others = options_.other_cells != OtherCells::Ignore;
-    // Files exist whose hexahedra are called tetrahedra: eight corners say more than the type.
+    // Some files have hexahedra with the type of tetrahedra: the eight corners decide.
     const bool mislabelled = type_in_file == kTetrahedron && corners.size() == 8;
     if (mislabelled) ++mislabelled_;
     if (type == kHexahedron || type == kVoxel || mislabelled) {
-        // Others exist whose curved hexahedra have the type of linear ones.
+        // Other files have curved hexahedra with the type of linear ones.
         take_as(found_.hexes, corners, position, "a hexahedron", curved || corners.size() == 20 || corners.size() == 27);
         if (type == kVoxel) {
             auto& hex = found_.hexes.corners.back();
@@ -67,13 +67,13 @@ void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, 
                             bool curved) {
     if (corners.size() > N && curved) ++curved_;
     if (corners.size() < N || (corners.size() > N && !curved)) {
-        in_.fail_at(position, kVtkWording.name_cell(next_) + " has " + std::to_string(corners.size()) + " corners",
+        in_.fail_at(position, kVtkNames.cell(next_) + " has " + std::to_string(corners.size()) + " corners",
                     std::string(kind) + " has " + std::to_string(N));
     }
     auto& taken = into.corners.emplace_back();
     std::copy_n(corners.begin(), N, taken.begin());
     into.numbers.push_back(static_cast<Index>(next_));
-    check_corners(in_, position, taken, next_, kVtkWording, kind);
+    check_corners(in_, position, taken, next_, kVtkNames, kind);
 }
 
 void VtkCellSorter::report(std::string_view file) {
@@ -83,7 +83,7 @@ void VtkCellSorter::report(std::string_view file) {
     }
     if (curved_ > 0) {
         found_.warnings.push_back(counted(curved_, "cell has", "cells have") +
-                                  " more points than corners: the corners alone are taken");
+                                  " more points than corners: only the corners are used");
     }
     std::string list;
     for (const auto& [type, count] : left_out_) {
@@ -93,7 +93,7 @@ void VtkCellSorter::report(std::string_view file) {
                 counted(count, known ? names->second[0] : "cell", known ? names->second[1] : "cells") + " (VTK type " +
                 std::to_string(type) + ")";
     }
-    report_left_out(found_, list, file);
+    add_left_out_warning(found_, list, file);
 }
 
 }  // namespace subvol::detail

@@ -7,26 +7,30 @@
 #include <string>
 
 #include "mesh_file.h"
+#include "subvol/mesh_io.h"
 
 namespace subvol::detail {
 
-/// How VTK counts: from 0.
-inline constexpr Wording kVtkWording{"point", "cell", 0};
+/// VTK counts from 0.
+inline constexpr EntityNames kVtkNames{"point", "cell", 0};
 
-/// Sorts the cells of VTK by what can be done with them.
+/// Sorts the cells of a VTK file into the kinds of cells that are read, and those that are left out.
 class VtkCellSorter {
 public:
     VtkCellSorter(const TextScanner& in, MeshFile& found, const ReadOptions& options)
         : in_(in), found_(found), options_(options) {}
 
-    /// Takes the cell that comes next; its points are already counted through all pieces. position: its place in the text
+    /// Adds the next cell.
+    ///
+    /// corners:  numbered through all pieces of the file
+    /// position: of the cell in the text
     void take(std::int64_t type, std::span<const Index> corners, std::size_t position);
 
-    /// Behind the last piece: tells what was left out or taken for something else.
+    /// To be called after the last cell: appends warnings about cells that were left out or read as another kind.
     void report(std::string_view file);
 
 private:
-    /// As the kind of cell that `into` holds, of the first N corners. curved: more points may follow
+    /// Adds the cell to `into`, with its first N corners. curved: it may have more points
     template <std::size_t N>
     void take_as(FileCells<N>& into, std::span<const Index> corners, std::size_t position, std::string_view kind, bool curved);
 

@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
 #include "vtk_arrays.h"
 #include "vtk_blocks.h"
 #include "vtk_cells.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr VtkType kInt{NumberType::Int32};
 
 /// offsets:   corners of cell c: connectivity[offsets[c] .. offsets[c + 1])
-/// positions: of each cell in the text; the last one stands for all that follow
+/// positions: of the cells in the text; the last one is also that of all cells that follow
 struct VtkCells {
     std::vector<std::size_t> offsets{0};
     std::vector<Index> connectivity;
@@ -52,7 +53,7 @@ public:
             sort_cells(sorter);
         }
         sorter.report(file_);
-        return finish(std::move(found_), in_, file_, kVtkWording, options_);
+        return assemble(std::move(found_), in_, file_, kVtkNames, options_);
     }
 
 private:
@@ -107,7 +108,7 @@ private:
         const std::size_t count = in_.count({"POINTS"});
         values_.begin(values_.read_type("POINTS"));
         found_.points.reserve(std::min(count, values_.room() / 3));
-        for (std::size_t p = 0; p < count; ++p) read_point(values_, found_, kVtkWording, 0);
+        for (std::size_t p = 0; p < count; ++p) read_point(values_, found_, kVtkNames, 0);
     }
 
     void read_cells() {
@@ -121,7 +122,7 @@ private:
         }
     }
 
-    // Up to version 4: each cell as the number of its corners and the corners. size: how many numbers these are in all
+    // Up to version 4: for each cell the number of its corners, then the corners. size: the count of all these numbers
     void read_counted_cells(std::size_t count, std::size_t size) {
         values_.begin(kInt);
         cells_.offsets.reserve(std::min(count, values_.room()) + 1);
@@ -146,7 +147,7 @@ private:
         }
     }
 
-    // From version 5 on: where each cell begins in the list of corners, and the list.
+    // From version 5 on: the offset of each cell in the list of corners, then this list.
     void read_offsets_and_connectivity(std::size_t offset_count, std::size_t size) {
         in_.word();
         values_.begin_integers(values_.read_type("OFFSETS"), "OFFSETS");

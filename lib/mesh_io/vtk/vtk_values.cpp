@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::endian kOrder = std::endian::big;
 
-// VTK writes its ids as 32 bits in a legacy file, however long they are in memory; `long` is that of 64-bit systems.
+// VTK writes its ids with 32 bits in a legacy file, even if they are longer in memory; `long` is that of 64-bit systems.
 const std::map<std::string_view, VtkType> kTypes{{"BIT", {NumberType::UInt8, true}},
                                                  {"CHAR", {NumberType::Int8}},
                                                  {"SIGNED_CHAR", {NumberType::Int8}},
@@ -83,12 +83,12 @@ void VtkValues::skip(std::size_t values, const std::string& what) {
 
 void VtkValues::skip_texts(std::size_t texts, const std::string& what) {
     in_.line();
-    // A text takes a byte at least, except the last lines of a file that ends early.
+    // A text takes at least one byte, except at the end of a file that is cut off.
     const std::size_t some = std::min(texts, in_.bytes_left() + 1);
     for (std::size_t i = 0; i < some; ++i) skip_text({what, static_cast<std::int64_t>(i)});
 }
 
-// In a BINARY file a text stands behind its length, whose first two bits say how long the length is.
+// In a BINARY file a text follows its length; the first two bits of the length give its number of bytes.
 void VtkValues::skip_text(const Place& place) {
     if (!binary_) {
         in_.line();

@@ -8,15 +8,15 @@
 
 namespace subvol::detail {
 
-/// A data type of legacy VTK. bits: eight values a byte
+/// A data type of legacy VTK. bits: eight values in each byte
 struct VtkType {
     NumberType number = NumberType::Float64;
     bool bits = false;
 };
 
-/// The values of legacy VTK: words of the text, or in a BINARY file big-endian numbers between its lines.
+/// Reads the values of a legacy VTK file: words of the text or, in a BINARY file, big-endian numbers between its lines.
 ///
-/// Keywords, names and counts are text in both; they are read from the scanner, and the values that follow them from here.
+/// Keywords, names and counts are always text. They are read from the scanner, the values after them from here.
 class VtkValues {
 public:
     explicit VtkValues(TextScanner& in) : in_(in) {}
@@ -24,24 +24,24 @@ public:
     void set_binary();
     [[nodiscard]] bool binary() const { return binary_; }
 
-    /// Reads the word for a data type; refuses any other.
+    /// Reads the name of a data type.
     VtkType read_type(const std::string& what);
 
-    /// Values of this type begin here: in a BINARY file behind the end of the line.
+    /// To be called before values of this type: in a BINARY file they begin after the end of the line.
     void begin(VtkType type);
-    /// The same for values to be read as integers.
+    /// The same for values that are read as integers.
     void begin_integers(VtkType type, const std::string& what);
 
     double real(const Place& place);
     std::int64_t integer(const Place& place);
-    /// As TextScanner::count.
+    /// An integer checked as by TextScanner::count.
     std::size_t count(const Place& place);
-    /// Passes over so many values, where they begin.
+    /// Skips so many values.
     void skip(std::size_t values, const std::string& what);
-    /// Passes over so many texts, where they begin.
+    /// Skips so many texts.
     void skip_texts(std::size_t texts, const std::string& what);
 
-    /// How many values the rest of the file can hold at most.
+    /// An upper bound for how many values are left in the file.
     [[nodiscard]] std::size_t room() const;
     [[nodiscard]] std::size_t position() const { return in_.position(); }
 

@@ -36,7 +36,7 @@ std::array<std::vector<double>, 3> cuts(const VtkXml& xml, const pugi::xml_node&
     std::array<std::vector<double>, 3> at;
     pugi::xml_node array = piece.child("Coordinates").child("DataArray");
     for (std::size_t a = 0; a < 3; ++a) {
-        if (!array) xml.fail_at(piece, "the piece has not three arrays of Coordinates");
+        if (!array) xml.fail_at(piece, "the piece does not have three arrays of Coordinates");
         at[a] = xml.arrays().reals(array);
         xml.expect_size(array, at[a].size(), extent.grid.points[a], "the coordinates along an axis");
         array = array.next_sibling("DataArray");
@@ -44,7 +44,7 @@ std::array<std::vector<double>, 3> cuts(const VtkXml& xml, const pugi::xml_node&
     return at;
 }
 
-// Along the image's own axes from its origin, which lies at the number 0.
+// Coordinates along the axes of the image, from its origin, which belongs to the number 0.
 std::array<std::vector<double>, 3> even_cuts(const VtkExtent& extent, const std::array<double, 3>& spacing) {
     std::array<std::vector<double>, 3> at;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -55,7 +55,7 @@ std::array<std::vector<double>, 3> even_cuts(const VtkExtent& extent, const std:
     return at;
 }
 
-// How an image lies in the world: its axes, row by row, from its origin.
+// The position of an image in the world: its origin, and its axes as the columns of a matrix that is stored row by row.
 struct Placement {
     std::array<double, 3> origin;
     std::array<double, 9> axes;
@@ -81,7 +81,7 @@ const char* name_of(VtkGrid grid) {
     return kNames[static_cast<std::size_t>(grid)];
 }
 
-// The first and the last number along each of the three axes.
+// The attribute has the first and the last number along each of the three axes.
 VtkExtent extent_of(const VtkXml& xml, const pugi::xml_node& piece) {
     constexpr std::int64_t kFar = std::int64_t{1} << 40;  // so that differences can be formed
     const std::string_view text = piece.attribute("Extent").as_string();

@@ -6,11 +6,11 @@
 
 namespace subvol::detail {
 
-/// What VTK's XML has of volumes: cells with their corners, or a block of hexahedra whose points are listed, are given by where
-/// its planes cut the axes, or are evenly spaced.
+/// The volume data sets of VTK XML: cells with their corners, or a block of hexahedra. The points of a block are listed, or
+/// given by the coordinates of its planes on each axis, or evenly spaced.
 enum class VtkGrid { Unstructured, Structured, Rectilinear, Image };
 
-/// The element's name.
+/// The name of the data set's element.
 [[nodiscard]] const char* name_of(VtkGrid grid);
 
 /// A block of a structured data set. first: the number of its first point along each axis

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesh_file.h"
+#include "formats.h"
 #include "output_file.h"
+#include "text_scanner.h"
 #include "vtk_xml_writer.h"
 
 namespace subvol::detail {

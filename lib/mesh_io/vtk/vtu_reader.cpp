@@ -3,7 +3,8 @@
 #include <limits>
 #include <pugixml.hpp>
 
-#include "mesh_file.h"
+#include "assemble.h"
+#include "formats.h"
 #include "vtk_cells.h"
 #include "vtk_xml_grid.h"
 
@@ -11,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-// More components are a mistake, and fewer keep every product of counts within 64 bits.
+// An array with more components is an error; with fewer no product of counts exceeds 64 bits.
 constexpr std::size_t kMostComponents = 1 << 16;
 
 class VtuReader {
@@ -37,7 +38,7 @@ public:
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
         sorter_.report(file_);
-        return finish(std::move(found_), xml_.in(), file_, kVtkWording, options_);
+        return assemble(std::move(found_), xml_.in(), file_, kVtkNames, options_);
     }
 
 private:
@@ -90,13 +91,13 @@ private:
         const pugi::xml_node type_array = cell_array(element, piece, "types");
         const auto types = arrays_.integers(type_array);
         xml_.expect_size(type_array, types.size(), count, "one a cell");
-        if (found_.hexes.corners.empty()) {  // most meshes have nothing else
+        if (found_.hexes.corners.empty()) {  // most meshes have only hexahedra
             found_.hexes.corners.reserve(count);
             found_.hexes.numbers.reserve(count);
         }
         const std::size_t position = xml_.place(connectivity);
         const auto points = static_cast<std::int64_t>(found_.points.size() - first_point);
-        std::vector<Index> corners;  // of cell c, as far as they have come
+        std::vector<Index> corners;  // of cell c, those read so far
         std::size_t c = 0, end = 0;
         const auto take_full = [&] {
             for (; c < count && end == ends[c]; ++c) {
@@ -108,10 +109,9 @@ private:
         arrays_.each_integer(connectivity, [&](std::span<const std::int64_t> some) {
             for (const std::int64_t corner : some) {
                 if (corner < 0 || corner >= points) {
-                    arrays_.fail(
-                        connectivity,
-                        kVtkWording.name_cell(cells_before_ + c) + ": there is no point with index " + std::to_string(corner),
-                        "there are " + std::to_string(points) + " points, counted from 0");
+                    arrays_.fail(connectivity,
+                                 kVtkNames.cell(cells_before_ + c) + ": there is no point with index " + std::to_string(corner),
+                                 "there are " + std::to_string(points) + " points, counted from 0");
                 }
                 corners.push_back(static_cast<Index>(first_point + static_cast<std::size_t>(corner)));
                 ++end;
@@ -120,7 +120,7 @@ private:
         });
     }
 
-    // Each is the end of its cell in the list of corners.
+    // The end of each cell in the list of corners.
     [[nodiscard]] std::vector<std::size_t> read_offsets(const pugi::xml_node& array, std::size_t count,
                                                         std::size_t corners) const {
         xml_.expect_size(array, arrays_.size(array), count, "one a cell");
@@ -165,7 +165,8 @@ private:
         }
     }
 
-    // An array of a piece goes on where that of the piece before ended; one that pieces before lacked begins nowhere.
+    // The values of a piece follow those of the piece before. An array that an earlier piece lacks is started anew, and removed
+    // at the end.
     std::vector<double>& values_of(const std::string& name, bool at_cells, std::size_t components, std::size_t before) {
         const auto continues = [&](const FileArray& array) {
             return array.at_cells == at_cells && array.name == name && array.values.size() == before * components &&

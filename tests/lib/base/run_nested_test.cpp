@@ -12,7 +12,7 @@
 namespace subvol {
 namespace {
 
-/// Until it holds, or for a while: with a single thread it never will.
+/// Waits until the condition holds, for a limited time: with a single thread it never holds.
 template <class Condition>
 void wait_for(const Condition& condition) {
     for (int i = 0; i < 200 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour maps as ParaView writes them, against what VTK makes of them. The expected numbers are those that VTK 9.1 returned for
-// the same knots (vtkColorTransferFunction::GetColor, vtkPiecewiseFunction::GetValue), to six digits.
+// Colour maps in ParaView's form are compared with VTK's curves: the expected numbers are those that VTK 9.1 returned for the
+// same knots (vtkColorTransferFunction::GetColor, vtkPiecewiseFunction::GetValue), to six digits.
 
 #include <gtest/gtest.h>
 

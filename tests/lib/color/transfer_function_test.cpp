@@ -171,8 +171,8 @@ TEST_F(TransferFunctionFile, NamesFileAndKey) {
         expect_error(kInvalid, "colors.json", [&] { (void)read(content); });
     };
     refused("parse error", "[{");
-    refused("holds no colour map", "[]");
-    refused("holds no colour map", "[3]");
+    refused("has no colour map", "[]");
+    refused("has no colour map", "[3]");
     refused("'RGBPoints' is missing", R"([{"IndexedColors": [1, 0, 0]}])");
     refused("'RGBPoints' is not an array of four", R"([{"RGBPoints": [0, 1, 1]}])");
     refused("'RGBPoints' is not an array of four", R"([{"RGBPoints": []}])");
@@ -210,7 +210,7 @@ TEST(ParseOpacity, ARepeatedValueIsAJump) {
     EXPECT_NEAR(ramp_at(knots, 1 + 1e-8), 0.8, 1e-9);
     const auto last = parse_opacity("0%:0,100%:0,100%:1", 0, 1);
     EXPECT_NEAR(ramp_at(last, 1 - 1e-8), 0, 1e-9);
-    EXPECT_NEAR(ramp_at(last, 1), 1 - 1e-6, 1e-9);  // the most that optics take
+    EXPECT_NEAR(ramp_at(last, 1), 1 - 1e-6, 1e-9);  // the largest opacity of Optics
     EXPECT_NO_THROW(validate({{{0, Vec3(1)}}, parse_opacity("0:0,0:1,1:1,1:0", 0, 1)}));
 }
 
@@ -221,12 +221,12 @@ TEST(ParseOpacity, NamesTheEntry) {
     refused("entry 0, '': is not a value and an opacity", "");
     refused("entry 1, '1': is not a value and an opacity", "0:0,1");
     refused("entry 2, '': is not", "0:0,1:1,");
-    refused("entry 1, 'x:1': the value is no number", "0:0,x:1");
-    refused("entry 1, '%:1': the value is no number", "0:0,%:1");
-    refused("entry 1, 'inf:1': the value is no number", "0:0,inf:1");
-    refused("entry 0, '0:1:2': the opacity is no number", "0:1:2");
+    refused("entry 1, 'x:1': the value is not a number", "0:0,x:1");
+    refused("entry 1, '%:1': the value is not a number", "0:0,%:1");
+    refused("entry 1, 'inf:1': the value is not a number", "0:0,inf:1");
+    refused("entry 0, '0:1:2': the opacity is not a number", "0:1:2");
     refused("entry 0, '0:1.5': the opacity is out of range", "0:1.5");
-    refused("entry 0, '0:nan': the opacity is no number", "0:nan");
+    refused("entry 0, '0:nan': the opacity is not a number", "0:nan");
     refused("entry 1, '0%:1': the value is below", "0.5:0,0%:1");
     expect_error(kInvalid, "range", [] { (void)parse_opacity("0:0", 1, 0); });
 }

@@ -20,7 +20,7 @@ namespace {
 using test::every_kernel;
 using test::expect_error;
 
-// Composite Gauss-Legendre, 5 points on each of many pieces: knows nothing of the closed forms.
+// Composite Gauss-Legendre, 5 points on each of many pieces: independent of the closed forms.
 double quadrature(const std::function<double(double)>& f, double a, double b, int pieces) {
     const double nodes[] = {0, 0.5384693101056831, 0.9061798459386640};
     const double weights[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
@@ -53,7 +53,7 @@ TEST(Kernel, VanishesAtItsSupportAndNotBefore) {
 TEST(Kernel, IsEvenAndSymmetricInTheAxes) {
     for (const auto& [name, kernel] : every_kernel()) {
         const double value = value_at(kernel, 0.3, 0.5, 0.7);
-        EXPECT_NEAR(value_at(kernel, -0.7, 0.3, -0.5), value, 1e-15) << name;  // rounding of another order
+        EXPECT_NEAR(value_at(kernel, -0.7, 0.3, -0.5), value, 1e-15) << name;  // rounding: the operations are in another order
         if (!is_radial(kernel)) continue;
         EXPECT_NEAR(radial_value(kernel, std::sqrt(0.83)), value, 1e-15) << name;
     }
@@ -98,7 +98,7 @@ TEST(Kernel, IsAsSmoothAsItSays) {
         EXPECT_NEAR(slope_jump(kernel, support_radius(kernel)), 0, 20 * step);
         EXPECT_NEAR(slope_jump(kernel, 0), 0, 40 * step);  // no cusp in the middle
     }
-    EXPECT_GT(std::abs(jump(BcSplineKernel{.extent = 3}, 3)), 0.1);  // the paper's other extents do jump
+    EXPECT_GT(std::abs(jump(BcSplineKernel{.extent = 3}, 3)), 0.1);  // with the paper's other extents the kernel jumps
 }
 
 TEST(Kernel, GradientIsThatOfTheValue) {

@@ -42,7 +42,7 @@ TEST(View, AxesAreRightHandedAndPixelZeroIsTheTopLeft) {
     const Vec2 first = view.slopes(0.5, 0.5);
     EXPECT_LT(first.x, 0);
     EXPECT_GT(first.y, 0);
-    // The picture's upper edge stands at half the field of view.
+    // The picture's upper edge is at half the field of view.
     EXPECT_NEAR(view.slopes(256, 0).y, std::tan(20 * std::numbers::pi / 180), kRounding);
 }
 
@@ -97,7 +97,7 @@ TEST(FitCamera, SeesTheWholeBoxWithFivePercentToSpare) {
     for (const Vec3 direction : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -2), Vec3(-1, 1, -1)}) {
         for (const double aspect : {0.5, 1.0, 16.0 / 9}) {
             const View view(fit_camera(box, direction, 30, aspect), static_cast<int>(900 * aspect), 900);
-            double reach = 0;  // 1: a corner touches the edge of the picture
+            double reach = 0;  // 1 if a corner touches the edge of the picture
             for (const Vec3& corner : corners(box)) {
                 const Vec3 eye_point = view.to_eye(corner);
                 ASSERT_GT(eye_point.z, 0);
@@ -117,7 +117,7 @@ TEST(FitCamera, TakesAFlatBoxAndAPointAndRefusesNone) {
     expect_error(ErrorCode::InvalidInput, "direction", [] { (void)fit_camera({{0, 0, 0}, {1, 1, 1}}, {0, 0, 0}); });
 }
 
-/// How far a box reaches in a picture; 1: a corner touches the edge.
+/// How far a box reaches from the middle of a picture: 1 if a corner touches the edge.
 double reach(const Camera& camera, const Box& box, double aspect) {
     const View view(camera, static_cast<int>(900 * aspect), 900);
     double farthest = 0;

@@ -18,7 +18,7 @@ struct Stretch {
     double front, back, length;
 };
 
-// Knots off one another, transparent stretches, a narrow peak and a nearly opaque end.
+// Colour and opacity knots at different values, transparent stretches, a narrow peak and a nearly opaque end.
 TransferFunction sharp() {
     return {{{0.0, {1, 0, 0}}, {0.3, {0, 1, 0.2}}, {0.55, {0.1, 0.2, 1}}, {1.0, {1, 1, 0.5}}},
             {{0.1, 0.0}, {0.4, 0.02}, {0.42, 0.6}, {0.44, 0.0}, {0.6, 0.0}, {0.8, 0.3}, {1.0, 1.0}}};
@@ -36,7 +36,7 @@ Segment at_once(Compositor& compositor, const std::vector<Stretch>& stretches) {
     return compositor.finish();
 }
 
-// Both are right to 1e-11 a piece relative to what it absorbs; what is absorbed adds up to 1 at most.
+// The error of both is 1e-11 of the light that a piece absorbs, and all pieces together absorb at most 1.
 constexpr double kTol = 1e-11;
 
 void expect_near(const Segment& a, const Segment& b, double tolerance) {
@@ -88,7 +88,7 @@ TEST(Compositor, ThinAndDeepPiecesKeepTheirRelativeError) {
             const Segment exact = optics.integrate(0.2, 0.25, length);
             const Segment seen = at_once(compositor, {{0.2, 0.25, length}});
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen.color[c] / exact.color[c], 1, kTol) << alpha << ' ' << length;
-            // 1 − T of a double T.
+            // 1 − T, rounded.
             EXPECT_NEAR(1 - seen.transmittance, 1 - exact.transmittance, kTol * (1 - exact.transmittance) + 3e-16);
         }
     }
@@ -124,7 +124,7 @@ TEST(Compositor, GoesOnBehindWhatIsInFrontAndStopsWhereLightIsUsedUp) {
     EXPECT_FALSE(compositor.opaque());
     std::size_t added = 0;
     for (; !compositor.opaque() && added < 1000; ++added) compositor.add(0.95, 0.95, 10);
-    EXPECT_LT(added, 100u);  // some vectors wait at most
+    EXPECT_LT(added, 100u);  // at most a few vectors of pieces are waiting
     const Segment seen = compositor.finish();
     EXPECT_LT(seen.transmittance, 1e-6);
     EXPECT_NEAR(seen.color.b, optics.color(0.95).b, 1e-6);

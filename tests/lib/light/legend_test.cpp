@@ -73,7 +73,7 @@ TEST_F(Legend, HoldsTheColoursInSrgb) {
         (offset == "50.00%" ? middle : offset == "0.00%" ? first : last) = stop.attribute("stop-color").value();
     }
     EXPECT_EQ(first, "#000000");
-    EXPECT_EQ(middle, "#bcbcbc");  // half the light is byte 188
+    EXPECT_EQ(middle, "#bcbcbc");  // half of the linear light is byte 188 in sRGB
     EXPECT_EQ(last, "#ffffff");
 }
 
@@ -90,7 +90,7 @@ TEST_F(Legend, DrawsTheOpacityCurveAndTicksAtTheirPlaces) {
         std::istringstream(text) >> letter >> x0 >> zero_y >> letter >> curve_x >> curve_y >> letter >> x2 >> y2;
         EXPECT_NEAR(curve_x - x0, 50, 0.01);
         EXPECT_NEAR(x2 - x0, 100, 0.01);
-        EXPECT_NEAR((zero_y - y2) / (zero_y - curve_y), 0.5, 0.001);  // two decimals of a pixel
+        EXPECT_NEAR((zero_y - y2) / (zero_y - curve_y), 0.5, 0.001);  // the file has two decimals of a pixel
     }
     EXPECT_GT(zero_y, curve_y + 20);
     for (const pugi::xml_node text : document.child("svg").children("text")) {

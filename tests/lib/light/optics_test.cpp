@@ -20,13 +20,13 @@ TransferFunction constant(const Vec3& rgb, double alpha) {
     return {{{0.0, rgb}}, {{0.0, alpha}}};
 }
 
-// Knots off one another, transparent stretches, a narrow peak and a nearly opaque end.
+// Colour and opacity knots at different values, transparent stretches, a narrow peak and a nearly opaque end.
 TransferFunction sharp() {
     return {{{0.0, {1, 0, 0}}, {0.3, {0, 1, 0.2}}, {0.55, {0.1, 0.2, 1}}, {1.0, {1, 1, 0.5}}},
             {{0.1, 0.0}, {0.4, 0.02}, {0.42, 0.6}, {0.44, 0.0}, {0.6, 0.0}, {0.8, 0.3}, {1.0, 1.0}}};
 }
 
-// The emission–absorption integral by midpoints, knowing nothing of the closed forms.
+// The emission–absorption integral by midpoints, independent of the closed forms.
 Segment brute_force(const Optics& optics, double front, double back, double length, int steps) {
     Segment total;
     const double step = length / steps;
@@ -107,7 +107,7 @@ TEST(Optics, SplittingAStretchChangesNothing) {
     }
 }
 
-/// Up to eight knots of each kind, some as near to one another as 1e-4, with transparent stretches.
+/// Up to eight knots of each kind, some only 1e-4 apart, with transparent stretches.
 TransferFunction random_function(std::mt19937& random) {
     std::uniform_real_distribution<double> part(0, 1);
     std::uniform_int_distribution<int> count(1, 8);
@@ -140,7 +140,7 @@ TEST(Optics, SplittingAStretchChangesNothingForAnyFunction) {
                       optics.integrate(front + from * (back - front), front + to * (back - front), (to - from) * length));
             from = to;
         }
-        // 1e-9: what each piece's colour is exact to.
+        // 1e-9: the relative error of each piece's colour.
         expect_near(parts, whole, 1e-9);
         if (HasFailure()) FAIL() << "function " << i << ": " << front << ' ' << back << ' ' << length;
     }
@@ -184,7 +184,7 @@ TEST(Optics, NotANumberComesBack) {
     EXPECT_TRUE(std::isnan(optics.integrate(std::nan(""), std::nan(""), 1.0).transmittance));
 }
 
-/// What a splatter does with the table: means of the channels between two values, given in cells.
+/// The means of the channels between two values, in cells, as a splatter computes them from the table.
 std::array<double, 4> means(const PreintegratedTable& table, double x0, double x1) {
     const auto row = [](double x) { return std::clamp(std::floor(x), -1.0, double{PreintegratedTable::kCells}); };
     std::array<double, 4> result{};
@@ -214,12 +214,12 @@ TEST(PreintegratedTable, MeansAreThoseOfExtinctionAndEmission) {
           Ends{1650.9, 1651.1}, Ends{-500, 300}, Ends{4000, 5000}, Ends{-30, -20}}) {
         const double from = x0 / cells, to = x1 / cells, length = 1e-3 / most;
         const auto mean = means(table, x0, x1);
-        // Within a cell with a knot in it the extinction is taken as linear: off by a quarter of its bend at most. The rest is
-        // the rounding of floats, and of counts: 2^-31 of the sum over all cells.
+        // The table is linear within a cell: with a knot inside, its error is up to a quarter of the bend. The rest is the
+        // rounding of floats and of the counts, which is 2^-31 of the sum over all cells.
         const double tolerance = 3e-4 * most;
         const double exact = (optics.extinction_integral(to) - optics.extinction_integral(from)) / (to - from);
         EXPECT_NEAR(mean[0], exact, tolerance) << x0;
-        const Segment thin = optics.integrate(from, to, length);  // its own absorption is at most 1e-3 / 2 of it
+        const Segment thin = optics.integrate(from, to, length);  // it absorbs at most 1e-3 / 2 of its own light
         for (std::size_t c = 0; c < 3; ++c) {
             EXPECT_NEAR(mean[c + 1], thin.color[static_cast<int>(c)] / length, tolerance + 5e-4 * exact) << x0;
         }
@@ -227,7 +227,7 @@ TEST(PreintegratedTable, MeansAreThoseOfExtinctionAndEmission) {
 }
 
 TEST(PreintegratedTable, SmallDifferencesOfLargeIntegralsKeepTheirDigits) {
-    // Faint beside something dense: float prefixes of 4000 would be 2.4e-4 apart, a quarter of what a faint cell adds.
+    // Faint values next to dense ones: float prefixes near 4000 would be 2.4e-4 apart, a quarter of what a faint cell adds.
     const Optics optics({.color = {{0, {1, 1, 1}}}, .opacity = {{0, .001}, {.5, .001}, {.6, .9}, {1, .9}}}, 1.0);
     const PreintegratedTable table = make_preintegrated_table(optics);
     EXPECT_NEAR(means(table, 700.25, 700.75)[0] / optics.extinction(.17), 1, 1e-6);  // float rounding of the mean

@@ -108,7 +108,7 @@ TEST(MixedCells, ARegularTetrahedronHasChildrenOfKnownShape) {
     EXPECT_EQ(report.cells, 4u);
     EXPECT_EQ(report.boundary_faces, 12u);
     EXPECT_NEAR(report.volume, 8.0 / 3, kRounding);
-    // Worst where three edges leave a corner at 60 degrees to each other: the root of 1 + 2/8 - 3/4.
+    // The worst corner has three edges at 60 degrees to each other: the square root of 1 + 2/8 - 3/4.
     EXPECT_NEAR(report.min_scaled_jacobian, std::sqrt(0.5), kRounding);
 }
 
@@ -129,14 +129,15 @@ TEST(MixedCells, PyramidsTurnAllIntoTetrahedraFirst) {
     const MeshReport report = inspect(split);
     EXPECT_EQ(report.cells, 4u * (6 + 3 + 2 + 1));
     EXPECT_EQ(report.inverted_cells, 0u);
-    // The outer faces: cube 4 quads, prism 2 triangles and 2 quads, pyramid 3 triangles, tetrahedron 3; a quad is two triangles
-    // there and a triangle three quads here.
+    // The outer faces: cube 4 quads, prism 2 triangles and 2 quads, pyramid 3 triangles, tetrahedron 3. A quad is cut into two
+    // triangles, and each triangle becomes three quads.
     EXPECT_EQ(report.boundary_faces, 3u * (4 * 2 + 2 + 2 * 2 + 3 + 3));
 }
 
 TEST(MixedCells, VolumeIsKeptAndNeighboursFit) {
     constexpr std::size_t n = 3;
-    // A square of the hull becomes 4 quads, or 2 triangles of 3. Where two cells did not fit together there would be more.
+    // A square of the hull becomes 4 quads, or 2 triangles of 3 quads each. If two cells did not fit together there would be
+    // more.
     const std::vector<std::pair<Mixed, std::size_t>> cases{{box_of_tets(n), 6 * n * n * 6},
                                                            {box_of_prisms(n), 2 * n * n * 6 + 4 * n * n * 4},
                                                            {chessboard_of_pyramids(n), 6 * n * n * 6}};

@@ -14,13 +14,13 @@ namespace {
 
 using testing::HasSubstr;
 
-// Small files made to be wrong, beside the real meshes.
+// The folder of small faulty files, next to the real meshes.
 std::filesystem::path bad_folder() {
     const auto data = data_folder();
     return data ? (*data / ".." / "bad").lexically_normal() : std::filesystem::path();
 }
 
-// What a good file holds. warning: a part of one of the warnings; empty: there must be none
+// The expected contents of a correct file. warning: a part of one of the warnings; empty if there must be none
 struct Good {
     std::string file;
     std::string warning;
@@ -101,7 +101,7 @@ const std::vector<Bad> kBad{
     {"62_nan_density.vtk", "array \"density\": the value at point 5 is not finite"},
     {"66_polydata.vtk", "POLYDATA is not a volume mesh"},
     {"67_index_out_of_range.vtk", "line 41: cell 7: there is no point with index 27"},
-    {"84_offset_past_end.vtu", "line 4: array \"connectivity\": its offset 1000000000 lies behind the appended data"},
+    {"84_offset_past_end.vtu", "line 4: array \"connectivity\": its offset 1000000000 is beyond the appended data"},
     {"85_truncated_appended.vtu", "line 4: array \"Points\": its 324 bytes go beyond the end of the data"},
     {"86_corrupt_zlib.vtu", "line 4: array \"connectivity\": block 1 of 1: decompression failed"},
     {"87_connectivity_out_of_range.vtu", "cell 7: there is no point with index 4000000000"},
@@ -110,7 +110,7 @@ const std::vector<Bad> kBad{
     {"90_wrong_type_polydata.vtu", "line 2: \"PolyData\" is not an UnstructuredGrid"},
 };
 
-// They read well; that the cells do not fit together shows in the topology.
+// These can be read: only the topology finds that the cells do not fit together.
 const std::vector<Bad> kBadTopology{
     {"29_nonmanifold_face.mesh", "has 3 cells"},
     {"30_duplicate_hex.mesh", "have the same corners"},
@@ -133,7 +133,7 @@ void expect_density(const HexMesh& mesh, double sign) {
     }
 }
 
-TEST_F(BadFiles, GoodOnesAreReadForWhatTheyAre) {
+TEST_F(BadFiles, CorrectFilesHaveTheExpectedFigures) {
     for (const auto& good : kGood) {
         SCOPED_TRACE(good.file);
         const ReadResult result = read_mesh(bad_folder() / good.file);
@@ -142,7 +142,7 @@ TEST_F(BadFiles, GoodOnesAreReadForWhatTheyAre) {
         EXPECT_EQ(report.cells, good.cells);
         EXPECT_EQ(report.edges, good.edges);
         EXPECT_EQ(report.faces, good.faces);
-        EXPECT_NEAR(report.volume, good.volume, 1e-12 * good.volume);  // sums of some exact cell volumes: rounding only
+        EXPECT_NEAR(report.volume, good.volume, 1e-12 * good.volume);  // the cell volumes are exact: rounding of their sum only
         const auto said = std::accumulate(result.warnings.begin(), result.warnings.end(), std::string());
         EXPECT_EQ(said.empty(), good.warning.empty()) << said;
         EXPECT_THAT(said, HasSubstr(good.warning));
@@ -150,7 +150,7 @@ TEST_F(BadFiles, GoodOnesAreReadForWhatTheyAre) {
     }
 }
 
-TEST_F(BadFiles, BadOnesAreRefusedWithFileAndPlace) {
+TEST_F(BadFiles, FaultyFilesAreRefusedWithFileAndPlace) {
     for (const auto& bad : kBad) {
         const std::string message = error_of([&] { static_cast<void>(read_mesh(bad_folder() / bad.file)); });
         EXPECT_THAT(message, HasSubstr(bad.file));
@@ -165,7 +165,7 @@ TEST_F(BadFiles, CellsThatDoNotFitTogetherAreRefused) {
     }
 }
 
-TEST_F(BadFiles, EveryFileHasItsExpectation) {
+TEST_F(BadFiles, EveryFileIsListedHere) {
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(bad_folder())) {
         files += entry.path().extension() != ".md";

@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-/// Numbers as they lie in a file.
+/// The bytes of numbers in a byte order.
 template <class T>
 std::string bytes_of(const std::vector<T>& values, std::endian order) {
     std::string result;
@@ -41,7 +41,7 @@ std::vector<T> corners_as(const HexMesh& mesh) {
     return result;
 }
 
-/// Legacy VTK 3.0, BINARY, without arrays: what follows may be appended.
+/// Legacy VTK 3.0, BINARY, without arrays: further sections can be appended.
 inline std::string binary_vtk_text(const HexMesh& mesh) {
     const std::string count = std::to_string(mesh.cells.size());
     std::vector<std::int32_t> cells;

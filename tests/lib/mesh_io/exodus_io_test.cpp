@@ -90,7 +90,7 @@ TEST_F(ExodusIo, CurvedCellsGiveTheirCorners) {
         block.connectivity.resize(nodes, 1);
         const ReadResult result = read({.points = cube.points, .blocks = {block}});
         EXPECT_EQ(result.mesh.cells, cube.cells);
-        EXPECT_THAT(result.warnings, ElementsAre("1 element has more nodes than corners: the corners alone are taken"));
+        EXPECT_THAT(result.warnings, ElementsAre("1 element has more nodes than corners: only the corners are used"));
     }
 }
 
@@ -145,7 +145,7 @@ TEST_F(ExodusIo, WrongFilesGetASentenceWithTheElementOrNode) {
                 HasSubstr("no hexahedra, but 1 element of type \"QUAD\""));
 }
 
-// The length of a dimension stands behind its name, which is filled up to four bytes.
+// The length of a dimension follows its name, which is padded to a multiple of four bytes.
 std::string with_length(std::string bytes, const std::string& dimension, char high_byte) {
     bytes[bytes.find(dimension) + (dimension.size() + 3) / 4 * 4] = high_byte;
     return bytes;
@@ -159,7 +159,7 @@ TEST_F(ExodusIo, CountsAreBelievedAsFarAsTheFileIsLong) {
             << dimension;
         EXPECT_THAT(read_error(with_length(good, dimension, '\x80')), HasSubstr("negative count")) << dimension;
     }
-    // What stands behind a variable's name is how many dimensions it has: netCDF's library allocates as many.
+    // A variable's name is followed by its number of dimensions: netCDF's library allocates as many.
     EXPECT_THAT(read_error(with_length(good, "connect1", '\x10')), HasSubstr("netCDF: there is no dimension"));
     std::string records = good;
     records[5] = 1;  // 65538 steps
@@ -183,7 +183,7 @@ TEST_F(ExodusFuzz, OfEachClassicFormat) {
     }
 }
 
-// A file that was written without going back says that it has all ones of records.
+// A file that was written as a stream has all bits set as its number of records.
 TEST_F(ExodusIo, StreamsOfRecords) {
     std::string bytes = exodus_text(two_blocks());
     for (std::size_t i = 4; i < 8; ++i) bytes[i] = '\xFF';

@@ -21,8 +21,9 @@ struct ExodusBlock {
     std::vector<int> connectivity;
 };
 
-/// What to write. values: of each variable, step by step; those of elements block by block, an empty list where a block has
-/// none
+/// What to write.
+///
+/// values: of each variable, step by step; those of elements block by block, with an empty list where a block has none
 struct ExodusText {
     std::vector<Vec3> points;
     std::vector<ExodusBlock> blocks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gmsh, version 2, ASCII; what the versions have in common.
+// Gmsh, version 2, ASCII, and what all versions have in common.
 
 #include <gmock/gmock.h>
 
@@ -90,7 +90,7 @@ TEST_F(GmshIo, ErrorsNameThePlace) {
     const std::vector<std::array<std::string, 3>> cases{
         {"$MeshFormat", "$NOD", "line 1: not a Gmsh file: it begins with \"$NOD\""},
         {"2.2 0 8", "3 0 8", "line 2: version 3 of Gmsh's format is not supported (2 and 4 are"},
-        {"2.2 0 8", "2.2 1 8", "line 3: the order of bytes cannot be told"},
+        {"2.2 0 8", "2.2 1 8", "line 3: the byte order is unknown"},
         {"$EndNodes", "", "$EndNodes is expected, not \"$Elements\""},
         {"$Nodes\n12", "$Nodes\n13", "number of node 13 of 13: an integer is expected, not \"$EndNodes\""},
         {"$Nodes\n12", "$Nodes\n-1", "line 5: $Nodes: negative count -1"},

@@ -9,7 +9,7 @@
 
 namespace subvol::test {
 
-/// Any byte, but often those that mean something to a parser.
+/// Any byte, but often one that has a meaning for parsers.
 inline char odd_byte(std::mt19937& random) {
     constexpr std::string_view kLikely = "0123456789-+.eE \n#na\t%\"";
     const auto draw = random();
@@ -26,16 +26,17 @@ inline std::string damaged(std::string text, std::mt19937& random) {
     return text;
 }
 
-/// A test of what a reader makes of damaged files.
+/// A test of how a reader copes with damaged files.
 class MeshFuzz : public TempFolder {
 protected:
-    /// Whatever is read is sound, and whatever is not is refused by an Error; nothing else leaves the reader.
+    /// A damaged file either gives a valid mesh or is refused by an Error; the reader throws nothing else.
     void expect_sound_or_refused(const std::string& extension, const std::string& text, unsigned seed) const {
         constexpr int kRuns = 1500;
         std::mt19937 random(seed);
         int refused = 0;
         for (int run = 0; run < kRuns; ++run) {
-            const auto file = write(std::to_string(run) + extension, damaged(text, random));  // a new one: truncating is slow
+            const auto file =
+                write(std::to_string(run) + extension, damaged(text, random));  // a new file each time: truncating one is slow
             try {
                 validate(read_mesh(file).mesh);
             } catch (const Error& error) {

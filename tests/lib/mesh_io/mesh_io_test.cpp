@@ -24,7 +24,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Coordinates that no short decimal hits: a round trip must give back every bit.
+// Coordinates that are no short decimals: a round trip must give back every bit.
 HexMesh awkward_box() {
     HexMesh mesh = make_box(2, 2, 2);
     for (Vec3& x : mesh.points) x = {x.x / 3 + 1e-17, x.y * std::sqrt(2.0) * 1e6, x.z / 7e9 - 4.9406564584124654e-324};
@@ -109,7 +109,7 @@ TEST_F(MeshIo, VtkReadsEveryKindOfArray) {
     EXPECT_EQ(result.mesh.find_attribute("a b")->values[0], 7);
     EXPECT_EQ(result.fields[1].components, 2);
     EXPECT_EQ(result.fields[3].name, "n");
-    EXPECT_DOUBLE_EQ(result.fields[3].max, std::sqrt(3.0));  // of vectors the length counts
+    EXPECT_DOUBLE_EQ(result.fields[3].max, std::sqrt(3.0));  // of vectors, the range of the lengths
     EXPECT_EQ(result.fields[5].min, -3);
     EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("\"names\" ignored")));
 }
@@ -180,7 +180,7 @@ TEST_F(MeshIo, VtkErrorsNameThePlace) {
         {" 25 26\n", " 25\n", "array \"s\": value 26: unexpected end of file"},
         {" 25 26\n", " 25 26 27\n", "line 54: a keyword is expected, not \"27\""},
         {" 24 25 26\n", " 24 nan 26\n", "array \"s\": the value at point 25 is not finite"},
-        {"POINT_DATA 27\n", "", "SCALARS stands before POINT_DATA or CELL_DATA"},
+        {"POINT_DATA 27\n", "", "SCALARS comes before POINT_DATA or CELL_DATA"},
     };
     for (const auto& [from, to, message] : cases) {
         EXPECT_THAT(read_error("a.vtk", replaced(good, from, to)), HasSubstr(message)) << from << " -> " << to;
@@ -226,7 +226,7 @@ TEST_F(MeshIo, OtherCellsAreSplitWithTheirValues) {
     for (std::size_t p = 0; p < s.size(); ++p) {
         const Vec3 at = result.mesh.points[p];
         EXPECT_DOUBLE_EQ(x[p], at.x);  // means keep what is linear
-        // Inside a cell and on the hull its own value; between the hexes, whose children are equal, the mean.
+        // Inside a cell and on the hull the cell's own value; between the hexes, whose children are equal, the mean.
         if (at.z == 1) continue;
         EXPECT_DOUBLE_EQ(s[p], at.z > 1 ? 10 : at.x < 1 ? 20 : at.x > 1 ? 30 : 25);
     }
@@ -292,7 +292,7 @@ TEST_F(MeshIo, NamesInLatin1BecomeUtf8) {
 
 // ---- writers, files
 
-// The values of an array in a file that holds it as base64 of what zlib compressed, in one block.
+// The values of an array that a file holds as base64, compressed by zlib in one block.
 template <class T>
 std::vector<T> compressed(const std::string& file, const std::string& name) {
     const auto array = file.find("Name=\"" + name + "\"");
@@ -332,7 +332,7 @@ TEST_F(MeshIo, VtuHoldsTheMeshToTheBit) {
     EXPECT_EQ(compressed<double>(file, "velocity"), mesh.attributes[1].values);
 }
 
-TEST_F(MeshIo, WhatAFormatCannotHoldIsSaid) {
+TEST_F(MeshIo, AWarningListsWhatAFormatCannotHold) {
     HexMesh mesh = kBox;
     mesh.attributes.push_back({"density", 1, std::vector<double>(27)});
     mesh.creases.push_back({0, 1});
@@ -341,13 +341,30 @@ TEST_F(MeshIo, WhatAFormatCannotHoldIsSaid) {
 }
 
 TEST_F(MeshIo, UnknownFormatsAndMissingFilesAreRefused) {
-    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("a.obj"))); }), HasSubstr("\".obj\" files cannot be read"));
-    EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }), HasSubstr("\".vtk\" files cannot be written"));
+    EXPECT_THAT(
+        error_of([&] { static_cast<void>(read_mesh(path("a.obj"))); }),
+        HasSubstr("\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti: VTK XML; "
+                  ".msh: Gmsh; .xyz, .p3d: Plot3D; .e, .exo, .ex2, .g: Exodus II)"));
+    EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }),
+                HasSubstr("\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML)"));
     const auto missing = [&] { static_cast<void>(read_mesh(path("none.mesh"))); };
     EXPECT_THAT(error_of(missing, ErrorCode::Io), HasSubstr("none.mesh: cannot be read: No such file"));
     std::filesystem::create_directory(path("folder.mesh"));
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("folder.mesh"))); }, ErrorCode::Io), HasSubstr("directory"));
     EXPECT_THAT(error_of([&] { write_mesh(path("no/a.vtu"), kBox); }, ErrorCode::Io), HasSubstr("does not exist"));
+}
+
+TEST_F(MeshIo, ListedExtensionsAreThoseThatAreReadAndWritten) {
+    for (const std::string& extension : readable_mesh_extensions()) {
+        const auto missing = [&] { static_cast<void>(read_mesh(path("none" + extension))); };
+        EXPECT_THAT(error_of(missing, ErrorCode::Io), HasSubstr("cannot be read: No such file"));
+    }
+    for (const std::string& extension : writable_mesh_extensions()) {
+        write_mesh(path("a" + extension), kBox);
+        EXPECT_EQ(read_mesh(path("a" + extension)).mesh.cells, kBox.cells);
+    }
+    EXPECT_THAT(readable_mesh_extensions(), testing::Contains(".exo"));
+    EXPECT_THAT(writable_mesh_extensions(), ElementsAre(".mesh", ".vtu"));
 }
 
 TEST_F(MeshIo, MeshesThatAreNotSoundAreNotWritten) {
@@ -357,7 +374,7 @@ TEST_F(MeshIo, MeshesThatAreNotSoundAreNotWritten) {
     EXPECT_EQ(file_count(), 0u);
 }
 
-// As on a full disk: what is written is more than may be written.
+// Simulates a full disk: limits the size of files.
 class FileSizeLimit {
 public:
     explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -13,14 +13,14 @@ inline std::string number(double value) {
     return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
 
-/// The points, one a line; each followed by `suffix`.
+/// The points, one per line; each followed by `suffix`.
 inline std::string point_lines(const HexMesh& mesh, const std::string& suffix = "") {
     std::string text;
     for (const Vec3& x : mesh.points) text += number(x.x) + " " + number(x.y) + " " + number(x.z) + suffix + "\n";
     return text;
 }
 
-/// The cells, one a line between `prefix` and `suffix`, counted from `first`.
+/// The cells, one per line between `prefix` and `suffix`; points are counted from `first`.
 inline std::string cell_lines(const HexMesh& mesh, Index first, const std::string& prefix = "",
                               const std::string& suffix = "") {
     std::string text;
@@ -44,7 +44,7 @@ inline std::string medit_text(const HexMesh& mesh) {
            "End\n";
 }
 
-/// Legacy VTK 3.0 without arrays: what follows may be appended.
+/// Legacy VTK 3.0 without arrays: further sections can be appended.
 inline std::string vtk_text(const HexMesh& mesh, const std::string& type = "12") {
     const std::string cells = std::to_string(mesh.cells.size());
     std::string text = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
@@ -54,7 +54,7 @@ inline std::string vtk_text(const HexMesh& mesh, const std::string& type = "12")
     return text;
 }
 
-/// Gmsh 2 without arrays. tags: their number and they themselves
+/// Gmsh 2 without arrays. tags: their number, then the tags
 inline std::string gmsh_text(const HexMesh& mesh, const std::string& tags) {
     std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.points.size()) + "\n";
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
@@ -65,7 +65,7 @@ inline std::string gmsh_text(const HexMesh& mesh, const std::string& tags) {
            cell_lines(mesh, 1, "1 5 " + tags + " ") + "$EndElements\n";
 }
 
-/// `text` with the first `from` turned into `to`.
+/// `text` with the first occurrence of `from` replaced by `to`.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
 }

@@ -128,7 +128,7 @@ TEST_F(MeshbIo, CutAnywhereItIsRefused) {
     meshb.vertices(kBox);
     meshb.hexahedra(kBox);
     const std::string text = meshb.text();
-    const std::size_t end = text.size() - 12;  // the section End says nothing
+    const std::size_t end = text.size() - 12;  // the section End has no contents
     for (std::size_t length = 0; length < end; ++length) EXPECT_NE(read_error(text.substr(0, length)), "no error") << length;
 }
 
@@ -148,8 +148,8 @@ TEST_F(MeshbIo, ErrorsNameThePlace) {
     const auto numbers = [](std::vector<std::int32_t> list) { return bytes_of(list, std::endian::little); };
     EXPECT_THAT(read_error(numbers({1, 5})), HasSubstr("version 5 is not supported"));
     EXPECT_THAT(read_error(numbers({1, 2, 3, 0, 2})), HasSubstr("dimension 2 is not supported"));
-    EXPECT_THAT(read_error(numbers({1, 2, 3, 20, 3, 4, 20, 0})), HasSubstr("the sections go round in a circle"));
-    EXPECT_THAT(read_error(numbers({1, 2, 3, 20, 3, 4, 9999, 0})), HasSubstr("byte 9999, behind the end of the file"));
+    EXPECT_THAT(read_error(numbers({1, 2, 3, 20, 3, 4, 20, 0})), HasSubstr("a section begins before the one that names it"));
+    EXPECT_THAT(read_error(numbers({1, 2, 3, 20, 3, 4, 9999, 0})), HasSubstr("byte 9999, after the end of the file"));
     EXPECT_THAT(read_error(numbers({1, 2, 3, 20, 3, 4, 0, 1 << 30})), HasSubstr("Vertices: count out of range: 1073741824"));
     EXPECT_THAT(read_error(numbers({1, 2, 3, 20, 3, 4, 0, -1})), HasSubstr("Vertices: negative count -1"));
 }

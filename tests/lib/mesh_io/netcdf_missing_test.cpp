@@ -16,7 +16,7 @@ TEST_F(NetcdfMissing, IsSaidOfFilesOfHdf5) {
     for (const std::string name : {"a.e", "a.exo", "a.ex2", "a.g"}) {
         const auto file = write(name, "\x89HDF\r\n");
         EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(file)); }, ErrorCode::MissingCapability),
-                    testing::HasSubstr(name + ": this build cannot read files of HDF5"));
+                    testing::HasSubstr(name + ": this build cannot read HDF5 files"));
     }
 }
 

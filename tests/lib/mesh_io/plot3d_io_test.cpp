@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plot3D's grids and flows, which do not say how they are encoded.
+// Plot3D's grids and flows: the files do not state their encoding.
 
 #include <gmock/gmock.h>
 
@@ -132,7 +132,7 @@ TEST_F(Plot3dIo, TheFlowBesideIsTaken) {
         EXPECT_EQ(Vec3(momentum[3], momentum[4], momentum[5]), Vec3(61, 121, 181));
         EXPECT_EQ(result.mesh.find_attribute("StagnationEnergy")->values[0], 240);
         write("a.q", flow.text + "1");
-        EXPECT_THAT(read(grid.text).warnings, ElementsAre(HasSubstr("a.q is not of these blocks: ignored")));
+        EXPECT_THAT(read(grid.text).warnings, ElementsAre(HasSubstr("a.q does not have these blocks: ignored")));
         std::filesystem::remove(path("a.q"));
     }
 }
@@ -146,7 +146,8 @@ TEST_F(Plot3dIo, WhatIsNoGridIsRefused) {
         }
     }
     EXPECT_THAT(error_of([&] { static_cast<void>(read("")); }), HasSubstr("the file is empty"));
-    EXPECT_THAT(error_of([&] { static_cast<void>(read("2 2 2 1 2 3")); }), HasSubstr("not a Plot3D grid: its size is not"));
+    EXPECT_THAT(error_of([&] { static_cast<void>(read("2 2 2 1 2 3")); }),
+                HasSubstr("not a Plot3D grid: the size of the file does not match"));
     EXPECT_THAT(error_of([&] { static_cast<void>(read("8 1 1 1 2 3 4 5 6 7 8 1 2 3 4 5 6 7 8 1 2 3 4 5 6 7 8")); }),
                 HasSubstr("no hexahedra"));
     EXPECT_THAT(error_of([&] { static_cast<void>(read("2147483647 2147483647 2147483647 1")); }),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every hexahedral mesh of the collection of real ones against its figures.
+// Every hexahedral mesh of the collection of real meshes is compared with its published figures.
 
 #include <gmock/gmock.h>
 
@@ -151,7 +151,7 @@ TEST_P(RealMeshes, IsReadForWhatItIs) {
     EXPECT_EQ(report.inverted_cells, expected.inverted_cells);
     EXPECT_EQ(report.nonmanifold_edges, 0u);
     EXPECT_NEAR(report.min_scaled_jacobian, expected.min_scaled_jacobian, 5e-5);  // four decimals are given
-    // Ten digits are given; where a text says `float`, they are of coordinates rounded to it.
+    // Ten digits are given; for files with `float` they refer to coordinates rounded to float.
     EXPECT_NEAR(report.volume, expected.volume, 5e-9 * expected.volume);
     for (const Field& field : expected.fields) expect_field(read, field);
 }
@@ -165,9 +165,9 @@ TEST(RealTetrahedra, AreSplitIntoHexahedra) {
     EXPECT_THAT(read.warnings, testing::ElementsAre("8750 tetrahedra split into 35000 hexahedra"));
     const MeshReport report = inspect(read.mesh);
     EXPECT_EQ(report.cells, 35000u);
-    EXPECT_EQ(report.nonmanifold_edges, 0u);  // of a closed boundary two faces meet at every edge
+    EXPECT_EQ(report.nonmanifold_edges, 0u);  // two faces meet at every edge of a closed boundary
     EXPECT_EQ(report.boundary_faces % 3, 0u);
-    double volume = 0;  // of the tetrahedra: the first corners of their four children are theirs
+    double volume = 0;  // of the tetrahedra: the first corners of its four children are the corners of a tetrahedron
     for (std::size_t c = 0; c < read.mesh.cells.size(); c += 4) {
         const auto corner = [&](std::size_t k) { return read.mesh.points[read.mesh.cells[c + k][0]]; };
         volume += glm::dot(corner(1) - corner(0), glm::cross(corner(2) - corner(0), corner(3) - corner(0))) / 6;

@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Its points and cells are counted along x first, then y, then z: as those of a structured grid.
+// Points and cells are counted along x first, then y, then z, as in a structured grid.
 const HexMesh kBox = make_box(3, 2, 4);
 
 std::vector<double> count_up(std::size_t count) {
@@ -108,7 +108,7 @@ TEST_F(StructuredIo, XmlImages) {
         return read("a.vti", grid_file(vtu, "ImageData", attributes, piece));
     };
     expect_box_with_values(image("", "0 3 0 2 0 4"));
-    // The origin is at the number 0, wherever the piece begins.
+    // The origin belongs to the point number 0, wherever the piece begins.
     expect_box_with_values(image("Origin=\"-5 10 0\" Spacing=\"1 1 1\"", "5 8 -10 -8 0 4"));
     const auto turned = image("Origin=\"1 2 3\" Spacing=\"2 1 .5\" Direction=\"0 -1 0 1 0 0 0 0 1\"", "0 3 0 2 0 4");
     EXPECT_EQ(turned.mesh.points.back(), Vec3(1 - 2, 2 + 6, 3 + 2));
@@ -122,7 +122,7 @@ TEST_F(StructuredIo, XmlErrorsOfParallelPlanes) {
                 HasSubstr("it has 3 values (4 are needed: the coordinates along an axis)"));
     EXPECT_THAT(read_error("a.vtr", replaced(good, "<Coordinates>", "<Other>")), HasSubstr("not well-formed XML"));
     EXPECT_THAT(read_error("a.vtr", grid_file(vtu, "RectilinearGrid", "", "<Piece Extent=\"0 3 0 2 0 4\"/>")),
-                HasSubstr("the piece has not three arrays of Coordinates"));
+                HasSubstr("the piece does not have three arrays of Coordinates"));
     const auto image = [&](const std::string& attributes, const std::string& extent) {
         return read_error("a.vti", grid_file(vtu, "ImageData", attributes, "<Piece Extent=\"" + extent + "\"/>"));
     };

@@ -50,7 +50,7 @@ TEST_F(VtkBinary, OffsetsAndConnectivity) {
     EXPECT_THAT(read_error(replaced(text, "OFFSETS vtktypeint64", "OFFSETS double")), HasSubstr("an integer type is needed"));
 }
 
-// One array of each type, with values that show the sign, the width and the order of the bytes.
+// One array of each type, with values that depend on the sign, the width and the byte order.
 template <class T>
 void expect_type(const std::string& type, const std::vector<T>& values, const ReadResult& result) {
     const Attribute* found = result.mesh.find_attribute(type);
@@ -109,7 +109,7 @@ TEST_F(VtkBinary, EveryType) {
 
 TEST_F(VtkBinary, EveryKindOfSection) {
     const std::vector<float> eight{0, 1, 2, 3, 4, 5, 6, 7};
-    // Texts behind their lengths of 1 and of 2 bytes.
+    // Each text follows its length, which takes 1 or 2 bytes.
     const std::string texts = std::string("\xC3") + "a\nb" + std::string("\x80\x02") + "\n\n";
     std::string text = replaced(
         binary_vtk_text(make_box(1, 1, 1)), "POINTS",
@@ -136,7 +136,7 @@ TEST_F(VtkBinary, HexahedraWithPointsOnTheirEdgesGiveTheirCorners) {
                              big(std::vector<std::int32_t>{12}) + "\n";
     const ReadResult result = read(text);
     EXPECT_EQ(result.mesh.cells, mesh.cells);
-    EXPECT_THAT(result.warnings, ElementsAre("1 cell has more points than corners: the corners alone are taken"));
+    EXPECT_THAT(result.warnings, ElementsAre("1 cell has more points than corners: only the corners are used"));
 }
 
 TEST_F(VtkBinary, ErrorsNameTheByte) {

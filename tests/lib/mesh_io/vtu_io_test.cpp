@@ -124,7 +124,7 @@ TEST_F(VtuIo, WhatIsWrittenIsReadAgainToTheBit) {
     EXPECT_TRUE(back.warnings.empty());
 }
 
-// Blocks are of 128 KiB, 32 of them are compressed at once.
+// Blocks have 128 KiB; 32 of them are compressed at once.
 TEST_F(VtuIo, ManyBlocksAreOneArray) {
     HexMesh mesh = make_box(42, 42, 42);
     mesh.attributes = {{"s", 1, ramp(mesh.points.size())}};
@@ -196,8 +196,8 @@ TEST_F(VtuIo, ErrorsNameFileLineAndArray) {
         {"LittleEndian", "MiddleEndian", "byte_order \"MiddleEndian\" is unknown"},
         {"UInt32", "UInt16", "header_type \"UInt16\" is unknown"},
         {"version=\"1.0\"", "compressor=\"zip\"", "compressor \"zip\" is not supported"},
-        {"NumberOfPoints=\"18\"", "NumberOfPoints=\"x\"", "line 3: NumberOfPoints is missing or no count"},
-        {"NumberOfPoints=\"18\"", "NumberOfPoints=\"-1\"", "NumberOfPoints is missing or no count"},
+        {"NumberOfPoints=\"18\"", "NumberOfPoints=\"x\"", "line 3: NumberOfPoints is missing or not a count"},
+        {"NumberOfPoints=\"18\"", "NumberOfPoints=\"-1\"", "NumberOfPoints is missing or not a count"},
         {"NumberOfPoints=\"18\"", "NumberOfPoints=\"99999999999\"", "NumberOfPoints: count out of range"},
         {"NumberOfPoints=\"18\"", "NumberOfPoints=\"4000000000\"", "\"Points\": it has 54 values (12000000000 are needed"},
         {"NumberOfPoints=\"18\"", "NumberOfPoints=\"17\"", "\"Points\": it has 54 values (51 are needed"},
@@ -239,7 +239,7 @@ TEST_F(VtuIo, DamagedDataAreRefused) {
     EXPECT_THAT(read_error(replaced(good, "vtkZLibDataCompressor", "vtkLZMADataCompressor")),
                 HasSubstr("decompression failed"));
 
-    // A size that no such block can have does not get as far as an allocation.
+    // A size that no such block can have is refused before any allocation.
     VtuText plain{.format = "appended", .header_type = "UInt64"};
     std::string huge = with_arrays(plain);
     huge.replace(huge.find("\n _") + 3, 8, bytes_of(std::vector<std::uint64_t>{1ull << 60}, std::endian::little));

@@ -59,7 +59,7 @@ inline std::string compressed_by(const std::string& compressor, const std::strin
     return result;
 }
 
-/// Writes small .vtu files in every encoding there is.
+/// Writes small .vtu files in every encoding.
 ///
 /// format: ascii, binary, appended; encoding: of appended data
 struct VtuText {

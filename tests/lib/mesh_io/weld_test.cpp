@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points that are joined and cells that are left out when a mesh is read.
+// Welding of points and removal of ghost cells when a mesh is read.
 
 #include <gmock/gmock.h>
 
@@ -16,7 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Two boxes side by side, each with points of its own.
+// Two boxes side by side that share no points.
 HexMesh two_boxes(double gap) {
     HexMesh mesh = make_box(1, 2, 2), other = make_box(1, 2, 2);
     const auto first = static_cast<Index>(mesh.points.size());
@@ -105,7 +105,7 @@ TEST_F(Weld, CellsWithHiddenPointsAreLeftOut) {
         return vtk_text(make_box(3, 1, 1)) + "POINT_DATA 16\nSCALARS vtkGhostType unsigned_char 1\nLOOKUP_TABLE default\n" +
                ghosts;
     };
-    // A duplicate point is as good as another.
+    // Cells keep duplicate points (1); only hidden points (2) count.
     const ReadResult result = read_mesh(write("a.vtk", text("1 1 1 1 1 1 1 2 1 1 1 1 1 1 1 1\n")));
     EXPECT_THAT(result.warnings, ElementsAre("1 cell with hidden points left out"));
     EXPECT_EQ(inspect(result.mesh).volume, 2);

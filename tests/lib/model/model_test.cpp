@@ -9,10 +9,14 @@
 #include <random>
 
 #include "lib/expect_error.h"
+#include "subvol/detail/solid_field.h"
 #include "subvol/field.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol {
+
+using detail::PawnField;
+
 namespace {
 
 static_assert(Field<TwistField> && Field<PawnField> && Field<BallField>);
@@ -47,7 +51,7 @@ TEST(Model, RefusesUnknownNamesAndResolutions) {
     for (const int n : {-1, 1, 513}) test::expect_error(invalid, "2..512", [=] { (void)make_model("twist", n); });
 }
 
-// The benchmark's formulas, written out once more as they are published.
+// The benchmark's formulas, written out again as published.
 Vec3 published_position(const Vec3& p) {
     const double a = std::numbers::pi / 4 * (p.z + 1), t = 0.35 * std::numbers::pi * p.z, radius = 1.6;
     const double x = 0.6 * (std::cos(a) * p.x - std::sin(a) * p.y), y = 0.6 * (std::sin(a) * p.x + std::cos(a) * p.y);
@@ -106,7 +110,7 @@ TEST(Twist, IsNothingOutsideTheBlock) {
         EXPECT_FALSE(field.value(TwistField::position(p)));
         EXPECT_TRUE(field.value(TwistField::position(p / kJustOutside * 0.999)));
     }
-    // Behind the arc's centre the angle's cut lies: nothing on both sides of it.
+    // The cut of the angle lies behind the arc's centre: there is no value on either side of it.
     for (const double z : {-1e-12, 0.0, 1e-12}) EXPECT_FALSE(field.value(Vec3(-3.2, 0, z)));
     EXPECT_FALSE(field.value(Vec3(-1.6, 0, 0)));
     EXPECT_FALSE(field.value(Vec3(100, 100, 100)));
@@ -192,7 +196,7 @@ TEST(Ball, HasItsBoundaryOnTheUnitSphere) {
     const std::size_t boundary = 6 * 8 * 8 + 2, first = mesh.points.size() - boundary;
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         const double r = glm::length(mesh.points[p]);
-        ASSERT_TRUE(p < first ? r < 0.99 : std::abs(r - 1) < 4e-16) << p << " " << r;  // two roundings
+        ASSERT_TRUE(p < first ? r < 0.99 : std::abs(r - 1) < 4e-16) << p << " " << r;  // two rounding errors
     }
     // The polyhedron's volume goes to the ball's with the square of the cell size.
     const double exact = 4 * std::numbers::pi / 3;

@@ -7,12 +7,16 @@
 #include <random>
 #include <vector>
 
+#include "subvol/detail/solid_field.h"
 #include "subvol/field.h"
 #include "subvol/mesh_report.h"
 #include "subvol/model.h"
 #include "subvol/refine.h"
 
 namespace subvol {
+
+using namespace detail;
+
 namespace {
 
 /// A type for each model: its name, its number of points after one level in table 2 of [mnmq2007], its field.
@@ -92,7 +96,7 @@ TYPED_TEST(PaperModel, IsDeformedWithAPositiveJacobianEverywhere) {
         least = std::min(least, volume);
         most = std::max(most, volume);
     }
-    EXPECT_GT(least, 0.1 * most);  // as strong as it may get before cells become splinters
+    EXPECT_GT(least, 0.1 * most);  // a stronger deformation would make cells too thin
     EXPECT_LT(least, 0.9 * most);  // more than a rotation
 }
 
@@ -105,7 +109,7 @@ TYPED_TEST(PaperModel, InvertsInClosedForm) {
         ASSERT_TRUE(value);
         // The parameter is off by a few roundings; the densities change by up to 80 per unit.
         ASSERT_NEAR(*value, TypeParam::density(p), 1e-12);
-        // Half as far again as the block's side, or the nozzle's end or wall.
+        // One and a half times as far as the block's side, or the nozzle's end or wall.
         ASSERT_FALSE(TypeParam().value(TypeParam::position(p / std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) * 1.5)));
     }
 }
@@ -163,7 +167,7 @@ double squared_error(int resolution) {
 }
 
 TYPED_TEST(PaperSolid, IsResolvedByItsLattice) {
-    // The range is 2 wide. The pawn, of polynomials, has .0096; edges rounded by less than a cell add to it.
+    // The range is 2 wide. The pawn, made of polynomials, has .0096; edges rounded by less than a cell have more.
     EXPECT_LT(std::sqrt(squared_error<TypeParam>(0)), 0.02);
 }
 
@@ -252,7 +256,7 @@ TEST(Nozzle, ConvergesAndDivergesWhileTheGasGetsFaster) {
         ASSERT_GT(speed, before);
         before = speed;
         for (const double angle : {0.0, 1.0, 4.0}) {
-            // It rests at the wall and is as fast everywhere about the axis.
+            // The gas is at rest at the wall, and its speed is the same all around the axis.
             ASSERT_NEAR(NozzleField::density({s, std::cos(angle), std::sin(angle)}), -1, 1e-14);
             ASSERT_NEAR(NozzleField::density({s, 0.5 * std::cos(angle), 0.5 * std::sin(angle)}),
                         NozzleField::density({s, 0.5, 0}), 1e-14);
@@ -261,7 +265,8 @@ TEST(Nozzle, ConvergesAndDivergesWhileTheGasGetsFaster) {
     EXPECT_GT(wall_radius(-1), 1.8 * throat);
     EXPECT_GT(wall_radius(1), 1.8 * throat);
     EXPECT_NEAR(throat_at, 0.27, 0.02);
-    // Sound's speed, at the throat, is √(1/6) of the fastest a gas can become; at the outlet (Mach 3) it is √(1.8/2.8).
+    // At the throat the speed is that of sound, √(1/6) of the gas's greatest possible speed; at the outlet (Mach 3) it is
+    // √(1.8/2.8).
     EXPECT_NEAR((NozzleField::density({throat_at, 0, 0}) + 1) / 2, std::sqrt(1 / 6.0) / std::sqrt(1.8 / 2.8), 0.01);
 }
 

@@ -85,7 +85,7 @@ TEST_F(PointsIo, EveryKernelComesBack) {
     for (const auto& [name, kernel] : every_kernel()) expect_kernel(kernel);
 }
 
-// As another reader of VTK finds them: the same tensor in text, put in the array's place, is the same Hessian.
+// Hessians are stored in VTK's order: the array is replaced by the same tensor written as text in that order.
 TEST_F(PointsIo, VtpHessiansAreInTheOrderOfVtk) {
     RbfVolume volume = random_points(1, 2);
     volume.channels[1].name = "t";
@@ -140,7 +140,7 @@ TEST_F(PointsIo, ABoundaryThatIsGoneIsEmptyAndAForeignOneIsRefused) {
     }
 }
 
-// Whatever is cut off or changed: an error with a sentence or other points, never a crash; the sanitizers watch.
+// Files that are cut off or changed give an error with a sentence, or other points; never a crash, which the sanitizers check.
 TEST_F(PointsIo, DamagedFilesDoNotCrash) {
     std::mt19937 random(3);
     for (const Form& form : kForms) {
@@ -166,7 +166,7 @@ TEST_F(PointsIo, CutOffFilesAreRefused) {
         write_points(path(form.file), random_points(20, 2), form.options);
         const std::string good = read_bytes(path(form.file));
         const std::string name = std::string("cut") + std::filesystem::path(form.file).extension().string();
-        // Half of the last number of a text is a number too: three quarters are a cut that no format can overlook.
+        // A part of the last number of a text is still a number: a cut at three quarters is noticed in every format.
         for (const std::size_t size : {good.size() / 4, good.size() / 2, 3 * good.size() / 4}) {
             const auto file = write(name, good.substr(0, size));
             EXPECT_THAT(error_of([&] { static_cast<void>(read_points(file)); }), HasSubstr(name));
@@ -179,7 +179,7 @@ TEST_F(PointsIo, WhatCannotBeWrittenLeavesNothing) {
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{20000, before.rlim_max};  // stands in for a disk that is full
+    const rlimit small{20000, before.rlim_max};  // simulates a full disk
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
     for (const Form& form : kForms) {
         EXPECT_THAT(error_of([&] { write_points(path(form.file), volume, form.options); }, ErrorCode::Io),
@@ -189,7 +189,7 @@ TEST_F(PointsIo, WhatCannotBeWrittenLeavesNothing) {
     std::signal(SIGXFSZ, handler);
     EXPECT_EQ(file_count(), 0u);
 
-    // Points that could be written, but their boundary not: its name is that of a folder.
+    // The points could be written, but not their boundary, as a folder has its name.
     std::filesystem::create_directory(path("a.boundary.vtp"));
     EXPECT_THAT(error_of([&] { write_points(path("a.vtp"), volume); }, ErrorCode::Io), HasSubstr("is a folder"));
     EXPECT_EQ(file_count(), 1u);
@@ -244,7 +244,7 @@ TEST(PrincipalAxes, MakeTheFrameAgain) {
     }
 }
 
-// What viewers of splats do: all properties are the vertex's; the axes are exp(scale), turned by rot.
+// Reads the file as viewers of splats do: all properties are those of the vertex; the axes are exp(scale), turned by rot.
 TEST_F(PointsIo, SplatsAreTheKernelsEllipsoids) {
     const RbfVolume volume = random_points(50, 1);
     write_points(path("a.ply"), volume, {.ascii = true, .splats = true});

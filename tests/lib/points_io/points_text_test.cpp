@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 class PointsText : public TempFolder {
 protected:
-    /// The sentence about a file with this text.
+    /// The error message for a file with this text.
     std::string error_of_text(const std::string& name, const std::string& text) const {
         const auto file = write(name, text);
         return error_of([&] { static_cast<void>(read_points(file)); });
@@ -31,7 +31,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-// Independent of the writer: the properties in another order, others among them, a list that nobody knows, big-endian.
+// A file that our writer would not write: the properties in another order, unknown ones and an unknown list among them,
+// big-endian.
 TEST_F(PointsText, PlyOfOtherMakers) {
     const std::string properties =
         "property uchar red\nproperty float syy\nproperty double z\nproperty float sxx\nproperty float sxy\n"
@@ -90,20 +91,20 @@ TEST_F(PointsText, PlyThatIsWrong) {
     const std::vector<std::array<std::string, 3>> mistakes{
         {"ply\n", "pla\n", "line 1: not a PLY file"},
         {"format ascii", "format ebcdic", "line 2: format \"ebcdic\" is unknown"},
-        {"comment kernel ", "comment ", "no comment that says the kernel"},
+        {"comment kernel ", "comment ", "no comment with the kernel"},
         {"1.43", "-1.43", "'radius' is -1.43"},
         {"\"compact\"", "\"wide\"", "there is no type 'wide'"},
-        {"comment kernel {", "comment kernel ", "no JSON"},
+        {"comment kernel {", "comment kernel ", "not JSON"},
         {"element vertex 3", "element vertex 1000000000000", "there is room for"},
-        {"element vertex 3", "element vertex 99999999999999999999999", "is no count"},
-        {"element vertex 3", "element vertex -3", "is no count"},
+        {"element vertex 3", "element vertex 99999999999999999999999", "is not a count"},
+        {"element vertex 3", "element vertex -3", "is not a count"},
         {"element vertex 3", "element vertex 4", "line "},
         {"element vertex 3", "element corner 3", "there is no element vertex"},
-        {"property double x\n", "property quad x\n", "\"quad\" is no type"},
+        {"property double x\n", "property quad x\n", "\"quad\" is not a type"},
         {"property float sxy\n", "property float other\n", "has no property \"sxy\""},
         {"property float sxy\n", "property float sxx\n", "\"sxx\" is not one number a row"},
         {"property float value\n", "property list uchar float value\n", "\"vertex\" "},
-        {"end_header\n", "end\n", "\"end\" is no key"},
+        {"end_header\n", "end\n", "\"end\" is not a key"},
         {first_number, "1e999", "point 0: a coordinate is not finite"},
         {"end_header\n", "end_header\nx ", "\"vertex\" 0 of 3: a number is expected, not \"x\""},
         {"3 0 2 1", "4 0 2 1 1", "not 3 corners"},
@@ -117,7 +118,7 @@ TEST_F(PointsText, PlyThatIsWrong) {
         EXPECT_THAT(said, HasSubstr("b.ply")) << from << " -> " << to;
     }
     EXPECT_THAT(error_of_text("b.ply", ""), HasSubstr("not a PLY file"));
-    // No properties, so that no row takes a byte.
+    // Without properties the rows take no bytes, so the file size does not limit their number.
     EXPECT_THAT(error_of_text("b.ply",
                               "ply\nformat ascii 1.0\ncomment kernel {\"type\":\"compact\"}\nelement vertex 1000000000000\n"
                               "end_header\n"),
@@ -133,12 +134,12 @@ TEST_F(PointsText, VtpThatIsWrong) {
         {"type=\"PolyData\"", "type=\"ImageData\"", "\"ImageData\" is not a PolyData"},
         {"<PolyData>", "<Poly>", "not well-formed XML"},
         {"NumberOfPoints=\"3\"", "NumberOfPoints=\"4000000000\"", "values"},
-        {"NumberOfPoints=\"3\"", "NumberOfPoints=\"many\"", "NumberOfPoints is missing or no count"},
+        {"NumberOfPoints=\"3\"", "NumberOfPoints=\"many\"", "NumberOfPoints is missing or not a count"},
         {"Name=\"frame\"", "Name=\"other\"", "no array \"frame\""},
         {"Name=\"density.moment\"", "Name=\"other\"", "no array \"density.moment\""},
         {"Name=\"kernel\"", "Name=\"other\"", "no array \"kernel\""},
         {"<FieldData>", "<Other>", "not well-formed XML"},
-        {"123 34", "91 34", "no JSON"},
+        {"123 34", "91 34", "not JSON"},
         {"Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"binary\">",
          "Name=\"t.hessian\" NumberOfComponents=\"6\" format=\"ascii\">1</DataArray><DataArray>", "18 are needed: 6 a point"},
         {"format=\"binary\"", "format=\"appended\"", "there are no appended data"},

@@ -97,7 +97,7 @@ TEST(SharpFacesAndReports, LeaveTheHullAlone) {
     EXPECT_EQ(inspect(cube).interior_edges, 6u);
     EXPECT_EQ(refinement_tables(build_topology(mesh), {.levels = 0}).sharp_faces.size(), 1u);
     mesh.sharp_faces = {{1, 4, 10, 8}};
-    test::expect_error(ErrorCode::InvalidInput, "points 1 4 10 8 are no face", [&] { (void)refine(mesh); });
+    test::expect_error(ErrorCode::InvalidInput, "points 1 4 10 8 are not a face", [&] { (void)refine(mesh); });
     mesh.sharp_faces = {{1, 4, 10, 99}};
     test::expect_error(ErrorCode::InvalidInput, "point 99 does not exist", [&] { (void)refine(mesh); });
     mesh.points.push_back({9, 9, 9});

@@ -53,7 +53,8 @@ Rows our_rows(const HexMesh& mesh) {
                       cells = faces + topology.faces.size();
     for (std::size_t e = 0; e < topology.edges.size(); ++e) put('e', sorted(topology.edges[e]), edges + e);
     for (std::size_t f = 0; f < topology.faces.size(); ++f) put('f', sorted(topology.faces[f]), faces + f);
-    for (std::size_t c = 0; c < topology.cells.size(); ++c) put('c', sorted(topology.cells[c]), cells + topology.cell_rank[c]);
+    for (std::size_t c = 0; c < topology.cells.size(); ++c)
+        put('c', sorted(topology.cells[c]), cells + topology.cell_ordinal[c]);
     return rows;
 }
 

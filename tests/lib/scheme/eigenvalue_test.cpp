@@ -117,7 +117,7 @@ std::vector<Place> child_places(const Topology& topology, const std::vector<Plac
     const std::size_t cells = places.size();
     places.resize(cells + topology.cells.size());
     for (std::size_t c = 0; c < topology.cells.size(); ++c) {
-        places[cells + topology.cell_rank[c]] = mean_of(topology.cells[c]);
+        places[cells + topology.cell_ordinal[c]] = mean_of(topology.cells[c]);
     }
     return places;
 }

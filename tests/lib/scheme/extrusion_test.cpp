@@ -98,7 +98,7 @@ std::vector<std::vector<Index>> parents_of(const Topology& topology) {
     const std::size_t cells = parents.size();
     parents.resize(cells + topology.cells.size());
     for (std::size_t c = 0; c < topology.cells.size(); ++c) {
-        parents[cells + topology.cell_rank[c]].assign(topology.cells[c].begin(), topology.cells[c].end());
+        parents[cells + topology.cell_ordinal[c]].assign(topology.cells[c].begin(), topology.cells[c].end());
     }
     return parents;
 }

@@ -69,7 +69,7 @@ TEST(Topology, DoesNotDependOnThreadsOrCellOrder) {
     EXPECT_EQ(many.faces, reversed.faces);
     EXPECT_EQ(many.edge_faces.values, reversed.edge_faces.values);
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        EXPECT_EQ(many.cell_rank[c], reversed.cell_rank[mesh.cells.size() - 1 - c]);
+        EXPECT_EQ(many.cell_ordinal[c], reversed.cell_ordinal[mesh.cells.size() - 1 - c]);
     }
 }
 

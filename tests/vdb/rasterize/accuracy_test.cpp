@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "subvol/detail/solid_field.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
@@ -196,7 +197,7 @@ TEST(VdbAccuracy, LimitOfTheBall) {
 }
 
 TEST(VdbAccuracy, LimitOfThePawn) {
-    const auto density = [](const Vec3& x) { return PawnField().value(x); };
+    const auto density = [](const Vec3& x) { return detail::PawnField().value(x); };
     const Errors errors = limit_errors(make_model("pawn"), 60, density);
     EXPECT_LT(errors.rms, 0.01);  // its density saturates within four cells of the surface
 }

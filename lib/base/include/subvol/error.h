@@ -11,9 +11,9 @@ enum class ErrorCode { InvalidInput, Io, MissingCapability, Cancelled };
 
 /// The one exception of the library: bad input, I/O, a missing capability, a cancelled run.
 ///
-/// where:   file and line, or the entity, that is wrong; may be empty
+/// where:   the file and line, or the entity, that is wrong; may be empty
 /// allowed: what would be right; may be empty
-/// what():  one sentence, "where: message (allowed)", ready to be shown to a person
+/// what():  one sentence for users, "where: message (allowed)"
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, const std::string& message, const std::string& where = {}, const std::string& allowed = {})

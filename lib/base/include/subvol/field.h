@@ -8,7 +8,7 @@
 
 namespace subvol {
 
-/// A scalar over world space, and nothing outside its domain. `value` must be callable from many threads at once.
+/// A scalar field over world space, without a value outside its domain. `value` must be thread-safe.
 template <class F>
 concept Field = requires(const F& field, const Vec3& x) {
     { field.value(x) } -> std::same_as<std::optional<double>>;

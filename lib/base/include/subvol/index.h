@@ -6,7 +6,7 @@
 
 namespace subvol {
 
-/// A number of a point, cell, edge or face. 32 bits reach to 4 billion of each; the build option SUBVOL_INDEX64 makes them 64.
+/// The number of a point, cell, edge or face. 32 bits are enough for 4 billion; the build option SUBVOL_INDEX64 makes it 64.
 #ifdef SUBVOL_INDEX64
 using Index = std::uint64_t;
 #else

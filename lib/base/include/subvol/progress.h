@@ -7,7 +7,7 @@ namespace subvol {
 
 struct Image;
 
-/// Where long work tells how far it is. Long calls take a `Progress*`; null means that nobody listens.
+/// Receives the progress of long work. Long calls take a `Progress*`, which may be null.
 ///
 /// Thread-safety: `report` may be called from any thread, one call at a time.
 class Progress {
@@ -17,14 +17,16 @@ public:
     /// stage: a short noun phrase ("refine level 2"); fraction: of that stage, in [0,1]
     virtual void report(std::string_view stage, double fraction) = 0;
 
-    /// A picture on its way: what has been drawn so far, of the size asked for. Valid during the call.
+    /// A picture in progress: what has been drawn so far, in the requested size. Valid only during the call.
     virtual void picture(const Image& /*image*/) {}
 
     /// True once the caller wants the work to stop; the work then throws Error(Cancelled) soon.
     [[nodiscard]] virtual bool cancelled() const { return false; }
 };
 
-/// Reports to `progress`, if there is one, and throws Error(Cancelled) if its owner wants to stop.
+/// Reports to `progress` unless it is null.
+///
+/// throws: Error(Cancelled) if `progress` is cancelled
 void report_progress(Progress* progress, std::string_view stage, double fraction);
 
 }  // namespace subvol

@@ -13,7 +13,7 @@ namespace subvol {
 
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
-using Mat3 = glm::dmat3;  // columns first, as GLM has it
+using Mat3 = glm::dmat3;  // column-major, as in GLM
 
 /// An axis-aligned box in world units; empty (lower > upper) until a point is added.
 struct Box {

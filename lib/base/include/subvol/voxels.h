@@ -11,7 +11,9 @@ namespace subvol {
 
 using Voxel = std::array<std::int32_t, 3>;
 
-/// Voxels lower … lower + size − 1 that are all inactive, all active with one value, or neither of the two.
+/// The voxels from lower to lower + size − 1 along each axis.
+///
+/// kind: Nothing if all are inactive, Constant if all are active with one value, Mixed otherwise or if that is not known
 struct VoxelBlock {
     enum class Kind { Nothing, Constant, Mixed };
     Kind kind = Kind::Mixed;
@@ -26,20 +28,20 @@ struct VoxelCorners {
     unsigned active = 0;
 };
 
-/// Reads voxels, and remembers where it was last: one for each thread.
+/// Reads voxels and remembers its last place, so that neighbours are found fast. Each thread needs its own.
 class VoxelCursor {
 public:
     virtual ~VoxelCursor() = default;
 
-    /// The largest block known to hold a voxel; Mixed is right for any.
+    /// The largest known block around a voxel. A block of that voxel alone with kind Mixed is always a valid answer.
     [[nodiscard]] virtual VoxelBlock block(const Voxel& voxel) = 0;
     [[nodiscard]] virtual VoxelCorners corners(const Voxel& lower) = 0;
 };
 
-/// A sparse grid of values as renderers see it. As a field it is trilinear between the voxels' centres and nothing where the
-/// voxel that holds the place is inactive; inactive neighbours do not count, the weights of the active ones are normalised.
+/// A sparse grid of values, as renderers use it. As a field it is trilinear between voxel centres. It has no value in inactive
+/// voxels; elsewhere inactive neighbours are left out, and the weights of the active ones are normalised.
 ///
-/// Centres have whole numbers; world = to_world · index + origin.
+/// Voxel centres have integer indices; world = to_world · index + origin.
 class Voxels {
 public:
     virtual ~Voxels() = default;

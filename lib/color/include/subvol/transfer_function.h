@@ -28,40 +28,41 @@ struct TransferFunction {
 
 /// A named transfer function over a field's range.
 ///
-/// viridis:    the default; coolwarm (diverging), grey, bone and xray (white to black, for a white background) are others with
-/// an
-///             opacity that ramps 0 → .5 over the range; colours are right to 1/512
-/// isosurface: viridis, but for five narrow peaks of opacity .9, evenly spaced, transparent
-/// surface:    only the positive side of a signed density, opaque
+/// viridis:    the default. The opacity ramps from 0 to .5 over the range, and colours are right to 1/512, as in coolwarm
+///             (diverging), grey, bone and xray (white to black, for a white background)
+/// isosurface: viridis, transparent except for five evenly spaced narrow peaks of opacity .9
+/// surface:    the positive side of a signed density, opaque
 /// constant:   white, opacity .5
 ///
-/// min, max: the field's range; of no width (a constant field), it is widened by .5 either side
-/// throws:   Error(InvalidInput) for an unknown name (lists those that exist), or a range not finite or upside down
+/// min, max: the field's range; that of a constant field is widened by .5 on either side
+/// throws:   Error(InvalidInput) for an unknown name (lists those that exist), or if the range is not finite or min > max
 [[nodiscard]] TransferFunction transfer_function_preset(const std::string& name, double min, double max);
 
-/// Reads ParaView's colour-map JSON as it is: an array of maps with RGBPoints (sRGB), ColorSpace (RGB, HSV, Lab, Lab/CIELAB,
-/// Diverging, Step; without it RGB) and Points (opacity; x, alpha, midpoint, sharpness). Both curves are what VTK makes of
-/// them, resampled to knots that are right to 1/512. A value that is there twice is a jump. Without Points the opacity ramps 0
-/// → .5. Values are the field's own. Lab/CIEDE2000 is taken as Lab; all other keys are ignored.
+/// Reads ParaView's colour-map JSON: an array of maps with RGBPoints (sRGB), ColorSpace (RGB, HSV, Lab, Lab/CIELAB, Diverging,
+/// Step; RGB if it is missing) and Points (opacity; x, alpha, midpoint, sharpness). Both curves are VTK's, resampled to knots
+/// that are right to 1/512. Two knots with the same value are a jump. Without Points the opacity ramps from 0 to .5. The knots
+/// keep the values of the file, which are those of the field. Lab/CIEDE2000 is read as Lab; all other keys are ignored.
 ///
 /// name:   the map's Name; empty for the first
 /// throws: Error(Io), Error(InvalidInput) with the file, and the key or knot (counted from 0)
 [[nodiscard]] TransferFunction read_transfer_function(const std::filesystem::path& path, const std::string& name = {});
 
-/// Opacities from text: "v:a,v:a,…", a value of the field and the opacity there; "%" after a value means per cent of the range,
-/// as in "0%:0,50%:.2,100%:.9". A value that is there twice is a jump.
+/// Reads opacities from text: "v:a,v:a,…", values of the field with their opacities. "%" after a value means per cent of the
+/// range, as in "0%:0,50%:.2,100%:.9". Two entries with the same value are a jump.
 ///
 /// min, max: the field's range, as for a preset
 /// throws:   Error(InvalidInput) that names the entry
 [[nodiscard]] std::vector<TransferFunction::OpacityKnot> parse_opacity(const std::string& text, double min, double max);
 
-/// The same colours and opacities over another range: the colours' ends go to min and max, as when ParaView fits a map, most of
-/// which lie on [0,1], to data. Of no width, the range is widened as for a preset; a function of one colour is left as it is.
+/// The same colours and opacities over another range: the first and last colour move to min and max, as when ParaView fits a
+/// map to data (most maps are defined on [0,1]). A range of zero width is widened as for a preset; a function of one colour
+/// does not change.
 ///
-/// throws: Error(InvalidInput) as validate(function), or for a range not finite or upside down
+/// throws: Error(InvalidInput) as validate(function), or if the range is not finite or min > max
 [[nodiscard]] TransferFunction stretched(const TransferFunction& function, double min, double max);
 
-/// throws: Error(InvalidInput) if a list is empty, not strictly ascending, not finite, or out of [0,1]
+/// throws: Error(InvalidInput) if a list is empty, its values are not finite or do not ascend strictly, or a colour or an
+///         opacity is outside [0,1]
 void validate(const TransferFunction& function);
 
 }  // namespace subvol

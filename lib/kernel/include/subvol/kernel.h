@@ -14,7 +14,7 @@ namespace subvol {
 // Kernels are small values. Lengths are in sample intervals (the scheme's lattice units), ρ = |x|; at its radius and beyond
 // it a kernel is 0.
 
-/// (1 − ρ²/R²)³: what the splatter sums. Below R = 1.2 it leaves holes.
+/// (1 − ρ²/R²)³: the kernel of the splatter. Below R = 1.2 it leaves holes.
 struct CompactKernel {
     double radius = 1.43;
 };
@@ -33,15 +33,15 @@ struct GaussianSumKernel {
     double radius = 3;
 };
 
-/// The cubic of Mitchell and Netravali in ρ: its inner piece up to extent/2, its outer one up to `extent`, not rescaled: only
-/// an extent of 2 makes a continuous spline (the others are how [mnmq2007] reads its radius).
+/// The cubic of Mitchell and Netravali in ρ: its inner piece up to extent/2, its outer one up to `extent`. The pieces are not
+/// rescaled, so that only an extent of 2 gives a continuous spline; other extents follow the radius in [mnmq2007].
 struct BcSplineKernel {
     double b = 0.418792;
     double c = 0.146011;
     double extent = 2;
 };
 
-/// The cardinal cubic in ρ, its pieces as those of BcSplineKernel.
+/// The cardinal cubic in ρ, with pieces as in BcSplineKernel.
 struct CardinalSplineKernel {
     double a = -0.098647;
     double extent = 2;
@@ -92,36 +92,36 @@ using Kernel =
 /// Whether the kernel is a function of ρ alone.
 [[nodiscard]] bool is_radial(const Kernel& kernel);
 
-/// Where the kernel ends: a distance if it is radial, else along each axis.
+/// The size of the support: a distance if the kernel is radial, otherwise along each axis.
 [[nodiscard]] double support_radius(const Kernel& kernel);
 
-/// The kernel at an offset; where it is radial, at a distance. `radial_value` of one that is not: that along an axis.
+/// The kernel at an offset, and at a distance. For a kernel that is not radial, `radial_value` is the value along an axis.
 [[nodiscard]] double kernel_value(const Kernel& kernel, const Vec3& x);
 [[nodiscard]] double radial_value(const Kernel& kernel, double rho);
 
-/// Where the kernel has a kink: the derivative of the outer piece; across a plane of symmetry 0.
+/// The gradient; at a kink that of the outer piece, across a plane of symmetry 0.
 [[nodiscard]] Vec3 kernel_gradient(const Kernel& kernel, const Vec3& x);
 
-/// ∫ kernel dz from z0 to z1 at the offset (x, y), and over the whole line. Exact but for rounding.
+/// ∫ kernel dz from z0 to z1 at the offset (x, y), and over the whole line. Exact up to rounding.
 ///
 /// cost: O(1); for tables O(values per axis)
 [[nodiscard]] double slab_integral(const Kernel& kernel, double x, double y, double z0, double z1);
 [[nodiscard]] double line_integral(const Kernel& kernel, double x, double y);
 
-/// throws: Error(InvalidInput) if a number is not finite, a length not positive, or a table not as large as it says; a table
-///         has 2 to 1024 values per axis. The functions above take valid kernels only
+/// throws: Error(InvalidInput) if a number is not finite, a length is not positive, or a table does not have the size that it
+///         states or not 2 to 1024 values per axis. The functions above take valid kernels only
 void validate(const Kernel& kernel);
 
 /// A kernel as a JSON object: its "type" and its fields by their names here. Fields left out take their defaults. What is
 /// written reads back bit for bit.
 ///
-/// throws: Error(InvalidInput) if the text is no such object or the kernel is not valid
+/// throws: Error(InvalidInput) if the text is not such an object or the kernel is not valid
 [[nodiscard]] std::string to_json(const Kernel& kernel);
 [[nodiscard]] Kernel kernel_from_json(std::string_view text);
 
-/// The kernels that have a name, with parameters fitted to the basis function of MCQ: gaussian, compact (what the splatter
-/// sums: not a fit), bc, paper_bc (B and C as [mnmq2007] prints them), cardinal, wendland_c2, wendland_c4, two_gaussians,
-/// separable_gaussian, cubic (Catmull-Rom: not a fit).
+/// The kernels that have a name, with parameters fitted to the basis function of MCQ: gaussian, compact (the splatter's kernel,
+/// not a fit), bc, paper_bc (B and C as printed in [mnmq2007]), cardinal, wendland_c2, wendland_c4, two_gaussians,
+/// separable_gaussian, cubic (Catmull-Rom, not a fit).
 ///
 /// throws: Error(InvalidInput) if there is no such name
 [[nodiscard]] Kernel named_kernel(const std::string& name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernels' formulas, once for C++ and GLSL: only what both languages read the same way.
 //
-// The includer says what `real`, `real3` and `real4` are and supplies `real kernel_table(int i)`, the kernel's table.
+// The including file defines `real`, `real3` and `real4` and supplies `real kernel_table(int i)`, the kernel's table.
 // Callers use kernel_radial, kernel_value and kernel_gradient at the end; `type` and `p` are a KernelCode's type and parameters.
 
 #define KERNEL_COMPACT 0             // p: radius
@@ -85,7 +85,7 @@ real kernel_radial_slope(int type, real4 p, real rho) {
     return 0.0;
 }
 
-// The interval of a table that holds t in [0,radius): its number, for kernel_place how far t is into it.
+// The number of the interval of a table that contains t in [0,radius); kernel_place: how far t is into it, in [0,1].
 int kernel_interval(real t, real4 p) {
     return min(int(t / p.x * (p.y - 1.0)), int(p.y) - 2);
 }
@@ -142,7 +142,7 @@ real kernel_value(int type, real4 p, real3 at) {
     return kernel_factor(type, p, x) * kernel_factor(type, p, y) * kernel_factor(type, p, z);
 }
 
-// Its gradient; where it has a kink, that of the outer piece, on an axis' plane 0 across it.
+// Its gradient; at a kink that of the outer piece, across a plane of symmetry 0.
 real3 kernel_gradient(int type, real4 p, real3 at) {
     if (type < KERNEL_SEPARABLE_GAUSSIAN) {
         return kernel_radial_slope(type, p, sqrt(at.x * at.x + at.y * at.y + at.z * at.z)) * at;

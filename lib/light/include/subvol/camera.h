@@ -27,7 +27,7 @@ struct Ray {
     Vec3 direction;
 };
 
-/// A camera with a picture size: the mapping between pixels, eye space (x right, y up, z = depth along the view) and world.
+/// A camera and a picture size: the mapping between pixels, eye space (x right, y up, z = depth along the view) and the world.
 class View {
 public:
     /// throws: Error(InvalidInput) if eye and target coincide, up is parallel to the view, the field of view is out of range or
@@ -75,17 +75,18 @@ private:
 /// throws:    Error(InvalidInput) if the box is empty or a number is out of range
 [[nodiscard]] Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg = 30, double aspect = 1);
 
-/// The camera moved along its own line of sight until it sees the whole box with a margin of 5 %, direction and field of view
-/// as they are; an orthographic one gets the height for it. The target becomes the place of the line next to the box's centre.
+/// The camera, moved along its line of sight until it sees the whole box with a margin of 5 %; an orthographic camera gets the
+/// height for that. Direction and field of view do not change. The target becomes the point of the line that is nearest to the
+/// box's centre.
 ///
-/// throws: Error(InvalidInput) if the box is empty or the camera can see nothing
+/// throws: Error(InvalidInput) if the box is empty or the camera is not valid
 [[nodiscard]] Camera fit_camera(const Camera& camera, const Box& box, double aspect = 1);
 
-/// An orthographic camera with the direction of another, fitted to the box.
+/// An orthographic camera with the direction of another camera, fitted to the box.
 [[nodiscard]] Camera orthographic_camera(const Camera& camera, const Box& box, double aspect = 1);
 
-/// Cameras on a circle: the first is `camera`, the others are turned by equal parts about the axis along `up` through a centre,
-/// counter-clockwise as seen from above.
+/// Cameras on a circle: the first is `camera`, each of the others is turned by the same angle about the axis along `up` through
+/// a centre, counter-clockwise seen from above.
 ///
 /// frames: 1..100000
 [[nodiscard]] std::vector<Camera> turntable(const Camera& camera, const Vec3& center, int frames);
@@ -93,11 +94,11 @@ private:
 /// `fit_camera` for all frames of a turntable about the box's centre: each of them sees the whole box.
 [[nodiscard]] Camera fit_turntable(const Camera& camera, const Box& box, int frames, double aspect = 1);
 
-/// A camera from text: a view name (±x ±y ±z iso), ten numbers "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", or a JSON file with the keys
-/// eye, target (both needed), up (default: as a view's), fovy_deg, ortho_height.
+/// Reads a camera from text: the name of a view (±x ±y ±z iso), ten numbers "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy", or the name of a
+/// JSON file with the keys eye and target, and optionally up (default: as for a view), fovy_deg and ortho_height.
 ///
-/// A view is named for the side that the eye stands on: `-y` is an eye at negative y that looks towards +y; `iso` stands at
-/// (+1,-1,+1) from the centre. Views have a field of view of 30°.
+/// A view is named after the side of the eye: in `-y` the eye is at negative y and looks towards +y; in `iso` it is in the
+/// direction (+1,-1,+1) from the centre. Views have a field of view of 30°.
 ///
 /// throws: Error(InvalidInput), Error(Io)
 [[nodiscard]] Camera parse_camera(const std::string& text, const Box& box, double aspect = 1);

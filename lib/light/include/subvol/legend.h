@@ -10,7 +10,7 @@
 namespace subvol {
 
 /// title:    above the legend, e.g. the field's name with its unit
-/// min, max: the values shown; of no width, they are widened by .5 either side
+/// min, max: the range of values; if it has no width, it is widened by .5 on either side
 /// width_px: of the colour bar, 50..10000
 struct LegendOptions {
     std::string title{};
@@ -19,13 +19,13 @@ struct LegendOptions {
     int width_px = 360;
 };
 
-/// A colour bar with ticks at round values, and the opacity curve above it, as a picture in SVG that needs no other file. On
-/// white; colours are sRGB.
+/// A colour bar with ticks at round values and the opacity curve above it, as a self-contained SVG picture in sRGB on white.
 ///
-/// throws: Error(InvalidInput) as validate(function), for a range that is not finite or upside down, or a width out of range
+/// throws: Error(InvalidInput) as validate(function), if the range is not finite or min > max, or if the width
+///         is out of range
 [[nodiscard]] std::string legend_svg(const TransferFunction& function, const LegendOptions& options = {});
 
-/// `legend_svg` as a file, written beside and renamed.
+/// Writes `legend_svg` to a temporary file, then renames it.
 ///
 /// throws: also Error(Io)
 void write_legend(const std::filesystem::path& path, const TransferFunction& function, const LegendOptions& options = {});

@@ -8,7 +8,7 @@
 
 namespace subvol {
 
-/// What a stretch of a ray does to the light behind it: premultiplied emission, and the part that passes.
+/// The effect of a stretch of a ray: its premultiplied emission, and the part of the light from behind that passes.
 struct Segment {
     Vec3 color{0.0};
     double transmittance = 1;
@@ -16,7 +16,7 @@ struct Segment {
 
 /// The optical model of every renderer: emission–absorption, extinction τ = −ln(1−α)/D per world length, emission τ·c.
 ///
-/// opacity_unit: D, the world distance that the opacities are for, > 0. α is clamped to 1 − 1e-6 so that τ stays finite.
+/// opacity_unit: D, the world distance to which the opacities refer, > 0. α is clamped to 1 − 1e-6 so that τ stays finite.
 class Optics {
 public:
     /// throws: Error(InvalidInput) as validate(function), or if D is not positive and finite
@@ -33,8 +33,8 @@ public:
     /// All values at which colour or opacity has a kink, ascending.
     [[nodiscard]] std::span<const double> knots() const { return knots_; }
 
-    /// The stretch of `length` world units on which the value goes linearly from `front` to `back`: split at the knots, each
-    /// piece exact (optical depth in closed form, emission to 1e-9 relative).
+    /// Integrates a stretch of `length` world units on which the value changes linearly from `front` to `back`. It is split at
+    /// the knots; the optical depth of each piece is exact, its emission right to 1e-9 relative.
     ///
     /// source: docs/science.md; α, not τ, is linear between knots, so the erfcx/Dawson forms do not apply (docs/adr/0003)
     [[nodiscard]] Segment integrate(double front, double back, double length) const;
@@ -47,7 +47,7 @@ public:
         double integral = 0;  // of the extinction, from the first knot to begin
         bool transparent = false;
     };
-    /// One more than knots: span i has the values from knot i − 1 on that are less than knot i.
+    /// One more than there are knots: span i is from knot i − 1 to knot i, the upper end excluded.
     [[nodiscard]] std::span<const Span> spans() const { return spans_; }
 
 private:

@@ -15,7 +15,7 @@ namespace subvol {
 
 /// A named array at the points of a mesh.
 ///
-/// values: point-major, `channels` numbers a point: channel c of point p is values[p * channels + c]
+/// values: `channels` numbers for each point: channel c of point p is values[p * channels + c]
 struct Attribute {
     std::string name;
     int channels = 1;
@@ -26,8 +26,8 @@ struct Attribute {
 ///
 /// cells:   8 point ids in VTK corner order: 0-3 the bottom counter-clockwise, 4-7 above them; parameters u along 0→1,
 ///          v along 0→3, w along 0→4
-/// creases: point-id pairs (smaller first) of boundary edges to be kept sharp besides those that the default rule finds
-/// sharp_faces: four point ids in cyclic order of interior faces that schemes treat as a boundary from both sides
+/// creases: boundary edges to be kept sharp, besides those that the default rule finds; two point ids each, smaller first
+/// sharp_faces: interior faces that schemes treat as a boundary from both sides; four point ids each, in cyclic order
 struct HexMesh {
     std::vector<Vec3> points;
     std::vector<std::array<Index, 8>> cells;
@@ -38,7 +38,7 @@ struct HexMesh {
     [[nodiscard]] const Attribute* find_attribute(std::string_view name) const;
 };
 
-/// Checks what every later stage relies on.
+/// Checks the mesh for all later stages.
 ///
 /// throws: Error(InvalidInput) if there is no cell, a corner is out of range or listed twice in a cell, a used point is not
 ///         finite, an attribute has the wrong length, or its value at a used point is not finite; names the cell or point
@@ -62,7 +62,7 @@ std::size_t orient_cells(HexMesh& mesh);
 /// The scalar that is shown, exported or splatted.
 struct SelectedField {
     Attribute scalar;     // one channel
-    std::string warning;  // what was decided for the user; empty when nothing was
+    std::string warning;  // how the field was chosen or converted; empty if it is simply the named or the first scalar
 };
 
 /// Chooses a scalar: `name`, else the first one-channel attribute, else the length of the first vector, else density 1.

@@ -7,12 +7,12 @@
 
 namespace subvol {
 
-/// Whether cells, creases and sharp faces are the same: nothing of a refinement differs but points and values.
+/// Whether two meshes have the same cells, creases and sharp faces: their refinements then differ only in points and values.
 [[nodiscard]] bool same_cells(const HexMesh& a, const HexMesh& b);
 
-/// How the points move from one mesh to another of the same cells: their differences over the time between the two, world units
-/// a unit of `time`. At the middle of that time this is of second order. As refinement is linear, the refined attribute is the
-/// velocity of the refined points.
+/// The velocity of the points between two meshes with the same cells, as an attribute: their displacement divided by the time
+/// between the meshes, in world units per unit of `time`. It is of second order in the middle of that time. As refinement is
+/// linear, the refined attribute is the velocity of the refined points.
 ///
 /// returns: three channels
 /// throws:  Error(InvalidInput) if the cells differ or the time is not positive

@@ -10,7 +10,7 @@
 
 namespace subvol {
 
-/// An array as it stood in a file. location: "point" or "cell"; min and max over finite values (vectors: of the length)
+/// An array of a file. location: "point" or "cell"; min and max over its finite values, of vectors over their lengths
 struct FieldInfo {
     std::string name;
     std::string location;
@@ -19,16 +19,15 @@ struct FieldInfo {
     double max = 0;
 };
 
-/// What becomes of tetrahedra, prisms and pyramids.
+/// How to read tetrahedra, prisms and pyramids.
 ///
-/// Split:  all cells, hexahedra too, are split by `split_into_hexes`, and a warning says so
-/// Ignore: they are left out, and a warning says so
+/// Split:  all cells, hexahedra too, are split by `split_into_hexes`, with a warning
+/// Ignore: they are left out, with a warning
 /// Refuse: they are an error
 enum class OtherCells { Split, Ignore, Refuse };
 
-/// weld: join points that are no farther apart (world units; 0: at exactly the same place), as the borders of pieces need; the
-/// one
-///       that comes first stays, with its values. A warning says how many. Nothing: they stay apart
+/// weld: joins points that are no farther apart than this (world units; 0: at exactly the same place), as the borders between
+///       pieces of a file need. The first of them is kept, with its values; a warning gives the number. Nothing: no welding
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
     std::optional<double> weld = {};
@@ -37,27 +36,36 @@ struct ReadOptions {
 struct ReadResult {
     HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
     std::vector<FieldInfo> fields;
-    std::vector<std::string> warnings;  // what was left out, turned round or converted, one sentence each
+    std::vector<std::string> warnings;  // one sentence for each thing left out, turned round or converted
 };
 
-/// Reads a mesh; the format follows from the file name: MEDIT `.mesh` and `.meshb`, legacy VTK `.vtk` (ASCII and BINARY,
-/// unstructured, structured and rectilinear grids, structured points), VTK XML `.vtu`, `.vts`, `.vtr` and `.vti` (all encodings
-/// and compressors), Gmsh `.msh` (2, 4.0 and 4.1, ASCII and binary), Plot3D `.xyz` and `.p3d`, with the flow of the same name
-/// in
-/// `.q`, Exodus II `.e`, `.exo`, `.ex2` and `.g` (the last time step).
+/// Reads a mesh. The extension of the file name decides the format:
 ///
-/// Cells of lower dimension are left out, and of cells of higher order the corners are taken, with a warning.
-/// throws: Error(InvalidInput) if options.weld is negative or makes corners of one cell the same;
-///         Error(MissingCapability) for Exodus II as HDF5 in a build without netCDF's library;
-///         Error(Io) if the file cannot be opened; Error(InvalidInput) if it is malformed, naming the line, and the cell or
-///         point as the file counts them; never allocates by a number from the file that the file's size does not bear out
+///   .mesh, .meshb          MEDIT, ASCII and binary
+///   .vtk                   legacy VTK, ASCII and BINARY: unstructured, structured and rectilinear grids, structured points
+///   .vtu, .vts, .vtr, .vti VTK XML, all encodings and compressors
+///   .msh                   Gmsh 2, 4.0 and 4.1, ASCII and binary
+///   .xyz, .p3d             Plot3D, with the flow of the same name in .q
+///   .e, .exo, .ex2, .g     Exodus II, the last time step
+///
+/// Cells of lower dimension are left out; of cells of higher order only the corners are used. Both give a warning. Memory is
+/// never allocated by a number in the file that the file is too short for.
+///
+/// throws: Error(Io) if the file cannot be opened;
+///         Error(InvalidInput) if it is malformed, naming the line, and the cell or point as the file counts them;
+///         Error(InvalidInput) if options.weld is negative, or makes two corners of a cell the same;
+///         Error(MissingCapability) for Exodus II in HDF5 if the library is built without netCDF
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (compressed, with all attributes). Written beside and
-/// renamed, so that there is never half a file.
+/// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (compressed, with all attributes). The file is written under
+/// a temporary name and then renamed, so that it is never incomplete.
 ///
-/// returns: warnings, such as attributes that the format cannot hold
-/// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if it cannot be written
+/// returns: warnings, for example about attributes that the format cannot hold
+/// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if the file cannot be written
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh);
+
+/// The extensions of the files that `read_mesh` reads and `write_mesh` writes, such as ".vtu".
+[[nodiscard]] std::vector<std::string> readable_mesh_extensions();
+[[nodiscard]] std::vector<std::string> writable_mesh_extensions();
 
 }  // namespace subvol

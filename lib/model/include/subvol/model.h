@@ -21,13 +21,12 @@ struct ModelInfo {
 
 /// Generates a model with its density (the attribute "density").
 ///
-/// resolution: cells along the model's main direction, 2..512; 0 takes the default. ball: an edge of the inner cube; twist:
-/// each
-///             side; the others: their height or length
-/// throws: Error(InvalidInput) for an unknown name (lists the known ones) or a resolution out of range
+/// resolution: cells along the model's main direction, 2..512; 0 takes the default. For the ball that is an edge of the inner
+///             cube, for the twist each side, for the others their height or length
+/// throws:     Error(InvalidInput) for an unknown name (lists the known ones) or a resolution out of range
 [[nodiscard]] HexMesh make_model(const std::string& name, int resolution = 0);
 
-/// The exact field of the `twist` model: its closed-form inverse exists, so its exact image does too.
+/// The exact field of the `twist` model. The map of its block has an inverse in closed form, so the field is known everywhere.
 struct TwistField {
     /// The parameter in [-1,1]³ that maps to x, unclipped.
     [[nodiscard]] static Vec3 parameter(const Vec3& x);
@@ -37,36 +36,7 @@ struct TwistField {
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
 };
 
-namespace model {
-
-struct Solid;
-extern const Solid kPawn, kAlien, kTrain1, kCar, kFan, kTrain2;
-
-[[nodiscard]] Vec3 parameter(const Solid& solid, const Vec3& x);
-[[nodiscard]] Vec3 position(const Solid& solid, const Vec3& parameter);
-[[nodiscard]] double density(const Solid& solid, const Vec3& parameter);
-[[nodiscard]] std::optional<double> value(const Solid& solid, const Vec3& x);
-
-}  // namespace model
-
-/// The exact field of a solid model, in the same form: a deformed block. The density is signed, in [-1,1], positive inside the
-/// solid, and saturates within about four cells of the default lattice at its surface.
-template <const model::Solid& kSolid>
-struct SolidField {
-    [[nodiscard]] static Vec3 parameter(const Vec3& x) { return model::parameter(kSolid, x); }
-    [[nodiscard]] static Vec3 position(const Vec3& parameter) { return model::position(kSolid, parameter); }
-    [[nodiscard]] static double density(const Vec3& parameter) { return model::density(kSolid, parameter); }
-    [[nodiscard]] std::optional<double> value(const Vec3& x) const { return model::value(kSolid, x); }
-};
-
-using PawnField = SolidField<model::kPawn>;
-using AlienField = SolidField<model::kAlien>;
-using Train1Field = SolidField<model::kTrain1>;
-using CarField = SolidField<model::kCar>;
-using FanField = SolidField<model::kFan>;
-using Train2Field = SolidField<model::kTrain2>;
-
-/// The exact field of the `nozzle` model: the speed of a gas from rest (-1) to the fastest (1), in a bent nozzle.
+/// The exact field of the `nozzle` model: the speed of a gas in a bent nozzle, from rest (-1) to the greatest (1).
 struct NozzleField {
     /// (s, u, v): s in [-1,1] along the axis; (u,v) in the unit disk, the wall at its rim.
     [[nodiscard]] static Vec3 parameter(const Vec3& x);
@@ -75,7 +45,7 @@ struct NozzleField {
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
 };
 
-/// The exact field of the `ball` model: a smooth function of the position in [-1,1], inside the unit ball.
+/// The exact field of the `ball` model: a smooth function of the position with values in [-1,1], inside the unit ball.
 struct BallField {
     [[nodiscard]] static double density(const Vec3& x);
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;

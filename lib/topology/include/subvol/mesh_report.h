@@ -9,7 +9,7 @@
 
 namespace subvol {
 
-/// What is in a mesh and whether it is sound: the figures of `subvol info`.
+/// The size and the quality of a mesh: the figures of `subvol info`.
 struct MeshReport {
     std::size_t points = 0;
     std::size_t points_used = 0;
@@ -18,13 +18,13 @@ struct MeshReport {
     std::size_t faces = 0;
     std::size_t boundary_faces = 0;
     std::size_t interior_edges = 0;
-    std::map<int, std::size_t> interior_edge_valence;  // number of cells about an interior edge → how many such edges
+    std::map<int, std::size_t> interior_edge_valence;  // cells at an interior edge → the number of such edges
     std::size_t singular_nodes = 0;    // interior points where some irregular edges meet and their number is not 2
     std::size_t inverted_cells = 0;    // cells with a negative Jacobian at a corner
-    std::size_t degenerate_cells = 0;  // cells whose volume, or an edge of which, is zero
+    std::size_t degenerate_cells = 0;  // cells with zero volume, or with an edge of zero length
     double min_scaled_jacobian = 0;    // over the corners of all cells: det of the unit edge vectors
     std::size_t nonmanifold_edges = 0;
-    std::size_t nonmanifold_faces = 0;  // always 0 in a mesh that could be read
+    std::size_t nonmanifold_faces = 0;  // always 0: build_topology refuses other meshes
     double volume = 0;                  // of the trilinear cells, exact, world³
     Box bounds;
 };
@@ -34,7 +34,7 @@ struct MeshReport {
 /// throws: Error(InvalidInput) as `validate` and `build_topology`
 [[nodiscard]] MeshReport inspect(const HexMesh& mesh);
 
-/// The shapes of the cells of a mesh: the figures of the same names in MeshReport.
+/// The figures of the same names in MeshReport, which depend only on the shapes of the cells.
 struct ShapeReport {
     std::size_t inverted_cells = 0;
     std::size_t degenerate_cells = 0;

@@ -8,14 +8,14 @@
 
 namespace subvol {
 
-/// A triangle surface in world units; the boundary of a volume has its triangles counter-clockwise from outside.
+/// A surface of triangles in world units; those of the boundary of a volume are counter-clockwise seen from outside.
 struct Surface {
     std::vector<Vec3> points;
     std::vector<std::array<Index, 3>> triangles;
 };
 
-/// The boundary of a hexahedral mesh, two triangles a quad, split along the diagonal of the quad's smallest point id (as
-/// `split_cell` does, so that the surface bounds the tetrahedra exactly).
+/// The boundary of a hexahedral mesh. Each quad gives two triangles, split along the diagonal from its smallest point id as in
+/// `split_cell`, so that the surface is exactly the boundary of the tetrahedra.
 [[nodiscard]] Surface boundary_surface(const HexMesh& mesh);
 
 }  // namespace subvol

@@ -13,20 +13,22 @@
 
 namespace subvol {
 
-/// The edges and faces of a hexahedral mesh and who meets whom, as flat arrays.
+/// The edges and faces of a hexahedral mesh and their incidences, as flat arrays.
 ///
-/// Edges and faces are numbered in the order of their point ids, so they do not depend on the order of the cells.
-/// edges:      two point ids, smaller first; those of smaller point p are edge_offsets[p] to edge_offsets[p+1]
+/// Edges and faces are numbered in the order of their point ids, so their numbers do not depend on the order of the cells.
+///
+/// edges:      two point ids, smaller first; the edges with the smaller point p are edge_offsets[p] to edge_offsets[p+1]
 /// faces:      four point ids in cyclic order, the smallest first and then the smaller of its two neighbours
 /// face_edges: edge k of a face joins its points k and k+1
-/// face_cells: one or two cells (smaller first); the second is kNone on the boundary
-/// edge_faces: the ring about an edge. About an interior edge cyclic, starting at the smallest face and going on to the
-///             smaller of its two neighbours; about a boundary edge fan by fan, each from hull face to hull face
-/// edge_cells: cell j of an interior ring lies between faces j and j+1; on a boundary edge the cells of the fans in order
-/// hull:       the faces with one cell
-/// boundary:   the hull and the faces tagged as sharp, their edges, their points: what a scheme's surface rules see
-/// creases:    the mesh's tags, besides those that the default rule finds
-/// face_is_sharp: a flag a face, empty if none is tagged
+/// face_cells: one or two cells (smaller first); the second is kNone on the hull
+/// edge_faces: the faces around an edge. At an interior edge a cycle, from the smallest face to the smaller of its two
+///             neighbours and on; at a boundary edge fan by fan, each from hull face to hull face
+/// edge_cells: the cells around an edge. Cell j of an interior ring lies between its faces j and j+1; at a boundary edge the
+///             cells of the fans in order
+/// hull:       the faces with only one cell
+/// boundary:   the hull and the faces tagged as sharp, with their edges and points: where schemes use their surface rules
+/// creases:    the tags of the mesh, besides those that the default rule finds
+/// face_is_sharp: a flag for each face; empty if none is tagged
 struct Topology {
     std::size_t point_count = 0;
     std::vector<std::array<Index, 8>> cells;
@@ -44,7 +46,7 @@ struct Topology {
     std::vector<std::uint8_t> point_on_boundary;
     std::vector<std::uint8_t> edge_has_ring;   // interior edges whose cells form one ring of at least three
     std::vector<std::uint8_t> edge_is_crease;  // boundary edges kept sharp: one cell, non-manifold, or tagged
-    FlatArray<Index> cell_rank;                // a number for each cell that does not depend on the order of the cells
+    FlatArray<Index> cell_ordinal;             // a number for each cell that does not depend on the order of `cells`
     std::vector<std::uint8_t> face_is_sharp;
     std::vector<std::array<Index, 2>> creases;
     std::size_t nonmanifold_edges = 0;  // boundary edges with other than two boundary faces
@@ -60,12 +62,12 @@ struct Topology {
 
 /// Builds the topology of a mesh, in parallel; the result does not depend on the number of threads.
 ///
-/// throws: Error(InvalidInput) if more than two cells share a face, two cells have the same corners, a crease is no boundary
-///         edge or a sharp face no face; names them
-/// cost:   O(n log n) time, about 500 bytes a cell
+/// throws: Error(InvalidInput) if more than two cells share a face, two cells have the same corners, a crease is not a boundary
+///         edge or a sharp face not a face; names them
+/// cost:   O(n log n) time, about 500 bytes per cell
 [[nodiscard]] Topology build_topology(const HexMesh& mesh);
 
-/// Tags the smooth boundary edges whose two faces meet at more than `angle_deg`.
+/// Tags the smooth boundary edges whose two face normals differ by more than `angle_deg`.
 ///
 /// throws: Error(InvalidInput) if the angle is not in (0,180)
 void tag_creases(HexMesh& mesh, double angle_deg);

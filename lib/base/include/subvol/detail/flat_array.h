@@ -12,7 +12,7 @@
 
 namespace subvol {
 
-/// std::allocator that leaves new numbers as they are: memory is first touched by the threads that fill it.
+/// A std::allocator that does not initialise new elements, so that memory is first touched by the threads that fill it.
 template <class T>
 struct UninitializedAllocator : std::allocator<T> {
     template <class U>
@@ -30,7 +30,7 @@ struct UninitializedAllocator : std::allocator<T> {
     }
 };
 
-/// A vector whose `resize` does not clear: for large arrays that are written in parallel right after.
+/// A vector whose `resize` does not initialise new elements: for large arrays that are then written in parallel.
 template <class T>
 using FlatArray = std::vector<T, UninitializedAllocator<T>>;
 

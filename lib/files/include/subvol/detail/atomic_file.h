@@ -6,8 +6,8 @@
 
 namespace subvol::detail {
 
-/// A file that appears whole or not at all: write to `path()`, then `commit()` renames it to its final name. Without a commit
-/// the destructor removes it. The temporary name keeps the extension, for libraries that look at it.
+/// A file that appears complete or not at all: write to `path()`, then `commit()` renames it to its final name. Without a
+/// commit the destructor removes it. The temporary name keeps the extension, which some libraries use to choose the format.
 class AtomicFile {
 public:
     /// throws: Error(Io) if the folder of `target` does not exist
@@ -27,7 +27,7 @@ private:
     bool committed_ = false;
 };
 
-/// Writes a text beside and renames it.
+/// Writes a text to a temporary file, then renames it.
 ///
 /// throws: Error(Io)
 void write_text_file(const std::filesystem::path& file, std::string_view text);

@@ -8,19 +8,19 @@
 
 namespace subvol::detail {
 
-/// Composites the stretches of a ray front to back: as `composite` with `Optics::integrate` of each, but many at once, in
-/// vectors. Stretches are cut at the knots when they are added, and the pieces wait until there are some vectors of them. The
-/// same stretches after a start give the same bits, whatever was added before it.
+/// Composites the stretches of a ray front to back. The result is that of `composite` with `Optics::integrate` of each stretch,
+/// but many are integrated at once, in SIMD vectors: stretches are cut at the knots when they are added, and the pieces wait
+/// until they fill the vectors. The same stretches after `start` give the same bits, whatever was added before it.
 ///
-/// opaque: what lies behind less transmittance than this is left out
+/// opaque: below this transmittance, what lies behind is left out
 class Compositor {
 public:
     explicit Compositor(const Optics& optics, double opaque = 1e-16);
 
-    /// Begins with what is in front.
+    /// Begins a ray. light: what is in front of its first stretch
     void start(const Segment& light);
 
-    /// The next stretch: `length` world units on which the value goes linearly from `front` to `back`.
+    /// Adds the next stretch: `length` world units on which the value changes linearly from `front` to `back`.
     void add(double front, double back, double length) {
         if (!(front >= low_ && front < high_)) enter(front);
         if (back >= low_ && back < high_) {
@@ -30,10 +30,10 @@ public:
         }
     }
 
-    /// Whether the light is used up. Pieces that still wait are not yet counted.
+    /// Whether the transmittance is below `opaque`. Waiting pieces do not count yet.
     [[nodiscard]] bool opaque() const { return transmittance_ < opaque_; }
 
-    /// With all that has been added.
+    /// The result of all stretches since `start`.
     [[nodiscard]] Segment finish();
 
 private:
@@ -64,7 +64,7 @@ private:
     double low_, high_;
     double transmittance_ = 1;
     Vec3 color_{0.0};
-    // Pieces of one span after the other share its colours: their weights are summed first.
+    // Consecutive pieces of one span share its colours: their weights are summed first.
     const Optics::Span* run_;
     double run_color_ = 0, run_step_ = 0;
     std::size_t count_ = 0;

@@ -6,7 +6,7 @@
 
 namespace subvol::detail {
 
-/// A round value of an axis and its text: as many digits as the step between ticks needs.
+/// A round value on an axis and its text, with as many digits as the step between ticks needs.
 struct Tick {
     double value;
     std::string label;

@@ -8,20 +8,20 @@
 
 namespace subvol::detail {
 
-/// Where points lie in one hexahedron. Its six tetrahedra (`split_cell`) decide what is inside, so neighbours agree; within,
-/// the place is the inverse of the trilinear map, or of the tetrahedron's linear one where that has no clear inverse.
-/// Left-handed, folded and flat cells are allowed; tetrahedra without volume hold nothing.
+/// Locates points in one hexahedron. A point is inside if one of the six tetrahedra of `split_cell` contains it, so that
+/// neighbouring cells agree. Its parameters are found by inverting the trilinear map, or, where that fails, the linear map of
+/// the tetrahedron. Left-handed, folded and flat cells are allowed; tetrahedra without volume contain nothing.
 class CellLocator {
 public:
     CellLocator(const HexMesh& mesh, Index cell);
 
-    /// The first tetrahedron that holds x (world), faces included to the rounding of the arithmetic.
+    /// The first tetrahedron that contains x (world), including its faces up to rounding errors.
     [[nodiscard]] std::optional<std::size_t> find_tetrahedron(const Vec3& x) const;
 
-    /// The weights of the 8 corners at x, which sum to 1. Close to a bent face some may leave [0,1].
+    /// The weights of the 8 corners at x, which sum to 1. Near a bent face some may be outside [0,1].
     [[nodiscard]] std::array<double, 8> weights(std::size_t tetrahedron, const Vec3& x) const;
 
-    /// The gradient by world position of what has these values at the 8 corners.
+    /// The gradient with respect to world position of the field with these values at the 8 corners.
     [[nodiscard]] Vec3 gradient(std::size_t tetrahedron, const Vec3& x, const std::array<double, 8>& values) const;
 
 private:

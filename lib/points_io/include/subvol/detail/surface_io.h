@@ -10,11 +10,11 @@ namespace subvol::detail {
 
 class OutputFile;
 
-/// Where the boundary of points stands that their own file does not hold: NAME.boundary.vtp for NAME.vtp.
+/// The file for the boundary of points if their own file has no place for it: NAME.boundary.vtp for NAME.vtp.
 [[nodiscard]] std::filesystem::path boundary_path(const std::filesystem::path& points);
 
-/// The boundary beside a file of points. The constructor writes it, `commit` gives it its name; without that nothing is left.
-/// No triangles, no file.
+/// The file with the boundary of points. The constructor writes it, `commit` gives it its name; without a commit it is removed.
+/// A boundary without triangles gets no file.
 ///
 /// throws: Error(Io)
 class BoundaryFile {
@@ -30,10 +30,11 @@ private:
     std::unique_ptr<OutputFile> file_;
 };
 
-/// Reads it. triangles: how many there were as the points were written
+/// Reads the boundary of points. triangles: their number when the points were written
 ///
-/// returns: an empty surface if the file is not there, or if there were no triangles
-/// throws:  Error(Io), Error(InvalidInput) if it is malformed or has another number of triangles: it belongs to other points
+/// returns: an empty surface if the file does not exist, or if there were no triangles
+/// throws:  Error(Io); Error(InvalidInput) if the file is malformed, or has another number of triangles and so belongs to other
+///          points
 [[nodiscard]] Surface read_boundary(const std::filesystem::path& points, std::size_t triangles);
 
 }  // namespace subvol::detail

@@ -9,7 +9,7 @@
 
 namespace subvol::detail {
 
-/// Exchanges corners of the cells whose volume is negative.
+/// Makes all cells right-handed: exchanges corners of those whose volume is negative.
 void orient_mixed(std::span<const Vec3> points, std::vector<std::array<Index, 8>>& hexes, MixedCells& others);
 
 /// parents: as in HexSplit
@@ -18,7 +18,8 @@ struct CutCells {
     std::vector<Index> parents;
 };
 
-/// Cuts right-handed cells into right-handed tetrahedra; each quad along the diagonal from its smallest id.
+/// Cuts right-handed cells into right-handed tetrahedra. Quads are cut along the diagonal from their smallest id, so that
+/// neighbours agree.
 [[nodiscard]] CutCells cut_to_tets(const std::vector<std::array<Index, 8>>& hexes, const MixedCells& others);
 
 }  // namespace subvol::detail

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for every instruction set; the best one is chosen where it runs.
-#include "absorb_pieces.h"
-
-#include "piece_depth.h"
+// This file is compiled once for each instruction set (by foreach_target.h); the best of them is chosen at run time.
+#include "absorption.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "absorb_pieces.cpp"
+#define HWY_TARGET_INCLUDE "absorption_vectors.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -20,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<double, 8>;
 using Doubles = hn::Vec<Lanes>;
 
-// The same limits and rules as in piece_depth.cpp.
+// The same limits and rules as in absorption.cpp.
 constexpr double kSeriesRatio = 0.05, kLeafDepth = 0.25, kLowDepth = 0.03;
 constexpr double kGauss4[][2] = {{-0.43056815579702629, 0.17392742256872693}, {-0.16999052179242813, 0.32607257743127307}};
 constexpr double kGauss5[][2] = {{-0.45308992296933200, 0.11846344252809454}, {-0.26923465505284155, 0.23931433524968324}};
@@ -46,7 +44,7 @@ HWY_ATTR inline Doubles one_minus_exp(Doubles x) {
         x, {-1.0 / 3628800, 1.0 / 362880, -1.0 / 40320, 1.0 / 5040, -1.0 / 720, 1.0 / 120, -1.0 / 24, 1.0 / 6, -1.0 / 2, 1.0});
 }
 
-/// The depth T of a piece by the series of piece_depth.cpp, as a function of the place v in [−½, ½].
+/// The depth T of a piece by the series of absorption.cpp, as a function of the place v in [−½, ½].
 struct Depth {
     Doubles length, middle, r, at_front;
 

@@ -1,17 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mixed_cells_cut.h"
+#include "cut_cells.h"
 
 #include <algorithm>
 
-#include "mixed_cells_shapes.h"
+#include "cell_shapes.h"
 #include "subvol/cell.h"
 
-namespace subvol::detail {
+namespace subvol {
+
+std::array<std::array<Index, 4>, 6> split_cell(const std::array<Index, 8>& cell) {
+    const auto apex = *std::min_element(cell.begin(), cell.end());
+    std::array<std::array<Index, 4>, 6> tets;
+    std::size_t count = 0;
+    for (const auto& face : kCellFaces) {
+        std::array<Index, 4> quad;
+        for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[static_cast<std::size_t>(face[k])];
+        if (std::find(quad.begin(), quad.end(), apex) != quad.end()) continue;
+        std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
+        // The quad is counter-clockwise seen from outside and the apex lies behind it: the order (0,2,1) turns the base
+        // inwards.
+        tets[count++] = {quad[0], quad[2], quad[1], apex};
+        tets[count++] = {quad[0], quad[3], quad[2], apex};
+    }
+    return tets;
+}
+
+namespace detail {
 
 namespace {
 
-// Each kind of cell is a hexahedron some of whose corners coincide, and has its volume. turned: the corners in the order that
-// makes the cell right-handed if it is not
+// Turns left-handed cells. Each kind of cell is a hexahedron some of whose corners coincide, and its volume is that
+// hexahedron's.
+//
+// as_hex: the cell's corners as those of a hexahedron
+// turned: the order of the corners that makes a left-handed cell right-handed
 template <std::size_t N>
 void orient(std::span<const Vec3> points, std::vector<std::array<Index, N>>& cells, const std::array<std::size_t, 8>& as_hex,
             const std::array<std::size_t, N>& turned) {
@@ -24,7 +46,7 @@ void orient(std::span<const Vec3> points, std::vector<std::array<Index, N>>& cel
     }
 }
 
-// As split_cell: what is not at the smallest corner is joined to it.
+// As split_cell: the triangles of the faces that are not at the corner with the smallest id are joined to it.
 std::array<std::array<Index, 4>, 3> cut_prism(const std::array<Index, 6>& prism) {
     const Index apex = *std::min_element(prism.begin(), prism.end());
     std::array<std::array<Index, 4>, 3> tets;
@@ -71,4 +93,6 @@ CutCells cut_to_tets(const std::vector<std::array<Index, 8>>& hexes, const Mixed
     return cut;
 }
 
-}  // namespace subvol::detail
+}  // namespace detail
+
+}  // namespace subvol

@@ -4,17 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <span>
-#include <vector>
 
-#include "subvol/hex_mesh.h"
+#include "subvol/cell.h"
 
 namespace subvol::detail {
 
-/// A kind of cell at each of whose corners three edges meet.
+/// A kind of cell with three edges at each corner, as tables of corner numbers.
 ///
+/// faces:        corners in cyclic order; a triangle repeats its last one
 /// corner_edges: the other ends of the three edges at each corner, right-handed in a right-handed cell
-/// faces:        corners in cyclic order; that of a triangle is given twice at the end
 template <std::size_t Corners, std::size_t Edges, std::size_t Faces>
 struct Shape {
     static constexpr std::size_t kCorners = Corners;
@@ -37,16 +35,22 @@ struct Shape {
     }
 };
 
-inline constexpr Shape<8, 12, 6> kHexShape{
-    {{{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2}, {4, 7}, {5, 6}, {0, 4}, {1, 5}, {3, 7}, {2, 6}}},
-    {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}},
-    {{{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}}};
+template <std::size_t Rows, std::size_t Columns>
+constexpr std::array<std::array<std::size_t, Columns>, Rows> as_sizes(const std::array<std::array<int, Columns>, Rows>& table) {
+    std::array<std::array<std::size_t, Columns>, Rows> sizes{};
+    for (std::size_t r = 0; r < Rows; ++r) {
+        for (std::size_t c = 0; c < Columns; ++c) sizes[r][c] = static_cast<std::size_t>(table[r][c]);
+    }
+    return sizes;
+}
+
+inline constexpr Shape<8, 12, 6> kHexShape{as_sizes(kCellEdges), as_sizes(kCellFaces), kCornerNeighbors};
 
 inline constexpr Shape<4, 6, 4> kTetShape{{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}},
                                           {{{0, 2, 1, 1}, {0, 1, 3, 3}, {1, 2, 3, 3}, {0, 3, 2, 2}}},
                                           {{{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}}}};
 
-/// Right-handed if the second triangle lies where the first's corners turn counter-clockwise seen from it.
+/// Right-handed if the corners of the first triangle are counter-clockwise seen from the second.
 inline constexpr Shape<6, 9, 5> kPrismShape{{{{0, 1}, {1, 2}, {0, 2}, {3, 4}, {4, 5}, {3, 5}, {0, 3}, {1, 4}, {2, 5}}},
                                             {{{0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}},
                                             {{{1, 2, 3}, {2, 0, 4}, {0, 1, 5}, {5, 4, 0}, {3, 5, 1}, {4, 3, 2}}}};

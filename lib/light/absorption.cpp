@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "piece_depth.h"
+#include "absorption.h"
 
 #include <algorithm>
 #include <array>
@@ -12,15 +12,15 @@ namespace {
 // Series of ln(1−x) about the middle up to here: five terms leave x⁶/5000, 3e-12; the closed form would cancel.
 constexpr double kSeriesRatio = 0.05;
 
-// A leaf of the quadrature. The hardest leaf has T = T₁u² (no extinction at one end): five points integrate e^{−T₁u²} to
-// 1e-8 T₁⁵, and q ln q over a ratio of 1.5 to about 1e-12.
+// The largest piece that is integrated without halving it. The hardest one has T = T₁u² (no extinction at one end): five points
+// integrate e^{−T₁u²} to 1e-8 T₁⁵, and q ln q over a ratio of 1.5 to about 1e-12.
 constexpr double kLeafDepth = 0.25;
 constexpr double kLeafRatio = 1.5;
-// Below these depths three points (6e-5 T₁³) or four (8e-7 T₁⁴) do, and the exponential is a short polynomial.
+// Below these depths three points (6e-5 T₁³) or four (8e-7 T₁⁴) suffice, and the exponential is a short polynomial.
 constexpr double kThinDepth = 0.002;
 constexpr double kLowDepth = 0.03;
 constexpr double kOpaque = 1e-17;
-// A stretch this deep stops the light within a rounding error of its front; an infinite one too.
+// A piece of this depth or more, even infinite, absorbs all light within a rounding error of its front.
 constexpr double kBlackDepth = 1e17;
 
 struct GaussPoint {
@@ -38,7 +38,7 @@ constexpr std::array<GaussPoint, 5> kGauss5{{{0.04691007703066800, 0.11846344252
                                              {0.76923465505284155, 0.23931433524968324},
                                              {0.95308992296933200, 0.11846344252809454}}};
 
-// 1 − e^{−x} for x ≤ 0.1. Multiplied out: this is the inmost loop of the ray tracers.
+// 1 − e^{−x} for x ≤ 0.1. The polynomial is written out: this is the innermost loop of the ray tracers.
 double one_minus_exp_low(double x) {
     constexpr double k2 = -1.0 / 2, k3 = 1.0 / 6, k4 = -1.0 / 24, k5 = 1.0 / 120, k6 = -1.0 / 720, k7 = 1.0 / 5040;
     return x * (1 + x * (k2 + x * (k3 + x * (k4 + x * (k5 + x * (k6 + x * k7))))));
@@ -57,7 +57,8 @@ double minus_log_one_minus(double alpha) {
     return alpha < 1e-2 ? -std::log1p(-alpha) : -std::log(1 - alpha);
 }
 
-// T(u) where α changes little: −ln(1−α) = −ln q + Σ (r v)^k / k about the middle, v = u − ½, integrated term by term.
+// T(u) where α changes little: −ln(1−α) = −ln q + Σ (r v)^k / k about the middle of the piece, v = u − ½, integrated term by
+// term.
 struct SeriesDepth {
     double length, middle, r, at_front;
 
@@ -91,7 +92,7 @@ double mean_absorbed(const Depth& depth, const Rule& rule) {
     return sum;
 }
 
-// Not-a-number counts as constant, so that it comes back as itself instead of being halved for ever.
+// NaN counts as constant, so that it is returned instead of being halved for ever.
 bool nearly_constant(double alpha_front, double alpha_back) {
     return !(std::abs(alpha_back - alpha_front) > kSeriesRatio * (1 - 0.5 * (alpha_front + alpha_back)));
 }

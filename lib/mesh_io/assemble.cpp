@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "assemble.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ghost_cells.h"
+#include "mixed_cells_split.h"
+#include "subvol/cell.h"
+#include "subvol/error.h"
+#include "weld.h"
+
+namespace subvol::detail {
+
+namespace {
+
+std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& cell) {
+    std::array<Vec3, 8> corners;
+    for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[cell[k]];
+    return corners;
+}
+
+bool is_folded(const std::array<Vec3, 8>& x) {
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto edge = [&](std::size_t e) { return x[kCornerNeighbors[k][e]] - x[k]; };
+        if (glm::dot(edge(0), glm::cross(edge(1), edge(2))) < 0) return true;
+    }
+    return false;
+}
+
+void turn_hexes(ReadResult& result) {
+    const std::size_t count = result.mesh.cells.size();
+    const std::size_t turned = orient_cells(result.mesh);
+    if (turned == 0) return;
+    result.warnings.push_back(std::to_string(turned) + " of " + counted(count, "hexahedron", "hexahedra") +
+                              (turned == 1 ? " was" : " were") + " left-handed (negative Jacobian) and turned round");
+}
+
+void warn_of_folded(ReadResult& result) {
+    const auto& cells = result.mesh.cells;
+    const auto folded =
+        std::count_if(cells.begin(), cells.end(), [&](const auto& cell) { return is_folded(corners_of(result.mesh, cell)); });
+    if (folded == 0) return;
+    result.warnings.push_back(std::to_string(folded) + " of " + counted(cells.size(), "hexahedron", "hexahedra") +
+                              (folded == 1 ? " has" : " have") + " a negative Jacobian at a corner");
+}
+
+void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names) {
+    if (found.not_finite.empty()) return;
+    const auto used = used_points(found);
+    for (const auto& [point, position] : found.not_finite) {
+        if (used[point]) in.fail_at(position, "non-finite coordinate at " + names.point(point));
+    }
+}
+
+FieldInfo describe(const FileArray& array) {
+    FieldInfo info{array.name, array.at_cells ? "cell" : "point", array.components, 0, 0};
+    const auto components = static_cast<std::size_t>(array.components);
+    bool first = true;
+    for (std::size_t i = 0; i + components <= array.values.size(); i += components) {
+        double value = array.values[i];
+        if (components > 1) {
+            double sum = 0;
+            for (std::size_t c = 0; c < components; ++c) sum += array.values[i + c] * array.values[i + c];
+            value = std::sqrt(sum);
+        }
+        if (!std::isfinite(value)) continue;
+        info.min = first ? value : std::min(info.min, value);
+        info.max = first ? value : std::max(info.max, value);
+        first = false;
+    }
+    return info;
+}
+
+// The mean at each point over its cells, weighted by volume; where all of them have no volume, the plain mean.
+std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<double>& values, std::size_t components) {
+    std::vector<double> sums(mesh.points.size() * components);
+    std::vector<double> plain_sums(sums.size());
+    std::vector<double> weights(mesh.points.size());
+    std::vector<double> counts(mesh.points.size());
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        const double volume = cell_volume(corners_of(mesh, mesh.cells[c]));
+        for (const Index p : mesh.cells[c]) {
+            weights[p] += volume;
+            counts[p] += 1;
+            for (std::size_t k = 0; k < components; ++k) {
+                sums[p * components + k] += volume * values[c * components + k];
+                plain_sums[p * components + k] += values[c * components + k];
+            }
+        }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        const std::size_t p = i / components;
+        if (counts[p] == 0) continue;
+        sums[i] = weights[p] > 0 ? sums[i] / weights[p] : plain_sums[i] / counts[p];
+    }
+    return sums;
+}
+
+// How the mesh's points and cells relate to the file's.
+//
+// used:         a flag for each point of the file
+// cell_numbers: the number in the file of each cell of the mesh; empty if it is the same
+// sources:      the points of the file whose mean each point of the mesh is; nothing if they are the same
+struct Origin {
+    std::vector<std::uint8_t> used;
+    std::vector<Index> cell_numbers;
+    std::optional<IndexRows> sources;
+};
+
+class ArrayConversion {
+public:
+    ArrayConversion(ReadResult& result, const Origin& origin, std::string_view file, const EntityNames& names)
+        : result_(result), origin_(origin), file_(file), names_(names) {}
+
+    void take(FileArray&& array) {
+        result_.fields.push_back(describe(array));
+        const FieldInfo& info = result_.fields.back();
+        if (array.components == 1 && upper_case(array.name) == "DENSITY" && info.min < 0) {
+            result_.warnings.push_back("\"" + array.name + "\" has negative values");
+        }
+        Attribute attribute{unused_name(array.name), array.components, {}};
+        attribute.values = array.at_cells ? from_cells(array) : from_points(std::move(array));
+        result_.mesh.attributes.push_back(std::move(attribute));
+    }
+
+private:
+    [[noreturn]] void refuse(const std::string& array, const std::string& entity) const {
+        throw Error(ErrorCode::InvalidInput, "the value at " + entity + " is not finite",
+                    std::string(file_) + ", array \"" + array + "\"");
+    }
+
+    std::vector<double> from_points(FileArray&& array) const {
+        const auto components = static_cast<std::size_t>(array.components);
+        for (std::size_t i = 0; i < array.values.size(); ++i) {
+            const std::size_t p = i / components;
+            if (!std::isfinite(array.values[i]) && origin_.used[p]) refuse(array.name, names_.point(p));
+        }
+        return origin_.sources ? means(*origin_.sources, array.values, components) : std::move(array.values);
+    }
+
+    std::vector<double> from_cells(const FileArray& array) const {
+        const auto components = static_cast<std::size_t>(array.components);
+        const auto& numbers = origin_.cell_numbers;
+        std::vector<double> of_hexes;
+        of_hexes.reserve(result_.mesh.cells.size() * components);
+        for (std::size_t c = 0; c < result_.mesh.cells.size(); ++c) {
+            const std::size_t number = numbers.empty() ? c : numbers[c];
+            for (std::size_t k = 0; k < components; ++k) {
+                of_hexes.push_back(array.values[number * components + k]);
+                if (!std::isfinite(of_hexes.back())) refuse(array.name, names_.cell(number));
+            }
+        }
+        result_.warnings.push_back("cell array \"" + array.name +
+                                   "\" became a point array: the volume-weighted mean over the cells at each point");
+        return mean_over_cells(result_.mesh, of_hexes, components);
+    }
+
+    std::string unused_name(const std::string& name) const {
+        std::string candidate = name;
+        for (int k = 2; result_.mesh.find_attribute(candidate) != nullptr; ++k) candidate = name + "_" + std::to_string(k);
+        if (candidate != name) {
+            result_.warnings.push_back("there is more than one array \"" + name + "\": another is called \"" + candidate +
+                                       "\"");
+        }
+        return candidate;
+    }
+
+    ReadResult& result_;
+    const Origin& origin_;
+    std::string_view file_;
+    const EntityNames& names_;
+};
+
+MixedCells take_others(MeshFile& found) {
+    return {std::move(found.tets.corners), std::move(found.prisms.corners), std::move(found.pyramids.corners)};
+}
+
+std::vector<Index> take_numbers(MeshFile& found) {
+    std::vector<Index> numbers = std::move(found.hexes.numbers);
+    for (const auto* more : {&found.tets.numbers, &found.prisms.numbers, &found.pyramids.numbers}) {
+        numbers.insert(numbers.end(), more->begin(), more->end());
+    }
+    return numbers;
+}
+
+std::string list_of(std::size_t hexes, const MixedCells& others) {
+    std::string list;
+    const auto add = [&](std::size_t count, std::string_view one, std::string_view many) {
+        if (count > 0) list += (list.empty() ? "" : ", ") + counted(count, one, many);
+    };
+    add(hexes, "hexahedron", "hexahedra");
+    add(others.tets.size(), "tetrahedron", "tetrahedra");
+    add(others.prisms.size(), "prism", "prisms");
+    add(others.pyramids.size(), "pyramid", "pyramids");
+    const std::size_t last = list.rfind(", ");
+    return last == std::string::npos ? list : list.replace(last, 2, " and ");
+}
+
+void split_all(ReadResult& result, MixedCells&& others, Origin& origin) {
+    HexMesh& mesh = result.mesh;
+    const bool hexes_too = !mesh.cells.empty();
+    std::string warning = list_of(mesh.cells.size(), others);
+    HexSplit split = plan_split(mesh.points, std::move(mesh.cells), std::move(others));
+    mesh.points = means(split.sources, mesh.points);
+    mesh.cells = std::move(split.cells);
+    if (!origin.cell_numbers.empty()) {
+        std::vector<Index> numbers;
+        numbers.reserve(mesh.cells.size());
+        for (const Index parent : split.parents) numbers.push_back(origin.cell_numbers[parent]);
+        origin.cell_numbers = std::move(numbers);
+    }
+    origin.sources = std::move(split.sources);
+    if (split.tets_cut > 0) warning += " cut into " + counted(split.tets_cut, "tetrahedron", "tetrahedra") + " and";
+    warning += " split into " + counted(mesh.cells.size(), "hexahedron", "hexahedra");
+    result.warnings.push_back(warning + (hexes_too ? ", the hexahedra too so that all fit together" : ""));
+}
+
+}  // namespace
+
+ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names,
+                    const ReadOptions& options) {
+    drop_ghosts(found);
+    refuse_not_finite(found, in, names);
+    if (options.weld) weld_points(found, *options.weld, file, names);
+    Origin origin{used_points(found), {}, {}};
+    ReadResult result;
+    result.mesh.points = std::move(found.points);
+    result.mesh.cells = std::move(found.hexes.corners);
+    result.warnings = std::move(found.warnings);
+    MixedCells others = take_others(found);
+    if (!others.empty() && options.other_cells == OtherCells::Refuse) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(result.mesh.cells.size(), others), std::string(file),
+                    "only hexahedra are allowed");
+    }
+    origin.cell_numbers = take_numbers(found);
+    turn_hexes(result);
+    try {
+        if (!others.empty()) split_all(result, std::move(others), origin);
+        warn_of_folded(result);
+        ArrayConversion conversion(result, origin, file, names);
+        for (auto& array : found.arrays) conversion.take(std::move(array));
+        validate(result.mesh);
+    } catch (const Error& error) {
+        const bool names_file = std::string_view(error.what()).starts_with(file);
+        if (names_file) throw;
+        throw Error(error.code(), error.what(), std::string(file));
+    }
+    return result;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "formats.h"
+
+#include <algorithm>
+
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+namespace {
+
+template <ReadResult (&kRead)(std::string_view, std::string_view, const ReadOptions&)>
+ReadResult read_file(const std::filesystem::path& path, const ReadOptions& options) {
+    return kRead(read_text(path), path.string(), options);
+}
+
+// The file with the flow has the grid's name.
+ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptions& options) {
+    const std::filesystem::path flow = std::filesystem::path(path).replace_extension(".q");
+    const std::string grid_text = read_text(path), flow_file = flow.string();
+    const std::string flow_text = std::filesystem::exists(flow) ? read_text(flow) : std::string();
+    return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
+}
+
+constexpr std::array<MeshFormat, 10> kFormats{{
+    {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit},
+    {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr},
+    {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
+    {{".vtu"}, "VTK XML", read_file<read_vtu>, write_vtu},
+    {{".vts"}, "VTK XML", read_file<read_vts>, nullptr},
+    {{".vtr"}, "VTK XML", read_file<read_vtr>, nullptr},
+    {{".vti"}, "VTK XML", read_file<read_vti>, nullptr},
+    {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr},
+    {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
+    {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr},
+}};
+
+}  // namespace
+
+std::span<const MeshFormat> mesh_formats() {
+    return kFormats;
+}
+
+const MeshFormat* format_of(const std::filesystem::path& path) {
+    const std::string extension = upper_case(path.extension().string());
+    const auto has_it = [&](const MeshFormat& format) {
+        return std::ranges::any_of(format.extensions,
+                                   [&](std::string_view e) { return !e.empty() && upper_case(e) == extension; });
+    };
+    const auto found = std::ranges::find_if(kFormats, has_it);
+    return found == kFormats.end() ? nullptr : &*found;
+}
+
+}  // namespace subvol::detail
