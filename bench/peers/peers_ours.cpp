@@ -16,7 +16,7 @@
 #include "subvol/model.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_field.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
@@ -91,7 +91,7 @@ void measure_all(int n, const std::string& exact_file, int size) {
         });
         if (gl_devices().empty()) continue;
         measure("subvol projected tets" + of_level, exact,
-                [&] { return [&] { return render_projected_tets(fine, fine.attributes[0].values, view, optics).image; }; });
+                [&] { return [&] { return render_projected(fine, fine.attributes[0].values, view, optics).image; }; });
     }
     for (const int level : {1, 2}) {
         measure("subvol dense, level " + std::to_string(level), exact,

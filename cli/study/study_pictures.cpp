@@ -15,7 +15,7 @@
 #include "subvol/rasterize.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
 #include "subvol/vdb_grid.h"
@@ -95,19 +95,19 @@ Image tets(const Scene& scene) {
     });
 }
 
-PtOrder pt_order(const std::string& name) {
-    if (name == "lists") return PtOrder::Lists;
-    if (name == "centroid") return PtOrder::Centroid;
-    return name == "havs" ? PtOrder::Havs : PtOrder::Topological;
+ProjectedOrder projected_order(const std::string& name) {
+    if (name == "lists") return ProjectedOrder::Lists;
+    if (name == "centroid") return ProjectedOrder::Centroid;
+    return name == "havs" ? ProjectedOrder::Havs : ProjectedOrder::Topological;
 }
 
 Image projected_tets(const Scene& scene) {
     const Stopwatch watch;
     const HexMesh fine = refined(scene);
-    PtRenderer renderer(fine, fine.attributes.front().values);
+    ProjectedRenderer renderer(fine, fine.attributes.front().values);
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
-        PtResult drawn = renderer.draw(scene.view, scene.optics, {.order = pt_order(scene.of.text("order"))});
+        ProjectedResult drawn = renderer.draw(scene.view, scene.optics, {.order = projected_order(scene.of.text("order"))});
         scene.result.metrics["tets"] = scene.result.metrics["primitives"] = static_cast<double>(drawn.report.tets);
         scene.result.notes["device"] = drawn.report.device;
         return std::move(drawn.image);

@@ -41,21 +41,18 @@ Segment DenseTracer::trace(const Ray& ray) {
     find_ends(plane, ray);
     if (ends_.empty()) return {};
     ++counts_.rays;
-    const double speed = glm::length(ray.direction);
-    LitDepth state;
+    RayWalker walker(ray, plane, compositor_, counts_);
     for (End& end : ends_) {
         if (end.walked) continue;
         end.walked = true;
-        const DenseGrid& grid = scene_.grids()[end.grid];
-        TetFace other = end.face;
-        const WalkOutcome outcome = walk_between(grid, plane, end.face, speed, compositor_, state, other, counts_.segments);
-        if (outcome == WalkOutcome::Opaque) break;
-        if (outcome == WalkOutcome::Lost || !mark_walked(end.grid, other)) {
+        const Walk walk = walker.between(scene_.grids()[end.grid], end.face);
+        if (walk.outcome == WalkOutcome::Opaque) break;
+        if (walk.outcome == WalkOutcome::Lost || !mark_walked(end.grid, walk.end)) {
             ++counts_.lost_rays;
             break;
         }
     }
-    return state.light;
+    return walker.light();
 }
 
 }  // namespace subvol::detail

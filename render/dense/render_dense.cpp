@@ -69,20 +69,15 @@ double rms(const Image& a, const Image& b) {
 // Traces, and hands its counts on when its tile is done.
 class CountedTracer {
 public:
-    CountedTracer(const DenseScene& scene, const Optics& optics, tbb::combinable<DenseCounts>& sums)
+    CountedTracer(const DenseScene& scene, const Optics& optics, tbb::combinable<TraceCounts>& sums)
         : tracer_(scene, optics), sums_(&sums) {}
     CountedTracer(CountedTracer&&) = delete;
-    ~CountedTracer() {
-        DenseCounts& sum = sums_->local();
-        sum.rays += tracer_.counts().rays;
-        sum.segments += tracer_.counts().segments;
-        sum.lost_rays += tracer_.counts().lost_rays;
-    }
+    ~CountedTracer() { sums_->local() += tracer_.counts(); }
     Segment operator()(const Ray& ray) { return tracer_.trace(ray); }
 
 private:
     DenseTracer tracer_;
-    tbb::combinable<DenseCounts>* sums_;
+    tbb::combinable<TraceCounts>* sums_;
 };
 
 /// Draws one level.
@@ -173,10 +168,10 @@ private:
 
     void draw(const PixelRect& rect) {
         const DenseScene scene(kept_);
-        tbb::combinable<DenseCounts> sums;
+        tbb::combinable<TraceCounts> sums;
         draw_in_tiles(view_, options_.samples, rect, image_, options_.progress,
                       [&] { return CountedTracer(scene, optics_, sums); });
-        sums.combine_each([&](const DenseCounts& sum) {
+        sums.combine_each([&](const TraceCounts& sum) {
             report_.rays += sum.rays;
             report_.segments += sum.segments;
             report_.lost_rays += sum.lost_rays;

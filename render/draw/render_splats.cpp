@@ -119,10 +119,10 @@ struct Splatter::State {
     }
 
     /// The CPU prepares what it or sheet buffers draw.
-    [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& look, Progress* progress,
+    [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& classification, Progress* progress,
                                            SplatReport& report) {
         const auto start = std::chrono::steady_clock::now();
-        detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
+        detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
         report.seconds_prepare += seconds_since(start);
         report.backend = sheets ? "gl" : "cpu";
         report.device = sheets ? sheets->renderer() : cpu_threads();
@@ -131,9 +131,9 @@ struct Splatter::State {
         return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
     }
 
-    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, Progress* progress,
+    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& classification, Progress* progress,
                                             SplatReport& report) {
-        auto drawn = gpu->draw(view, look, options.sheets, progress);
+        auto drawn = gpu->draw(view, classification, options.sheets, progress);
         report.backend = "gl";
         report.device = gpu->renderer();
         report.bin_entries = gpu->report().bin_entries;
@@ -164,11 +164,12 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     SplatResult result;
     auto& report = result.report;
     const auto start = std::chrono::steady_clock::now();
-    const auto look = detail::classify(state.scene, optics);
+    const auto classification = detail::classify(state.scene, optics);
     report.seconds_prepare = seconds_since(start);
     const int n = state.options.samples;
     const View fine(view.camera(), n * view.width(), n * view.height());  // its pixels' centres are the samples
-    auto drawn = state.gpu ? state.draw_on_gpu(fine, look, progress, report) : state.draw_frame(fine, look, progress, report);
+    auto drawn = state.gpu ? state.draw_on_gpu(fine, classification, progress, report)
+                           : state.draw_frame(fine, classification, progress, report);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
     take_means(result, n);

@@ -53,7 +53,7 @@ std::vector<std::uint32_t> GlTetLists::count_fragments(Items items, const DrawSt
     counts_.grow(bytes);
     counts_.clear();
     counts_.bind(kCountsBinding);
-    tets_.draw_into_lists(items, tets_.program(items, "PT_COUNT"), {0, 0, view.width(), view.height()}, stage);
+    tets_.draw_into_lists(items, tets_.program(items, "FRAGMENT_COUNT"), {0, 0, view.width(), view.height()}, stage);
     counts_.read(bytes, counts.data());
     return counts;
 }
@@ -76,7 +76,7 @@ void GlTetLists::draw_part(Items items, const PixelRect& part, const std::vector
     entries_.bind(kEntriesBinding);
     ranks_.grow(offsets.back() * sizeof(std::uint32_t));
     ranks_.bind(kRanksBinding);
-    tets_.draw_into_lists(items, tets_.program(items, "PT_KEEP"), part, stage);
+    tets_.draw_into_lists(items, tets_.program(items, "FRAGMENT_KEEP"), part, stage);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     resolve_part(items, part, image);
 }

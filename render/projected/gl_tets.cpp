@@ -5,17 +5,18 @@
 #include <sstream>
 
 #include "gl_context.h"
+#include "pixel_tiles.h"
 #include "shader_exp_log_glsl.h"
-#include "shader_pt_crossing_glsl.h"
-#include "shader_pt_face_frag.h"
-#include "shader_pt_face_vert.h"
-#include "shader_pt_frame_glsl.h"
-#include "shader_pt_hull_glsl.h"
-#include "shader_pt_kbuffer_comp.h"
-#include "shader_pt_resolve_comp.h"
-#include "shader_pt_segment_glsl.h"
-#include "shader_pt_tet_frag.h"
-#include "shader_pt_tet_vert.h"
+#include "shader_projected_crossing_glsl.h"
+#include "shader_projected_face_frag.h"
+#include "shader_projected_face_vert.h"
+#include "shader_projected_frame_glsl.h"
+#include "shader_projected_hull_glsl.h"
+#include "shader_projected_kbuffer_comp.h"
+#include "shader_projected_resolve_comp.h"
+#include "shader_projected_segment_glsl.h"
+#include "shader_projected_tet_frag.h"
+#include "shader_projected_tet_vert.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -48,15 +49,15 @@ void check_size(int width, int height) {
 }
 
 std::vector<ShaderText> resolver_texts() {
-    return {{"pt_frame.glsl", kShader_pt_frame_glsl},
+    return {{"projected_frame.glsl", kShader_projected_frame_glsl},
             {"exp_log.glsl", kShader_exp_log_glsl},
-            {"pt_segment.glsl", kShader_pt_segment_glsl}};
+            {"projected_segment.glsl", kShader_projected_segment_glsl}};
 }
 
 std::vector<ShaderText> drawing_texts() {
     auto texts = resolver_texts();
-    texts.push_back({"pt_crossing.glsl", kShader_pt_crossing_glsl});
-    texts.push_back({"pt_hull.glsl", kShader_pt_hull_glsl});
+    texts.push_back({"projected_crossing.glsl", kShader_projected_crossing_glsl});
+    texts.push_back({"projected_hull.glsl", kShader_projected_hull_glsl});
     return texts;
 }
 
@@ -123,31 +124,32 @@ std::string GlTets::defines(const char* mode, int corners) const {
     std::ostringstream text;
     const auto define = [&](const char* name, const auto& value) { text << "#define " << name << ' ' << value << '\n'; };
     define("PERSPECTIVE", int{view_->perspective()});
-    define("PT_COMPOSITE", 0);
-    define("PT_COUNT", 1);
-    define("PT_KEEP", 2);
-    define("PT_MODE", mode);
+    define("FRAGMENT_COMPOSITE", 0);
+    define("FRAGMENT_COUNT", 1);
+    define("FRAGMENT_KEEP", 2);
+    define("FRAGMENT_MODE", mode);
     define("kCorners", corners);
     define("kKnots", frame_->knots.size());
+    define("kRayCutoff", kRayCutoff);
     return text.str();
 }
 
 const GlProgram& GlTets::program(Items items, const char* mode) {
     const std::string text = defines(mode, items == Items::Tets ? 4 : 3);
     if (const auto found = programs_.find(text); found != programs_.end()) return found->second;
-    const ShaderText vertex = items == Items::Tets ? ShaderText{"pt_tet.vert", kShader_pt_tet_vert}
-                                                   : ShaderText{"pt_face.vert", kShader_pt_face_vert};
-    const ShaderText fragment = items == Items::Tets ? ShaderText{"pt_tet.frag", kShader_pt_tet_frag}
-                                                     : ShaderText{"pt_face.frag", kShader_pt_face_frag};
+    const ShaderText vertex = items == Items::Tets ? ShaderText{"projected_tet.vert", kShader_projected_tet_vert}
+                                                   : ShaderText{"projected_face.vert", kShader_projected_face_vert};
+    const ShaderText fragment = items == Items::Tets ? ShaderText{"projected_tet.frag", kShader_projected_tet_frag}
+                                                     : ShaderText{"projected_face.frag", kShader_projected_face_frag};
     return programs_.emplace(text, GlProgram(vertex, fragment, text, drawing_texts())).first->second;
 }
 
 const GlProgram& GlTets::resolver(Items items) {
-    const char* const file = items == Items::Tets ? "pt_resolve.comp" : "pt_kbuffer.comp";
-    const std::string text = defines("PT_KEEP", items == Items::Tets ? 4 : 3);
+    const char* const file = items == Items::Tets ? "projected_resolve.comp" : "projected_kbuffer.comp";
+    const std::string text = defines("FRAGMENT_KEEP", items == Items::Tets ? 4 : 3);
     const std::string key = file + text;
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
-    const char* const source = items == Items::Tets ? kShader_pt_resolve_comp : kShader_pt_kbuffer_comp;
+    const char* const source = items == Items::Tets ? kShader_projected_resolve_comp : kShader_projected_kbuffer_comp;
     return programs_.emplace(key, GlProgram(file, source, text, resolver_texts())).first->second;
 }
 
@@ -194,7 +196,7 @@ Image GlTets::draw_in_order(const DrawStage& stage) {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glScissor(0, 0, width_, height_);
     glClearNamedFramebufferfv(framebuffer_, GL_COLOR, 0, kNothing.data());
-    draw_all(Items::Tets, program(Items::Tets, "PT_COMPOSITE"), whole, stage);
+    draw_all(Items::Tets, program(Items::Tets, "FRAGMENT_COMPOSITE"), whole, stage);
     Image image(width_, height_);
     glGetTextureImage(texture_, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(image.rgba.size() * sizeof(float)),
                       image.rgba.data());

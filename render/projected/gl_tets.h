@@ -25,7 +25,7 @@ namespace subvol::detail {
 /// order:     numbers of tetrahedra, from back to front, or of faces, from front to back
 /// eye_value: in the same parts; only for faces
 struct GlTetFrame {
-    /// Of the transfer function: shaders/pt_segment.glsl has the same.
+    /// Of the transfer function: shaders/projected_segment.glsl has the same.
     struct Knot {
         std::array<float, 4> look;  // colour, opacity
         std::array<float, 4> value{};
@@ -76,7 +76,7 @@ public:
     // For lists.
     [[nodiscard]] const View& view() const { return *view_; }
     [[nodiscard]] const GlTetFrame& frame() const { return *frame_; }
-    /// mode: of the fragment shader, "PT_COUNT"
+    /// mode: of the fragment shader, "FRAGMENT_COUNT"
     [[nodiscard]] const GlProgram& program(Items items, const char* mode);
     [[nodiscard]] const GlProgram& resolver(Items items);
     void set_uniforms(const GlProgram& program, const PixelRect& rect) const;

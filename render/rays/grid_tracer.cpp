@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "pixel_tiles.h"
+
 namespace subvol::detail {
 
 namespace {
 
-constexpr double kOpaque = 1e-6;  // what lies behind less transmittance than this is not followed
 constexpr unsigned kAll = 0xff;
 constexpr double kMostPieces = 64;
 
@@ -137,7 +138,7 @@ Segment GridTracer::trace(const Ray& ray) {
     bool met = false;
     double t = inside.begin;
     Voxel cell = cell_at(line, t, cells_);
-    while (light.transmittance >= kOpaque) {
+    while (light.transmittance >= kRayCutoff) {
         const VoxelBlock block = cursor_->block(cell);
         const Cells passed = covered(cell, block);
         int axis = 0;

@@ -17,6 +17,10 @@ namespace subvol::detail {
 
 inline constexpr int kMaxSamples = 16;
 
+/// Transmittance below which a ray ends. What lies behind can change a colour by no more than this: a fifteenth of a step of a
+/// 16-bit picture.
+inline constexpr double kRayCutoff = 1e-6;
+
 /// throws: Error(InvalidInput) unless samples is in 1..16
 inline void check_samples(int samples) {
     if (samples < 1 || samples > kMaxSamples) {

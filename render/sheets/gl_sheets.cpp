@@ -31,7 +31,7 @@ std::string defines(const SplatFrame& frame) {
     text << std::scientific;
     text.precision(9);
     const auto define = [&](const char* name, auto value) { text << "#define " << name << ' ' << value << '\n'; };
-    define("KERNEL_SHAPE", static_cast<int>(scene.shape));
+    define("KERNEL_FORM", static_cast<int>(scene.form));
     define("KERNEL_STEPS", scene.kernel_table.empty() ? 1 : scene.kernel_table.size() - 1);
     define("BENT", int{scene.bent});
     define("SHADED", int{scene.shading.has_value()});
@@ -42,7 +42,7 @@ std::string defines(const SplatFrame& frame) {
     define("kCells", PreintegratedTable::kCells);
     define("kNearValues", kNearValues);
     define("kLeastWeight", kLeastWeight);
-    define("kOpaque", kOpaque);
+    define("kSplatCutoff", kSplatCutoff);
     define("kFarCells", kFarCells);
     return text.str();
 }
@@ -82,8 +82,9 @@ void set_frame(const SplatFrame& frame, const GlProgram& kernels, const GlProgra
     const Uniforms u(composite);
     u.set_integers("size_px", view.width(), view.height());
     u.set("near", frame.sheets.near);
-    u.set("offsets", value_offset(scene, *frame.look), scene.color_channel ? color_offset(scene, *frame.look) : 0.0f);
-    u.set("unit", frame.look->table.unit);
+    u.set("offsets", value_offset(scene, *frame.classification),
+          scene.color_channel ? color_offset(scene, *frame.classification) : 0.0f);
+    u.set("unit", frame.classification->table.unit);
     u.set("half_weight", scene.half_weight);
     u.set("least_gradient", kLeastChange * PreintegratedTable::kCells / static_cast<float>(scene.diagonal));
     if (!scene.shading) return;
@@ -190,9 +191,9 @@ void GlSheets::upload(const SplatFrame& frame) {
     fill(color_bends_, 3, kernels.color_bends);
     fill(axes_, 4, kernels.axes);
     fill(kernel_table_, 5, frame.scene->kernel_table);
-    fill(table_, kTableBinding, frame.look->table.rows);
-    fill(visible_, kTableBinding + 1, frame.look->table.visible);
-    fill(color_table_, kTableBinding + 2, frame.look->colors.rows);
+    fill(table_, kTableBinding, frame.classification->table.rows);
+    fill(visible_, kTableBinding + 1, frame.classification->table.visible);
+    fill(color_table_, kTableBinding + 2, frame.classification->colors.rows);
     fill(interval_offsets_, kTableBinding + 3, frame.intervals.offsets);
     fill(intervals_, kTableBinding + 4, frame.intervals.depths);
 }

@@ -54,10 +54,10 @@ struct EyeSplats {
 
 /// Values become cells: (value − min) · cells / (max − min); where sums are not normalised, value · cells / (max − min), and
 /// `value_offset` is added to the sum.
-void eye_splats(EyeSplats& result, const SplatScene& scene, const View& view, const Classification& look);
+void eye_splats(EyeSplats& result, const SplatScene& scene, const View& view, const Classification& classification);
 
 /// What has to be added to a sum of kernels' values: 0 if it is normalised.
-[[nodiscard]] float value_offset(const SplatScene& scene, const Classification& look);
-[[nodiscard]] float color_offset(const SplatScene& scene, const Classification& look);
+[[nodiscard]] float value_offset(const SplatScene& scene, const Classification& classification);
+[[nodiscard]] float color_offset(const SplatScene& scene, const Classification& classification);
 
 }  // namespace subvol::detail

@@ -22,11 +22,11 @@ std::vector<float> sampled(const Value& value) {
 
 }  // namespace
 
-std::pair<KernelShape, std::vector<float>> kernel_profile(const Kernel& kernel) {
-    if (std::holds_alternative<CompactKernel>(kernel)) return {KernelShape::Compact, {}};
+std::pair<KernelForm, std::vector<float>> kernel_profile(const Kernel& kernel) {
+    if (std::holds_alternative<CompactKernel>(kernel)) return {KernelForm::Compact, {}};
     const double radius = support_radius(kernel);
     if (is_radial(kernel)) {
-        return {KernelShape::Radial, sampled([&](double e) { return radial_value(kernel, radius * std::sqrt(e)); })};
+        return {KernelForm::Radial, sampled([&](double e) { return radial_value(kernel, radius * std::sqrt(e)); })};
     }
     if (std::holds_alternative<TableKernel>(kernel)) {
         throw Error(ErrorCode::InvalidInput, "kernels tabulated in three dimensions cannot be splatted", {},
@@ -34,7 +34,7 @@ std::pair<KernelShape, std::vector<float>> kernel_profile(const Kernel& kernel) 
     }
     // A product of one function over the axes: at the origin it is that function's third power.
     const double root = std::cbrt(kernel_value(kernel, Vec3(0.0)));
-    return {KernelShape::Separable,
+    return {KernelForm::Separable,
             sampled([&](double t) { return kernel_value(kernel, Vec3(radius * t, 0, 0)) / (root * root); })};
 }
 

@@ -11,6 +11,6 @@ namespace subvol::detail {
 /// How the splatter sums a kernel, and its table if it needs one.
 ///
 /// throws: Error(InvalidInput) for a table in three dimensions
-[[nodiscard]] std::pair<KernelShape, std::vector<float>> kernel_profile(const Kernel& kernel);
+[[nodiscard]] std::pair<KernelForm, std::vector<float>> kernel_profile(const Kernel& kernel);
 
 }  // namespace subvol::detail

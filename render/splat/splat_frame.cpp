@@ -106,12 +106,12 @@ void list_tiles(SplatFrame& frame) {
 
 }  // namespace
 
-void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& look, int sheets,
-                   Progress* progress) {
+void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
+                   int sheets, Progress* progress) {
     report_progress(progress, "prepare splats", 0);
     frame.scene = &scene;
     frame.view = &view;
-    frame.look = &look;
+    frame.classification = &classification;
     frame.sheets = make_sheets(scene, view, sheets);
     frame.tiles_x = (view.width() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
@@ -122,7 +122,7 @@ void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view,
             boundary_intervals(scene.volume->boundary, view, static_cast<double>(frame.sheets.near) + middle, middle);
     }
     report_progress(progress, "prepare splats", 0.4);
-    eye_splats(frame.kernels, scene, view, look);
+    eye_splats(frame.kernels, scene, view, classification);
     report_progress(progress, "prepare splats", 0.7);
     list_tiles(frame);
     report_progress(progress, "prepare splats", 1);

@@ -16,7 +16,7 @@ struct SplatFrame {
 
     const SplatScene* scene = nullptr;
     const View* view = nullptr;
-    const Classification* look = nullptr;
+    const Classification* classification = nullptr;
     SheetStack sheets;
     PixelIntervals intervals;  // empty offsets: there is no boundary
     EyeSplats kernels;
@@ -26,7 +26,7 @@ struct SplatFrame {
 };
 
 /// Fills a frame; one that was filled before keeps its memory.
-void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& look, int sheets,
-                   Progress* progress);
+void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
+                   int sheets, Progress* progress);
 
 }  // namespace subvol::detail

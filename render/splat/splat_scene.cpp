@@ -105,11 +105,11 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
     const double size = box.diagonal();
     if (!(size >= kLeastSize_world && size <= kMostSize_world)) refuse("the volume's diagonal is ", size, "1e-12 to 1e18");
 
-    const auto [shape, kernel_table] = kernel_profile(volume.kernel);
+    const auto [form, kernel_table] = kernel_profile(volume.kernel);
     SplatScene scene{.volume = &volume,
                      .channel = options.channel,
                      .color_channel = options.color_channel,
-                     .shape = shape,
+                     .form = form,
                      .kernel_table = kernel_table,
                      .normalized = options.normalized,
                      .shading = options.shading,
@@ -123,16 +123,16 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
 }
 
 Classification classify(const SplatScene& scene, const Optics& optics) {
-    Classification look{make_preintegrated_table(optics), {}};
-    check_range(scene.opacity_values(), look.table.min, look.table.max);
-    if (!finite(look.table)) {
+    Classification classification{make_preintegrated_table(optics), {}};
+    check_range(scene.opacity_values(), classification.table.min, classification.table.max);
+    if (!finite(classification.table)) {
         throw Error(ErrorCode::InvalidInput, "the extinction is beyond 32-bit floats", {}, "a larger opacity unit");
     }
     if (scene.color_channel) {
-        look.colors = color_table(optics);
-        check_range(scene.color_values(), look.colors.min, look.colors.max);
+        classification.colors = color_table(optics);
+        check_range(scene.color_values(), classification.colors.min, classification.colors.max);
     }
-    return look;
+    return classification;
 }
 
 SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {

@@ -20,8 +20,9 @@ namespace subvol::detail {
 inline constexpr float kLeastWeight = 0.02f;
 /// Values nearer than this many cells of the table are taken as one, halfway: their quotients would lose digits.
 inline constexpr float kNearValues = 0.5f;
-/// Transmittance at which a ray is done.
-inline constexpr float kOpaque = 1e-4f;
+/// Transmittance below which a pixel is opaque. What lies behind can change a colour by no more than this: a fortieth of a step
+/// of an 8-bit picture, and less than what sheets change.
+inline constexpr float kSplatCutoff = 1e-4f;
 /// Values further out, in cells of the table, look like this one.
 inline constexpr float kFarCells = 1e12f;
 /// Change of the value, in parts of the range over the volume's diagonal, at which half of a surface is seen.
@@ -30,14 +31,14 @@ inline constexpr float kLeastChange = 0.25f;
 inline constexpr int kBatch = 8;
 
 /// Compact: w = (1−e)³. Radial: a table over e. Separable: a product of one table over |ξ| along three axes.
-enum class KernelShape { Compact, Radial, Separable };
+enum class KernelForm { Compact, Radial, Separable };
 
 /// What is drawn, as far as neither view nor transfer function take part.
 struct SplatScene {
     const RbfVolume* volume = nullptr;
     std::size_t channel = 0;  // whose values the opacity is for, and the colour but for:
     std::optional<std::size_t> color_channel{};
-    KernelShape shape = KernelShape::Compact;
+    KernelForm form = KernelForm::Compact;
     std::vector<float> kernel_table{};  // equally spaced over e or |ξ| / radius in [0,1]; the last is 0
     bool bent = false;                  // channels have Hessians
     bool normalized = true;
@@ -54,7 +55,7 @@ struct SplatScene {
     }
     /// Whether the short loops do: one value, compact kernels, normalised, a boundary, no light.
     [[nodiscard]] bool plain() const {
-        return shape == KernelShape::Compact && !bent && normalized && half_weight == 0 && !shading && !color_channel;
+        return form == KernelForm::Compact && !bent && normalized && half_weight == 0 && !shading && !color_channel;
     }
 };
 

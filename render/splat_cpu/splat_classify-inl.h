@@ -77,8 +77,9 @@ HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, 
 /// The optical model of a frame as vectors see it.
 class Classifier {
 public:
-    explicit Classifier(const Classification& look)
-        : look_(look), all_visible_(static_cast<std::size_t>(look.table.visible.back()) == look.table.rows.size()) {}
+    explicit Classifier(const Classification& classification)
+        : classification_(classification),
+          all_visible_(static_cast<std::size_t>(classification.table.visible.back()) == classification.table.rows.size()) {}
 
     /// Mean extinction and emission (x premultiplied by extinction) of a stretch of ray between two values.
     HWY_ATTR void means(const Place& front, const Place& back, Floats mean[4]) const {
@@ -88,7 +89,8 @@ public:
         const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(near, hn::Set(d, 1.0f), dx));
         for (std::size_t c = 0; c < 4; ++c) {
             const auto counts = hn::ConvertTo(d, hn::Sub(back.prefix[c], front.prefix[c]));
-            const auto integral = hn::MulAdd(hn::Set(d, look_.table.unit[c]), counts, hn::Sub(back.within[c], front.within[c]));
+            const auto integral =
+                hn::MulAdd(hn::Set(d, classification_.table.unit[c]), counts, hn::Sub(back.within[c], front.within[c]));
             mean[c] = hn::Max(hn::Mul(integral, inverse), hn::Zero(d));
         }
         if (hn::AllFalse(d, near)) return;
@@ -104,7 +106,7 @@ public:
         Floats s, bend[4], prefix[4];
         HWY_ALIGN std::int32_t offsets[kBlock];
         find(x, s, offsets);
-        const float* rows = reinterpret_cast<const float*>(look_.table.rows.data());
+        const float* rows = reinterpret_cast<const float*>(classification_.table.rows.data());
         load_rows(rows, offsets, prefix[0], prefix[1], prefix[2], prefix[3]);
         load_rows(rows + 4, offsets, p.within[0], p.within[1], p.within[2], p.within[3]);
         load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
@@ -121,7 +123,7 @@ public:
         HWY_ALIGN std::int32_t offsets[kBlock];
         find(x, s, offsets);
         for (std::size_t i = 0; i < kBlock; ++i) offsets[i] = offsets[i] / kRowFloats * kColorFloats;
-        const float* rows = reinterpret_cast<const float*>(look_.colors.rows.data());
+        const float* rows = reinterpret_cast<const float*>(classification_.colors.rows.data());
         load_rows(rows, offsets, low[0], low[1], low[2], low[3]);
         load_rows(rows + 4, offsets, step[0], step[1], step[2], step[3]);
         for (std::size_t c = 0; c < 3; ++c) rgb[c] = hn::MulAdd(s, step[c], low[c]);
@@ -133,12 +135,12 @@ public:
         const Lanes d;
         const auto low = hn::IfThenElse(lanes, hn::Min(x0, x1), hn::Set(d, 3e38f));
         const auto high = hn::IfThenElse(lanes, hn::Max(x0, x1), hn::Set(d, -3e38f));
-        return look_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, low))),
-                                       static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, high))));
+        return classification_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, low))),
+                                                 static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, high))));
     }
 
     [[nodiscard]] bool transparent(float x0, float x1) const {
-        return look_.table.transparent(static_cast<double>(x0), static_cast<double>(x1));
+        return classification_.table.transparent(static_cast<double>(x0), static_cast<double>(x1));
     }
     [[nodiscard]] bool all_visible() const { return all_visible_; }
 
@@ -161,14 +163,14 @@ private:
         Floats s, bend[4];
         HWY_ALIGN std::int32_t offsets[kBlock];
         find(x, s, offsets);
-        const float* rows = reinterpret_cast<const float*>(look_.table.rows.data());
+        const float* rows = reinterpret_cast<const float*>(classification_.table.rows.data());
         load_rows(rows + 4, offsets, mean[0], mean[1], mean[2], mean[3]);
         load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
         const auto slope = hn::MulSub(hn::Set(d, 2.0f), s, hn::Set(d, 1.0f));
         for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::MulAdd(slope, bend[c], mean[c]);
     }
 
-    const Classification& look_;
+    const Classification& classification_;
     bool all_visible_;
 };
 

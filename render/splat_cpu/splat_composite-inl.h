@@ -72,7 +72,7 @@ public:
         Place place;
         for (auto active = hn::Lt(enter_, back); !hn::AllFalse(d, active); active = hn::And(active, hn::Lt(enter_, back))) {
             stretch(active, front_z, back_z, here, place, placed);
-            const auto opaque = hn::And(active, hn::Lt(transmittance_, hn::Set(d, kOpaque)));
+            const auto opaque = hn::And(active, hn::Lt(transmittance_, hn::Set(d, kSplatCutoff)));
             enter_ = hn::IfThenElse(opaque, hn::Set(d, kNever), enter_);
             active = hn::And(hn::AndNot(opaque, active), hn::Le(exit_, back));
             if (hn::AllFalse(d, active)) break;

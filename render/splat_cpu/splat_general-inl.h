@@ -74,11 +74,11 @@ private:
 
     HWY_ATTR Floats weight(std::uint32_t id, const Offsets& at) const {
         const Lanes d;
-        if (scene_.shape == KernelShape::Compact) {
+        if (scene_.form == KernelForm::Compact) {
             const auto left = hn::Max(hn::Sub(hn::Set(d, 1.0f), at.e), hn::Zero(d));
             return hn::Mul(hn::Mul(left, left), left);
         }
-        if (scene_.shape == KernelShape::Radial) return profile(at.e);
+        if (scene_.form == KernelForm::Radial) return profile(at.e);
         const auto& rows = frame_.kernels.axes[id].rows;
         auto product = hn::Set(d, 1.0f);
         for (std::size_t a = 0; a < 3; ++a) {

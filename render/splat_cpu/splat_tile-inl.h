@@ -24,10 +24,10 @@ template <bool kPlain>
 class TileRenderer {
 public:
     explicit TileRenderer(const SplatFrame& frame)
-        : frame_(frame), view_(*frame.view), sheets_(frame.sheets), classifier_(*frame.look), general_(frame) {
+        : frame_(frame), view_(*frame.view), sheets_(frame.sheets), classifier_(*frame.classification), general_(frame) {
         scratch().resize();
-        x_offset_ = value_offset(*frame.scene, *frame.look);
-        color_offset_ = color_offset(*frame.scene, *frame.look);
+        x_offset_ = value_offset(*frame.scene, *frame.classification);
+        color_offset_ = color_offset(*frame.scene, *frame.classification);
         batch_.mid_x = 0.5f * static_cast<float>(view_.width());
         batch_.mid_y = 0.5f * static_cast<float>(view_.height());
         least_gradient_ = kLeastChange * PreintegratedTable::kCells / static_cast<float>(frame.scene->diagonal);

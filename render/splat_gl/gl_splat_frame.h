@@ -28,7 +28,7 @@ struct alignas(32) GlSplatFrame {
 };
 
 /// All but the kernels' number and the pass.
-[[nodiscard]] GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Classification& look,
+[[nodiscard]] GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Classification& classification,
                                           const SheetStack& sheets, int tile_px, int batch);
 
 }  // namespace subvol::detail

@@ -40,7 +40,7 @@ std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
     return gl_scene_defines(scene) + line("kTile", std::to_string(tuning.tile_px)) +
            line("kBatch", std::to_string(tuning.batch)) + line("kChunk", tuning.batch <= 8 ? "64" : "32") +
            line("kCells", std::to_string(PreintegratedTable::kCells)) + line("kLeastWeight", decimal(kLeastWeight)) +
-           line("kNearValues", decimal(kNearValues)) + line("kOpaque", decimal(kOpaque)) +
+           line("kNearValues", decimal(kNearValues)) + line("kSplatCutoff", decimal(kSplatCutoff)) +
            line("kFarCells", decimal(kFarCells));
 }
 
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& 
     const double middle = view.to_eye(scene.middle).z, distance = static_cast<double>(sheets.distance);
     const double front = static_cast<double>(sheets.depth(first_sheet)) - distance;
     const double back = static_cast<double>(sheets.depth(end_sheet - 1)) + distance;
-    const double widening = scene.shape == KernelShape::Separable ? 3 : 1;
+    const double widening = scene.form == KernelForm::Separable ? 3 : 1;
     std::vector<char> wanted(scene.volume->size());
     tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
         const Vec3& forward = view.axes()[2];
@@ -107,13 +107,13 @@ public:
         if (resident_) bins_.upload(pack_kernels(scene));
     }
 
-    Drawn draw(const View& view, const Classification& look, int sheets, Progress* progress);
+    Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
 
     GlContext context;
     GlSplatReport report;
 
 private:
-    void prepare(const View& view, const Classification& look);
+    void prepare(const View& view, const Classification& classification);
     void find_intervals(const View& view);
     [[nodiscard]] bool draw_at_once();
     [[nodiscard]] bool fits_bins(int first, int end) const;
@@ -137,12 +137,12 @@ private:
     GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_;
 };
 
-void GlSplatter::State::prepare(const View& view, const Classification& look) {
+void GlSplatter::State::prepare(const View& view, const Classification& classification) {
     stages_.clear();
-    frame_ = gl_splat_frame(scene_, view, look, sheets_, tuning_.tile_px, tuning_.batch);
-    upload(rows_, look.table.rows);
-    upload(visible_, look.table.visible);
-    upload(color_rows_, look.colors.rows);
+    frame_ = gl_splat_frame(scene_, view, classification, sheets_, tuning_.tile_px, tuning_.batch);
+    upload(rows_, classification.table.rows);
+    upload(visible_, classification.table.visible);
+    upload(color_rows_, classification.colors.rows);
     const std::size_t pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
     picture_.grow(pixels * 4 * sizeof(float));
     depths_.grow(pixels * sizeof(float));
@@ -183,11 +183,11 @@ void GlSplatter::State::draw_pass() {
     check_gl("splat");
 }
 
-Drawn GlSplatter::State::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
+Drawn GlSplatter::State::draw(const View& view, const Classification& classification, int sheets, Progress* progress) {
     report_progress(progress, "splat", 0);
     report = {};
     sheets_ = make_sheets(scene_, view, sheets);
-    prepare(view, look);
+    prepare(view, classification);
     if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
     // Likewise for the boundary's hits.
     if (scene_.half_weight == 0 && !boundary_.found_all()) {
@@ -280,9 +280,9 @@ GlSplatter& GlSplatter::operator=(GlSplatter&& other) noexcept {
     return *this;
 }
 
-Drawn GlSplatter::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
+Drawn GlSplatter::draw(const View& view, const Classification& classification, int sheets, Progress* progress) {
     const GlScope scope(state_->context);
-    return state_->draw(view, look, sheets, progress);
+    return state_->draw(view, classification, sheets, progress);
 }
 
 const std::string& GlSplatter::renderer() const {

@@ -47,7 +47,7 @@ public:
     GlSplatter& operator=(GlSplatter&&) noexcept;
 
     /// throws: Error(MissingCapability) if the device has no room or is lost
-    [[nodiscard]] Drawn draw(const View& view, const Classification& look, int sheets, Progress* progress);
+    [[nodiscard]] Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
 
     [[nodiscard]] const std::string& renderer() const;
 

@@ -96,10 +96,7 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
     for_each_tile({0, 0, view.width(), view.height()}, options.progress, [&](const PixelRect& tile) {
         TetPacketTracer tracer(state_->tets, *state_->scene, optics);
         draw_tile(view, options.samples, tile, tracer, result.image);
-        TraceCounts& sum = sums.local();
-        sum.rays += tracer.counts().rays;
-        sum.segments += tracer.counts().segments;
-        sum.lost_rays += tracer.counts().lost_rays;
+        sums.local() += tracer.counts();
     });
     sums.combine_each([&](const TraceCounts& sum) {
         report.rays += sum.rays;

@@ -128,7 +128,7 @@ private:
         return v;
     }
 
-    /// As CrossedFace::crossing, and what integrate_walk makes of it.
+    /// As CrossedFace::crossing, and what RayWalker makes of it.
     HWY_ATTR void cross_face() {
         const Lanes d;
         const auto zero = hn::Zero(d), one = hn::Set(d, 1.0);

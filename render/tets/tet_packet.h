@@ -39,7 +39,7 @@ struct TetPacketEnds {
     std::uint32_t boundary = 0, undecided = 0;
 };
 
-/// Takes every ray that walks across one tetrahedron: to the last bit what `walk` and `integrate_walk` do.
+/// Takes every ray that walks across one tetrahedron: to the last bit what `walk` and RayWalker do.
 TetPacketEnds step(const TetMesh& mesh, TetPacket& packet);
 
 }  // namespace subvol::detail

@@ -22,7 +22,7 @@ public:
 private:
     struct Lane {
         Lane(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics)
-            : plane(Ray{Vec3(0.0), Vec3(0.0, 0.0, 1.0)}), ends(mesh, scene), compositor(optics, kOpaque) {}
+            : plane(Ray{Vec3(0.0), Vec3(0.0, 0.0, 1.0)}), ends(mesh, scene), compositor(optics, kRayCutoff) {}
         std::size_t ray = 0;
         RayPlane plane;
         RayEnds ends;

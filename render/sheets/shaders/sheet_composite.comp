@@ -87,7 +87,7 @@ void main() {
             vec2 inside = interval(last.interval);
             if (inside.x >= back_z) break;
             follow(beam, before, here, front_z, back_z, inside.x, inside.y, ray_length);
-            if (beam.transmittance < kOpaque) last.interval = end - 1u;
+            if (beam.transmittance < kSplatCutoff) last.interval = end - 1u;
             else if (inside.y > back_z) break;
         }
         beams[id] = vec4(beam.color, beam.transmittance);

@@ -33,10 +33,10 @@ float kernel_profile(float t) {
 }
 
 float kernel_weight(uint id, vec2 offset, float zs, float e) {
-#if KERNEL_SHAPE == 0
+#if KERNEL_FORM == 0
     float left = max(1.0 - e, 0.0);
     return left * left * left;
-#elif KERNEL_SHAPE == 1
+#elif KERNEL_FORM == 1
     return kernel_profile(e);
 #else
     float product = 1.0;

@@ -91,7 +91,7 @@ void go(float front, float back, Sheet here) {
     bool placed = false;
     while (enter_z < back) {
         stretch(front, back, here, place, placed);
-        if (transmittance < kOpaque) {
+        if (transmittance < kSplatCutoff) {
             enter_z = exit_z = kNever;
             break;
         }

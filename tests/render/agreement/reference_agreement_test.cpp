@@ -58,8 +58,8 @@ TEST_P(FromEverywhere, LinearFieldsLookTheSameByRaysProjectedAndByLists) {
     const HexMesh mesh = test::jittered_box(5, 0.25, 5);
     const auto values = evaluate(mesh, linear);
     const Image rays = render_tets(mesh, values, view(), kinked_optics()).image;
-    const auto projected = render_projected_tets(mesh, values, view(), kinked_optics());
-    const auto lists = render_projected_tets(mesh, values, view(), kinked_optics(), {.order = PtOrder::Lists});
+    const auto projected = render_projected(mesh, values, view(), kinked_optics());
+    const auto lists = render_projected(mesh, values, view(), kinked_optics(), {.order = ProjectedOrder::Lists});
     EXPECT_EQ(projected.report.cycles, 0u);
     EXPECT_LT(largest_difference(projected.image, rays), kAgreeTol);
     EXPECT_LT(largest_difference(lists.image, rays), kAgreeTol);

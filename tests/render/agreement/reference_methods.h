@@ -9,26 +9,27 @@
 #include "render/voxel_box.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 
 namespace subvol::test {
 
 /// The reference renderers.
-enum class Reference { Tets, Dense, Voxels, PtTopological, PtLists };
+enum class Reference { Tets, Dense, Voxels, ProjectedTopological, ProjectedLists };
 
-inline const std::vector<Reference> kReferences{Reference::Tets, Reference::Dense, Reference::Voxels, Reference::PtTopological,
-                                                Reference::PtLists};
+inline const std::vector<Reference> kReferences{Reference::Tets, Reference::Dense, Reference::Voxels,
+                                                Reference::ProjectedTopological, Reference::ProjectedLists};
 
 inline std::string name_of(Reference reference) {
-    return std::vector<std::string>{"Tets", "Dense", "Voxels", "PtTopological", "PtLists"}[static_cast<std::size_t>(reference)];
+    return std::vector<std::string>{"Tets", "Dense", "Voxels", "ProjectedTopological",
+                                    "ProjectedLists"}[static_cast<std::size_t>(reference)];
 }
 inline void PrintTo(Reference reference, std::ostream* out) {
     *out << name_of(reference);
 }
 
 [[nodiscard]] inline bool needs_gl(Reference reference) {
-    return reference == Reference::PtTopological || reference == Reference::PtLists;
+    return reference == Reference::ProjectedTopological || reference == Reference::ProjectedLists;
 }
 
 inline double largest_difference(const Image& a, const Image& b) {
@@ -55,10 +56,11 @@ inline Image draw(Reference reference, const HexMesh& mesh, std::span<const doub
             return render_tets(mesh, values, view, optics).image;
         case Reference::Dense:
             return render_dense(mesh, values, view, optics, {.levels = levels}).image;
-        case Reference::PtTopological:
-        case Reference::PtLists:
-            return render_projected_tets(mesh, values, view, optics,
-                                         {.order = reference == Reference::PtLists ? PtOrder::Lists : PtOrder::Topological})
+        case Reference::ProjectedTopological:
+        case Reference::ProjectedLists:
+            return render_projected(
+                       mesh, values, view, optics,
+                       {.order = reference == Reference::ProjectedLists ? ProjectedOrder::Lists : ProjectedOrder::Topological})
                 .image;
         case Reference::Voxels:
             break;

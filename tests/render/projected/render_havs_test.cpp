@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lib/test_meshes.h"
-#include "pt_scenes.h"
+#include "projected_scenes.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-using RenderHavs = PtTest;
+using RenderHavs = ProjectedTest;
 
 constexpr int kAll = 4096;  // entries: more than any pixel here has faces
 
@@ -43,8 +43,8 @@ TEST_F(RenderHavs, WithManyEntriesItIsLikeLists) {
     for (const HexMesh& mesh : {jittered_box(6, 0.3, 5), ball(6), l_shape(6), flat_box(), two_slabs()}) {
         const auto values = evaluate(mesh, waves);
         for (const View& view : {slanted_view(64), orthographic_view(61, 47)}) {
-            const auto havs = render_projected_tets(mesh, values, view, optics, {.order = PtOrder::Havs, .kbuffer = kAll});
-            const auto lists = render_projected_tets(mesh, values, view, optics, {.order = PtOrder::Lists});
+            const auto havs = render_projected(mesh, values, view, optics, {.order = ProjectedOrder::Havs, .kbuffer = kAll});
+            const auto lists = render_projected(mesh, values, view, optics, {.order = ProjectedOrder::Lists});
             EXPECT_EQ(havs.report.late_faces, 0u);
             EXPECT_EQ(havs.report.violations, 0u);
             EXPECT_EQ(havs.report.faces_drawn, havs.report.faces);
@@ -58,7 +58,7 @@ TEST_F(RenderHavs, SixEntriesAreEnoughForWellShapedCells) {
     for (const HexMesh& mesh : {box(6), jittered_box(8, 0.2, 5), ball(8)}) {
         const auto values = evaluate(mesh, waves);
         for (const View& view : {slanted_view(64), ball_view(80, 64), orthographic_view(61, 47)}) {
-            const auto havs = render_projected_tets(mesh, values, view, ramp_optics(0.1), {.order = PtOrder::Havs});
+            const auto havs = render_projected(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs});
             const auto rays = render_tets(mesh, values, view, ramp_optics(0.1));
             // Some corner of a picture may see a face a place later; as near as neighbours are, that is not seen.
             EXPECT_LT(havs.report.late_faces, 1e-4 * static_cast<double>(havs.report.fragments));
@@ -75,7 +75,7 @@ TEST_F(RenderHavs, MoreEntriesAreNeverWorse) {
     std::size_t late = 0;
     double error = 0;
     for (const int k : {1, 2, 3, 4, 6, 8, 12, 16, 32, 64}) {
-        const auto havs = render_projected_tets(mesh, values, flat_view(), optics, {.order = PtOrder::Havs, .kbuffer = k});
+        const auto havs = render_projected(mesh, values, flat_view(), optics, {.order = ProjectedOrder::Havs, .kbuffer = k});
         const double rms = rms_difference(havs.image, rays.image);
         EXPECT_EQ(havs.report.late_faces == 0, havs.report.violations == 0u);
         EXPECT_LE(*havs.report.violations, havs.report.late_faces);
@@ -98,10 +98,10 @@ TEST_F(RenderHavs, NothingIsBetweenPartsOfTheVolume) {
     const View along({.eye = {0.5, 0.5, 5}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}, .ortho_height = 0.99}, 40, 40);
     const View across({.eye = {4, 0.4, 0.6}, .target = {0.5, 0.4, 0.5}, .up = {0, 0, 1}, .fovy_deg = 15}, 64, 64);
     for (const double lod : {0.0, 0.5, 1.0}) {
-        const PtOptions havs{.order = PtOrder::Havs, .lod = lod};
+        const ProjectedOptions havs{.order = ProjectedOrder::Havs, .lod = lod};
         // Two fifths of a unit at an opacity of one half a unit.
         const auto drawn =
-            render_projected_tets(slabs, std::vector<double>(slabs.points.size(), 1.0), along, constant_optics(), havs);
+            render_projected(slabs, std::vector<double>(slabs.points.size(), 1.0), along, constant_optics(), havs);
         for (int y = 0; y < 40; ++y) {
             for (int x = 0; x < 40; ++x) ASSERT_NEAR(drawn.image.pixel(x, y)[3], 1 - std::pow(0.5, 0.4), kFewTol) << lod;
         }
@@ -112,9 +112,9 @@ TEST_F(RenderHavs, NothingIsBetweenPartsOfTheVolume) {
         }
     }
     const HexMesh corner = l_shape(6);
-    EXPECT_LT(
-        difference_from_rays(corner, evaluate(corner, waves), slanted_view(64), ramp_optics(0.1), {.order = PtOrder::Havs}),
-        kGlTol);
+    EXPECT_LT(difference_from_rays(corner, evaluate(corner, waves), slanted_view(64), ramp_optics(0.1),
+                                   {.order = ProjectedOrder::Havs}),
+              kGlTol);
 }
 
 TEST_F(RenderHavs, PartsThatTouchKeepTheirValues) {
@@ -131,7 +131,7 @@ TEST_F(RenderHavs, PartsThatTouchKeepTheirValues) {
     }
     const auto values = evaluate(mesh, waves);
     for (const View& view : {slanted_view(64), orthographic_view(61, 47)})
-        EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1), {.order = PtOrder::Havs}), kGlTol);
+        EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs}), kGlTol);
 }
 
 TEST_F(RenderHavs, EyeInsideSeesWhatIsBeforeIt) {
@@ -142,18 +142,18 @@ TEST_F(RenderHavs, EyeInsideSeesWhatIsBeforeIt) {
     flat.ortho_height = 1.1;
     for (const Camera& camera : {inside, flat}) {
         const View view(camera, 48, 40);
-        EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1), {.order = PtOrder::Havs}), kGlTol);
+        EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs}), kGlTol);
         // Where faces are left out a constant is still one.
         EXPECT_LT(difference_from_rays(mesh, std::vector<double>(values.size(), 1.0), view, constant_optics(),
-                                       {.order = PtOrder::Havs, .lod = 0}),
+                                       {.order = ProjectedOrder::Havs, .lod = 0}),
                   kFewTol);
     }
 }
 
 TEST_F(RenderHavs, EveryDepthCountsOnceWhereCellsFoldOver) {
     const HexMesh mesh = jittered_box(5, 0.9, 4);
-    const auto havs = render_projected_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), slanted_view(64),
-                                            constant_optics(), {.order = PtOrder::Havs, .kbuffer = kAll});
+    const auto havs = render_projected(mesh, std::vector<double>(mesh.points.size(), 1.0), slanted_view(64), constant_optics(),
+                                       {.order = ProjectedOrder::Havs, .kbuffer = kAll});
     EXPECT_GT(havs.report.inverted_tets, 0u);
     const auto whole = render_tets(box(1), std::vector<double>(8, 1.0), slanted_view(64), constant_optics());
     EXPECT_LT(largest_difference(havs.image, whole.image), kFewTol);
@@ -163,12 +163,12 @@ TEST_F(RenderHavs, ErrorFallsWithTheFractionOfFaces) {
     const HexMesh mesh = jittered_box(10, 0.2, 5);
     const auto values = evaluate(mesh, waves);
     const Optics optics = ramp_optics(0.2);
-    PtRenderer renderer(mesh, values);
-    const auto all = renderer.draw(slanted_view(96), optics, {.order = PtOrder::Havs});
+    ProjectedRenderer renderer(mesh, values);
+    const auto all = renderer.draw(slanted_view(96), optics, {.order = ProjectedOrder::Havs});
     double last = 1;
     std::size_t faces = 0;
     for (const double lod : {0.0, 0.02, 0.1, 0.3, 0.6, 0.9}) {
-        const auto part = renderer.draw(slanted_view(96), optics, {.order = PtOrder::Havs, .lod = lod});
+        const auto part = renderer.draw(slanted_view(96), optics, {.order = ProjectedOrder::Havs, .lod = lod});
         const double error = rms_difference(part.image, all.image);
         EXPECT_LT(error, last) << lod;
         EXPECT_GT(part.report.faces_drawn, faces);
@@ -177,15 +177,15 @@ TEST_F(RenderHavs, ErrorFallsWithTheFractionOfFaces) {
     }
     EXPECT_LT(faces, all.report.faces);
     EXPECT_LT(last, 0.01);
-    EXPECT_EQ(renderer.draw(slanted_view(96), optics, {.order = PtOrder::Havs, .lod = 1}).image.rgba, all.image.rgba);
+    EXPECT_EQ(renderer.draw(slanted_view(96), optics, {.order = ProjectedOrder::Havs, .lod = 1}).image.rgba, all.image.rgba);
 }
 
 TEST_F(RenderHavs, InPartsItIsTheSame) {
     const HexMesh mesh = ball(5);
     const auto values = evaluate(mesh, waves);
     const auto draw = [&](std::size_t bytes) {
-        return render_projected_tets(mesh, values, ball_view(50, 40), ramp_optics(0.1),
-                                     {.order = PtOrder::Havs, .kbuffer = 2, .list_bytes = bytes});
+        return render_projected(mesh, values, ball_view(50, 40), ramp_optics(0.1),
+                                {.order = ProjectedOrder::Havs, .kbuffer = 2, .list_bytes = bytes});
     };
     const auto whole = draw(1 << 28), parts = draw(12 * 2000);
     EXPECT_EQ(whole.report.parts, 1u);
@@ -197,18 +197,18 @@ TEST_F(RenderHavs, InPartsItIsTheSame) {
 TEST_F(RenderHavs, RealMeshesAreLikeRays) {
     const auto data = data_folder();
     if (!data) GTEST_SKIP() << "SUBVOL_DATA does not name the folder of real meshes";
-    expect_real_meshes_like_rays(*data, {.order = PtOrder::Havs, .kbuffer = kAll});
+    expect_real_meshes_like_rays(*data, {.order = ProjectedOrder::Havs, .kbuffer = kAll});
 }
 
 TEST_F(RenderHavs, RefusesWrongOptions) {
     const HexMesh mesh = box(1);
-    PtRenderer renderer(mesh, std::vector<double>(8, 1.0));
-    for (const PtOptions& options : {PtOptions{.order = PtOrder::Havs, .kbuffer = 0},
-                                     {.order = PtOrder::Havs, .lod = -0.1},
-                                     {.order = PtOrder::Havs, .lod = 1.1},
-                                     {.order = PtOrder::Lists, .lod = 0.5},
-                                     {.samples = 0},
-                                     {.samples = 17}}) {
+    ProjectedRenderer renderer(mesh, std::vector<double>(8, 1.0));
+    for (const ProjectedOptions& options : {ProjectedOptions{.order = ProjectedOrder::Havs, .kbuffer = 0},
+                                            {.order = ProjectedOrder::Havs, .lod = -0.1},
+                                            {.order = ProjectedOrder::Havs, .lod = 1.1},
+                                            {.order = ProjectedOrder::Lists, .lod = 0.5},
+                                            {.samples = 0},
+                                            {.samples = 17}}) {
         EXPECT_THROW((void)renderer.draw(slanted_view(4), constant_optics(), options), Error);
     }
 }

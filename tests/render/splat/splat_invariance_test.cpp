@@ -33,13 +33,13 @@ Optics one_peak(double value) {
 /// One frame, with its parts at hand.
 struct Frame {
     detail::SplatScene scene;
-    detail::Classification look;
+    detail::Classification classification;
     View view;
     detail::SplatFrame frame;
 
     Frame(const RbfVolume& volume, const Optics& optics, const SplatOptions& options, const View& seen = test::view())
-        : scene(detail::make_scene(volume, options)), look(classify(scene, optics)), view(seen) {
-        prepare_frame(frame, scene, view, look, options.sheets, nullptr);
+        : scene(detail::make_scene(volume, options)), classification(classify(scene, optics)), view(seen) {
+        prepare_frame(frame, scene, view, classification, options.sheets, nullptr);
     }
     [[nodiscard]] detail::Drawn draw() const { return draw_splats_cpu(frame, nullptr); }
 };

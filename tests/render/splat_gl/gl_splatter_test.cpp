@@ -56,9 +56,9 @@ View inside() {
     return View({.eye = {.2, -.3, .1}, .target = {0, 1, .2}, .up = {0, 0, 1}, .fovy_deg = 80}, 40, 33);
 }
 
-Drawn draw_on_cpu(const detail::SplatScene& scene, const View& view, const detail::Classification& look, int sheets) {
+Drawn draw_on_cpu(const detail::SplatScene& scene, const View& view, const detail::Classification& classification, int sheets) {
     detail::SplatFrame frame;
-    detail::prepare_frame(frame, scene, view, look, sheets, nullptr);
+    detail::prepare_frame(frame, scene, view, classification, sheets, nullptr);
     return detail::draw_splats_cpu(frame, nullptr);
 }
 
@@ -116,10 +116,11 @@ constexpr float kCutRounding = 2e-5f;
 /// Draws every view on both backends.
 void expect_like_cpu(const RbfVolume& volume, const SplatOptions& options, float most_color = kRounding) {
     const auto scene = detail::make_scene(volume, options);
-    const auto look = detail::classify(scene, optics());
+    const auto classification = detail::classify(scene, optics());
     GlSplatter gpu(scene, {});
     for (const View& view : {perspective(), orthographic(), inside()}) {
-        const Drawn cpu = draw_on_cpu(scene, view, look, kSheets), gl = gpu.draw(view, look, kSheets, nullptr);
+        const Drawn cpu = draw_on_cpu(scene, view, classification, kSheets),
+                    gl = gpu.draw(view, classification, kSheets, nullptr);
         const float color = largest_difference(cpu.image.rgba, gl.image.rgba);
         const float depth = largest_depth_difference(cpu, gl);
         EXPECT_LT(color, most_color);
@@ -171,13 +172,13 @@ TEST_F(GlSplats, TilesBatchesAndRepeatsChangeNoBit) {
         }
         for (const auto& [view, seen] :
              {std::pair(perspective(), optics()), {perspective(), one_shell()}, {inside(), optics()}}) {
-            const auto look = detail::classify(scene, seen);
-            const Drawn expected = reference.draw(view, look, kSheets, nullptr);
-            EXPECT_LT(largest_difference(draw_on_cpu(scene, view, look, kSheets).image.rgba, expected.image.rgba),
+            const auto classification = detail::classify(scene, seen);
+            const Drawn expected = reference.draw(view, classification, kSheets, nullptr);
+            EXPECT_LT(largest_difference(draw_on_cpu(scene, view, classification, kSheets).image.rgba, expected.image.rgba),
                       kCutRounding);
-            EXPECT_EQ(reference.draw(view, look, kSheets, nullptr).image.rgba, expected.image.rgba);
+            EXPECT_EQ(reference.draw(view, classification, kSheets, nullptr).image.rgba, expected.image.rgba);
             for (GlSplatter& other : others) {
-                const Drawn drawn = other.draw(view, look, kSheets, nullptr);
+                const Drawn drawn = other.draw(view, classification, kSheets, nullptr);
                 EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
                 EXPECT_EQ(drawn.depth, expected.depth);
             }
@@ -192,22 +193,22 @@ TEST_F(GlSplats, PassesChangeNoBit) {
             if (!bounded) v.boundary = {};
         });
         const auto scene = detail::make_scene(volume, {.color_channel = 1});
-        const auto look = detail::classify(scene, optics());
+        const auto classification = detail::classify(scene, optics());
         GlSplatter reference(scene, {});
-        const Drawn expected = reference.draw(perspective(), look, kMany, nullptr);
+        const Drawn expected = reference.draw(perspective(), classification, kMany, nullptr);
         EXPECT_EQ(reference.report().passes, 1);
         for (const GlTuning& tuning : {GlTuning{.most_entries = reference.report().bin_entries / 3},
                                        GlTuning{.batch = 4, .most_buffer_bytes = 64 * volume.size()}}) {
             GlSplatter splatter(scene, {}, tuning);
             for (int repeat = 0; repeat < 2; ++repeat) {
-                const Drawn drawn = splatter.draw(perspective(), look, kMany, nullptr);
+                const Drawn drawn = splatter.draw(perspective(), classification, kMany, nullptr);
                 EXPECT_GT(splatter.report().passes, 2);
                 EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
                 EXPECT_EQ(drawn.depth, expected.depth);
             }
         }
         GlSplatter tiny(scene, {}, {.most_entries = 100});
-        EXPECT_THROW((void)tiny.draw(perspective(), look, kMany, nullptr), Error);
+        EXPECT_THROW((void)tiny.draw(perspective(), classification, kMany, nullptr), Error);
     }
 }
 
@@ -215,11 +216,11 @@ TEST_F(GlSplats, WhatThePictureBeforeLeftDoesNotMatter) {
     // Less, then more than there is room for, and another transfer function.
     const RbfVolume volume = sampled(Correction::Second);
     const auto scene = detail::make_scene(volume, {});
-    const auto look = detail::classify(scene, optics());
+    const auto classification = detail::classify(scene, optics());
     GlSplatter kept(scene, {});
     for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(), kSheets}, {inside(), 33}}) {
-        const Drawn drawn = kept.draw(view, look, sheets, nullptr),
-                    fresh = GlSplatter(scene, {}).draw(view, look, sheets, nullptr);
+        const Drawn drawn = kept.draw(view, classification, sheets, nullptr),
+                    fresh = GlSplatter(scene, {}).draw(view, classification, sheets, nullptr);
         EXPECT_EQ(drawn.image.rgba, fresh.image.rgba);
         EXPECT_EQ(drawn.depth, fresh.depth);
     }
@@ -228,10 +229,11 @@ TEST_F(GlSplats, WhatThePictureBeforeLeftDoesNotMatter) {
 TEST_F(GlSplats, TheDevicesOwnBoundaryIsThatOfTheCpu) {
     const RbfVolume volume = sampled(Correction::Second);
     const auto scene = detail::make_scene(volume, {});
-    const auto look = detail::classify(scene, optics());
+    const auto classification = detail::classify(scene, optics());
     GlSplatter own(scene, {}, {.boundary_on_device = true}), from_cpu(scene, {});
     for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(120, 90), 33}, {inside(), 33}}) {
-        const Drawn drawn = own.draw(view, look, sheets, nullptr), expected = from_cpu.draw(view, look, sheets, nullptr);
+        const Drawn drawn = own.draw(view, classification, sheets, nullptr),
+                    expected = from_cpu.draw(view, classification, sheets, nullptr);
         EXPECT_EQ(own.report().boundary_hits, from_cpu.report().boundary_hits);
         EXPECT_LT(largest_difference(drawn.image.rgba, expected.image.rgba), kRounding);
     }

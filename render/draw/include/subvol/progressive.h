@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
 
@@ -39,32 +39,34 @@ struct ProgressiveResult {
 
 /// seconds:  how long the work may take; the first picture is always finished
 /// lod:      fractions of the inner faces that are drawn on the way, ascending, 0..1
-/// pt:       how pictures are drawn; order, fraction and listener are the work's own, and samples are for the last picture
+/// projected:     how pictures are drawn; order, fraction and listener are the work's own, and samples are for the last picture
 /// progress: its `picture` gets every picture as soon as it is there; a wish to stop ends the work as usual
-struct PtProgressiveOptions {
+struct ProjectedProgressiveOptions {
     double seconds = 1;
     std::vector<double> lod{0.03, 0.1, 0.3};
-    PtOptions pt{};
+    ProjectedOptions projected{};
     Progress* progress = nullptr;
 };
 
 /// The last picture, and how it came about.
-struct PtProgressiveResult {
-    PtResult pt;
-    int steps = 0;                  // pictures made
-    PtOrder order = PtOrder::Havs;  // of the last
-    double lod = 0;                 // of the last
-    bool finished = false;          // the last picture is exact
+struct ProjectedProgressiveResult {
+    ProjectedResult projected;
+    int steps = 0;                                // pictures made
+    ProjectedOrder order = ProjectedOrder::Havs;  // of the last
+    double lod = 0;                               // of the last
+    bool finished = false;                        // the last picture is exact
     double seconds = 0;
 };
 
 /// Draws tetrahedra within a time: first the faces of the boundary alone, then with rising fractions of those inside up to all
-/// of them (PtOrder::Havs). The picture after that is by lists if the k-buffer missed a face, so the last is exact. What is not
-/// finished in time is given up. Each picture is drawn anew: those before the whole one take together about as long as it.
+/// of them (ProjectedOrder::Havs). The picture after that is by lists if the k-buffer missed a face, so the last is exact. What
+/// is not finished in time is given up. Each picture is drawn anew: those before the whole one take together about as long as
+/// it.
 ///
-/// throws: as PtRenderer::draw; Error(InvalidInput) if seconds is not positive or a fraction is out of range
+/// throws: as ProjectedRenderer::draw; Error(InvalidInput) if seconds is not positive or a fraction is out of range
 /// source: cbps2006, whose pictures go on from one another
-[[nodiscard]] PtProgressiveResult render_progressively(PtRenderer& renderer, const View& view, const Optics& optics,
-                                                       const PtProgressiveOptions& options = {});
+[[nodiscard]] ProjectedProgressiveResult render_progressively(ProjectedRenderer& renderer, const View& view,
+                                                              const Optics& optics,
+                                                              const ProjectedProgressiveOptions& options = {});
 
 }  // namespace subvol

@@ -12,7 +12,7 @@
 namespace subvol {
 
 /// step_world: distance between samples, > 0; ends are found by bisection to 1e-9 of it
-struct FieldOptions {
+struct MarchOptions {
     double step_world = 0.002;
     int samples = 1;
     Progress* progress = nullptr;
@@ -23,6 +23,6 @@ struct FieldOptions {
 ///
 /// box: where the field may have values
 [[nodiscard]] Image render_field(const std::function<std::optional<double>(const Vec3&)>& field, const Box& box,
-                                 const View& view, const Optics& optics, const FieldOptions& options = {});
+                                 const View& view, const Optics& optics, const MarchOptions& options = {});
 
 }  // namespace subvol

@@ -9,7 +9,7 @@
 #include "render/constant_optics.h"
 #include "render/hex_meshes.h"
 #include "subvol/mesh_io.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 
 /// Views, colours and fields that projected tetrahedra are tested with.
@@ -21,7 +21,7 @@ inline constexpr double kGlTol = 1e-4;
 inline constexpr double kFewTol = 1e-5;
 
 /// Skipped without OpenGL.
-class PtTest : public testing::Test {
+class ProjectedTest : public testing::Test {
 protected:
     void SetUp() override {
         if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
@@ -63,14 +63,14 @@ inline double waves(const Vec3& p) {
 
 /// The mesh drawn both ways.
 inline double difference_from_rays(const HexMesh& mesh, std::span<const double> values, const View& view, const Optics& optics,
-                                   const PtOptions& options = {}) {
+                                   const ProjectedOptions& options = {}) {
     const auto rays = render_tets(mesh, values, view, optics);
-    return largest_difference(render_projected_tets(mesh, values, view, optics, options).image, rays.image);
+    return largest_difference(render_projected(mesh, values, view, optics, options).image, rays.image);
 }
 
 /// Like rays: three real meshes, none of them convex. Where cells fold over, both count
 /// in pt, which rays do not do: there are no such meshes here.
-inline void expect_real_meshes_like_rays(const std::filesystem::path& data, const PtOptions& options) {
+inline void expect_real_meshes_like_rays(const std::filesystem::path& data, const ProjectedOptions& options) {
     for (const char* name : {"ansys_td28_fig14.vtk", "vtkdata_post_tet.vtk", "hexdom_igea_improve.vtk"}) {
         const HexMesh mesh = read_mesh(data / name).mesh;
         const Box box = bounds(mesh);

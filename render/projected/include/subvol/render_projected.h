@@ -20,17 +20,17 @@ namespace subvol {
 /// every pixel sorts its own segments, which is always right, and takes memory. Havs: faces by the depth of their centroids,
 /// and what each pixel meets of them once more in a k-buffer; right where no face is late by more than its entries. What is
 /// between the parts of a volume that is not convex stays empty in every order.
-enum class PtOrder { Centroid, Topological, Lists, Havs };
+enum class ProjectedOrder { Centroid, Topological, Lists, Havs };
 
-/// device:           of OpenGL, its number in gl_devices(); none: the first hardware, else software. A PtRenderer keeps its own
-/// kbuffer:          Havs: entries of the k-buffer, 1..65536
-/// lod:              Havs: the fraction of the faces inside that is drawn, 0..1; the boundary's always are
-/// samples:          n × n pictures, moved by parts of a pixel, of which the mean is taken, 1..16
-/// count_violations: draws a second time with lists, to find where the order is wrong. Lists are compared with the order by
+/// device:           of OpenGL, its number in gl_devices(); none: the first hardware, else software. A ProjectedRenderer keeps
+/// its own kbuffer:          Havs: entries of the k-buffer, 1..65536 lod:              Havs: the fraction of the faces inside
+/// that is drawn, 0..1; the boundary's always are samples:          n × n pictures, moved by parts of a pixel, of which the
+/// mean is taken, 1..16 count_violations: draws a second time with lists, to find where the order is wrong. Lists are compared
+/// with the order by
 ///                   centroids; Havs counts without it
 /// list_bytes:       the most memory of lists, those of Havs too; what needs more is drawn in parts of the picture
-struct PtOptions {
-    PtOrder order = PtOrder::Topological;
+struct ProjectedOptions {
+    ProjectedOrder order = ProjectedOrder::Topological;
     std::optional<int> device{};
     int kbuffer = 6;
     double lod = 1;
@@ -40,7 +40,7 @@ struct PtOptions {
     Progress* progress = nullptr;
 };
 
-struct PtReport {
+struct ProjectedReport {
     std::string device;
     std::size_t tets = 0;
     std::size_t degenerate_tets = 0;  // of zero volume: not drawn
@@ -56,9 +56,9 @@ struct PtReport {
     double seconds_prepare = 0, seconds_sort = 0, seconds_draw = 0;
 };
 
-struct PtResult {
+struct ProjectedResult {
     Image image;
-    PtReport report;
+    ProjectedReport report;
 };
 
 /// Projected tetrahedra: the same 6 tetrahedra a cell as render_tets, their silhouettes drawn by OpenGL over each other, from
@@ -70,19 +70,19 @@ struct PtResult {
 /// cost:   16 bytes a point and 20 a tetrahedron on the device, Havs: 20 a face; lists: 20 bytes a fragment, Havs: 12, up to
 ///         list_bytes
 /// source: docs/science.md (st1990; mhc1990 for the topological order; cics2005 for Havs, ccss2005 for its faces left out)
-class PtRenderer {
+class ProjectedRenderer {
 public:
     /// scalar: one value a point of the mesh
     /// throws: Error(InvalidInput) if scalar.size() != mesh.points.size();
     ///         Error(MissingCapability) if there is no OpenGL 4.5, or it has no room
-    PtRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device = {},
-               Progress* progress = nullptr);
-    ~PtRenderer();
-    PtRenderer(PtRenderer&&) noexcept;
-    PtRenderer& operator=(PtRenderer&&) noexcept;
+    ProjectedRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device = {},
+                      Progress* progress = nullptr);
+    ~ProjectedRenderer();
+    ProjectedRenderer(ProjectedRenderer&&) noexcept;
+    ProjectedRenderer& operator=(ProjectedRenderer&&) noexcept;
 
     /// throws: Error(InvalidInput) if an option is out of range, or values and extinctions are beyond 32-bit floats
-    [[nodiscard]] PtResult draw(const View& view, const Optics& optics, const PtOptions& options = {});
+    [[nodiscard]] ProjectedResult draw(const View& view, const Optics& optics, const ProjectedOptions& options = {});
     [[nodiscard]] double seconds_build() const;
 
 private:
@@ -90,8 +90,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// One picture of a PtRenderer.
-[[nodiscard]] PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view,
-                                             const Optics& optics, const PtOptions& options = {});
+/// One picture of a ProjectedRenderer.
+[[nodiscard]] ProjectedResult render_projected(const HexMesh& mesh, std::span<const double> scalar, const View& view,
+                                               const Optics& optics, const ProjectedOptions& options = {});
 
 }  // namespace subvol

@@ -1,16 +1,16 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// A tetrahedron at a pixel. What becomes of the segment: PT_COMPOSITE blends it over what was drawn before; PT_COUNT counts it;
-// PT_KEEP stores it in the pixel's list.
+// A tetrahedron at a pixel. What becomes of the segment: FRAGMENT_COMPOSITE blends it over what was drawn before; FRAGMENT_COUNT counts it;
+// FRAGMENT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2, corner3;
 flat in uint rank;
 
-#if PT_MODE == PT_COMPOSITE
+#if FRAGMENT_MODE == FRAGMENT_COMPOSITE
 layout(location = 0) out vec4 color;
 #else
 layout(std430, binding = 3) buffer Counts { uint counts[]; };
 #endif
-#if PT_MODE == PT_KEEP
+#if FRAGMENT_MODE == FRAGMENT_KEEP
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) writeonly buffer Segments { vec4 segments[]; };  // depths of both ends, values there
 layout(std430, binding = 6) writeonly buffer Ranks { uint ranks[]; };
@@ -42,15 +42,15 @@ bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
 void main() {
     vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel), front, back;
     if (!find_segment(slope, front, back)) discard;
-#if PT_MODE != PT_COMPOSITE
+#if FRAGMENT_MODE != FRAGMENT_COMPOSITE
     ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
     int id = place.y * (rectangle.z - rectangle.x) + place.x;
     uint before = atomicAdd(counts[id], 1u);
 #endif
-#if PT_MODE == PT_COMPOSITE
+#if FRAGMENT_MODE == FRAGMENT_COMPOSITE
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     color = segment_light(front.y, back.y, (back.x - front.x) * ray_length);
-#elif PT_MODE == PT_KEEP
+#elif FRAGMENT_MODE == FRAGMENT_KEEP
     segments[offsets[id] + before] = vec4(front.x, back.x, front.y, back.y);
     ranks[offsets[id] + before] = rank;
 #endif

@@ -11,7 +11,6 @@ uniform ivec4 rectangle;
 
 // Of two segments that are thinner nothing can be told.
 const float kTouch = 1e-5;
-const float kOpaque = 1e-6;
 
 // Neighbours have the same depth on the face between them, to the last bit.
 void sort_list(uint first, uint end) {
@@ -54,7 +53,7 @@ void main() {
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     vec4 sum = vec4(0.0);
     float done = -middle_depth;  // every depth counts once, where cells fold over too
-    for (uint i = first; i < end && 1.0 - sum.a > kOpaque; ++i) {
+    for (uint i = first; i < end && 1.0 - sum.a > kRayCutoff; ++i) {
         vec4 segment = segments[i];
         float from = max(done, segment.x);
         if (!(from < segment.y)) continue;

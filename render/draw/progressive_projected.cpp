@@ -11,7 +11,7 @@ using namespace detail;
 
 namespace {
 
-void check(const PtProgressiveOptions& options) {
+void check(const ProjectedProgressiveOptions& options) {
     if (!(options.seconds > 0)) {
         throw Error(ErrorCode::InvalidInput, "the time is " + std::to_string(options.seconds), {},
                     "a positive number of seconds");
@@ -24,17 +24,18 @@ void check(const PtProgressiveOptions& options) {
 
 class Steps {
 public:
-    Steps(PtRenderer& renderer, const View& view, const Optics& optics, const PtProgressiveOptions& options)
+    Steps(ProjectedRenderer& renderer, const View& view, const Optics& optics, const ProjectedProgressiveOptions& options)
         : renderer_(renderer), view_(view), optics_(optics), options_(options), deadline_(options.progress, options.seconds) {}
 
-    PtProgressiveResult run() {
-        draw(PtOrder::Havs, 0, 1);
+    ProjectedProgressiveResult run() {
+        draw(ProjectedOrder::Havs, 0, 1);
         deadline_.arm();
         try {
-            for (const double lod : options_.lod) draw(PtOrder::Havs, lod, 1);
-            draw(PtOrder::Havs, 1, 1);
-            const bool late = result_.pt.report.late_faces > 0;
-            if (late || options_.pt.samples > 1) draw(late ? PtOrder::Lists : PtOrder::Havs, 1, options_.pt.samples);
+            for (const double lod : options_.lod) draw(ProjectedOrder::Havs, lod, 1);
+            draw(ProjectedOrder::Havs, 1, 1);
+            const bool late = result_.projected.report.late_faces > 0;
+            if (late || options_.projected.samples > 1)
+                draw(late ? ProjectedOrder::Lists : ProjectedOrder::Havs, 1, options_.projected.samples);
             result_.finished = true;
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled || deadline_.stopped()) throw;
@@ -44,31 +45,31 @@ public:
     }
 
 private:
-    void draw(PtOrder order, double lod, int samples) {
-        PtOptions options = options_.pt;
+    void draw(ProjectedOrder order, double lod, int samples) {
+        ProjectedOptions options = options_.projected;
         options.order = order;
         options.lod = lod;
         options.samples = samples;
         options.progress = &deadline_;
-        result_.pt = renderer_.draw(view_, optics_, options);
+        result_.projected = renderer_.draw(view_, optics_, options);
         result_.order = order;
         result_.lod = lod;
         ++result_.steps;
-        deadline_.picture(result_.pt.image);
+        deadline_.picture(result_.projected.image);
     }
 
-    PtRenderer& renderer_;
+    ProjectedRenderer& renderer_;
     const View& view_;
     const Optics& optics_;
-    const PtProgressiveOptions& options_;
+    const ProjectedProgressiveOptions& options_;
     Deadline deadline_;
-    PtProgressiveResult result_;
+    ProjectedProgressiveResult result_;
 };
 
 }  // namespace
 
-PtProgressiveResult render_progressively(PtRenderer& renderer, const View& view, const Optics& optics,
-                                         const PtProgressiveOptions& options) {
+ProjectedProgressiveResult render_progressively(ProjectedRenderer& renderer, const View& view, const Optics& optics,
+                                                const ProjectedProgressiveOptions& options) {
     check(options);
     return Steps(renderer, view, optics, options).run();
 }

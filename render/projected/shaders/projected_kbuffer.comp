@@ -13,7 +13,6 @@ uniform uint kbuffer;
 uniform float eye_value;
 
 const float kTouch = 1e-5;  // of two faces that are closer nothing can be told
-const float kOpaque = 1e-6;
 
 // The device draws in order but may store out of it. Nearly sorted: insertion is quick.
 void sort_by_rank(uint first, uint end) {
@@ -78,7 +77,7 @@ void main() {
         if (cover > 0) leave_before_entering(i, end);
         vec2 here = crossings[i];
         float from = max(before.x, eye);
-        if (cover > 0 && from < here.x && 1.0 - sum.a > kOpaque) {
+        if (cover > 0 && from < here.x && 1.0 - sum.a > kRayCutoff) {
             float value = mix(before.y, here.y, (from - before.x) / (here.x - before.x));
             sum += (1.0 - sum.a) * segment_light(value, here.y, (here.x - from) * ray_length);
         }

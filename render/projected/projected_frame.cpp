@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pt_frame.h"
+#include "projected_frame.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
