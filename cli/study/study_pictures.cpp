@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <limits>
 
 #include "report.h"
@@ -7,6 +6,7 @@
 #include "study_input.h"
 #include "study_metrics.h"
 #include "study_work.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/empty_space.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -38,23 +38,13 @@ struct Scene {
     [[nodiscard]] int repeats() const { return std::max(of.whole("repeat"), 1); }
 };
 
-class Stopwatch {
-public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
 /// Draws as often as the case says; the last picture, and the least time of one.
 template <class Draw>
 Image repeated(const Scene& scene, const Draw& draw) {
     double least = std::numeric_limits<double>::infinity();
     Image image;
     for (int i = 0; i < scene.repeats(); ++i) {
-        const Stopwatch watch;
+        const detail::Stopwatch watch;
         image = draw();
         least = std::min(least, watch.seconds());
     }
@@ -63,7 +53,7 @@ Image repeated(const Scene& scene, const Draw& draw) {
 }
 
 Image splat(const Scene& scene, bool by_sheets) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     RbfVolume volume = sample_rbf_points(scene.mesh, study_sampling(scene.of, scene.mesh)).volume;
     scene.result.metrics["sampled"] = static_cast<double>(volume.size());
     if (scene.of.flag("visible_only")) volume = drop_invisible(volume, 0, scene.optics.function()).volume;
@@ -83,7 +73,7 @@ HexMesh refined(const Scene& scene) {
 }
 
 Image tets(const Scene& scene) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     const HexMesh fine = refined(scene);
     const TetsRenderer renderer(fine, fine.attributes.front().values);
     scene.result.costs["prepare_seconds"] = watch.seconds();
@@ -102,7 +92,7 @@ ProjectedOrder projected_order(const std::string& name) {
 }
 
 Image projected_tets(const Scene& scene) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     const HexMesh fine = refined(scene);
     ProjectedRenderer renderer(fine, fine.attributes.front().values);
     scene.result.costs["prepare_seconds"] = watch.seconds();
@@ -133,7 +123,7 @@ Image dense(const Scene& scene) {
 }
 
 Image grid(const Scene& scene) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     const Vec3 size = bounds(scene.mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / scene.of.whole("resolution");
     const LimitCells limit = find_limit_cells(scene.mesh, {}, {.position_world = 0.1 * voxel});
@@ -167,7 +157,7 @@ Image measured(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
     const View view = study_view(of, mesh, optics);
     const auto before = static_cast<double>(peak_memory_bytes());
     const double cpu = cpu_seconds();
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     Image image = draw({of, mesh, view, optics, result});
     result.costs["seconds"] = watch.seconds();
     result.costs["cpu_seconds"] = cpu_seconds() - cpu;

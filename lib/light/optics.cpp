@@ -17,24 +17,6 @@ namespace {
 constexpr double kMaxAlpha = 1 - 1e-6;
 constexpr double kOpaque = 1e-16;  // below it what lies behind does not change a double
 
-double number_of(const TransferFunction::OpacityKnot& knot) {
-    return std::min(knot.alpha, kMaxAlpha);
-}
-Vec3 number_of(const TransferFunction::ColorKnot& knot) {
-    return knot.rgb;
-}
-
-template <class Knot>
-auto interpolate(const std::vector<Knot>& knots, double value) {
-    const auto next =
-        std::upper_bound(knots.begin(), knots.end(), value, [](double v, const Knot& knot) { return v < knot.value; });
-    if (next == knots.begin()) return number_of(knots.front());
-    const auto last = std::prev(next);
-    if (next == knots.end()) return number_of(*last);
-    const double s = (value - last->value) / (next->value - last->value);
-    return (1 - s) * number_of(*last) + s * number_of(*next);
-}
-
 std::vector<double> merged_knots(const TransferFunction& function) {
     std::vector<double> knots;
     for (const auto& knot : function.color) knots.push_back(knot.value);
@@ -52,18 +34,20 @@ Optics::Optics(TransferFunction function, double opacity_unit_world)
     if (!(unit_ > 0) || !std::isfinite(unit_)) {
         throw Error(ErrorCode::InvalidInput, "the opacity unit is " + std::to_string(unit_), {}, "a positive world length");
     }
-    knots_ = merged_knots(function_);
+    TransferFunction bounded = function_;
+    for (auto& knot : bounded.opacity) knot.alpha = std::min(knot.alpha, kMaxAlpha);
+    knots_ = merged_knots(bounded);
     double integral = 0;
     for (std::size_t i = 0; i <= knots_.size(); ++i) {
         const double begin = knots_[i > 0 ? i - 1 : 0];
         Span span{.begin = begin,
-                  .alpha = interpolate(function_.opacity, begin),
-                  .color = interpolate(function_.color, begin),
+                  .alpha = alpha_at(bounded, begin),
+                  .color = color_at(bounded, begin),
                   .integral = integral};
         if (i > 0 && i < knots_.size()) {
             span.inverse_width = 1 / (knots_[i] - begin);
-            span.alpha_step = interpolate(function_.opacity, knots_[i]) - span.alpha;
-            span.color_step = interpolate(function_.color, knots_[i]) - span.color;
+            span.alpha_step = alpha_at(bounded, knots_[i]) - span.alpha;
+            span.color_step = color_at(bounded, knots_[i]) - span.color;
             integral += piece_depth(span.alpha, span.alpha + span.alpha_step, (knots_[i] - begin) / unit_);
         }
         span.transparent = !(span.alpha > 0) && !(span.alpha_step > 0);

@@ -92,6 +92,19 @@ const Attribute* HexMesh::find_attribute(std::string_view name) const {
     return found == attributes.end() ? nullptr : &*found;
 }
 
+const Attribute& scalar_field(const HexMesh& mesh, std::string_view name) {
+    std::string known;
+    for (const auto& attribute : mesh.attributes) {
+        if (attribute.channels != 1) continue;
+        if (name.empty() || attribute.name == name) return attribute;
+        known += (known.empty() ? "" : ", ") + attribute.name;
+    }
+    throw Error(ErrorCode::InvalidInput,
+                name.empty() ? "the mesh has no field of one channel"
+                             : "there is no field \"" + std::string(name) + "\" of one channel",
+                {}, known.empty() ? "an attribute of one channel" : "the mesh has: " + known);
+}
+
 void validate(const HexMesh& mesh) {
     if (mesh.cells.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra");
     validate_cells(mesh);

@@ -18,17 +18,6 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kConstantHarmonic = 0.28209479177387814;  // √(1/4π): a viewer's colour is .5 + this · f_dc
 constexpr double kLeastOpacity = 1.0 / 255;                // what a viewer can still show; the logit of 0 is infinite
 
-/// Between the knots of one list; knot(i) is the pair of value and result.
-template <class Knots, class Result>
-auto interpolated(const Knots& knots, double value, const Result& result) {
-    const auto after = std::find_if(knots.begin(), knots.end(), [&](const auto& knot) { return knot.value > value; });
-    if (after == knots.begin()) return result(*after);
-    const auto before = after - 1;
-    if (after == knots.end()) return result(*before);
-    const double t = (value - before->value) / (after->value - before->value);
-    return (1 - t) * result(*before) + t * result(*after);
-}
-
 }  // namespace
 
 double gaussian_width(const Kernel& kernel) {
@@ -50,14 +39,13 @@ std::vector<PlySplat> ply_splats(const RbfVolume& volume) {
     std::vector<PlySplat> splats(volume.size());
     if (splats.empty()) return splats;
     const auto [min, max] = std::minmax_element(values.begin(), values.end());
-    const TransferFunction look = transfer_function_preset("viridis", *min, *max);
+    const TransferFunction function = transfer_function_preset("viridis", *min, *max);
     const double width = gaussian_width(volume.kernel);
     tbb::parallel_for(std::size_t{0}, splats.size(), [&](std::size_t i) {
         const PrincipalAxes axes = principal_axes(volume.frames[i]);
         const auto turn = quaternion(axes.directions);
-        const Vec3 color = interpolated(look.color, values[i], [](const auto& knot) { return knot.rgb; });
-        const double alpha =
-            std::max(interpolated(look.opacity, values[i], [](const auto& knot) { return knot.alpha; }), kLeastOpacity);
+        const Vec3 color = color_at(function, values[i]);
+        const double alpha = std::max(alpha_at(function, values[i]), kLeastOpacity);
         PlySplat& splat = splats[i];
         for (int k = 0; k < 3; ++k) {
             const auto n = static_cast<std::size_t>(k);

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 
 #include "dense_passes.h"
 #include "dense_tracer.h"
+#include "subvol/detail/stopwatch.h"
 
 namespace subvol {
 
@@ -19,12 +19,6 @@ using namespace detail;
 namespace {
 
 constexpr int kMostLevels = 8;  // faces of tetrahedra are numbered with 32 bits
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 void check(const HexMesh& mesh, std::span<const double> scalar, const DenseOptions& options) {
     check_samples(options.samples);
@@ -96,7 +90,7 @@ public:
     }
 
     DenseResult run() {
-        auto start = Clock::now();
+        Stopwatch watch;
         report_progress(options_.progress, "build", 0);
         find_seen();
         const std::size_t at_once = most_bytes_ > 0 ? options_.memory / most_bytes_ : seen_.size();
@@ -106,13 +100,11 @@ public:
         for (const DensePass& pass : passes) {
             if (!kept_suffice) build(pass.cells);
             sort_kept();
-            report_.seconds_build += seconds_since(start);
-            start = Clock::now();
+            report_.seconds_build += watch.restart();
             draw(pass.rect);
-            report_.seconds_draw += seconds_since(start);
-            start = Clock::now();
+            report_.seconds_draw += watch.restart();
         }
-        report_.seconds_build += seconds_since(start);
+        report_.seconds_build += watch.seconds();
         return {std::move(image_), report_};
     }
 
@@ -121,7 +113,7 @@ private:
     void find_seen() {
         std::mutex adding;
         std::atomic<bool> full = false;
-        const auto look = [&](const DenseCell& cell) {
+        const auto inspect = [&](const DenseCell& cell) {
             Box box;
             for (const Vec3& p : cell.points) box.add(p);
             const auto [min, max] = std::ranges::minmax(cell.values[0]);
@@ -139,7 +131,7 @@ private:
             full = true;
             drop();
         };
-        for_each_dense_cell(mesh_, refine_, {.cells = {}, .on_limit = true}, look);
+        for_each_dense_cell(mesh_, refine_, {.cells = {}, .on_limit = true}, inspect);
         std::sort(seen_.begin(), seen_.end(), [](const SeenGrid& a, const SeenGrid& b) { return a.cell < b.cell; });
     }
 

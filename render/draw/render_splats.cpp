@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +12,7 @@
 #include "gl_splatter.h"
 #include "pixel_tiles.h"
 #include "splat_cpu.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/splat.h"
 
@@ -61,10 +61,6 @@ std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
 
 std::string cpu_threads() {
     return std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) + " CPU threads";
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 struct Mean {
@@ -121,9 +117,9 @@ struct Splatter::State {
     /// The CPU prepares what it or sheet buffers draw.
     [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& classification, Progress* progress,
                                            SplatReport& report) {
-        const auto start = std::chrono::steady_clock::now();
+        const detail::Stopwatch watch;
         detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
-        report.seconds_prepare += seconds_since(start);
+        report.seconds_prepare += watch.seconds();
         report.backend = sheets ? "gl" : "cpu";
         report.device = sheets ? sheets->renderer() : cpu_threads();
         report.bin_entries = frame.tile_splats.size();
@@ -163,9 +159,9 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     if (!progress) progress = state.options.progress;
     SplatResult result;
     auto& report = result.report;
-    const auto start = std::chrono::steady_clock::now();
+    const detail::Stopwatch watch;
     const auto classification = detail::classify(state.scene, optics);
-    report.seconds_prepare = seconds_since(start);
+    report.seconds_prepare = watch.seconds();
     const int n = state.options.samples;
     const View fine(view.camera(), n * view.width(), n * view.height());  // its pixels' centres are the samples
     auto drawn = state.gpu ? state.draw_on_gpu(fine, classification, progress, report)
@@ -173,7 +169,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
     take_means(result, n);
-    report.seconds_draw = seconds_since(start) - report.seconds_prepare;
+    report.seconds_draw = watch.seconds() - report.seconds_prepare;
     report.points = state.scene.volume->size();
     return result;
 }

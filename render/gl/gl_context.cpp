@@ -3,6 +3,9 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <array>
+
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -56,6 +59,20 @@ void GlContext::release() const {
 GlScope::GlScope(const GlContext& context) {
     if (context.opened_.context.make_current()) return;
     throw Error(ErrorCode::MissingCapability, "the GL context is in use by another thread", context.renderer());
+}
+
+void check_picture_size(int width, int height, const char* allowed) {
+    GLint most = 0;
+    std::array<GLint, 2> viewport{};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+    most = std::min({most, viewport[0], viewport[1]});
+    const int longest = std::max(width, height);
+    if (longest <= most) return;
+    throw Error(
+        ErrorCode::MissingCapability,
+        "the GL device draws up to " + std::to_string(most) + " pixels in a row or column, not " + std::to_string(longest), {},
+        allowed);
 }
 
 void check_gl(const std::string& where) {

@@ -35,13 +35,13 @@ class GlScope {
 public:
     /// throws: Error(MissingCapability) if the context is current on another thread
     explicit GlScope(const GlContext& context);
-    ~GlScope() { (void)before_.make_current(); }
-    GlScope(const GlScope&) = delete;
-    GlScope& operator=(const GlScope&) = delete;
 
 private:
-    EglContext before_ = EglContext::current();
+    KeepCurrent keep_;
 };
+
+/// throws: Error(MissingCapability) with the hint `allowed` if the current context cannot draw a picture of that size
+void check_picture_size(int width, int height, const char* allowed);
 
 /// Asks the current context whether something failed since it was last asked: a call, memory, the device itself.
 ///

@@ -26,6 +26,18 @@ struct EglContext {
     bool operator==(const EglContext&) const = default;
 };
 
+/// Makes the context of this thread current again at the end of a scope that opens, uses or closes others.
+class KeepCurrent {
+public:
+    KeepCurrent() = default;
+    ~KeepCurrent() { (void)before_.make_current(); }
+    KeepCurrent(const KeepCurrent&) = delete;
+    KeepCurrent& operator=(const KeepCurrent&) = delete;
+
+private:
+    EglContext before_ = EglContext::current();
+};
+
 struct OpenedGl {
     EglContext context;
     GlDevice device;

@@ -34,20 +34,6 @@ void fill(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(bytes, values.data());
 }
 
-void check_size(int width, int height) {
-    GLint most = 0;
-    std::array<GLint, 2> viewport{};
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
-    most = std::min({most, viewport[0], viewport[1]});
-    const int longest = std::max(width, height);
-    if (longest <= most) return;
-    throw Error(
-        ErrorCode::MissingCapability,
-        "the GL device draws up to " + std::to_string(most) + " pixels in a row or column, not " + std::to_string(longest), {},
-        "a smaller picture, or the method tets");
-}
-
 std::vector<ShaderText> resolver_texts() {
     return {{"projected_frame.glsl", kShader_projected_frame_glsl},
             {"exp_log.glsl", kShader_exp_log_glsl},
@@ -105,7 +91,7 @@ void GlTets::set_frame(const GlTetFrame& frame, const View& view) {
 
 void GlTets::make_target(int width, int height) {
     if (width_ == width && height_ == height) return;
-    check_size(width, height);
+    check_picture_size(width, height, "a smaller picture, or the method tets");
     width_ = 0;  // until it is made
     glDeleteTextures(1, &texture_);
     glCreateTextures(GL_TEXTURE_2D, 1, &texture_);

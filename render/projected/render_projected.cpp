@@ -2,7 +2,6 @@
 #include "subvol/render_projected.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "gl_context.h"
@@ -10,6 +9,7 @@
 #include "gl_tets.h"
 #include "pixel_tiles.h"
 #include "projected_frame.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "tet_faces.h"
 #include "tet_mesh.h"
@@ -21,23 +21,12 @@ using namespace detail;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using detail::DrawStage;
 using detail::GlTets;
 
 // OpenGL numbers vertices by signed integers; tetrahedra have 6, faces 3; a face's rank leaves 3 bits.
 constexpr std::size_t kMostTets = std::size_t{0x7fffffff} / 6, kMostFaces = std::size_t{1} << 29;
 constexpr int kMostEntries = 65536;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// The context that was current is so again.
-struct KeepCurrent {
-    detail::EglContext before = detail::EglContext::current();
-    ~KeepCurrent() { (void)before.make_current(); }
-};
 
 const std::optional<int>& checked_device(const std::optional<int>& device) {
     if (find_gl_device(device)) return device;
@@ -89,7 +78,7 @@ struct ProjectedRenderer::State {
     [[nodiscard]] Image draw_lists(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage);
     [[nodiscard]] Image draw_samples(const ProjectedOptions& options, ProjectedReport& report);
 
-    Clock::time_point start = Clock::now();
+    Stopwatch build_watch;
     TetMesh tets;
     std::optional<TetFaces> faces;  // once they are drawn
     Box box;
@@ -114,7 +103,7 @@ ProjectedRenderer::State::State(const HexMesh& mesh, std::span<const double> sca
     built.degenerate_tets = tets.degenerate_tets;
     built.inverted_tets = tets.inverted_tets;
     report_progress(progress, "build", 1);
-    built.seconds_build = seconds_since(start);
+    built.seconds_build = build_watch.seconds();
 }
 
 void ProjectedRenderer::State::upload(GlTets::Items items) {
@@ -207,19 +196,17 @@ ProjectedResult ProjectedRenderer::draw(const View& view, const Optics& optics, 
     ProjectedReport& report = result.report;
     const bool faces = options.order == ProjectedOrder::Havs;
 
-    auto start = Clock::now();
+    Stopwatch watch;
     state.upload(faces ? GlTets::Items::Faces : GlTets::Items::Tets);
     detail::GlTetFrame frame = detail::make_tet_frame(state.tets, state.box, view, optics, faces);
-    report.seconds_prepare = seconds_since(start);
+    report.seconds_prepare = watch.restart();
 
-    start = Clock::now();
     state.order(frame, view, options, report);
-    report.seconds_sort = seconds_since(start);
+    report.seconds_sort = watch.restart();
 
-    start = Clock::now();
     state.drawer->set_frame(frame, view);
     result.image = state.draw_samples(options, report);
-    report.seconds_draw = seconds_since(start);
+    report.seconds_draw = watch.seconds();
     if (options.count_violations && !report.violations) (void)state.draw_lists(options, report, {options.progress});
     return result;
 }

@@ -50,12 +50,6 @@ void upload(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(values.size() * sizeof(T), values.data());
 }
 
-/// The context that was current is so again.
-struct KeepCurrent {
-    EglContext before = EglContext::current();
-    ~KeepCurrent() { (void)before.make_current(); }
-};
-
 /// The kernels that may meet some batches, a sheet more on each side: rounding may not lose one.
 std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
                                            int end_sheet) {

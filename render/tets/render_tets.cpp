@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tbb/combinable.h>
 
-#include <chrono>
-
 #include "boundary_scene.h"
 #include "pixel_tiles.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/render_tets.h"
 #include "tet_mesh.h"
 #include "tet_packet_tracer.h"
@@ -14,12 +13,6 @@ namespace subvol {
 using namespace detail;
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Draws a tile: as `trace_pixel` for each of its pixels, but all pixels at once.
 void draw_tile(const View& view, int samples, const PixelRect& tile, TetPacketTracer& tracer, Image& image) {
@@ -62,7 +55,7 @@ struct TetsRenderer::State {
 TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, Progress* progress)
     : state_(std::make_unique<State>()) {
     check_tet_input(mesh, scalar);
-    const auto start = Clock::now();
+    const Stopwatch watch;
     report_progress(progress, "build", 0);
     TetMesh& tets = state_->tets;
     tets = build_tet_mesh(mesh, scalar);
@@ -75,7 +68,7 @@ TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, 
     built.inverted_tets = tets.inverted_tets;
     built.bytes = tets.tets.size() * (sizeof(TetMesh::Tet) + sizeof(tets.links[0])) +
                   tets.points.size() * sizeof(TetMesh::Point) + tets.boundary.size() * sizeof(TetFace);
-    built.seconds_build = seconds_since(start);
+    built.seconds_build = watch.seconds();
 }
 
 TetsRenderer::~TetsRenderer() = default;
@@ -90,7 +83,7 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
     check_samples(options.samples);
     TetsResult result{{}, state_->built};
     TetsReport& report = result.report;
-    const auto start = Clock::now();
+    const Stopwatch watch;
     tbb::combinable<TraceCounts> sums;
     result.image = Image(view.width(), view.height());
     for_each_tile({0, 0, view.width(), view.height()}, options.progress, [&](const PixelRect& tile) {
@@ -103,7 +96,7 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
         report.segments += sum.segments;
         report.lost_rays += sum.lost_rays;
     });
-    report.seconds_draw = seconds_since(start);
+    report.seconds_draw = watch.seconds();
     return result;
 }
 

@@ -38,6 +38,11 @@ struct HexMesh {
     [[nodiscard]] const Attribute* find_attribute(std::string_view name) const;
 };
 
+/// The attribute of that name with one channel; without a name, the first with one channel.
+///
+/// throws: Error(InvalidInput) if there is no attribute of that name with one channel; lists those that exist
+[[nodiscard]] const Attribute& scalar_field(const HexMesh& mesh, std::string_view name = {});
+
 /// Checks what every later stage relies on.
 ///
 /// throws: Error(InvalidInput) if there is no cell, a corner is out of range or listed twice in a cell, a used point is not
