@@ -61,13 +61,12 @@ void measure(int resolution) {
     const View view(fit_camera(box, {-1, 1, -1}), kSize, kSize);
     const Optics optics({{{0, {0, 0, 1}}, {0.5, {0.1, 1, 0.2}}, {1, {1, 0, 0}}}, {{0, 0}, {1, 0.1}}},
                         0.01 * glm::length(box.upper - box.lower));
-    const auto& values = mesh.attributes[0].values;
-    const TetsRenderer tracer(mesh, values);
+    const TetsRenderer tracer(mesh);
     TetsResult rays;
     const double ray_seconds = bench::seconds_of([&] { rays = tracer.draw(view, optics); }, kFrames);
     std::printf("twist %d: %zu tets; by rays on the CPU: prepare %.3f s, draw %.3f s\n", resolution, rays.report.tets,
                 tracer.seconds_build(), ray_seconds);
-    ProjectedRenderer renderer(mesh, values);
+    ProjectedRenderer renderer(mesh);
     for (const auto& [name, options] : rows()) {
         ProjectedResult best;
         for (int i = 0; i < kFrames; ++i) {

@@ -94,7 +94,7 @@ Picture draw_projected_tets(ProjectedRenderer& renderer, const View& view, const
 
 Picture draw_dense(const HexMesh& mesh, const RefineOptions& refine, std::optional<int> levels, const View& view,
                    const Optics& optics, const ReferenceArguments& arguments, Progress* progress, Report& report) {
-    DenseResult drawn = render_dense(mesh, mesh.attributes.front().values, view, optics,
+    DenseResult drawn = render_dense(mesh, {}, view, optics,
                                      {.refine = refine,
                                       .levels = levels,
                                       .image_tolerance = arguments.image_tolerance,

@@ -34,7 +34,6 @@ struct Scene {
     const Optics& optics;
     CaseResult& result;
 
-    [[nodiscard]] std::span<const double> scalar() const { return mesh.attributes.front().values; }
     [[nodiscard]] int repeats() const { return std::max(of.whole("repeat"), 1); }
 };
 
@@ -75,7 +74,7 @@ HexMesh refined(const Scene& scene) {
 Image tets(const Scene& scene) {
     const detail::Stopwatch watch;
     const HexMesh fine = refined(scene);
-    const TetsRenderer renderer(fine, fine.attributes.front().values);
+    const TetsRenderer renderer(fine);
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
         TetsResult drawn = renderer.draw(scene.view, scene.optics, {.samples = scene.of.whole("samples")});
@@ -94,7 +93,7 @@ ProjectedOrder projected_order(const std::string& name) {
 Image projected_tets(const Scene& scene) {
     const detail::Stopwatch watch;
     const HexMesh fine = refined(scene);
-    ProjectedRenderer renderer(fine, fine.attributes.front().values);
+    ProjectedRenderer renderer(fine);
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
         ProjectedResult drawn = renderer.draw(scene.view, scene.optics, {.order = projected_order(scene.of.text("order"))});
@@ -107,7 +106,7 @@ Image projected_tets(const Scene& scene) {
 Image dense(const Scene& scene) {
     const auto levels = scene.of.has("levels") ? std::optional(scene.of.whole("levels")) : std::nullopt;
     return repeated(scene, [&] {
-        DenseResult drawn = render_dense(scene.mesh, scene.scalar(), scene.view, scene.optics,
+        DenseResult drawn = render_dense(scene.mesh, {}, scene.view, scene.optics,
                                          {.levels = levels,
                                           .max_levels = scene.of.whole("max_levels"),
                                           .image_tolerance = scene.of.number("tolerance"),

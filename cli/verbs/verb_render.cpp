@@ -119,16 +119,15 @@ private:
 
     void draw_tetrahedra(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                          Report& report) const {
-        const auto& values = mesh.attributes.front().values;
         if (method_ == "pt") {
-            ProjectedRenderer renderer(mesh, values, splat_.device);
+            ProjectedRenderer renderer(mesh, {}, splat_.device);
             report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_projected_tets(renderer, view, optics, reference_, splat_.seconds, progress, report);
             };
             output.write(views, draw, report);
         } else {
-            const TetsRenderer renderer(mesh, values);
+            const TetsRenderer renderer(mesh);
             report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_tets(renderer, view, optics, reference_, progress, report);

@@ -102,7 +102,8 @@ private:
             append(svg, "linearGradient",
                    {{"id", "colors"}, {"gradientUnits", "userSpaceOnUse"}, {"x1", number(kLeft)}, {"x2", number(end_)}});
         for (const double value : values) {
-            append(gradient, "stop", {{"offset", number(100 * part(value)) + "%"}, {"stop-color", hex(color_at(function_, value))}});
+            append(gradient, "stop",
+                   {{"offset", number(100 * part(value)) + "%"}, {"stop-color", hex(color_at(function_, value))}});
         }
     }
 

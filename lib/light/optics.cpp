@@ -40,10 +40,7 @@ Optics::Optics(TransferFunction function, double opacity_unit_world)
     double integral = 0;
     for (std::size_t i = 0; i <= knots_.size(); ++i) {
         const double begin = knots_[i > 0 ? i - 1 : 0];
-        Span span{.begin = begin,
-                  .alpha = alpha_at(bounded, begin),
-                  .color = color_at(bounded, begin),
-                  .integral = integral};
+        Span span{.begin = begin, .alpha = alpha_at(bounded, begin), .color = color_at(bounded, begin), .integral = integral};
         if (i > 0 && i < knots_.size()) {
             span.inverse_width = 1 / (knots_[i] - begin);
             span.alpha_step = alpha_at(bounded, knots_[i]) - span.alpha;

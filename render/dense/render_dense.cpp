@@ -20,12 +20,8 @@ namespace {
 
 constexpr int kMostLevels = 8;  // faces of tetrahedra are numbered with 32 bits
 
-void check(const HexMesh& mesh, std::span<const double> scalar, const DenseOptions& options) {
+void check(const DenseOptions& options) {
     check_samples(options.samples);
-    if (scalar.size() != mesh.points.size()) {
-        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
-                    std::to_string(mesh.points.size()) + ", one a point");
-    }
     for (const int levels : {options.levels.value_or(1), options.max_levels}) {
         if (levels >= 0 && levels <= kMostLevels) continue;
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {},
@@ -37,11 +33,9 @@ void check(const HexMesh& mesh, std::span<const double> scalar, const DenseOptio
     }
 }
 
-/// The mesh with the scalar as its only attribute.
-HexMesh with_scalar(const HexMesh& mesh, std::span<const double> scalar) {
-    HexMesh control{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
-    control.attributes.push_back({"scalar", 1, {scalar.begin(), scalar.end()}});
-    return control;
+/// The mesh with the field as its only attribute.
+HexMesh with_field_alone(const HexMesh& mesh, std::string_view field) {
+    return {mesh.points, mesh.cells, {scalar_field(mesh, field)}, mesh.creases, mesh.sharp_faces};
 }
 
 bool visible(const Optics& optics, double min, double max) {
@@ -184,10 +178,10 @@ private:
 
 }  // namespace
 
-DenseResult render_dense(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+DenseResult render_dense(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
                          const DenseOptions& options) {
-    check(mesh, scalar, options);
-    const HexMesh control = with_scalar(mesh, scalar);
+    check(options);
+    const HexMesh control = with_field_alone(mesh, field);
     const auto draw = [&](int levels) { return LevelPainter(control, view, optics, options, levels).run(); };
     if (options.levels) return draw(*options.levels);
     DenseResult result = draw(std::min(1, options.max_levels));

@@ -63,7 +63,7 @@ std::size_t most_fragments(std::size_t list_bytes, const GlDevice& device, GlTet
 }  // namespace
 
 struct ProjectedRenderer::State {
-    State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device, Progress* progress);
+    State(const HexMesh& mesh, const Attribute& field, const std::optional<int>& device, Progress* progress);
     ~State() {
         const detail::GlScope scope(context);
         lists.reset();
@@ -88,11 +88,11 @@ struct ProjectedRenderer::State {
     std::optional<detail::GlTetLists> lists;
 };
 
-ProjectedRenderer::State::State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device,
+ProjectedRenderer::State::State(const HexMesh& mesh, const Attribute& field, const std::optional<int>& device,
                                 Progress* progress)
     : context(checked_device(device)) {
     report_progress(progress, "build", 0);
-    tets = build_tet_mesh(mesh, scalar);
+    tets = build_tet_mesh(mesh, field.values);
     check_count("tetrahedra", tets.tets.size(), kMostTets);
     box = bounds(mesh);
     drawer.emplace();
@@ -173,11 +173,12 @@ Image ProjectedRenderer::State::draw_samples(const ProjectedOptions& options, Pr
     return image;
 }
 
-ProjectedRenderer::ProjectedRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device,
+ProjectedRenderer::ProjectedRenderer(const HexMesh& mesh, std::string_view field, std::optional<int> device,
                                      Progress* progress) {
-    check_tet_input(mesh, scalar);
+    validate(mesh);
+    const Attribute& shown = scalar_field(mesh, field);
     const KeepCurrent keep;
-    state_ = std::make_unique<State>(mesh, scalar, device, progress);
+    state_ = std::make_unique<State>(mesh, shown, device, progress);
 }
 
 ProjectedRenderer::~ProjectedRenderer() = default;
@@ -211,11 +212,10 @@ ProjectedResult ProjectedRenderer::draw(const View& view, const Optics& optics, 
     return result;
 }
 
-ProjectedResult render_projected(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+ProjectedResult render_projected(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
                                  const ProjectedOptions& options) {
-    check_tet_input(mesh, scalar);
     check_options(options);
-    return ProjectedRenderer(mesh, scalar, options.device, options.progress).draw(view, optics, options);
+    return ProjectedRenderer(mesh, field, options.device, options.progress).draw(view, optics, options);
 }
 
 }  // namespace subvol

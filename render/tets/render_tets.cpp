@@ -52,13 +52,14 @@ struct TetsRenderer::State {
     TetsReport built;
 };
 
-TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, Progress* progress)
+TetsRenderer::TetsRenderer(const HexMesh& mesh, std::string_view field, Progress* progress)
     : state_(std::make_unique<State>()) {
-    check_tet_input(mesh, scalar);
+    validate(mesh);
+    const Attribute& shown = scalar_field(mesh, field);
     const Stopwatch watch;
     report_progress(progress, "build", 0);
     TetMesh& tets = state_->tets;
-    tets = build_tet_mesh(mesh, scalar);
+    tets = build_tet_mesh(mesh, shown.values);
     report_progress(progress, "build", 0.8);
     state_->scene.emplace(tets, bounds(mesh));
     report_progress(progress, "build", 1);
@@ -100,10 +101,10 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
     return result;
 }
 
-TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+TetsResult render_tets(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
                        const TetsOptions& options) {
     check_samples(options.samples);
-    return TetsRenderer(mesh, scalar, options.progress).draw(view, optics, options);
+    return TetsRenderer(mesh, field, options.progress).draw(view, optics, options);
 }
 
 }  // namespace subvol

@@ -101,21 +101,7 @@ void count_shapes(TetMesh& mesh) {
 
 }  // namespace
 
-void check_tet_input(const HexMesh& mesh, std::span<const double> scalar) {
-    if (scalar.size() != mesh.points.size()) {
-        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
-                    std::to_string(mesh.points.size()) + ", one a point");
-    }
-    validate(mesh);
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        for (const Index p : mesh.cells[c]) {
-            if (std::isfinite(scalar[p])) continue;
-            throw Error(ErrorCode::InvalidInput, "the scalar is not finite", "point " + std::to_string(p));
-        }
-    }
-}
-
-TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> scalar) {
+TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
     if (hexes.cells.size() > kMaxCells) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.cells.size()) + " cells", {},
                     "at most " + std::to_string(kMaxCells));
@@ -126,7 +112,7 @@ TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> scalar) {
     }
     TetMesh mesh;
     mesh.points.resize(hexes.points.size());
-    for_each_index(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], scalar[p]}; });
+    for_each_index(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], values[p]}; });
     mesh.tets.resize(kTetsPerCell * hexes.cells.size());
     for_each_index(hexes.cells.size(), [&](std::size_t c) {
         const auto split = split_cell(hexes.cells[c]);

@@ -66,14 +66,13 @@ struct TetMesh {
     [[nodiscard]] const Point& point(Index id) const { return points[id]; }
 };
 
-/// throws: Error(InvalidInput) if there is not one finite value for every point of a cell, or the mesh is not valid
-void check_tet_input(const HexMesh& mesh, std::span<const double> scalar);
-
 /// Splits every cell into 6 and finds the neighbours by sorting the faces. A face of more than two tetrahedra is a boundary
 /// of each of them.
 ///
+/// mesh:   a valid one
+/// values: one for each point
 /// throws: Error(InvalidInput) if the mesh has more cells than 32-bit faces can number, or more points than 32 bits can
 /// cost:   O(n log n), parallel; about 120 bytes a tetrahedron while it sorts, 55 after
-[[nodiscard]] TetMesh build_tet_mesh(const HexMesh& mesh, std::span<const double> scalar);
+[[nodiscard]] TetMesh build_tet_mesh(const HexMesh& mesh, std::span<const double> values);
 
 }  // namespace subvol::detail

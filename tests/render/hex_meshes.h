@@ -7,6 +7,7 @@
 #include <functional>
 #include <numeric>
 #include <random>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -93,6 +94,18 @@ inline std::vector<double> evaluate(const HexMesh& mesh, const std::function<dou
     std::vector<double> values;
     for (const Vec3& p : mesh.points) values.push_back(field(p));
     return values;
+}
+
+/// The mesh with one attribute alone.
+inline HexMesh valued(HexMesh mesh, std::span<const double> values) {
+    mesh.attributes = {{"value", 1, {values.begin(), values.end()}}};
+    return mesh;
+}
+inline HexMesh valued(const HexMesh& mesh, double value) {
+    return valued(mesh, std::vector<double>(mesh.points.size(), value));
+}
+inline HexMesh valued(const HexMesh& mesh, const std::function<double(const Vec3&)>& field) {
+    return valued(mesh, evaluate(mesh, field));
 }
 
 }  // namespace subvol::test

@@ -33,12 +33,10 @@ TEST_P(Levels, AreOfTheSecondOrderByDenseGridsAndByTetrahedra) {
     camera.fovy_deg *= GetParam().part_of_view;
     const View view(camera, 96, 96);
     const Optics optics(transfer_function_preset("viridis", -1, 1), box.diagonal() / 30);
-    const auto dense = [&](int levels) {
-        return render_dense(mesh, mesh.attributes[0].values, view, optics, {.levels = levels}).image;
-    };
+    const auto dense = [&](int levels) { return render_dense(mesh, {}, view, optics, {.levels = levels}).image; };
     const auto tets = [&](int levels) {
         const HexMesh fine = on_limit(refine(mesh, {.levels = levels}), Scheme::Mcq);
-        return render_tets(fine, fine.attributes[0].values, view, optics).image;
+        return render_tets(fine, {}, view, optics).image;
     };
     Image limit = dense(kFinest);
     const Image before = dense(kFinest - 1);

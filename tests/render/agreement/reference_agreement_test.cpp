@@ -57,9 +57,9 @@ TEST_P(FromEverywhere, LinearFieldsLookTheSameByRaysProjectedAndByLists) {
     if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
     const HexMesh mesh = test::jittered_box(5, 0.25, 5);
     const auto values = evaluate(mesh, linear);
-    const Image rays = render_tets(mesh, values, view(), kinked_optics()).image;
-    const auto projected = render_projected(mesh, values, view(), kinked_optics());
-    const auto lists = render_projected(mesh, values, view(), kinked_optics(), {.order = ProjectedOrder::Lists});
+    const Image rays = render_tets(valued(mesh, values), {}, view(), kinked_optics()).image;
+    const auto projected = render_projected(valued(mesh, values), {}, view(), kinked_optics());
+    const auto lists = render_projected(valued(mesh, values), {}, view(), kinked_optics(), {.order = ProjectedOrder::Lists});
     EXPECT_EQ(projected.report.cycles, 0u);
     EXPECT_LT(largest_difference(projected.image, rays), kAgreeTol);
     EXPECT_LT(largest_difference(lists.image, rays), kAgreeTol);
@@ -69,8 +69,9 @@ TEST_P(FromEverywhere, LinearFieldsLookTheSameByRaysProjectedAndByLists) {
 TEST_P(FromEverywhere, LinearFieldsLookTheSameByRaysDenseAndMarched) {
     const HexMesh mesh = test::jittered_box(3, 0.25, 5);
     const auto values = evaluate(mesh, linear);
-    const Image rays = render_tets(mesh, values, view(), kinked_optics()).image;
-    EXPECT_LT(largest_difference(render_dense(mesh, values, view(), kinked_optics(), {.levels = 2}).image, rays), kFloatTol);
+    const Image rays = render_tets(valued(mesh, values), {}, view(), kinked_optics()).image;
+    EXPECT_LT(largest_difference(render_dense(valued(mesh, values), {}, view(), kinked_optics(), {.levels = 2}).image, rays),
+              kFloatTol);
     const auto field = [](const Vec3& p) {
         return glm::all(glm::greaterThanEqual(p, Vec3(0))) && glm::all(glm::lessThanEqual(p, Vec3(1)))
                    ? std::optional(linear(p))
@@ -84,12 +85,12 @@ TEST_P(FromEverywhere, LinearFieldsLookTheSameByRaysDenseAndMarched) {
 
 TEST_P(FromEverywhere, RefinementDoesNotChangeALinearField) {
     const HexMesh mesh = test::jittered_box(2, 0.25, 5);
-    const Image control = render_tets(mesh, evaluate(mesh, linear), view(), kinked_optics()).image;
+    const Image control = render_tets(valued(mesh, linear), {}, view(), kinked_optics()).image;
     for (const Scheme scheme : {Scheme::Linear, Scheme::Mcq}) {
         for (const int levels : {1, 2, 3}) {
             // Each level splits every tetrahedron's faces anew: only a field that is linear in space, not in the cells, stays.
             const HexMesh fine = refine(mesh, {.scheme = {scheme}, .levels = levels});
-            EXPECT_LT(largest_difference(render_tets(fine, evaluate(fine, linear), view(), kinked_optics()).image, control),
+            EXPECT_LT(largest_difference(render_tets(valued(fine, linear), {}, view(), kinked_optics()).image, control),
                       kFloatTol)
                 << static_cast<int>(scheme) << " level " << levels;
         }
@@ -107,7 +108,7 @@ TEST_P(FromEverywhere, FiveOrSixTetrahedraShowTheSameLinearField) {
     const HexMesh five = cube_of({{0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}, {1, 2, 4, 7}});
     const HexMesh six = cube_of({{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}});
     const HexMesh whole = test::box(1);
-    const auto draw = [](const HexMesh& mesh) { return render_tets(mesh, evaluate(mesh, linear), view(), kinked_optics()); };
+    const auto draw = [](const HexMesh& mesh) { return render_tets(valued(mesh, linear), {}, view(), kinked_optics()); };
     const auto expected = draw(whole);
     EXPECT_EQ(expected.report.tets, 6u);
     // Along the diagonal a row of rays lies in faces of the six, as exactly as floating point has it.

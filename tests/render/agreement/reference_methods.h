@@ -53,13 +53,13 @@ inline Image draw(Reference reference, const HexMesh& mesh, std::span<const doub
                   const Optics& optics, int levels = 1) {
     switch (reference) {
         case Reference::Tets:
-            return render_tets(mesh, values, view, optics).image;
+            return render_tets(valued(mesh, values), {}, view, optics).image;
         case Reference::Dense:
-            return render_dense(mesh, values, view, optics, {.levels = levels}).image;
+            return render_dense(valued(mesh, values), {}, view, optics, {.levels = levels}).image;
         case Reference::ProjectedTopological:
         case Reference::ProjectedLists:
             return render_projected(
-                       mesh, values, view, optics,
+                       valued(mesh, values), {}, view, optics,
                        {.order = reference == Reference::ProjectedLists ? ProjectedOrder::Lists : ProjectedOrder::Topological})
                 .image;
         case Reference::Voxels:

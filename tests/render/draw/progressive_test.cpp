@@ -92,8 +92,8 @@ protected:
 
 TEST_F(ProgressivePt, PicturesComeNearerToTheExactOne) {
     const auto& values = mesh_.attributes[0].values;
-    ProjectedRenderer renderer(mesh_, values);
-    const auto exact = render_tets(mesh_, values, view_, optics()).image;
+    ProjectedRenderer renderer(valued(mesh_, values));
+    const auto exact = render_tets(valued(mesh_, values), {}, view_, optics()).image;
     Pictures pictures;
     const auto result = render_progressively(renderer, view_, optics(), {.seconds = 600, .progress = &pictures});
     EXPECT_TRUE(result.finished);
@@ -113,7 +113,7 @@ TEST_F(ProgressivePt, PicturesComeNearerToTheExactOne) {
 TEST_F(ProgressivePt, WhatTheKBufferMissesListsFind) {
     for (Vec3& p : mesh_.points) p.z *= 0.02;  // flat cells
     const auto& values = mesh_.attributes[0].values;
-    ProjectedRenderer renderer(mesh_, values);
+    ProjectedRenderer renderer(valued(mesh_, values));
     const auto havs = renderer.draw(view_, optics(), {.order = ProjectedOrder::Havs, .kbuffer = 1});
     ASSERT_GT(havs.report.late_faces, 0u);
     const auto result =
@@ -124,7 +124,7 @@ TEST_F(ProgressivePt, WhatTheKBufferMissesListsFind) {
 }
 
 TEST_F(ProgressivePt, WithoutTimeTheBoundaryIsReturned) {
-    ProjectedRenderer renderer(mesh_, mesh_.attributes[0].values);
+    ProjectedRenderer renderer(mesh_);
     const auto result = render_progressively(renderer, view_, optics(), {.seconds = 1e-9});
     EXPECT_EQ(result.steps, 1);
     EXPECT_EQ(result.lod, 0);
@@ -134,7 +134,7 @@ TEST_F(ProgressivePt, WithoutTimeTheBoundaryIsReturned) {
 }
 
 TEST_F(ProgressivePt, AWishToStopEndsTheWork) {
-    ProjectedRenderer renderer(mesh_, mesh_.attributes[0].values);
+    ProjectedRenderer renderer(mesh_);
     Pictures pictures;
     pictures.stop_after = 2;
     try {

@@ -64,8 +64,8 @@ inline double waves(const Vec3& p) {
 /// The mesh drawn both ways.
 inline double difference_from_rays(const HexMesh& mesh, std::span<const double> values, const View& view, const Optics& optics,
                                    const ProjectedOptions& options = {}) {
-    const auto rays = render_tets(mesh, values, view, optics);
-    return largest_difference(render_projected(mesh, values, view, optics, options).image, rays.image);
+    const auto rays = render_tets(valued(mesh, values), {}, view, optics);
+    return largest_difference(render_projected(valued(mesh, values), {}, view, optics, options).image, rays.image);
 }
 
 /// Like rays: three real meshes, none of them convex. Where cells fold over, both count

@@ -43,8 +43,9 @@ TEST_F(RenderHavs, WithManyEntriesItIsLikeLists) {
     for (const HexMesh& mesh : {jittered_box(6, 0.3, 5), ball(6), l_shape(6), flat_box(), two_slabs()}) {
         const auto values = evaluate(mesh, waves);
         for (const View& view : {slanted_view(64), orthographic_view(61, 47)}) {
-            const auto havs = render_projected(mesh, values, view, optics, {.order = ProjectedOrder::Havs, .kbuffer = kAll});
-            const auto lists = render_projected(mesh, values, view, optics, {.order = ProjectedOrder::Lists});
+            const auto havs =
+                render_projected(valued(mesh, values), {}, view, optics, {.order = ProjectedOrder::Havs, .kbuffer = kAll});
+            const auto lists = render_projected(valued(mesh, values), {}, view, optics, {.order = ProjectedOrder::Lists});
             EXPECT_EQ(havs.report.late_faces, 0u);
             EXPECT_EQ(havs.report.violations, 0u);
             EXPECT_EQ(havs.report.faces_drawn, havs.report.faces);
@@ -58,8 +59,9 @@ TEST_F(RenderHavs, SixEntriesAreEnoughForWellShapedCells) {
     for (const HexMesh& mesh : {box(6), jittered_box(8, 0.2, 5), ball(8)}) {
         const auto values = evaluate(mesh, waves);
         for (const View& view : {slanted_view(64), ball_view(80, 64), orthographic_view(61, 47)}) {
-            const auto havs = render_projected(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs});
-            const auto rays = render_tets(mesh, values, view, ramp_optics(0.1));
+            const auto havs =
+                render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs});
+            const auto rays = render_tets(valued(mesh, values), {}, view, ramp_optics(0.1));
             // Some corner of a picture may see a face a place later; as near as neighbours are, that is not seen.
             EXPECT_LT(havs.report.late_faces, 1e-4 * static_cast<double>(havs.report.fragments));
             EXPECT_LT(largest_difference(havs.image, rays.image), kGlTol);
@@ -71,11 +73,12 @@ TEST_F(RenderHavs, MoreEntriesAreNeverWorse) {
     const HexMesh mesh = flat_box();
     const auto values = evaluate(mesh, waves);
     const Optics optics = ramp_optics(0.05);
-    const auto rays = render_tets(mesh, values, flat_view(), optics);
+    const auto rays = render_tets(valued(mesh, values), {}, flat_view(), optics);
     std::size_t late = 0;
     double error = 0;
     for (const int k : {1, 2, 3, 4, 6, 8, 12, 16, 32, 64}) {
-        const auto havs = render_projected(mesh, values, flat_view(), optics, {.order = ProjectedOrder::Havs, .kbuffer = k});
+        const auto havs =
+            render_projected(valued(mesh, values), {}, flat_view(), optics, {.order = ProjectedOrder::Havs, .kbuffer = k});
         const double rms = rms_difference(havs.image, rays.image);
         EXPECT_EQ(havs.report.late_faces == 0, havs.report.violations == 0u);
         EXPECT_LE(*havs.report.violations, havs.report.late_faces);
@@ -100,8 +103,7 @@ TEST_F(RenderHavs, NothingIsBetweenPartsOfTheVolume) {
     for (const double lod : {0.0, 0.5, 1.0}) {
         const ProjectedOptions havs{.order = ProjectedOrder::Havs, .lod = lod};
         // Two fifths of a unit at an opacity of one half a unit.
-        const auto drawn =
-            render_projected(slabs, std::vector<double>(slabs.points.size(), 1.0), along, constant_optics(), havs);
+        const auto drawn = render_projected(valued(slabs, 1.0), {}, along, constant_optics(), havs);
         for (int y = 0; y < 40; ++y) {
             for (int x = 0; x < 40; ++x) ASSERT_NEAR(drawn.image.pixel(x, y)[3], 1 - std::pow(0.5, 0.4), kFewTol) << lod;
         }
@@ -152,10 +154,10 @@ TEST_F(RenderHavs, EyeInsideSeesWhatIsBeforeIt) {
 
 TEST_F(RenderHavs, EveryDepthCountsOnceWhereCellsFoldOver) {
     const HexMesh mesh = jittered_box(5, 0.9, 4);
-    const auto havs = render_projected(mesh, std::vector<double>(mesh.points.size(), 1.0), slanted_view(64), constant_optics(),
+    const auto havs = render_projected(valued(mesh, 1.0), {}, slanted_view(64), constant_optics(),
                                        {.order = ProjectedOrder::Havs, .kbuffer = kAll});
     EXPECT_GT(havs.report.inverted_tets, 0u);
-    const auto whole = render_tets(box(1), std::vector<double>(8, 1.0), slanted_view(64), constant_optics());
+    const auto whole = render_tets(valued(box(1), 1.0), {}, slanted_view(64), constant_optics());
     EXPECT_LT(largest_difference(havs.image, whole.image), kFewTol);
 }
 
@@ -163,7 +165,7 @@ TEST_F(RenderHavs, ErrorFallsWithTheFractionOfFaces) {
     const HexMesh mesh = jittered_box(10, 0.2, 5);
     const auto values = evaluate(mesh, waves);
     const Optics optics = ramp_optics(0.2);
-    ProjectedRenderer renderer(mesh, values);
+    ProjectedRenderer renderer(valued(mesh, values));
     const auto all = renderer.draw(slanted_view(96), optics, {.order = ProjectedOrder::Havs});
     double last = 1;
     std::size_t faces = 0;
@@ -184,7 +186,7 @@ TEST_F(RenderHavs, InPartsItIsTheSame) {
     const HexMesh mesh = ball(5);
     const auto values = evaluate(mesh, waves);
     const auto draw = [&](std::size_t bytes) {
-        return render_projected(mesh, values, ball_view(50, 40), ramp_optics(0.1),
+        return render_projected(valued(mesh, values), {}, ball_view(50, 40), ramp_optics(0.1),
                                 {.order = ProjectedOrder::Havs, .kbuffer = 2, .list_bytes = bytes});
     };
     const auto whole = draw(1 << 28), parts = draw(12 * 2000);
@@ -202,7 +204,7 @@ TEST_F(RenderHavs, RealMeshesAreLikeRays) {
 
 TEST_F(RenderHavs, RefusesWrongOptions) {
     const HexMesh mesh = box(1);
-    ProjectedRenderer renderer(mesh, std::vector<double>(8, 1.0));
+    ProjectedRenderer renderer(valued(mesh, 1.0));
     for (const ProjectedOptions& options : {ProjectedOptions{.order = ProjectedOrder::Havs, .kbuffer = 0},
                                             {.order = ProjectedOrder::Havs, .lod = -0.1},
                                             {.order = ProjectedOrder::Havs, .lod = 1.1},

@@ -31,7 +31,7 @@ TEST_F(RenderProjected, CellsOneByOneAreLikeRays) {
 TEST_F(RenderProjected, ConstantBoxIsBeerLambert) {
     const HexMesh mesh = test::jittered_box(6, 0.3, 11);
     const View view({.eye = {0.5, 0.5, 5}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}, .ortho_height = 0.99}, 48, 48);
-    const auto result = render_projected(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    const auto result = render_projected(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_EQ(result.report.tets, 6u * 216);
     for (std::size_t i = 0; i < result.image.rgba.size(); ++i) ASSERT_NEAR(result.image.rgba[i], 0.5f, kFewTol) << i;
 }
@@ -92,8 +92,8 @@ TEST_F(RenderProjected, TopologicalOrderIsThatOfLists) {
     for (const HexMesh& mesh : {test::jittered_box(6, 0.3, 5), test::ball(6)}) {
         const auto values = evaluate(mesh, waves);
         const View view = ball_view(70, 60);
-        const auto topological = render_projected(mesh, values, view, ramp_optics(0.1), {.count_violations = true});
-        const auto lists = render_projected(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Lists});
+        const auto topological = render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.count_violations = true});
+        const auto lists = render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.order = ProjectedOrder::Lists});
         EXPECT_EQ(topological.report.cycles, 0u);
         EXPECT_EQ(topological.report.violations, 0u);
         EXPECT_EQ(topological.report.fragments, lists.report.fragments);
@@ -108,10 +108,10 @@ TEST_F(RenderProjected, CentroidsAreWrongWhereTheyAreCounted) {
     const auto values = evaluate(mesh, waves);
     const View view({.eye = {2.5, 2.1, 0.9}, .target = {0.5, 0.5, 0}, .up = {0, 0, 1}, .fovy_deg = 30}, 64, 48);
     const Optics optics = ramp_optics(0.05);
-    const auto right = render_projected(mesh, values, view, optics, {.count_violations = true});
+    const auto right = render_projected(valued(mesh, values), {}, view, optics, {.count_violations = true});
     const auto wrong =
-        render_projected(mesh, values, view, optics, {.order = ProjectedOrder::Centroid, .count_violations = true});
-    const auto lists = render_projected(mesh, values, view, optics, {.order = ProjectedOrder::Lists});
+        render_projected(valued(mesh, values), {}, view, optics, {.order = ProjectedOrder::Centroid, .count_violations = true});
+    const auto lists = render_projected(valued(mesh, values), {}, view, optics, {.order = ProjectedOrder::Lists});
     EXPECT_EQ(right.report.violations, 0u);
     ASSERT_GT(wrong.report.violations, 0u);
     EXPECT_EQ(lists.report.violations, wrong.report.violations);
@@ -130,11 +130,11 @@ TEST_F(RenderProjected, ListsCountEveryDepthOnceWhereCellsFoldOver) {
     // What a fold looks like depends on which cell counts; how much there is of it does not.
     const HexMesh mesh = test::jittered_box(5, 0.9, 4);
     const std::vector<double> ones(mesh.points.size(), 1.0);
-    const auto lists = render_projected(mesh, ones, slanted_view(64), constant_optics(), {.order = ProjectedOrder::Lists});
+    const auto lists =
+        render_projected(valued(mesh, ones), {}, slanted_view(64), constant_optics(), {.order = ProjectedOrder::Lists});
     EXPECT_GT(lists.report.inverted_tets, 0u);
     EXPECT_LT(
-        largest_difference(lists.image,
-                           render_tets(test::box(1), std::vector<double>(8, 1.0), slanted_view(64), constant_optics()).image),
+        largest_difference(lists.image, render_tets(valued(test::box(1), 1.0), {}, slanted_view(64), constant_optics()).image),
         kFewTol);
 }
 
@@ -143,7 +143,8 @@ TEST_F(RenderProjected, ListsInPartsAreTheSame) {
     const auto values = evaluate(mesh, waves);
     const View view = ball_view(50, 40);
     const auto draw = [&](std::size_t bytes) {
-        return render_projected(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Lists, .list_bytes = bytes});
+        return render_projected(valued(mesh, values), {}, view, ramp_optics(0.1),
+                                {.order = ProjectedOrder::Lists, .list_bytes = bytes});
     };
     const auto whole = draw(1 << 28), rows = draw(20 * 2000), pixels = draw(20 * 150);
     EXPECT_EQ(whole.report.parts, 1u);
@@ -161,7 +162,7 @@ TEST_F(RenderProjected, IsTheSameEveryTime) {
     for (const ProjectedOrder order :
          {ProjectedOrder::Centroid, ProjectedOrder::Topological, ProjectedOrder::Lists, ProjectedOrder::Havs}) {
         const auto draw = [&] {
-            return render_projected(mesh, values, ball_view(50, 50), ramp_optics(0.1), {.order = order}).image.rgba;
+            return render_projected(valued(mesh, values), {}, ball_view(50, 50), ramp_optics(0.1), {.order = order}).image.rgba;
         };
         const auto first = draw();
         for (int i = 0; i < 2; ++i) EXPECT_EQ(draw(), first);
@@ -171,7 +172,7 @@ TEST_F(RenderProjected, IsTheSameEveryTime) {
 TEST_F(RenderProjected, RendererKeepsNothingOfThePictureBefore) {
     const HexMesh mesh = test::ball(6);
     const auto values = evaluate(mesh, waves);
-    ProjectedRenderer renderer(mesh, values);
+    ProjectedRenderer renderer(valued(mesh, values));
     // Another size, projection, number of knots and order each time.
     const std::vector<View> views{ball_view(50, 40), orthographic_view(31, 60), ball_view(64, 64)};
     for (const ProjectedOrder order : {ProjectedOrder::Havs, ProjectedOrder::Topological, ProjectedOrder::Lists,
@@ -179,7 +180,7 @@ TEST_F(RenderProjected, RendererKeepsNothingOfThePictureBefore) {
         for (const View& view : views) {
             for (const Optics& optics : {ramp_optics(0.1), constant_optics()}) {
                 const auto kept = renderer.draw(view, optics, {.order = order});
-                const auto fresh = render_projected(mesh, values, view, optics, {.order = order});
+                const auto fresh = render_projected(valued(mesh, values), {}, view, optics, {.order = order});
                 EXPECT_EQ(kept.image.rgba, fresh.image.rgba);
                 EXPECT_EQ(kept.report.fragments, fresh.report.fragments);
                 EXPECT_EQ(kept.report.violations, fresh.report.violations);
@@ -192,11 +193,11 @@ TEST_F(RenderProjected, SamplesAreThoseOfRays) {
     const HexMesh mesh = test::ball(4);
     const auto values = evaluate(mesh, waves);
     const View view = ball_view(40, 31);
-    const auto rays = render_tets(mesh, values, view, ramp_optics(0.1), {.samples = 3});
-    const auto once = render_tets(mesh, values, view, ramp_optics(0.1));
+    const auto rays = render_tets(valued(mesh, values), {}, view, ramp_optics(0.1), {.samples = 3});
+    const auto once = render_tets(valued(mesh, values), {}, view, ramp_optics(0.1));
     EXPECT_GT(largest_difference(rays.image, once.image), 0.05) << "samples matter";
     for (const ProjectedOrder order : {ProjectedOrder::Topological, ProjectedOrder::Lists, ProjectedOrder::Havs}) {
-        const auto drawn = render_projected(mesh, values, view, ramp_optics(0.1), {.order = order, .samples = 3});
+        const auto drawn = render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.order = order, .samples = 3});
         EXPECT_LT(largest_difference(drawn.image, rays.image), kGlTol);
     }
 }
@@ -225,7 +226,8 @@ TEST_F(RenderProjected, ReportsProgressAndStops) {
     for (const ProjectedOrder order : {ProjectedOrder::Topological, ProjectedOrder::Lists, ProjectedOrder::Havs}) {
         Stopper progress;
         const auto draw = [&] {
-            return render_projected(mesh, ones, slanted_view(40), constant_optics(), {.order = order, .progress = &progress});
+            return render_projected(valued(mesh, ones), {}, slanted_view(40), constant_optics(),
+                                    {.order = order, .progress = &progress});
         };
         (void)draw();
         EXPECT_NEAR(progress.last, 1.0, 1e-9);
@@ -241,9 +243,8 @@ TEST_F(RenderProjected, ReportsProgressAndStops) {
 
 TEST_F(RenderProjected, RefusesWrongInput) {
     const HexMesh mesh = test::box(1);
-    EXPECT_THROW((void)render_projected(mesh, std::vector<double>(7), slanted_view(4), constant_optics()), Error);
-    EXPECT_THROW((void)render_projected(mesh, std::vector<double>(8, 1.0), slanted_view(4), constant_optics(), {.device = 99}),
-                 Error);
+    EXPECT_THROW((void)render_projected(valued(mesh, std::vector<double>(7)), {}, slanted_view(4), constant_optics()), Error);
+    EXPECT_THROW((void)render_projected(valued(mesh, 1.0), {}, slanted_view(4), constant_optics(), {.device = 99}), Error);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST(SplatBall, OneKernelAControlVertexIsNearTheLimit) {
     const auto inside = interior(mesh);
     EXPECT_GT(std::count(inside.begin(), inside.end(), true), kSize_px * kSize_px / 2);
     for (const bool sharp : {false, true}) {
-        const Image limit = render_tets(fine, fine.attributes[0].values, view(), optics_of(sharp)).image;
+        const Image limit = render_tets(fine, {}, view(), optics_of(sharp)).image;
         const auto splat = [&](Correction correction) {
             const auto volume = sample_rbf_points(mesh, {.correction = correction}).volume;
             const SplatOptions options{.method = SplatMethod::Cpu, .sheets = 400};

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
+#include <string_view>
 
 #include "subvol/camera.h"
 #include "subvol/image.h"
@@ -56,11 +56,11 @@ struct DenseResult {
 /// the limit, its micro-cells split into tetrahedra that fit together on any mesh, each segment integrated exactly. Cells whose
 /// values are invisible are skipped. Bitwise the same for any number of threads and any `memory`.
 ///
-/// scalar: one value a point of the control mesh
-/// throws: Error(InvalidInput) if scalar.size() != mesh.points.size() or an option is out of range, and as `refine`
+/// field:  the attribute of the control mesh that is shown, as in scalar_field
+/// throws: Error(InvalidInput) if an option is out of range, and as scalar_field and `refine`
 /// cost:   memory: 42 bytes (level 5) to 63 (level 2) a vertex of the grids kept; each pass refines its cells once
 /// source: docs/adr/0012
-[[nodiscard]] DenseResult render_dense(const HexMesh& mesh, std::span<const double> scalar, const View& view,
-                                       const Optics& optics, const DenseOptions& options = {});
+[[nodiscard]] DenseResult render_dense(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
+                                       const DenseOptions& options = {});
 
 }  // namespace subvol

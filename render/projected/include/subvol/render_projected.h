@@ -3,8 +3,8 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
+#include <string_view>
 
 #include "subvol/camera.h"
 #include "subvol/gl_device.h"
@@ -65,18 +65,18 @@ struct ProjectedResult {
 /// back to front. Each pixel cuts its ray with the planes of the faces and integrates the segment exactly, with the value
 /// linear in the tetrahedron. With Havs the faces are drawn instead, and segments are between neighbours of a pixel's faces.
 ///
-/// Keeps the tetrahedra, on the device too, from picture to picture; mesh and scalar need not stay. Pictures are bitwise the
+/// Keeps the tetrahedra, on the device too, from picture to picture; the mesh need not stay. Pictures are bitwise the
 /// same every time. One picture at a time.
 /// cost:   16 bytes a point and 20 a tetrahedron on the device, Havs: 20 a face; lists: 20 bytes a fragment, Havs: 12, up to
 ///         list_bytes
 /// source: docs/science.md (st1990; mhc1990 for the topological order; cics2005 for Havs, ccss2005 for its faces left out)
 class ProjectedRenderer {
 public:
-    /// scalar: one value a point of the mesh
-    /// throws: Error(InvalidInput) if scalar.size() != mesh.points.size();
+    /// field:  the attribute that is shown, as in scalar_field
+    /// throws: Error(InvalidInput) as validate(mesh) and scalar_field;
     ///         Error(MissingCapability) if there is no OpenGL 4.5, or it has no room
-    ProjectedRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device = {},
-                      Progress* progress = nullptr);
+    explicit ProjectedRenderer(const HexMesh& mesh, std::string_view field = {}, std::optional<int> device = {},
+                               Progress* progress = nullptr);
     ~ProjectedRenderer();
     ProjectedRenderer(ProjectedRenderer&&) noexcept;
     ProjectedRenderer& operator=(ProjectedRenderer&&) noexcept;
@@ -91,7 +91,7 @@ private:
 };
 
 /// One picture of a ProjectedRenderer.
-[[nodiscard]] ProjectedResult render_projected(const HexMesh& mesh, std::span<const double> scalar, const View& view,
+[[nodiscard]] ProjectedResult render_projected(const HexMesh& mesh, std::string_view field, const View& view,
                                                const Optics& optics, const ProjectedOptions& options = {});
 
 }  // namespace subvol

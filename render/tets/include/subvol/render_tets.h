@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
+#include <string_view>
 
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
@@ -39,14 +39,15 @@ struct TetsResult {
 /// The reference: rays through the mesh split into tetrahedra, Embree for the entry, then from cell to cell through shared
 /// faces, each segment integrated exactly with the value linear in the tetrahedron.
 ///
-/// Keeps the tetrahedra and Embree's tree from picture to picture; mesh and scalar need not stay. Pictures are bitwise the same
+/// Keeps the tetrahedra and Embree's tree from picture to picture; the mesh need not stay. Pictures are bitwise the same
 /// for any number of threads.
 /// source: docs/science.md
 class TetsRenderer {
 public:
-    /// scalar: one value a point of the mesh
-    /// throws: Error(InvalidInput) if scalar.size() != mesh.points.size(), or a value at a used point is not finite
-    TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, Progress* progress = nullptr);
+    /// field:  the attribute that is shown, as in scalar_field
+    /// throws: Error(InvalidInput) as validate(mesh) and scalar_field, or if the mesh has too many cells or points;
+    ///         Error(MissingCapability) if Embree cannot be started or has not enough memory
+    explicit TetsRenderer(const HexMesh& mesh, std::string_view field = {}, Progress* progress = nullptr);
     ~TetsRenderer();
     TetsRenderer(TetsRenderer&&) noexcept;
     TetsRenderer& operator=(TetsRenderer&&) noexcept;
@@ -61,7 +62,7 @@ private:
 };
 
 /// One picture of a TetsRenderer.
-[[nodiscard]] TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view,
-                                     const Optics& optics, const TetsOptions& options = {});
+[[nodiscard]] TetsResult render_tets(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
+                                     const TetsOptions& options = {});
 
 }  // namespace subvol
