@@ -9,17 +9,17 @@
 
 namespace subvol::detail {
 
-/// Integrates rays through dense grids. Keeps scratch memory: one for each thread or tile.
+/// Integrates rays through dense grids. Keeps scratch memory, so each thread or tile needs its own.
 class DenseTracer {
 public:
     DenseTracer(const DenseScene& scene, const Optics& optics) : scene_(scene), compositor_(optics, kRayCutoff) {}
 
-    /// The part of the ray in front of its origin.
+    /// The light along the ray, from its origin on.
     [[nodiscard]] Segment trace(const Ray& ray);
     [[nodiscard]] const TraceCounts& counts() const { return counts_; }
 
 private:
-    /// A boundary face of a grid that the ray crosses: the walks pair them up.
+    /// A boundary face of a grid that the ray crosses. Each walk begins at one and ends at another.
     struct End {
         double t;
         Index cell;

@@ -54,7 +54,7 @@ double rms(const Image& a, const Image& b) {
     return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));
 }
 
-// Traces, and hands its counts on when its tile is done.
+// Traces, and adds its counts to the sums when its tile is done.
 class CountedTracer {
 public:
     CountedTracer(const DenseScene& scene, const Optics& optics, tbb::combinable<TraceCounts>& sums)
@@ -103,7 +103,7 @@ public:
     }
 
 private:
-    /// Finds what can be seen, and keeps those grids as long as they fit.
+    /// Finds the grids that are visible in the picture, and keeps them as long as they fit into memory.
     void find_seen() {
         std::mutex adding;
         std::atomic<bool> full = false;

@@ -58,7 +58,7 @@ void check_seconds(double seconds) {
     throw Error(ErrorCode::InvalidInput, "the time is " + std::to_string(seconds), {}, "a positive number of seconds");
 }
 
-/// Each pixel as a square of scale² pixels.
+/// Repeats each pixel as a square of scale² pixels.
 template <class T>
 std::vector<T> enlarge(const std::vector<T>& small, std::size_t channels, int small_width, int scale, int width, int height) {
     std::vector<T> large;

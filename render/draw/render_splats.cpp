@@ -20,20 +20,17 @@ namespace subvol {
 
 namespace {
 
-/// Software GL is slower than the CPU and draws the same picture: it is used only when asked for.
+/// Software GL is slower than the CPU and draws the same picture, so it is used only if it is chosen.
 SplatMethod resolved(const SplatOptions& options) {
     if (options.method != SplatMethod::Auto) return options.method;
     const auto device = find_gl_device(options.device);
     return device && device->hardware ? SplatMethod::Gl : SplatMethod::Cpu;
 }
 
-/// Draws sheets in a context of its own, which is current only while it is worked with.
+/// Draws sheets in its own context, which is current only while it draws.
 class SheetDrawer {
 public:
-    explicit SheetDrawer(std::optional<int> device) : context_(device) {
-        sheets_.emplace();
-        context_.release();
-    }
+    explicit SheetDrawer(std::optional<int> device) : context_(device) { sheets_.emplace(); }
     ~SheetDrawer() {
         const detail::GlScope scope(context_);
         sheets_.reset();
@@ -56,6 +53,7 @@ std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
     if (!find_gl_device(options.device))
         throw Error(ErrorCode::MissingCapability, "sheets need OpenGL 4.5, and none was found through EGL", {},
                     "the method splat");
+    const detail::KeepCurrent keep;
     return std::make_unique<SheetDrawer>(options.device);
 }
 
@@ -88,7 +86,7 @@ Mean mean_of(const SplatResult& drawn, int x, int y, int n) {
     return mean;
 }
 
-/// Replaces each n × n pixels by their mean; the depth is the mean of what is seen in all of them, by opacity.
+/// Replaces each n × n pixels by their mean; depths are weighted by opacity.
 void take_means(SplatResult& drawn, int n) {
     if (n == 1) return;
     Image image(drawn.image.width / n, drawn.image.height / n);
@@ -114,7 +112,7 @@ struct Splatter::State {
         if (options.method == SplatMethod::Sheets) sheets = make_sheet_drawer(options);
     }
 
-    /// The CPU prepares what it or sheet buffers draw.
+    /// Draws with the CPU or with sheet buffers; the CPU prepares the frame for both.
     [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& classification, Progress* progress,
                                            SplatReport& report) {
         const detail::Stopwatch watch;
@@ -142,7 +140,7 @@ struct Splatter::State {
     detail::SplatScene scene;
     std::optional<detail::GlSplatter> gpu;
     std::unique_ptr<SheetDrawer> sheets;
-    detail::SplatFrame frame{};  // its memory is used again
+    detail::SplatFrame frame{};  // its memory is used for every picture
 };
 
 Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) {
@@ -163,7 +161,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     const auto classification = detail::classify(state.scene, optics);
     report.seconds_prepare = watch.seconds();
     const int n = state.options.samples;
-    const View fine(view.camera(), n * view.width(), n * view.height());  // its pixels' centres are the samples
+    const View fine(view.camera(), n * view.width(), n * view.height());  // the centres of its pixels are the samples
     auto drawn = state.gpu ? state.draw_on_gpu(fine, classification, progress, report)
                            : state.draw_frame(fine, classification, progress, report);
     result.image = std::move(drawn.image);

@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostErrors = 64;  // a context that is lost, or none, may go on telling of errors for ever
+constexpr int kMostErrors = 64;  // a lost context, or none, may report errors without end
 
 OpenedGl open_gl(std::optional<int> index) {
     GlFinder finder;
@@ -43,7 +43,7 @@ std::string error_name(GLenum error) {
 std::string reset_message(GLenum status) {
     const char* cause = status == GL_GUILTY_CONTEXT_RESET     ? "by this work"
                         : status == GL_INNOCENT_CONTEXT_RESET ? "by other work on it"
-                                                              : "for a reason that it does not tell";
+                                                              : "for an unknown reason";
     return std::string("the GL device was reset ") + cause;
 }
 

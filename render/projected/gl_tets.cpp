@@ -23,9 +23,9 @@ namespace subvol::detail {
 
 namespace {
 
-// As the shaders have them.
+// The same as in the shaders.
 constexpr GLuint kPointsBinding = 0, kItemsBinding = 1, kOrderBinding = 2, kKnotsBinding = 10;
-constexpr std::size_t kDrawnAtOnce = 1U << 16;  // between two looks at the progress
+constexpr std::size_t kDrawnAtOnce = 1U << 16;  // between two reports of progress
 
 template <class T>
 void fill(GlBuffer& buffer, const std::vector<T>& values) {
@@ -50,7 +50,7 @@ std::vector<ShaderText> drawing_texts() {
 }  // namespace
 
 GlTets::GlTets() {
-    glCreateVertexArrays(1, &vertices_);  // without any attribute: nothing is drawn without one
+    glCreateVertexArrays(1, &vertices_);  // it has no attributes, but OpenGL does not draw without one
     glCreateFramebuffers(1, &framebuffer_);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
@@ -92,7 +92,7 @@ void GlTets::set_frame(const GlTetFrame& frame, const View& view) {
 void GlTets::make_target(int width, int height) {
     if (width_ == width && height_ == height) return;
     check_picture_size(width, height, "a smaller picture, or the method tets");
-    width_ = 0;  // until it is made
+    width_ = 0;  // in case an error is thrown below
     glDeleteTextures(1, &texture_);
     glCreateTextures(GL_TEXTURE_2D, 1, &texture_);
     glTextureStorage2D(texture_, 1, GL_RGBA32F, width, height);
@@ -141,7 +141,7 @@ const GlProgram& GlTets::resolver(Items items) {
 
 void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) const {
     const GLuint id = program.id();
-    // In an orthographic view a pixel is a length.
+    // In an orthographic view the size of a pixel is a length.
     const double pixel = view_->perspective() ? view_->pixel() : view_->pixel() / frame_->scale;
     const Vec2 middle = 0.5 * Vec2(width_, height_) - offset_px_;
     glProgramUniform2f(id, program.uniform("middle_px"), static_cast<float>(middle.x), static_cast<float>(middle.y));
@@ -165,7 +165,7 @@ void GlTets::draw_all(Items items, const GlProgram& program, const PixelRect& re
     for (std::size_t first = 0; first < count; first += kDrawnAtOnce) {
         const std::size_t end = std::min(count, first + kDrawnAtOnce);
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(corners * first), static_cast<GLsizei>(corners * (end - first)));
-        if (stage.progress) glFinish();  // else all would be under way at once
+        if (stage.progress) glFinish();  // otherwise all of it would be queued at once
         stage.report(static_cast<double>(end) / static_cast<double>(count));
     }
     check_gl("projected tetrahedra");

@@ -24,7 +24,8 @@ namespace {
 using detail::DrawStage;
 using detail::GlTets;
 
-// OpenGL numbers vertices by signed integers; tetrahedra have 6, faces 3; a face's rank leaves 3 bits.
+// OpenGL numbers vertices with signed 32-bit integers; a tetrahedron has 6, a face 3. The mark of a face needs 3 bits beside
+// its rank (projected_face.frag).
 constexpr std::size_t kMostTets = std::size_t{0x7fffffff} / 6, kMostFaces = std::size_t{1} << 29;
 constexpr int kMostEntries = 65536;
 
@@ -55,8 +56,8 @@ void check_options(const ProjectedOptions& options) {
 
 std::size_t most_fragments(std::size_t list_bytes, const GlDevice& device, GlTets::Items items) {
     const bool tets = items == GlTets::Items::Tets;
-    const std::size_t fragment_bytes = tets ? 20 : 12, entry_bytes = tets ? 16 : 8;  // of two buffers, of the larger one
-    constexpr std::size_t kMost = std::size_t{1} << 31;                              // that 32 bits number, with room
+    const std::size_t fragment_bytes = tets ? 20 : 12, entry_bytes = tets ? 16 : 8;  // in both buffers, in the larger one
+    constexpr std::size_t kMost = std::size_t{1} << 31;                              // fits into 32 bits, with room
     return std::min({list_bytes / fragment_bytes, device.max_ssbo_bytes / entry_bytes, kMost});
 }
 
@@ -80,7 +81,7 @@ struct ProjectedRenderer::State {
 
     Stopwatch build_watch;
     TetMesh tets;
-    std::optional<TetFaces> faces;  // once they are drawn
+    std::optional<TetFaces> faces;  // found when they are drawn for the first time
     Box box;
     ProjectedReport built;
     detail::GlContext context;
@@ -153,7 +154,7 @@ Image ProjectedRenderer::State::draw_sample(const ProjectedOptions& options, Pro
     return in_order ? drawer->draw_in_order(stage) : draw_lists(options, report, stage);
 }
 
-/// The grid of rays of trace_pixel, one picture for each of its places.
+/// The same grid of rays as in trace_pixel, with one picture for each place of the grid.
 Image ProjectedRenderer::State::draw_samples(const ProjectedOptions& options, ProjectedReport& report) {
     const int n = options.samples;
     const DrawStage whole{options.progress};

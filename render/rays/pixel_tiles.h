@@ -72,9 +72,10 @@ void for_each_tile(const PixelRect& part, Progress* progress, const DrawTile& dr
     });
 }
 
-/// Draws a part of a picture in tiles. Every pixel depends on its own rays only, so threads change nothing.
+/// Draws a part of a picture in tiles. Every pixel depends on its own rays only, so the number of threads changes nothing.
 ///
-/// make_tracer: makes what turns a Ray into a Segment; called once a tile, so that a tracer may keep scratch memory and count
+/// make_tracer: returns a function from Ray to Segment; called once for each tile, so that a tracer can keep scratch memory and
+///              count
 template <class MakeTracer>
 void draw_in_tiles(const View& view, int samples, const PixelRect& part, Image& image, Progress* progress,
                    const MakeTracer& make_tracer) {

@@ -65,7 +65,7 @@ public:
 private:
     Sample at(const Ray& ray, double t) const { return {t, field_(ray.origin + t * ray.direction)}; }
 
-    // The last sample inside on the way from one inside to one outside.
+    // Bisects between a sample inside and one outside; returns the last sample inside.
     Sample end_of_field(const Ray& ray, Sample inside, Sample outside) const {
         const double tolerance = kEndTolerance * std::abs(outside.t - inside.t);
         while (std::abs(outside.t - inside.t) > tolerance) {

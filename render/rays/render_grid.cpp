@@ -26,7 +26,7 @@ void check(const Voxels& grid, const GridOptions& options) {
     }
 }
 
-// Traces, and hands its counts on when its tile is done.
+// Traces, and adds its counts to the sums when its tile is done.
 class CountedTracer {
 public:
     CountedTracer(GridTracer tracer, tbb::combinable<GridTraceReport>& sums) : tracer_(std::move(tracer)), sums_(&sums) {}

@@ -54,7 +54,7 @@ void SheetTarget::make(int width, int height, bool four_more) {
 
 void SheetTarget::release() {
     if (framebuffer_ != 0) glDeleteFramebuffers(1, &framebuffer_);
-    glDeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());  // 0 is no texture
+    glDeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());  // deleting 0 does nothing
     framebuffer_ = 0;
     textures_ = {};
     width_ = height_ = 0;

@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-/// What turns values into cells of a table.
+/// Converts values into cells of a table.
 struct Cells {
     double scale, offset;
 
@@ -31,7 +31,7 @@ float to_float(double v) {
     return static_cast<float>(v);
 }
 
-/// Makes the parts of one kernel after the other, all from the same cut of its frame.
+/// Converts kernels one after the other; all parts of a kernel use the same decomposition of its frame.
 class ToEye {
 public:
     ToEye(const SplatScene& scene, const View& view)
@@ -40,7 +40,7 @@ public:
           middle_(view.to_eye(scene.middle)),
           reach_(scene.form == KernelForm::Separable ? 3 : 1) {}
 
-    /// Sets the kernel that the others are about.
+    /// Sets the kernel for the other members.
     void set_kernel(std::size_t i) {
         i_ = i;
         const Mat3 s = to_eye_ * (reach_ * frame_matrix(scene_.volume->frames[i])) * glm::transpose(to_eye_);
@@ -103,7 +103,7 @@ public:
 
     [[nodiscard]] EyeAxes axes() const {
         const Mat3 world = inverse_symmetric_root(scene_.volume->frames[i_]);
-        const Mat3 rows = world * glm::transpose(to_eye_);  // of an offset in eye space
+        const Mat3 rows = world * glm::transpose(to_eye_);  // for offsets in eye space
         EyeAxes result{};
         for (std::size_t a = 0; a < 3; ++a) {
             const int row = static_cast<int>(a);
@@ -122,7 +122,7 @@ private:
     [[nodiscard]] float value(const RbfChannel& channel, const Cells& cells) const {
         return to_float(static_cast<double>(channel.values[i_]) * cells.scale + cells.offset);
     }
-    /// e counts in the widened frame.
+    /// The moment for e in the widened frame.
     [[nodiscard]] float moment(const RbfChannel& channel, const Cells& cells) const {
         return to_float(static_cast<double>(channel.moments[i_]) * cells.scale * reach_);
     }

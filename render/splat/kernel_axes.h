@@ -15,7 +15,7 @@ inline Mat3 frame_matrix(const std::array<float, 6>& f) {
     return {Vec3(f[0], f[1], f[2]), Vec3(f[1], f[3], f[4]), Vec3(f[2], f[4], f[5])};
 }
 
-/// S^(−1/2), the symmetric root: maps the frame's ellipsoid to the unit ball. A separable kernel has its axes along it.
+/// S^(−1/2), the symmetric root: maps the frame's ellipsoid to the unit ball. The axes of a separable kernel are its rows.
 inline Mat3 inverse_symmetric_root(const std::array<float, 6>& frame) {
     const PrincipalAxes axes = principal_axes(frame);
     Mat3 result(0.0);
@@ -23,8 +23,8 @@ inline Mat3 inverse_symmetric_root(const std::array<float, 6>& frame) {
     return result;
 }
 
-/// How far a value goes from its middle over a kernel's support, but for its moment: |g·d| ≤ √(gᵀSg), and a Hessian's part is
-/// at most half its norm times the trace of S.
+/// A bound of how much a kernel's value differs from its middle over the support, without the moment's part: |g·d| ≤ √(gᵀSg),
+/// and the Hessian's part is at most half its norm times the trace of S.
 inline double value_spread(const RbfChannel& channel, std::size_t i, const Mat3& frame) {
     const auto& g = channel.gradients[i];
     const Vec3 gradient(g[0], g[1], g[2]);

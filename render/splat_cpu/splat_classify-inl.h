@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classification and compositing of the sheets of a batch, a block of pixels at a time. Included once for every instruction
-// set: see splat_cpu.cpp.
+// Classification of values, a block of pixels at a time. Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_CLASSIFY_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_CLASSIFY_INL_H
 #undef SUBVOL_SPLAT_CLASSIFY_INL_H
@@ -20,17 +19,18 @@ namespace subvol::detail::HWY_NAMESPACE {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-/// The pixels of a block on their way from front to back.
+/// The pixels of a block between two sheets.
 struct BlockState {
     HWY_ALIGN float transmittance[kBlock], red[kBlock], green[kBlock], blue[kBlock], depth[kBlock];
     HWY_ALIGN float value[kBlock], known[kBlock], weight[kBlock];  // on the last sheet
     HWY_ALIGN float color[kBlock], diffuse[kBlock], specular[kBlock];
-    HWY_ALIGN float enter[kBlock], exit[kBlock];  // the interval that a ray is in or comes to; enter = kNever: it is done
+    // The interval that a ray is in or reaches next; enter = kNever: the ray is done.
+    HWY_ALIGN float enter[kBlock], exit[kBlock];
     HWY_ALIGN float ray_length[kBlock];
     std::uint32_t interval[kBlock], intervals_end[kBlock];
 };
 
-/// A value's place in the table, and the four integrals from its cell's lower end.
+/// The place of a value in the table, and the four integrals from the lower end of its cell.
 struct Place {
     Floats x;
     Ints prefix[4];
@@ -38,7 +38,7 @@ struct Place {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// The rows of every fourth lane, one in each 128 bits of a vector.
+/// Loads the rows of every fourth lane, one into each 128 bits of a vector.
 template <class D>
 HWY_ATTR inline hn::Vec<D> load_quads(D d, const float* table, const std::int32_t* offsets) {
     if constexpr (hn::MaxLanes(d) <= 4) {
@@ -51,7 +51,7 @@ HWY_ATTR inline hn::Vec<D> load_quads(D d, const float* table, const std::int32_
 
 #endif
 
-/// Four numbers a lane, from rows at offsets into a table: rows are loaded whole and turned, which gathers would not beat.
+/// Loads four numbers for each lane from rows of a table. Whole rows are loaded and transposed, which is faster than gathers.
 HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, Floats& a, Floats& b, Floats& c, Floats& e) {
     const Lanes d;
 #if HWY_TARGET == HWY_SCALAR
@@ -74,14 +74,14 @@ HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, 
 #endif
 }
 
-/// The optical model of a frame as vectors see it.
+/// The optical model of a frame, for vectors.
 class Classifier {
 public:
     explicit Classifier(const Classification& classification)
         : classification_(classification),
           all_visible_(static_cast<std::size_t>(classification.table.visible.back()) == classification.table.rows.size()) {}
 
-    /// Mean extinction and emission (x premultiplied by extinction) of a stretch of ray between two values.
+    /// The mean extinction and emission (colour times extinction) of a stretch of ray between two values.
     HWY_ATTR void means(const Place& front, const Place& back, Floats mean[4]) const {
         const Lanes d;
         const auto dx = hn::Sub(back.x, front.x);
@@ -129,7 +129,7 @@ public:
         for (std::size_t c = 0; c < 3; ++c) rgb[c] = hn::MulAdd(s, step[c], low[c]);
     }
 
-    /// Whether no value between two ends can be seen, in any of the lanes.
+    /// Whether all values between two ends are invisible, in each of the lanes.
     HWY_ATTR bool transparent(Mask lanes, Floats x0, Floats x1) const {
         if (all_visible_) return false;
         const Lanes d;
@@ -148,7 +148,7 @@ private:
     static constexpr std::int32_t kRowFloats = sizeof(PreintegratedTable::Row) / sizeof(float);
     static constexpr std::int32_t kColorFloats = sizeof(ColorTable::Row) / sizeof(float);
 
-    /// The row of a value and how far it lies in it.
+    /// The row of a value, and its place s within the row.
     HWY_ATTR static void find(Floats x, Floats& s, std::int32_t* offsets) {
         const Lanes d;
         const IntLanes di;

@@ -11,7 +11,7 @@ std::array<double, 4> row(const Vec3& axis, double last) {
     return {axis.x, axis.y, axis.z, last};
 }
 
-/// What turns values into cells of the table from `min` to `max`.
+/// Factor and offset that convert values into cells of the table from `min` to `max`.
 std::array<double, 2> cells_of(double min, double max, bool normalized) {
     const double scale = PreintegratedTable::kCells / (max - min);
     return {scale, normalized ? -min * scale : 0};

@@ -60,7 +60,7 @@ void pack_extras(const SplatScene& scene, const GlExtras& layout, std::size_t i,
         const Mat3 world = inverse_symmetric_root(scene.volume->frames[i]);
         for (int row = 0; row < 3; ++row) {
             float* out = slot(layout.axes + static_cast<std::uint32_t>(row));
-            // Column `row` of the rotated matrix, as eye_splats.cpp has it.
+            // Column `row` of the rotated matrix, as in eye_splats.cpp.
             for (int column = 0; column < 3; ++column) out[column] = to_float(world[column][row]);
         }
     }

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The splatter on the GPU: the method of splat_cpu/splat_tile-inl.h (sums of kernels on sheets, then pre-integrated compositing
+// [mnmq2007, rke2000]) as compute shaders.
+//
+//     splat_eye     each kernel: to eye space, and how many bins (tile, batch of sheets) it meets
+//     scan, emit    an entry (bin, kernel) for each of them; a prefix sum of the counts gives the places
+//     sort, ranges  entries sorted by bin, and where each bin begins; within a bin kernels stay in ascending order
+//     boundary      the intervals of each pixel inside the volume (gl_boundary.cpp)
+//     splat_draw    a work group for each tile, a thread for each pixel: batches front to back, sums in registers
+//
+// The sort is stable and no float is added atomically, so each sum has one order and pictures are bitwise reproducible. The
+// number of entries is not known before they are counted, and waiting for it would stall the device: the room of the last
+// picture is used, and only at the end is the count compared with it (draw_at_once). If kernels or entries exceed the room of
+// a buffer, the batches are halved until each range fits (split), and the state of the pixels is kept between the passes.
 #include "gl_splatter.h"
 
 #include <tbb/parallel_for.h>
@@ -26,8 +39,8 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kPixel_bytes = 16;  // of the picture
-constexpr std::size_t kState_bytes = 64;  // of a pixel, between passes
+constexpr std::size_t kPixel_bytes = 16;  // for each pixel of the picture
+constexpr std::size_t kState_bytes = 64;  // for each pixel, between passes
 
 std::string decimal(float value) {
     char text[32];
@@ -50,7 +63,7 @@ void upload(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(values.size() * sizeof(T), values.data());
 }
 
-/// The kernels that may meet some batches, a sheet more on each side: rounding may not lose one.
+/// The kernels that may meet some sheets, with a sheet more on each side, so that rounding does not lose one.
 std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
                                            int end_sheet) {
     const double middle = view.to_eye(scene.middle).z, distance = static_cast<double>(sheets.distance);
@@ -120,8 +133,8 @@ private:
     const SplatScene& scene_;
     GlTuning tuning_;
     std::size_t most_kernels_ = 0, most_entries_ = 0, most_bins_ = 0;
-    bool resident_ = false;  // all kernels are on the device
-    std::size_t room_ = 0;   // entries that there is room for
+    bool resident_ = false;  // whether all kernels are on the device
+    std::size_t room_ = 0;   // for so many entries
     SheetStack sheets_;
     GlSplatFrame frame_;
     GlSplatBins bins_;
@@ -196,7 +209,8 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
     return drawn;
 }
 
-/// As much room as the last picture took is mostly enough: the device is asked only at the end. Returns whether it was.
+/// Draws all batches in one pass with the room that the last picture needed, and reads back the number of entries only at the
+/// end. Returns whether there was enough room.
 bool GlSplatter::State::draw_at_once() {
     if (room_ == 0 || !resident_ || !fits_bins(0, frame_.batches)) return false;
     set_pass(0, frame_.batches);
@@ -232,7 +246,7 @@ void GlSplatter::State::draw_in_passes(const View& view, int first, int end, Pro
 
 void GlSplatter::State::split(const View& view, int first, int end, Progress* progress) {
     if (end - first == 1) {
-        throw Error(ErrorCode::MissingCapability, "a few sheets meet more kernels than the GL device has room for", {},
+        throw Error(ErrorCode::MissingCapability, "the kernels of a few sheets need more room than the GL device has", {},
                     "more sheets, a smaller picture or the CPU backend");
     }
     const int middle = first + (end - first) / 2;
@@ -261,10 +275,10 @@ GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const
 GlSplatter::~GlSplatter() {
     if (!state_) return;
     try {
-        const GlScope scope(state_->context);  // what is on the device goes with it
+        const GlScope scope(state_->context);  // its buffers are freed in it
         state_.reset();
     } catch (const Error&) {
-        (void)state_.release();  // a device that is in use elsewhere keeps it
+        (void)state_.release();  // the context is in use by another thread: its buffers cannot be freed
     }
 }
 

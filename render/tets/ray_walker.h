@@ -45,7 +45,7 @@ struct Walk {
 /// Integrates one ray, walk after walk, in one mesh or in several.
 class RayWalker {
 public:
-    /// Compositor and counts are referred to.
+    /// Keeps references to plane, compositor and counts.
     RayWalker(const Ray& ray, const RayPlane& plane, Compositor& compositor, TraceCounts& counts)
         : plane_(plane), speed_(glm::length(ray.direction)), compositor_(compositor), counts_(counts) {}
 

@@ -14,7 +14,7 @@ using namespace detail;
 
 namespace {
 
-/// Draws a tile: as `trace_pixel` for each of its pixels, but all pixels at once.
+/// Draws a tile: the same as `trace_pixel` for each of its pixels, with the rays of all pixels at once.
 void draw_tile(const View& view, int samples, const PixelRect& tile, TetPacketTracer& tracer, Image& image) {
     std::vector<Ray> rays;
     std::vector<Segment> seen, sums;

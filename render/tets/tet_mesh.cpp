@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kTetsPerCell = 6;
 constexpr std::size_t kMaxCells = (std::size_t{1} << 32) / (4 * kTetsPerCell) - 1;
 
-// Below this part of the cube over its longest edge a volume is rounding of the coordinates.
+// A volume below this part of the cube over the longest edge is only rounding of the coordinates.
 constexpr double kZeroVolume = 1e-13;
 
 struct FaceRecord {
@@ -64,7 +64,7 @@ void connect(TetMesh& mesh) {
             for (std::size_t k = i; k < end; ++k) mesh.boundary.push_back(faces[k].face);
         }
     }
-    std::sort(mesh.boundary.begin(), mesh.boundary.end());  // cell order: near in the list is near in space
+    std::sort(mesh.boundary.begin(), mesh.boundary.end());  // in the order of cells: neighbours in the list are near in space
 }
 
 enum class Shape { Regular, Degenerate, Inverted };

@@ -7,13 +7,13 @@
 
 namespace subvol::detail {
 
-/// Integrates rays through a mesh of tetrahedra, one by one. Keeps scratch memory: one for each thread or tile.
+/// Integrates rays through a mesh of tetrahedra, one by one. Keeps scratch memory, so each thread or tile needs its own.
 class TetTracer {
 public:
     TetTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics)
         : mesh_(mesh), compositor_(optics, kRayCutoff), ends_(mesh, scene) {}
 
-    /// The part of the ray in front of its origin.
+    /// The light along the ray, from its origin on.
     [[nodiscard]] Segment trace(const Ray& ray);
     [[nodiscard]] const TraceCounts& counts() const { return counts_; }
 

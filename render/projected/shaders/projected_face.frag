@@ -1,6 +1,6 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Where the ray of a pixel crosses a face. FRAGMENT_COUNT counts that, FRAGMENT_KEEP stores it in the pixel's list.
+// The crossing of a pixel's ray with a face. FRAGMENT_COUNT counts it, FRAGMENT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2;
 flat in uint rank;
 flat in uint cover;  // 2 + tetrahedra on the side of the face's normal − those on the other

@@ -1,7 +1,7 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// A tetrahedron at a pixel. What becomes of the segment: FRAGMENT_COMPOSITE blends it over what was drawn before; FRAGMENT_COUNT counts it;
-// FRAGMENT_KEEP stores it in the pixel's list.
+// The segment of a pixel's ray in a tetrahedron. FRAGMENT_COMPOSITE blends it over what was drawn before, FRAGMENT_COUNT counts
+// it, FRAGMENT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2, corner3;
 flat in uint rank;
 
@@ -23,7 +23,7 @@ bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
     bool s01, s02, s03, s12, s13, s23;
     float a01 = doubled_area(q0, q1, s01), a02 = doubled_area(q0, q2, s02), a03 = doubled_area(q0, q3, s03);
     float a12 = doubled_area(q1, q2, s12), a13 = doubled_area(q1, q3, s13), a23 = doubled_area(q2, q3, s23);
-    // A face is crossed if its edges go round the ray. That is so for two faces or none.
+    // A face is crossed if its edges go round the ray. This holds for two faces or for none.
     bool c123 = s12 == s23 && s12 != s13, c023 = s02 == s23 && s02 != s03;
     bool c013 = s01 == s13 && s01 != s03, c012 = s01 == s12 && s01 != s02;
     if (int(c123) + int(c023) + int(c013) + int(c012) != 2) return false;
@@ -34,7 +34,7 @@ bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
     vec2 one = c123 ? f123 : c023 ? f023 : f013, other = c012 ? f012 : c013 ? f013 : f023;
     front = one.x < other.x ? one : other;
     back = one.x < other.x ? other : one;
-    float eye = -middle_depth;  // nothing is seen behind it
+    float eye = -middle_depth;  // nothing behind the eye is seen
     if (front.x < eye && back.x > eye) front = vec2(eye, mix(front.y, back.y, (eye - front.x) / (back.x - front.x)));
     return front.x >= eye && front.x < back.x;
 }

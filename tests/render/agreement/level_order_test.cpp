@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sequence of levels: pictures of dense grids, and of the tetrahedra of refined meshes, go to the limit's with the second
-// order, that of trilinear cells.
+// Convergence over levels: pictures of dense grids, and of the tetrahedra of refined meshes, converge to that of the limit with
+// the second order of trilinear cells.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 struct Sequence {
     const char* model;
     int resolution;
-    double part_of_view;  // seen: of the ball without its silhouette, which crosses pixel centres and is of lower order
+    double part_of_view;  // < 1 for the ball: without the silhouette, which crosses pixel centres and is of lower order
 };
 void PrintTo(const Sequence& sequence, std::ostream* out) {
     *out << sequence.model;

@@ -41,14 +41,14 @@ inline double largest_difference(const Image& a, const Image& b) {
     return largest;
 }
 
-/// Over all four channels.
+/// The largest difference over all four channels.
 inline double rms(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
     return std::sqrt(sum / static_cast<double>(a.rgba.size()));
 }
 
-/// A field on a mesh; dense grids at `levels` of MCQ. Voxels have no mesh.
+/// Draws a field on a mesh; dense grids at `levels` of MCQ. Not for voxels, which have no mesh.
 inline Image draw(Reference reference, const HexMesh& mesh, std::span<const double> values, const View& view,
                   const Optics& optics, int levels = 1) {
     switch (reference) {
@@ -68,7 +68,7 @@ inline Image draw(Reference reference, const HexMesh& mesh, std::span<const doub
     return {};
 }
 
-/// A field in a box, as `cells`³ cells with their inner points moved by up to `jitter` cell widths, or as so many voxels.
+/// Draws a field in a box, on `cells`³ cells with their inner points moved by up to `jitter` cell widths, or on as many voxels.
 inline Image draw(Reference reference, const Box& box, int cells, double jitter,
                   const std::function<double(const Vec3&)>& field, const View& view, const Optics& optics, int levels = 1) {
     if (reference == Reference::Voxels) {

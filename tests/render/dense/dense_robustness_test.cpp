@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dense grids of real meshes by rays from 26 directions, one of each picture through a point of the grids: no ray is lost, and
-// the length inside is that between the entries and exits of the limit's boundary, found without any adjacency.
+// Rays through the dense grids of real meshes from 26 directions, one ray of each picture through a point of the grids: no ray
+// is lost, and the length inside equals that between the crossings of the limit's boundary, found without any adjacency.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace subvol {
 using namespace detail;
 namespace {
 
-constexpr double kLengthTol = 1e-4;  // of the diagonal: what is asked for; pictures are floats, 2e-7 of it
+constexpr double kLengthTol = 1e-4;  // of the diagonal: the requirement; pictures are floats, 2e-7 of it
 constexpr int kSize = 9;             // odd: there is a ray in the middle
 constexpr int kLevel = 1;
 

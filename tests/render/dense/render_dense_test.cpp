@@ -22,7 +22,7 @@ using test::constant_alpha;
 using test::constant_optics;
 using test::evaluate;
 
-// Images are single precision; double everywhere before.
+// Images are in single precision, all before in double.
 constexpr double kFloatTol = 1e-6;
 
 Optics ramp_optics(double unit = 1) {
@@ -66,7 +66,7 @@ double largest_difference(const Image& a, const Image& b) {
     return largest;
 }
 
-/// The same volume by `refine` and the walk through the whole mesh of tetrahedra.
+/// The same volume drawn by render_tets after `refine`.
 Image by_tets(const HexMesh& mesh, const RefineOptions& options, const View& view, const Optics& optics) {
     const HexMesh fine = test::numbered_by_position(on_limit(refine(mesh, options), options.scheme.kind));
     return render_tets(fine, {}, view, optics).image;
@@ -126,7 +126,7 @@ TEST(RenderDense, LinearFieldIsOneSegment) {
     const HexMesh mesh = test::jittered_box(4, 0.2, 5);
     const View view = slanted_view(48);
     const auto dense = render_dense(valued(mesh, ramp), {}, view, ramp_optics(), {.levels = 2});
-    // A box of one cell holds the same field exactly, if values follow positions: schemes are affine.
+    // Schemes are affine, so values that are linear in space stay linear, and a box of one cell has the same field exactly.
     const HexMesh one = test::box(1);
     const auto exact = render_tets(valued(one, ramp), {}, view, ramp_optics());
     EXPECT_LT(largest_difference(dense.image, exact.image), kFloatTol);
@@ -151,8 +151,9 @@ TEST(RenderDense, BallHasItsOpticalDepth) {
         return std::sqrt(sum / (64 * 64));
     };
     const double coarse = error(8, 3), fine = error(16, 2);
-    // Off the control points the sphere is missed by what quadratic extrapolation at the cube's edges leaves: the third order
-    // of the cell size, so an eighth; silhouettes of single pixels blur that. Facets add the same little at equal fineness.
+    // Between control points the surface differs from the sphere by the error of quadratic extrapolation at the cube's edges:
+    // of third order in the cell size, so it falls to an eighth, blurred by the silhouettes of single pixels. Facets add the
+    // same small error at equal fineness.
     EXPECT_LT(fine, coarse / 4);
     EXPECT_LT(fine, 1e-3);
 }
@@ -218,7 +219,7 @@ TEST(RenderDense, NearsTheExactFieldWithLevelsAndCells) {
     const double control = error(16, 0), first = error(16, 1), second = error(16, 2);
     EXPECT_LT(first, control / 2.5);
     EXPECT_LT(second, first);
-    // What is left at level 2 is mostly the scheme's own error against the field: of more than second order.
+    // The error left at level 2 is mostly the scheme's error against the field, of more than second order.
     EXPECT_LT(second, error(8, 2) / 4);
 }
 
@@ -269,7 +270,7 @@ TEST(RenderDense, InvisibleBlocksAreSkippedWithoutChange) {
 }
 
 TEST(RenderDense, PlaceDoesNotMatter) {
-    // Quarters stay equal where they are equal: the order of positions, which decides how cells are split, is kept.
+    // Coordinates are quarters, so equal ones stay equal: the order of positions, which decides how cells are split, is kept.
     const HexMesh mesh = with_field(test::jittered_box(4, 0.3, 8), waves);
     const auto draw = [&](const Vec3& move) {
         HexMesh moved = mesh;
@@ -280,7 +281,7 @@ TEST(RenderDense, PlaceDoesNotMatter) {
         EXPECT_EQ(result.report.lost_rays, 0u);
         return result.image;
     };
-    // At 1e6 a coordinate is rounded by 1e-10, which the steepest silhouette and field turn into less than 1e-7.
+    // At 1e6 a coordinate is rounded by 1e-10; the steepest silhouette and field make less than 1e-7 of it.
     EXPECT_LT(largest_difference(draw(Vec3(0)), draw(Vec3(1e6, -1e6, 1e6))), 1e-6);
 }
 

@@ -23,7 +23,7 @@ double rms_difference(const Image& a, const Image& b) {
     return std::sqrt(sum / static_cast<double>(a.rgba.size()));
 }
 
-/// Flat cells of all lengths, seen slantwise: centroids are not in the order of the cells.
+/// Flat cells of all lengths, seen from a slant: the order of centroids is not that of the cells.
 HexMesh flat_box() {
     HexMesh mesh = box(8);
     for (Vec3& p : mesh.points) p = Vec3(p.x * p.x * p.x, p.y, 0.1 * p.z);
@@ -33,7 +33,7 @@ View flat_view() {
     return {{.eye = {2.5, 2.1, 0.9}, .target = {0.5, 0.5, 0}, .up = {0, 0, 1}, .fovy_deg = 30}, 64, 48};
 }
 
-/// Two slabs with nothing between them, of one mesh.
+/// A mesh of two slabs with a gap between them.
 HexMesh two_slabs() {
     return lattice({4, 4, 5}, [](Index, Index, Index k) { return k == 0 || k == 4; });
 }
@@ -62,7 +62,7 @@ TEST_F(RenderHavs, SixEntriesAreEnoughForWellShapedCells) {
             const auto havs =
                 render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs});
             const auto rays = render_tets(valued(mesh, values), {}, view, ramp_optics(0.1));
-            // Some corner of a picture may see a face a place later; as near as neighbours are, that is not seen.
+            // In a corner of a picture a face may be one place too late; its neighbour is so near that this is not visible.
             EXPECT_LT(havs.report.late_faces, 1e-4 * static_cast<double>(havs.report.fragments));
             EXPECT_LT(largest_difference(havs.image, rays.image), kGlTol);
         }
@@ -96,13 +96,13 @@ TEST_F(RenderHavs, MoreEntriesAreNeverWorse) {
     EXPECT_LT(error, kGlTol);
 }
 
-TEST_F(RenderHavs, NothingIsBetweenPartsOfTheVolume) {
+TEST_F(RenderHavs, GapsBetweenPartsStayEmpty) {
     const HexMesh slabs = two_slabs();
     const View along({.eye = {0.5, 0.5, 5}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}, .ortho_height = 0.99}, 40, 40);
     const View across({.eye = {4, 0.4, 0.6}, .target = {0.5, 0.4, 0.5}, .up = {0, 0, 1}, .fovy_deg = 15}, 64, 64);
     for (const double lod : {0.0, 0.5, 1.0}) {
         const ProjectedOptions havs{.order = ProjectedOrder::Havs, .lod = lod};
-        // Two fifths of a unit at an opacity of one half a unit.
+        // Two fifths of a unit, with an opacity of one half for each unit.
         const auto drawn = render_projected(valued(slabs, 1.0), {}, along, constant_optics(), havs);
         for (int y = 0; y < 40; ++y) {
             for (int x = 0; x < 40; ++x) ASSERT_NEAR(drawn.image.pixel(x, y)[3], 1 - std::pow(0.5, 0.4), kFewTol) << lod;
@@ -120,7 +120,7 @@ TEST_F(RenderHavs, NothingIsBetweenPartsOfTheVolume) {
 }
 
 TEST_F(RenderHavs, PartsThatTouchKeepTheirValues) {
-    // Two boxes side by side with points of their own and, numbered backwards, other diagonals on the faces between them.
+    // Two boxes side by side without common points; the second is numbered backwards, so diagonals differ on the faces between.
     HexMesh mesh = box(3);
     const auto count = static_cast<Index>(mesh.points.size());
     const std::size_t cells = mesh.cells.size();
@@ -136,7 +136,7 @@ TEST_F(RenderHavs, PartsThatTouchKeepTheirValues) {
         EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs}), kGlTol);
 }
 
-TEST_F(RenderHavs, EyeInsideSeesWhatIsBeforeIt) {
+TEST_F(RenderHavs, EyeInsideSeesOnlyWhatIsInFront) {
     const HexMesh mesh = jittered_box(4, 0.2, 3);
     const auto values = evaluate(mesh, waves);
     const Camera inside{.eye = {0.43, 0.37, 0.52}, .target = {0.9, 0.8, 0.3}, .up = {0, 0, 1}, .fovy_deg = 80};
@@ -145,7 +145,7 @@ TEST_F(RenderHavs, EyeInsideSeesWhatIsBeforeIt) {
     for (const Camera& camera : {inside, flat}) {
         const View view(camera, 48, 40);
         EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1), {.order = ProjectedOrder::Havs}), kGlTol);
-        // Where faces are left out a constant is still one.
+        // A constant field stays constant where faces are left out.
         EXPECT_LT(difference_from_rays(mesh, std::vector<double>(values.size(), 1.0), view, constant_optics(),
                                        {.order = ProjectedOrder::Havs, .lod = 0}),
                   kFewTol);

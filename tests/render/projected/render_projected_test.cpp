@@ -17,7 +17,7 @@ using namespace test;
 using RenderProjected = ProjectedTest;
 
 TEST_F(RenderProjected, CellsOneByOneAreLikeRays) {
-    // Six tetrahedra that fill the picture: silhouettes of three and four corners, thick segments over all of the knots.
+    // Six tetrahedra that fill the picture: silhouettes with three and four corners, thick segments across all knots.
     HexMesh mesh = test::box(1);
     for (const double height : {1.0, 0.3, 0.01, 1e-4}) {
         for (std::size_t i = 0; i < 4; ++i) mesh.points[4 + i].z = height * (1 + 0.1 * static_cast<double>(i));
@@ -59,7 +59,7 @@ TEST_F(RenderProjected, FacesSeenEdgeOnAreLikeRays) {
     EXPECT_LT(difference_from_rays(mesh, mesh.attributes[0].values, view, ramp_optics(0.1)), kGlTol);
 }
 
-TEST_F(RenderProjected, EyeInsideSeesWhatIsBeforeIt) {
+TEST_F(RenderProjected, EyeInsideSeesOnlyWhatIsInFront) {
     const HexMesh mesh = test::jittered_box(4, 0.2, 3);
     const auto values = evaluate(mesh, waves);
     const View view({.eye = {0.43, 0.37, 0.52}, .target = {0.9, 0.8, 0.3}, .up = {0, 0, 1}, .fovy_deg = 80}, 48, 40);
@@ -88,7 +88,7 @@ TEST_F(RenderProjected, ListsAreLikeRays) {
 }
 
 TEST_F(RenderProjected, TopologicalOrderIsThatOfLists) {
-    // Convex meshes without a cycle: the same segments in the same order, but composited from the other end.
+    // Convex meshes without cycles: the same segments in the same order, composited from the other end.
     for (const HexMesh& mesh : {test::jittered_box(6, 0.3, 5), test::ball(6)}) {
         const auto values = evaluate(mesh, waves);
         const View view = ball_view(70, 60);
@@ -102,7 +102,7 @@ TEST_F(RenderProjected, TopologicalOrderIsThatOfLists) {
 }
 
 TEST_F(RenderProjected, CentroidsAreWrongWhereTheyAreCounted) {
-    // Flat cells, seen slantwise: centroids are not in the order of the cells.
+    // Flat cells, seen from a slant: the order of centroids is not that of the cells.
     HexMesh mesh = test::box(4);
     for (Vec3& p : mesh.points) p.z *= 0.1;
     const auto values = evaluate(mesh, waves);
@@ -127,7 +127,7 @@ TEST_F(RenderProjected, CentroidsAreWrongWhereTheyAreCounted) {
 }
 
 TEST_F(RenderProjected, ListsCountEveryDepthOnceWhereCellsFoldOver) {
-    // What a fold looks like depends on which cell counts; how much there is of it does not.
+    // The colour of a fold depends on which of the cells is drawn, its opacity does not.
     const HexMesh mesh = test::jittered_box(5, 0.9, 4);
     const std::vector<double> ones(mesh.points.size(), 1.0);
     const auto lists =

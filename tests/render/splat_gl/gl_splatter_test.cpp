@@ -22,7 +22,7 @@ using detail::Drawn;
 using detail::GlSplatter;
 using detail::GlTuning;
 
-/// Nested cubes drawn onto the unit ball: irregular edges and vertices inside.
+/// Nested cubes mapped onto the unit ball: irregular edges and vertices inside.
 HexMesh make_ball() {
     HexMesh mesh = test::make_nested_cubes(4);
     for (auto& p : mesh.points) {
@@ -34,14 +34,14 @@ HexMesh make_ball() {
     return mesh;
 }
 
-/// Peaks, ramps, and a gap without opacity between.
+/// Peaks, ramps, and a gap without opacity between them.
 Optics optics() {
     return Optics({.color = {{0, {0, 0, 1}}, {.5, {.1, 1, .2}}, {1, {1, 0, 0}}},
                    .opacity = {{0, 0}, {.2, .3}, {.3, 0}, {.42, 0}, {.5, .6}, {.6, .05}, {1, .3}}},
                   .3);
 }
 
-/// Most of the volume cannot be seen at all.
+/// Most of the volume is invisible.
 Optics one_shell() {
     return Optics({.color = {{0, {1, 1, .5}}}, .opacity = {{0, 0}, {.78, 0}, {.8, .7}, {.82, 0}, {1, 0}}}, .3);
 }
@@ -71,7 +71,7 @@ float largest_difference(const std::vector<float>& a, const std::vector<float>& 
     return largest;
 }
 
-/// A depth is a quotient by the opacity: it weighs as much as can be seen there.
+/// Depths are quotients by the opacity, so their differences are weighted with it.
 float largest_depth_difference(const Drawn& a, const Drawn& b) {
     float largest = 0;
     for (std::size_t i = 0; i < a.depth.size(); ++i) {
@@ -86,7 +86,7 @@ RbfVolume sampled(Correction correction, const std::function<void(RbfVolume&)>& 
     return volume;
 }
 
-/// Gives a volume another kernel of the same reach.
+/// Gives a volume another kernel with the same reach.
 void set_kernel(RbfVolume& volume, Kernel kernel) {
     const double scale = std::pow(support_radius(kernel) / support_radius(volume.kernel), 2);
     for (auto& frame : volume.frames) {
@@ -104,13 +104,13 @@ protected:
 
 constexpr int kSheets = 45;  // five batches and a part
 
-// The same operations, some with another last bit, in sums of some ten kernels over 45 sheets: a few 1e-7 were seen. Depths
-// likewise.
+// The same operations, some with another last bit, in sums of some ten kernels over 45 sheets: differences of a few 1e-7 were
+// measured, also for depths.
 constexpr float kRounding = 2e-6f, kDepthRounding = 1e-5f;
 
-// Plain sums keep the rounding that a quotient of two sums loses.
+// In plain sums rounding does not cancel as in a quotient of two sums.
 constexpr float kPlainRounding = 1e-5f;
-// Where weights end is a quotient of small differences.
+// The end of the volume is a quotient of small differences of weights.
 constexpr float kCutRounding = 2e-5f;
 
 /// Draws every view on both backends.
@@ -187,7 +187,7 @@ TEST_F(GlSplats, TilesBatchesAndRepeatsChangeNoBit) {
 }
 
 TEST_F(GlSplats, PassesChangeNoBit) {
-    constexpr int kMany = 80;  // thin batches: a third of the kernels meets each
+    constexpr int kMany = 80;  // thin batches: each meets a third of the kernels
     for (const bool bounded : {true, false}) {
         const RbfVolume volume = sampled(Correction::Full, [&](RbfVolume& v) {
             if (!bounded) v.boundary = {};
@@ -212,7 +212,7 @@ TEST_F(GlSplats, PassesChangeNoBit) {
     }
 }
 
-TEST_F(GlSplats, WhatThePictureBeforeLeftDoesNotMatter) {
+TEST_F(GlSplats, PicturesDoNotDependOnEarlierOnes) {
     // Less, then more than there is room for, and another transfer function.
     const RbfVolume volume = sampled(Correction::Second);
     const auto scene = detail::make_scene(volume, {});

@@ -17,7 +17,7 @@ using test::constant_alpha;
 using test::constant_optics;
 using test::evaluate;
 
-// Images are single precision; double everywhere before.
+// Images are in single precision, all before in double.
 constexpr double kFloatTol = 1e-6;
 
 // Colour and opacity change with the value in [0,1], with kinks.
@@ -113,7 +113,8 @@ TEST(RenderTets, RaysThroughLatticePointsAndEdgesAreExact) {
     const HexMesh mesh = test::box(4);
     const std::vector<double> ones(mesh.points.size(), 1.0);
     for (const int size : {5, 9, 17}) {
-        // The outermost pixel centres lie on the box's sides, where being in or out is equally right: left out below.
+        // The outermost pixel centres lie on the box's sides, where inside and outside are equally right: they are left out
+        // below.
         const View view = straight_view(size, double(size) / (size - 1));
         const auto result = render_tets(valued(mesh, ones), {}, view, constant_optics());
         EXPECT_EQ(result.report.lost_rays, 0u);
@@ -126,7 +127,7 @@ TEST(RenderTets, RaysThroughLatticePointsAndEdgesAreExact) {
 }
 
 TEST(RenderTets, RaysAlongDiagonalsAreExact) {
-    // Along (1,1,1) and (1,1,0) rays run in faces and along the diagonals of the split.
+    // Along (1,1,1) and (1,1,0) rays run in faces and along diagonals of the split.
     for (const Vec3& direction : {Vec3(1, 1, 1), Vec3(1, 1, 0), Vec3(-1, 1, 1)}) {
         const HexMesh mesh = test::box(4);
         const View view({.eye = Vec3(0.5) + 4.0 * direction, .target = Vec3(0.5), .up = {0, 0, 1}, .ortho_height = 1.0}, 41,
@@ -200,7 +201,7 @@ TEST(RenderTets, LShapeIsLeftAndEnteredAgain) {
 }
 
 TEST(RenderTets, ComponentsThatTouchAreBothSeen) {
-    HexMesh mesh = test::box(3);  // and a copy of it, with points of its own, at x in 1..2
+    HexMesh mesh = test::box(3);  // and a copy with its own points at x in 1..2
     const HexMesh other = mesh;
     const auto offset = static_cast<Index>(mesh.points.size());
     for (const Vec3& p : other.points) mesh.points.push_back(p + Vec3(1, 0, 0));
@@ -259,7 +260,7 @@ TEST(RenderTets, PlaceAndSizeDoNotMatter) {
         return result.image;
     };
     const Image here = draw(1, Vec3(0));
-    // At 1e6 a coordinate is rounded by 1e-10, which the steepest silhouette and field turn into less than 1e-7.
+    // At 1e6 a coordinate is rounded by 1e-10; the steepest silhouette and field make less than 1e-7 of it.
     EXPECT_LT(largest_difference(here, draw(1, Vec3(1e6, -1e6, 1e6))), 1e-6);
     EXPECT_LT(largest_difference(here, draw(1e-2, Vec3(0))), 1e-6);
     EXPECT_LT(largest_difference(here, draw(1e6, Vec3(0))), 1e-6);
@@ -321,6 +322,22 @@ TEST(RenderTets, SamplesAreMeansOverThePixel) {
             ASSERT_NEAR(coarse.image.pixel(x, y)[3], mean, kFloatTol);
         }
     }
+}
+
+TEST(RenderTets, ShowsTheNamedFieldOrTheFirstScalar) {
+    HexMesh mesh = test::box(2);
+    const auto rising = evaluate(mesh, [](const Vec3& p) { return p.x; });
+    mesh.attributes = {{"velocity", 3, std::vector<double>(3 * mesh.points.size())},
+                       {"constant", 1, std::vector<double>(mesh.points.size(), 0.2)},
+                       {"rising", 1, rising}};
+    const auto draw = [](const HexMesh& of, std::string_view field) {
+        return render_tets(of, field, slanted_view(12), ramp_optics()).image.rgba;
+    };
+    EXPECT_EQ(draw(mesh, ""), draw(valued(mesh, 0.2), ""));
+    EXPECT_EQ(draw(mesh, "rising"), draw(valued(mesh, rising), ""));
+    EXPECT_THROW((void)draw(mesh, "velocity"), Error);
+    EXPECT_THROW((void)draw(mesh, "pressure"), Error);
+    EXPECT_THROW((void)draw(test::box(1), ""), Error);
 }
 
 TEST(RenderTets, RefusesWrongInput) {
