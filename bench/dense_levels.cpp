@@ -62,16 +62,15 @@ void print(const char* method, const std::vector<Drawn>& levels, const Image& fi
 
 void measure(const std::string& name, int resolution, int finest, int size) {
     const HexMesh mesh = make_model(name, resolution);
-    const auto& values = mesh.attributes.front().values;
     const Box box = bounds(mesh);
     const View view(fit_camera(box, {-1, 1.3, -0.8}), size, size);
     const Optics optics(transfer_function_preset("viridis", -1, 1), box.diagonal() / 30);
     std::vector<Drawn> dense, tets;
     for (int l = 1; l <= finest; ++l) {
-        dense.push_back(timed([&] { return render_dense(mesh, values, view, optics, {.levels = l}); }));
+        dense.push_back(timed([&] { return render_dense(mesh, {}, view, optics, {.levels = l}); }));
         if ((mesh.cells.size() << (3 * l)) > kMostCells) continue;
         const HexMesh fine = on_limit(refine(mesh, {.levels = l}), Scheme::Mcq);
-        tets.push_back(timed([&] { return render_tets(fine, fine.attributes.front().values, view, optics); }));
+        tets.push_back(timed([&] { return render_tets(fine, {}, view, optics); }));
     }
     std::printf("%s %d: %zu control cells\n", name.c_str(), resolution, mesh.cells.size());
     print("dense", dense, dense.back().image);

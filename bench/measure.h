@@ -4,7 +4,8 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
+
+#include "subvol/detail/stopwatch.h"
 
 namespace subvol::bench {
 
@@ -13,9 +14,9 @@ template <class Work>
 double seconds_of(const Work& work, int repeats) {
     double best = 1e30;
     for (int i = 0; i < repeats; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+        const detail::Stopwatch watch;
         work();
-        best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        best = std::min(best, watch.seconds());
     }
     return best;
 }

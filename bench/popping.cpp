@@ -55,7 +55,7 @@ int main(int argc, char** argv) {
         for (const Camera& camera : turntable(first, volume.bounds.center(), count)) {
             const View view(camera, size, size);
             splats.push_back(splatter.draw(view, optics).image);
-            tets.push_back(render_tets(fine, fine.attributes[0].values, view, optics).image);
+            tets.push_back(render_tets(fine, {}, view, optics).image);
         }
         print(name, "splats", splats);
         print(name, "tets", tets);

@@ -11,7 +11,7 @@
 #include "measure.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 
 namespace {
@@ -39,18 +39,18 @@ Difference difference(const Image& a, const Image& b) {
 
 struct Row {
     std::string name;
-    PtOptions options;
+    ProjectedOptions options;
 };
 
 std::vector<Row> rows() {
     std::vector<Row> result{
-        {"centroid", {.order = PtOrder::Centroid}}, {"topological", {}}, {"lists", {.order = PtOrder::Lists}}};
+        {"centroid", {.order = ProjectedOrder::Centroid}}, {"topological", {}}, {"lists", {.order = ProjectedOrder::Lists}}};
     for (const int k : {1, 2, 4, 6, 16})
-        result.push_back({"havs k=" + std::to_string(k), {.order = PtOrder::Havs, .kbuffer = k}});
+        result.push_back({"havs k=" + std::to_string(k), {.order = ProjectedOrder::Havs, .kbuffer = k}});
     for (const double lod : {0.0, 0.03, 0.1, 0.3, 0.6}) {
         char name[32];
         std::snprintf(name, sizeof name, "lod %g", lod);
-        result.push_back({name, {.order = PtOrder::Havs, .lod = lod}});
+        result.push_back({name, {.order = ProjectedOrder::Havs, .lod = lod}});
     }
     return result;
 }
@@ -61,28 +61,27 @@ void measure(int resolution) {
     const View view(fit_camera(box, {-1, 1, -1}), kSize, kSize);
     const Optics optics({{{0, {0, 0, 1}}, {0.5, {0.1, 1, 0.2}}, {1, {1, 0, 0}}}, {{0, 0}, {1, 0.1}}},
                         0.01 * glm::length(box.upper - box.lower));
-    const auto& values = mesh.attributes[0].values;
-    const TetsRenderer tracer(mesh, values);
+    const TetsRenderer tracer(mesh);
     TetsResult rays;
     const double ray_seconds = bench::seconds_of([&] { rays = tracer.draw(view, optics); }, kFrames);
     std::printf("twist %d: %zu tets; by rays on the CPU: prepare %.3f s, draw %.3f s\n", resolution, rays.report.tets,
                 tracer.seconds_build(), ray_seconds);
-    PtRenderer renderer(mesh, values);
+    ProjectedRenderer renderer(mesh);
     for (const auto& [name, options] : rows()) {
-        PtResult best;
+        ProjectedResult best;
         for (int i = 0; i < kFrames; ++i) {
-            PtResult drawn = renderer.draw(view, optics, options);
-            const auto seconds = [](const PtReport& r) { return r.seconds_prepare + r.seconds_sort + r.seconds_draw; };
+            ProjectedResult drawn = renderer.draw(view, optics, options);
+            const auto seconds = [](const ProjectedReport& r) { return r.seconds_prepare + r.seconds_sort + r.seconds_draw; };
             if (i == 0 || seconds(drawn.report) < seconds(best.report)) best = std::move(drawn);
         }
         if (!best.report.violations) {
-            PtOptions counting = options;
+            ProjectedOptions counting = options;
             counting.count_violations = true;
-            const PtReport counted = renderer.draw(view, optics, counting).report;
+            const ProjectedReport counted = renderer.draw(view, optics, counting).report;
             best.report.violations = counted.violations;
             best.report.fragments = counted.fragments;
         }
-        const PtReport& r = best.report;
+        const ProjectedReport& r = best.report;
         const Difference error = difference(best.image, rays.image);
         std::printf(
             "  %-11s prepare %.3f s, sort %.3f s, draw %.3f s; %8zu fragments, %6zu wrong pixels, %7zu late; RMSE %.1e, "
@@ -90,7 +89,7 @@ void measure(int resolution) {
             name.c_str(), r.seconds_prepare, r.seconds_sort, r.seconds_draw, r.fragments, r.violations.value_or(0),
             r.late_faces, error.rms, error.largest);
     }
-    const PtReport r = renderer.draw(view, optics).report;
+    const ProjectedReport r = renderer.draw(view, optics).report;
     std::printf("  built once: %.3f s (%s)\n", r.seconds_build, r.device.c_str());
 }
 

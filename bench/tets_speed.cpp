@@ -43,7 +43,7 @@ void measure(int resolution) {
     const Optics optics({.color = {{-1, {.1, .2, .9}}, {0, {.9, .9, .9}}, {1, {.9, .2, .1}}},
                          .opacity = {{-1, .30}, {-.3, .05}, {0, 0}, {.3, .05}, {1, .40}}},
                         0.1);
-    const TetsRenderer renderer(mesh, mesh.attributes.front().values);
+    const TetsRenderer renderer(mesh);
     const TetsReport report = renderer.draw(view, optics).report;
     const auto rays = static_cast<double>(report.rays);
     std::printf("twist %d: %zu tets, %.0f bytes a tet, built in %.2f s, %zu rays, %.1f tets a ray, %zu lost\n", resolution,

@@ -78,14 +78,14 @@ int main(int argc, char** argv) {
         for (const int levels : {0, 1}) {
             const HexMesh refined = refine(mesh, {.levels = levels});
             const double start = cpu_seconds();
-            const auto tets = render_tets(refined, refined.attributes[0].values, view, optics);
+            const auto tets = render_tets(refined, {}, view, optics);
             print("tets", "level " + std::to_string(levels), sharp, tets.image, exact, cpu_seconds() - start,
                   tets.report.seconds_build + tets.report.seconds_draw);
             keep("tets_" + std::to_string(levels), tets.image);
         }
         for (const int levels : {1, 2}) {
             const double start = cpu_seconds();
-            const auto dense = render_dense(mesh, mesh.attributes[0].values, view, optics, {.levels = levels});
+            const auto dense = render_dense(mesh, {}, view, optics, {.levels = levels});
             print("dense", "level " + std::to_string(levels), sharp, dense.image, exact, cpu_seconds() - start,
                   dense.report.seconds_build + dense.report.seconds_draw);
             keep("dense_" + std::to_string(levels), dense.image);

@@ -29,7 +29,7 @@ int main() try {
 
     // The same volume refined twice, every cell split into tetrahedra: slower, with nothing approximated but the limit.
     const subvol::HexMesh fine = subvol::refine(mesh, {.levels = 2});
-    const subvol::Image rays = subvol::render_tets(fine, fine.attributes.front().values, view, optics).image;
+    const subvol::Image rays = subvol::render_tets(fine, {}, view, optics).image;
     subvol::write_image("rays.png", rays);
 
     const double psnr = subvol::compare_images(splat, rays).psnr;

@@ -16,7 +16,7 @@
 #include "subvol/model.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_field.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
@@ -69,7 +69,6 @@ void measure(const std::string& name, const Image& exact, const std::function<st
 
 void measure_all(int n, const std::string& exact_file, int size) {
     const HexMesh mesh = make_model("twist", n);
-    const auto& values = mesh.attributes[0].values;
     const View view({{2.6, -4.2, 2.0}, {-.55, 0, 0}, {0, 0, 1}, 40, 0}, size, size);
     const Optics optics({.color = {{-1, {.1, .2, .9}}, {0, {.9, .9, .9}}, {1, {.9, .2, .1}}},
                          .opacity = {{-1, .30}, {-.3, .05}, {0, 0}, {.3, .05}, {1, .40}}},
@@ -86,16 +85,16 @@ void measure_all(int n, const std::string& exact_file, int size) {
         const HexMesh fine = refine(mesh, {.levels = level});
         const std::string of_level = ", level " + std::to_string(level);
         measure("subvol tets by ray" + of_level, exact, [&] {
-            auto renderer = std::make_shared<TetsRenderer>(fine, fine.attributes[0].values);
+            auto renderer = std::make_shared<TetsRenderer>(fine);
             return [&, renderer] { return renderer->draw(view, optics).image; };
         });
         if (gl_devices().empty()) continue;
         measure("subvol projected tets" + of_level, exact,
-                [&] { return [&] { return render_projected_tets(fine, fine.attributes[0].values, view, optics).image; }; });
+                [&] { return [&] { return render_projected(fine, {}, view, optics).image; }; });
     }
     for (const int level : {1, 2}) {
         measure("subvol dense, level " + std::to_string(level), exact,
-                [&] { return [&, level] { return render_dense(mesh, values, view, optics, {.levels = level}).image; }; });
+                [&] { return [&, level] { return render_dense(mesh, {}, view, optics, {.levels = level}).image; }; });
     }
 #ifdef SUBVOL_PEERS_VDB
     const std::vector<std::string> fields{mesh.attributes[0].name};

@@ -24,16 +24,16 @@ void ReferenceArguments::add_to(CLI::App& app) {
         ->check(CLI::Range(0.0, 1.0));
 }
 
-PtOrder ReferenceArguments::pt_order() const {
+ProjectedOrder ReferenceArguments::projected_order() const {
     check_choice("--order", order, {"topological", "centroid", "lists", "havs"});
-    if (order == "lists") return PtOrder::Lists;
-    if (order == "havs") return PtOrder::Havs;
-    return order == "centroid" ? PtOrder::Centroid : PtOrder::Topological;
+    if (order == "lists") return ProjectedOrder::Lists;
+    if (order == "havs") return ProjectedOrder::Havs;
+    return order == "centroid" ? ProjectedOrder::Centroid : ProjectedOrder::Topological;
 }
 
-PtOptions ReferenceArguments::pt_options() const {
-    const PtOptions options{.order = pt_order(), .kbuffer = kbuffer, .lod = lod, .samples = samples};
-    if (lod < 1 && options.order != PtOrder::Havs)
+ProjectedOptions ReferenceArguments::projected_options() const {
+    const ProjectedOptions options{.order = projected_order(), .kbuffer = kbuffer, .lod = lod, .samples = samples};
+    if (lod < 1 && options.order != ProjectedOrder::Havs)
         throw Error(ErrorCode::InvalidInput, "only --order havs leaves faces out", "--lod");
     return options;
 }

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 
 namespace subvol::cli {
 
@@ -19,10 +19,10 @@ struct ReferenceArguments {
     void add_to(CLI::App& app);
 
     /// throws: Error(InvalidInput) if the order is unknown
-    [[nodiscard]] PtOrder pt_order() const;
+    [[nodiscard]] ProjectedOrder projected_order() const;
 
     /// throws: Error(InvalidInput) if the order is unknown, or has no faces to leave out
-    [[nodiscard]] PtOptions pt_options() const;
+    [[nodiscard]] ProjectedOptions projected_options() const;
 };
 
 }  // namespace subvol::cli

@@ -48,11 +48,6 @@ std::int64_t peak_memory_bytes() {
     return std::int64_t{usage.ru_maxrss} * 1024;  // Linux counts it in KiB
 }
 
-Report::Stopwatch::~Stopwatch() {
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    report.add_seconds(stage, elapsed.count());
-}
-
 Report::Report(const CommonOptions& options)
     : print_json_(options.json), quiet_(options.quiet), progress_(progress_visible(options)) {
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
 #include "common_options.h"
+#include "subvol/detail/stopwatch.h"
 #include "terminal_progress.h"
 
 namespace subvol::cli {
@@ -41,7 +41,7 @@ public:
     template <class Work>
     auto timed(const char* stage, Work&& work) {
         report_progress(&progress_, stage, 0);
-        const Stopwatch watch{*this, stage};
+        const StageTimer timer{*this, stage};
         return std::forward<Work>(work)();
     }
 
@@ -55,11 +55,11 @@ public:
 
 private:
     /// Adds to the stage's seconds when the stage ends, whatever it returns.
-    struct Stopwatch {
+    struct StageTimer {
         Report& report;
         const char* stage;
-        std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-        ~Stopwatch();
+        detail::Stopwatch watch{};
+        ~StageTimer() { report.add_seconds(stage, watch.seconds()); }
     };
 
     bool print_json_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "text.h"
@@ -47,9 +48,9 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
         const Picture picture = draw(views[i], progress);
-        const auto start = std::chrono::steady_clock::now();
+        const detail::Stopwatch watch;
         write_frame(i, picture);
-        report.add_seconds("write", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        report.add_seconds("write", watch.seconds());
     }
     report["output"] = frame_path(0).string();
     if (!frames_) return;

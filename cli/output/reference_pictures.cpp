@@ -20,21 +20,21 @@ void report_rays(std::size_t rays, std::size_t lost, Report& report) {
     if (lost > 0) report.warn(text(lost, " rays were lost inside the mesh"));
 }
 
-const char* name_of(PtOrder order) {
+const char* name_of(ProjectedOrder order) {
     switch (order) {
-        case PtOrder::Centroid:
+        case ProjectedOrder::Centroid:
             return "centroid";
-        case PtOrder::Topological:
+        case ProjectedOrder::Topological:
             return "topological";
-        case PtOrder::Lists:
+        case ProjectedOrder::Lists:
             return "lists";
-        case PtOrder::Havs:
+        case ProjectedOrder::Havs:
             return "havs";
     }
     return "";
 }
 
-void report_tets(const PtReport& pt, PtOrder order, Report& report) {
+void report_tets(const ProjectedReport& pt, ProjectedOrder order, Report& report) {
     report.add_seconds("prepare", pt.seconds_prepare);
     report.add_seconds("sort", pt.seconds_sort);
     report.add_seconds("draw", pt.seconds_draw);
@@ -43,9 +43,9 @@ void report_tets(const PtReport& pt, PtOrder order, Report& report) {
     report["tets"] = pt.tets;
     report["degenerate_tets"] = pt.degenerate_tets;
     report["inverted_tets"] = pt.inverted_tets;
-    if (order == PtOrder::Topological) report["cycles"] = pt.cycles;
-    if (order == PtOrder::Lists || order == PtOrder::Havs) report["fragments"] = pt.fragments;
-    if (order == PtOrder::Havs) {
+    if (order == ProjectedOrder::Topological) report["cycles"] = pt.cycles;
+    if (order == ProjectedOrder::Lists || order == ProjectedOrder::Havs) report["fragments"] = pt.fragments;
+    if (order == ProjectedOrder::Havs) {
         report["faces"] = pt.faces;
         report["faces_drawn"] = pt.faces_drawn;
         report["late_faces"] = pt.late_faces;
@@ -71,14 +71,16 @@ Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& 
     return Picture{std::move(drawn.image)};
 }
 
-Picture draw_projected_tets(PtRenderer& renderer, const View& view, const Optics& optics, const ReferenceArguments& arguments,
-                            std::optional<double> seconds, Progress* progress, Report& report) {
-    PtOptions options = arguments.pt_options();
-    PtResult drawn;
+Picture draw_projected_tets(ProjectedRenderer& renderer, const View& view, const Optics& optics,
+                            const ReferenceArguments& arguments, std::optional<double> seconds, Progress* progress,
+                            Report& report) {
+    ProjectedOptions options = arguments.projected_options();
+    ProjectedResult drawn;
     if (seconds) {
-        auto best = render_progressively(renderer, view, optics, {.seconds = *seconds, .pt = options, .progress = progress});
+        auto best =
+            render_progressively(renderer, view, optics, {.seconds = *seconds, .projected = options, .progress = progress});
         options.order = best.order;
-        drawn = std::move(best.pt);
+        drawn = std::move(best.projected);
         report["steps"] = best.steps;
         report["finished"] = best.finished;
     } else {
@@ -92,7 +94,7 @@ Picture draw_projected_tets(PtRenderer& renderer, const View& view, const Optics
 
 Picture draw_dense(const HexMesh& mesh, const RefineOptions& refine, std::optional<int> levels, const View& view,
                    const Optics& optics, const ReferenceArguments& arguments, Progress* progress, Report& report) {
-    DenseResult drawn = render_dense(mesh, mesh.attributes.front().values, view, optics,
+    DenseResult drawn = render_dense(mesh, {}, view, optics,
                                      {.refine = refine,
                                       .levels = levels,
                                       .image_tolerance = arguments.image_tolerance,

@@ -7,7 +7,7 @@
 #include "reference_arguments.h"
 #include "report.h"
 #include "subvol/refine.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 #include "subvol/vdb_grid.h"
 
@@ -18,7 +18,7 @@ namespace subvol::cli {
                                 const ReferenceArguments& arguments, Progress* progress, Report& report);
 
 /// seconds: the best picture within this time, if there is one
-[[nodiscard]] Picture draw_projected_tets(PtRenderer& renderer, const View& view, const Optics& optics,
+[[nodiscard]] Picture draw_projected_tets(ProjectedRenderer& renderer, const View& view, const Optics& optics,
                                           const ReferenceArguments& arguments, std::optional<double> seconds,
                                           Progress* progress, Report& report);
 

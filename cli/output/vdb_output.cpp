@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "subvol/detail/atomic_file.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/nanovdb.h"
 #include "subvol/study_run.h"
@@ -66,15 +67,15 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
     std::size_t active = 0;
     Json parts = Json::array();
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
-    const auto start = std::chrono::steady_clock::now();
+    const detail::Stopwatch whole;
     double writing = 0;
     rasterize_parts(mesh, fields, options, output.memory_bytes, [&](const GridPart& part) {
         const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
         const GridReport& first = part.grids.front().report();
-        const auto before = std::chrono::steady_clock::now();
+        const detail::Stopwatch one;
         const std::filesystem::path& file = files.emplace_back(path.parent_path() / name).path();
         write_named(name, [&] { write_vdb(file, part.grids, output.compression); });
-        writing += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+        writing += one.seconds();
         active += first.active_voxels;
         report["voxel_size"] = first.voxel_size_world;
         Json entry{{"file", name}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
@@ -82,7 +83,7 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
         for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report()));
         parts.push_back(std::move(entry));
     });
-    report.add_seconds("rasterize", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - writing);
+    report.add_seconds("rasterize", whole.seconds() - writing);
     report.add_seconds("write", writing);
     const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
     const Json json{{"input", report["input"]},

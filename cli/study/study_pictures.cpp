@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <limits>
 
 #include "report.h"
@@ -7,6 +6,7 @@
 #include "study_input.h"
 #include "study_metrics.h"
 #include "study_work.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
@@ -14,7 +14,7 @@
 #include "subvol/rasterize.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
 #include "subvol/vdb_grid.h"
@@ -34,18 +34,7 @@ struct Scene {
     const Optics& optics;
     CaseResult& result;
 
-    [[nodiscard]] std::span<const double> scalar() const { return mesh.attributes.front().values; }
     [[nodiscard]] int repeats() const { return std::max(of.whole("repeat"), 1); }
-};
-
-class Stopwatch {
-public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-
-private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 /// Draws as often as the case says; the last picture, and the least time of one.
@@ -54,7 +43,7 @@ Image repeated(const Scene& scene, const Draw& draw) {
     double least = std::numeric_limits<double>::infinity();
     Image image;
     for (int i = 0; i < scene.repeats(); ++i) {
-        const Stopwatch watch;
+        const detail::Stopwatch watch;
         image = draw();
         least = std::min(least, watch.seconds());
     }
@@ -63,7 +52,7 @@ Image repeated(const Scene& scene, const Draw& draw) {
 }
 
 Image splat(const Scene& scene, bool by_sheets) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     RbfVolume volume = sample_rbf_points(scene.mesh, study_sampling(scene.of, scene.mesh)).volume;
     scene.result.metrics["sampled"] = static_cast<double>(volume.size());
     if (scene.of.flag("visible_only")) volume = drop_invisible(volume, 0, scene.optics.function()).volume;
@@ -83,9 +72,9 @@ HexMesh refined(const Scene& scene) {
 }
 
 Image tets(const Scene& scene) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     const HexMesh fine = refined(scene);
-    const TetsRenderer renderer(fine, fine.attributes.front().values);
+    const TetsRenderer renderer(fine);
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
         TetsResult drawn = renderer.draw(scene.view, scene.optics, {.samples = scene.of.whole("samples")});
@@ -95,19 +84,19 @@ Image tets(const Scene& scene) {
     });
 }
 
-PtOrder pt_order(const std::string& name) {
-    if (name == "lists") return PtOrder::Lists;
-    if (name == "centroid") return PtOrder::Centroid;
-    return name == "havs" ? PtOrder::Havs : PtOrder::Topological;
+ProjectedOrder projected_order(const std::string& name) {
+    if (name == "lists") return ProjectedOrder::Lists;
+    if (name == "centroid") return ProjectedOrder::Centroid;
+    return name == "havs" ? ProjectedOrder::Havs : ProjectedOrder::Topological;
 }
 
 Image projected_tets(const Scene& scene) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     const HexMesh fine = refined(scene);
-    PtRenderer renderer(fine, fine.attributes.front().values);
+    ProjectedRenderer renderer(fine);
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
-        PtResult drawn = renderer.draw(scene.view, scene.optics, {.order = pt_order(scene.of.text("order"))});
+        ProjectedResult drawn = renderer.draw(scene.view, scene.optics, {.order = projected_order(scene.of.text("order"))});
         scene.result.metrics["tets"] = scene.result.metrics["primitives"] = static_cast<double>(drawn.report.tets);
         scene.result.notes["device"] = drawn.report.device;
         return std::move(drawn.image);
@@ -117,7 +106,7 @@ Image projected_tets(const Scene& scene) {
 Image dense(const Scene& scene) {
     const auto levels = scene.of.has("levels") ? std::optional(scene.of.whole("levels")) : std::nullopt;
     return repeated(scene, [&] {
-        DenseResult drawn = render_dense(scene.mesh, scene.scalar(), scene.view, scene.optics,
+        DenseResult drawn = render_dense(scene.mesh, {}, scene.view, scene.optics,
                                          {.levels = levels,
                                           .max_levels = scene.of.whole("max_levels"),
                                           .image_tolerance = scene.of.number("tolerance"),
@@ -133,7 +122,7 @@ Image dense(const Scene& scene) {
 }
 
 Image grid(const Scene& scene) {
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     const Vec3 size = bounds(scene.mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / scene.of.whole("resolution");
     const LimitCells limit = find_limit_cells(scene.mesh, {}, {.position_world = 0.1 * voxel});
@@ -167,7 +156,7 @@ Image measured(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
     const View view = study_view(of, mesh, optics);
     const auto before = static_cast<double>(peak_memory_bytes());
     const double cpu = cpu_seconds();
-    const Stopwatch watch;
+    const detail::Stopwatch watch;
     Image image = draw({of, mesh, view, optics, result});
     result.costs["seconds"] = watch.seconds();
     result.costs["cpu_seconds"] = cpu_seconds() - cpu;

@@ -4,11 +4,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 
 #include "report.h"
 #include "sample_arguments.h"
+#include "subvol/detail/stopwatch.h"
 
 namespace subvol::cli {
 
@@ -43,11 +43,11 @@ CaseResult run_case(const StudyCase& of, const CasePlace& place) {
     static const std::set<std::string> kKernels{"errors", "fit", "slice"};
     const std::string& method = of.text("method");
     if (!kFields.contains(method) && !kKernels.contains(method)) return run_picture_case(of, place);
-    const auto start = std::chrono::steady_clock::now();
+    const detail::Stopwatch watch;
     CaseResult result = kFields.contains(method) ? run_field_case(of) : run_kernel_case(of, place);
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const double seconds = watch.seconds();
     result.costs = {
-        {"seconds", elapsed.count()}, {"cpu_seconds", cpu_seconds()}, {"peak_bytes", static_cast<double>(peak_memory_bytes())}};
+        {"seconds", seconds}, {"cpu_seconds", cpu_seconds()}, {"peak_bytes", static_cast<double>(peak_memory_bytes())}};
     return result;
 }
 

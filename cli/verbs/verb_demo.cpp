@@ -97,9 +97,8 @@ private:
         const HexMesh fine =
             stages.timed("refine", [&] { return refine(shown.mesh, {.levels = level, .progress = stages.progress()}); });
         write_grid(fine, file("vdb", ".vdb"), stages);
-        const Image reference = stages.timed("reference", [&] {
-            return render_tets(fine, fine.attributes.front().values, view, shown.optics, {.progress = stages.progress()}).image;
-        });
+        const Image reference = stages.timed(
+            "reference", [&] { return render_tets(fine, {}, view, shown.optics, {.progress = stages.progress()}).image; });
         write_image(file("reference", "_reference.png"), reference);
         write_image(file("difference", "_difference.png"), difference_heatmap(splat, reference));
 

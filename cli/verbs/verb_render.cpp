@@ -75,7 +75,7 @@ private:
 
     /// The reference methods know nothing of what is the splats' own.
     void check_reference() const {
-        (void)reference_.pt_options();
+        (void)reference_.projected_options();
         if (drawn_by_splats()) return;
         if (splat_.shade || splat_.color_field) {
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
@@ -119,16 +119,15 @@ private:
 
     void draw_tetrahedra(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                          Report& report) const {
-        const auto& values = mesh.attributes.front().values;
         if (method_ == "pt") {
-            PtRenderer renderer(mesh, values, splat_.device);
+            ProjectedRenderer renderer(mesh, {}, splat_.device);
             report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_projected_tets(renderer, view, optics, reference_, splat_.seconds, progress, report);
             };
             output.write(views, draw, report);
         } else {
-            const TetsRenderer renderer(mesh, values);
+            const TetsRenderer renderer(mesh);
             report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_tets(renderer, view, optics, reference_, progress, report);

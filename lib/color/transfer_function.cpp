@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/transfer_function.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "knot_values.h"
 #include "subvol/error.h"
@@ -25,11 +27,31 @@ void check_values(const std::vector<Knot>& knots, const char* list) {
     }
 }
 
+/// of: what a knot stands for
+template <class Knot, class Of>
+auto interpolate(const std::vector<Knot>& knots, double value, const Of& of) {
+    const auto next =
+        std::upper_bound(knots.begin(), knots.end(), value, [](double v, const Knot& knot) { return v < knot.value; });
+    if (next == knots.begin()) return of(knots.front());
+    const auto last = std::prev(next);
+    if (next == knots.end()) return of(*last);
+    const double t = (value - last->value) / (next->value - last->value);
+    return (1 - t) * of(*last) + t * of(*next);
+}
+
 bool in_unit(double x) {
     return x >= 0 && x <= 1;
 }
 
 }  // namespace
+
+Vec3 color_at(const TransferFunction& function, double value) {
+    return interpolate(function.color, value, [](const auto& knot) { return knot.rgb; });
+}
+
+double alpha_at(const TransferFunction& function, double value) {
+    return interpolate(function.opacity, value, [](const auto& knot) { return knot.alpha; });
+}
 
 TransferFunction stretched(const TransferFunction& function, double min, double max) {
     validate(function);

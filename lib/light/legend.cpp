@@ -15,7 +15,6 @@
 #include "output_file.h"
 #include "subvol/detail/round_ticks.h"
 #include "subvol/error.h"
-#include "subvol/optics.h"
 #include "subvol/srgb.h"
 
 namespace subvol {
@@ -56,10 +55,12 @@ pugi::xml_node append(pugi::xml_node parent, const char* name, Attributes attrib
 class Legend {
 public:
     Legend(const TransferFunction& function, const LegendOptions& options)
-        : optics_(function, 1),
+        : function_(function),
           options_(options),
           range_(usable_range(options.min, options.max)),
-          end_(kLeft + options.width_px) {}
+          end_(kLeft + options.width_px) {
+        validate(function);
+    }
 
     [[nodiscard]] std::string svg() const {
         const std::string width = std::to_string(end_ + kRight), height = std::to_string(kBarEnd + kBottom);
@@ -94,14 +95,15 @@ private:
     void append_colors(pugi::xml_node svg) const {
         std::set<double> values;
         for (int i = 0; i <= kColors; ++i) values.insert(range_.at(static_cast<double>(i) / kColors));
-        for (const auto& knot : optics_.function().color) {
+        for (const auto& knot : function_.color) {
             if (inside(knot.value)) values.insert(knot.value);
         }
         const auto gradient =
             append(svg, "linearGradient",
                    {{"id", "colors"}, {"gradientUnits", "userSpaceOnUse"}, {"x1", number(kLeft)}, {"x2", number(end_)}});
         for (const double value : values) {
-            append(gradient, "stop", {{"offset", number(100 * part(value)) + "%"}, {"stop-color", hex(optics_.color(value))}});
+            append(gradient, "stop",
+                   {{"offset", number(100 * part(value)) + "%"}, {"stop-color", hex(color_at(function_, value))}});
         }
     }
 
@@ -113,7 +115,7 @@ private:
 
     void append_opacity(pugi::xml_node svg) const {
         std::string line = "M" + curve_point(range_.min);
-        for (const auto& knot : optics_.function().opacity) {
+        for (const auto& knot : function_.opacity) {
             if (inside(knot.value)) line += " L" + curve_point(knot.value);
         }
         line += " L" + curve_point(range_.max);
@@ -130,7 +132,7 @@ private:
     }
 
     [[nodiscard]] std::string curve_point(double value) const {
-        return number(x(value)) + " " + number(y(-std::expm1(-optics_.extinction(value))));
+        return number(x(value)) + " " + number(y(alpha_at(function_, value)));
     }
 
     void append_bar(pugi::xml_node svg) const {
@@ -148,7 +150,7 @@ private:
         }
     }
 
-    Optics optics_;
+    const TransferFunction& function_;
     LegendOptions options_;
     ValueRange range_;
     int end_;  // of the bar, in pixels

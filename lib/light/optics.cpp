@@ -18,14 +18,6 @@ namespace {
 constexpr double kMaxAlpha = 1 - 1e-6;
 constexpr double kOpaque = 1e-16;  // below this, what lies behind does not change a double
 
-double alpha_at(const TransferFunction& function, double value) {
-    return interpolated(function.opacity, value, [](const auto& knot) { return std::min(knot.alpha, kMaxAlpha); });
-}
-
-Vec3 color_at(const TransferFunction& function, double value) {
-    return interpolated(function.color, value, [](const auto& knot) { return knot.rgb; });
-}
-
 std::vector<double> merged_knots(const TransferFunction& function) {
     std::vector<double> knots;
     for (const auto& knot : function.color) knots.push_back(knot.value);
@@ -43,16 +35,17 @@ Optics::Optics(TransferFunction function, double opacity_unit_world)
     if (!(unit_ > 0) || !std::isfinite(unit_)) {
         throw Error(ErrorCode::InvalidInput, "the opacity unit is " + std::to_string(unit_), {}, "a positive world length");
     }
-    knots_ = merged_knots(function_);
+    TransferFunction bounded = function_;
+    for (auto& knot : bounded.opacity) knot.alpha = std::min(knot.alpha, kMaxAlpha);
+    knots_ = merged_knots(bounded);
     double integral = 0;
     for (std::size_t i = 0; i <= knots_.size(); ++i) {
         const double begin = knots_[i > 0 ? i - 1 : 0];
-        Span span{
-            .begin = begin, .alpha = alpha_at(function_, begin), .color = color_at(function_, begin), .integral = integral};
+        Span span{.begin = begin, .alpha = alpha_at(bounded, begin), .color = color_at(bounded, begin), .integral = integral};
         if (i > 0 && i < knots_.size()) {
             span.inverse_width = 1 / (knots_[i] - begin);
-            span.alpha_step = alpha_at(function_, knots_[i]) - span.alpha;
-            span.color_step = color_at(function_, knots_[i]) - span.color;
+            span.alpha_step = alpha_at(bounded, knots_[i]) - span.alpha;
+            span.color_step = color_at(bounded, knots_[i]) - span.color;
             integral += piece_depth(span.alpha, span.alpha + span.alpha_step, (knots_[i] - begin) / unit_);
         }
         span.transparent = !(span.alpha > 0) && !(span.alpha_step > 0);

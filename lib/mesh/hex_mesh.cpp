@@ -92,6 +92,19 @@ const Attribute* HexMesh::find_attribute(std::string_view name) const {
     return found == attributes.end() ? nullptr : &*found;
 }
 
+const Attribute& scalar_field(const HexMesh& mesh, std::string_view name) {
+    std::string known;
+    for (const auto& attribute : mesh.attributes) {
+        if (attribute.channels != 1) continue;
+        if (name.empty() || attribute.name == name) return attribute;
+        known += (known.empty() ? "" : ", ") + attribute.name;
+    }
+    throw Error(ErrorCode::InvalidInput,
+                name.empty() ? "the mesh has no field of one channel"
+                             : "there is no field \"" + std::string(name) + "\" of one channel",
+                {}, known.empty() ? "an attribute of one channel" : "the mesh has: " + known);
+}
+
 void validate(const HexMesh& mesh) {
     if (mesh.cells.empty()) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra");
     validate_cells(mesh);
@@ -242,14 +255,6 @@ SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>
         return {length_of(first), "no scalar field: the length of \"" + first.name + "\" is taken"};
     }
     return {{"density", 1, std::vector<double>(mesh.points.size(), 1.0)}, "no field: density 1 everywhere"};
-}
-
-const Attribute& scalar_field(const HexMesh& mesh, std::string_view field) {
-    for (const Attribute& attribute : mesh.attributes) {
-        if (attribute.channels == 1 && (field.empty() || attribute.name == field)) return attribute;
-    }
-    const std::string name = field.empty() ? "" : "\"" + std::string(field) + "\" ";
-    throw Error(ErrorCode::InvalidInput, "the mesh has no field " + name + "of one channel", {}, names_of(mesh));
 }
 
 HexMesh with_scalar_field(const HexMesh& mesh, std::string_view field) {

@@ -154,15 +154,7 @@ private:
 
 bool is_visible(const TransferFunction& function, const ValueRange& range) {
     const auto& knots = function.opacity;
-    const auto alpha_at = [&](double value) {
-        if (value <= knots.front().value) return knots.front().alpha;
-        if (value >= knots.back().value) return knots.back().alpha;
-        const auto above_it =
-            std::upper_bound(knots.begin(), knots.end(), value, [](double v, const auto& k) { return v < k.value; });
-        const auto& a = *(above_it - 1);
-        return a.alpha + (value - a.value) / (above_it->value - a.value) * (above_it->alpha - a.alpha);
-    };
-    if (alpha_at(range.low) > 0 || alpha_at(range.high) > 0) return true;
+    if (alpha_at(function, range.low) > 0 || alpha_at(function, range.high) > 0) return true;
     return std::any_of(knots.begin(), knots.end(),
                        [&](const auto& k) { return k.alpha > 0 && k.value > range.low && k.value < range.high; });
 }

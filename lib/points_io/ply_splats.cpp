@@ -40,14 +40,13 @@ std::vector<PlySplat> ply_splats(const RbfVolume& volume) {
     std::vector<PlySplat> splats(volume.size());
     if (splats.empty()) return splats;
     const auto [min, max] = std::minmax_element(values.begin(), values.end());
-    const TransferFunction look = transfer_function_preset("viridis", *min, *max);
+    const TransferFunction function = transfer_function_preset("viridis", *min, *max);
     const double width = gaussian_width(volume.kernel);
     tbb::parallel_for(std::size_t{0}, splats.size(), [&](std::size_t i) {
         const PrincipalAxes axes = principal_axes(volume.frames[i]);
         const auto turn = quaternion(axes.directions);
-        const Vec3 color = interpolated(look.color, values[i], [](const auto& knot) { return knot.rgb; });
-        const double alpha =
-            std::max(interpolated(look.opacity, values[i], [](const auto& knot) { return knot.alpha; }), kLeastOpacity);
+        const Vec3 color = color_at(function, values[i]);
+        const double alpha = std::max(alpha_at(function, values[i]), kLeastOpacity);
         PlySplat& splat = splats[i];
         for (int k = 0; k < 3; ++k) {
             const auto n = static_cast<std::size_t>(k);

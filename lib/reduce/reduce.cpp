@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -12,6 +11,7 @@
 #include "bucket_sort.h"
 #include "field_fit.h"
 #include "sample_parts.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
 #include "subvol/surface.h"
@@ -211,7 +211,7 @@ ErrorAtSamples error_at_samples(const RbfVolume& volume, const FieldSamples& sam
 }
 
 ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validation, const ReduceOptions& options) {
-    const auto start = std::chrono::steady_clock::now();
+    const detail::Stopwatch watch;
     check(options);
     check(samples);
     Reduction reduction(samples, options);
@@ -244,7 +244,7 @@ ReduceResult reduce_rbf(const FieldSamples& samples, const FieldSamples& validat
         target = (options.move ? target : std::min(target, report.rmse)) * std::min(kAimLower, options.rmse / error);
     }
     report.points = result.volume.size();
-    report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    report.seconds = watch.seconds();
     return result;
 }
 

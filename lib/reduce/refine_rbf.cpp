@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <cmath>
 #include <string>
 
 #include "field_fit.h"
 #include "sample_parts.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -37,7 +37,7 @@ detail::MovingFitReport fit_fixed(RbfVolume& volume, const FieldSamples& samples
 }  // namespace
 
 RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples, const RbfRefineOptions& options) {
-    const auto start = std::chrono::steady_clock::now();
+    const detail::Stopwatch watch;
     check(volume, options);
     RbfRefineResult result;
     result.volume = volume;
@@ -57,7 +57,7 @@ RbfRefineResult refine_rbf(const RbfVolume& volume, const FieldSamples& samples,
     result.report = {.iterations = fit.iterations,
                      .rmse_before = before.rmse,
                      .rmse_after = better ? after.rmse : before.rmse,
-                     .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                     .seconds = watch.seconds(),
                      .bytes = fit.bytes};
     return result;
 }

@@ -10,7 +10,7 @@ namespace subvol::detail {
 
 namespace {
 
-/// Boxes of a quadtree above level l: 1 + 4 + … + 4^(l−1).
+/// The number of boxes of a quadtree above level l: 1 + 4 + … + 4^(l−1).
 std::size_t boxes_above(int level) {
     return ((std::size_t{1} << (2 * level)) - 1) / 3;
 }
@@ -154,7 +154,7 @@ void DenseGrid::descend(const RayPlane& plane, double margin, std::size_t face, 
 }
 
 void DenseGrid::find_crossed(const RayPlane& plane, std::vector<TetFace>& faces) const {
-    // Boxes are rounded to single precision about the origin, seen points to double precision about the eye.
+    // For rounding: of the boxes in single precision about the origin, of the points in double precision about the eye.
     const Vec3 away = glm::abs(origin_ - plane.origin()), place = glm::abs(origin_);
     const double margin =
         1e-6 * box_.diagonal() + 1e-14 * (std::max({away.x, away.y, away.z}) + std::max({place.x, place.y, place.z}));

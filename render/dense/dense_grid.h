@@ -10,13 +10,13 @@
 
 namespace subvol::detail {
 
-/// The level-L grid of one control cell as a mesh of tetrahedra whose neighbours follow from the grid: 8 · micro-cell + one of
-/// 6 names a tetrahedron. A point's id is its rank among the grid's points by position. So grids that share a side split it
-/// alike, and decide alike where a ray runs along an edge, although they do not know of each other.
+/// The level-L grid of one control cell as a mesh of tetrahedra whose neighbours follow from the grid. The number of a
+/// tetrahedron is 8 · micro-cell + 0..5. A point's id is its rank among the grid's points by position. So two grids that share
+/// a side split it alike, and decide alike where a ray runs along an edge, although neither has the other's data.
 class DenseGrid {
 public:
-    /// channel 0 of values[attribute] is the scalar
-    /// cost: O(n log n) for n = side³ points; 40 bytes a point stay, and 200 a boundary quad at most
+    /// attribute: the field is channel 0 of cell.values[attribute]
+    /// cost:      O(n log n) for n = side³ points; keeps 40 bytes for each point and at most 200 for each boundary quad
     DenseGrid(const DenseCell& cell, std::size_t attribute);
 
     struct Point {
@@ -33,7 +33,7 @@ public:
     [[nodiscard]] std::size_t micro_cells() const { return splits_.size(); }
     [[nodiscard]] std::size_t bytes() const;
 
-    // What a walk asks of any mesh.
+    // What `walk` needs of a mesh.
     [[nodiscard]] std::size_t tet_count() const { return 6 * splits_.size(); }
     [[nodiscard]] const Point& point(Index id) const { return points_[id]; }
     [[nodiscard]] std::array<Index, 4> corners_of_tet(Index tet) const {
@@ -48,11 +48,11 @@ public:
     }
     [[nodiscard]] Index neighbor(Index tet, Index k) const;
 
-    /// Appends the boundary faces that the whole line of a ray crosses: an even number, with what edge signs decide.
+    /// Appends the boundary faces that the whole line of a ray crosses, as edge signs decide: an even number.
     void find_crossed(const RayPlane& plane, std::vector<TetFace>& faces) const;
 
 private:
-    /// A box in single precision about the grid's first point.
+    /// A box in single precision, relative to the grid's first point.
     struct SmallBox {
         std::array<float, 3> center, half;
     };
@@ -79,7 +79,7 @@ private:
     std::vector<Point> points_;         // by rank
     std::vector<Index> ranks_;          // of the nodes
     std::vector<std::uint8_t> splits_;  // of the micro-cells, u fastest
-    std::vector<SmallBox> sides_;       // a quadtree a face: levels from one box to one a quad
+    std::vector<SmallBox> sides_;       // a quadtree for each face: levels from one box down to a box for each quad
     Vec3 origin_;
     Box box_;
     Range range_;

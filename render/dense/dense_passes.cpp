@@ -38,7 +38,7 @@ void plan(const PixelRect& rect, const std::vector<SeenGrid>& grids, std::size_t
 }  // namespace
 
 std::optional<PixelRect> pixels_of(const Box& box, const View& view) {
-    constexpr double kMargin = 1;  // pixels, for rounding
+    constexpr double kMargin = 1;  // in pixels, for rounding
     const PixelRect all{0, 0, view.width(), view.height()};
     Vec2 low(std::numeric_limits<double>::infinity()), high(-std::numeric_limits<double>::infinity());
     int near_eye = 0, behind = 0;

@@ -9,24 +9,23 @@
 
 namespace subvol::detail {
 
-/// A grid that can be seen: where it lies in the picture, and what it takes.
+/// A grid that can be seen, and its rectangle in the picture.
 struct SeenGrid {
     Index cell;
     PixelRect rect;
 };
 
-/// A part of the picture with all the grids that its rays may meet.
+/// A part of the picture, and the cells of all grids that its rays may meet.
 struct DensePass {
     PixelRect rect;
     std::vector<Index> cells;
 };
 
-/// The pixels whose rays may meet a box: none if it lies outside the picture or behind the eye; all if it
-/// reaches behind.
+/// The pixels whose rays may meet a box: nothing if it lies outside the picture or behind the eye, all pixels if it reaches
+/// behind the eye.
 [[nodiscard]] std::optional<PixelRect> pixels_of(const Box& box, const View& view);
 
-/// Halves the picture until the grids of each part are at most `at_once`, or the part is a tile of 16 pixels: that one takes
-/// what it needs.
+/// Halves the picture until each part has at most `at_once` grids. A part of 16 × 16 pixels is not halved, whatever it needs.
 [[nodiscard]] std::vector<DensePass> plan_passes(const View& view, const std::vector<SeenGrid>& grids, std::size_t at_once);
 
 }  // namespace subvol::detail

@@ -7,15 +7,15 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kMargin = 1e-5;  // about a box, for single precision
+constexpr double kMargin = 1e-5;  // around a box, for single precision
 
-// Embree hands the context through to the callback.
+// Embree passes a pointer to the context to the callback: what follows it in memory comes along.
 struct Query {
     RTCIntersectContext context;
     std::vector<std::uint32_t>* grids;
 };
 
-// Records every grid and hits none, so that the traversal goes on to the next.
+// Records every grid but reports no hit, so that the traversal goes on to the next.
 void record_grid(const RTCIntersectFunctionNArguments* arguments) {
     if (arguments->valid[0] == 0) return;
     reinterpret_cast<const Query*>(arguments->context)->grids->push_back(arguments->primID);

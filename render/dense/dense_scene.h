@@ -12,14 +12,14 @@ namespace subvol::detail {
 /// The boxes of dense grids in Embree, as user geometry.
 class DenseScene {
 public:
-    /// The grids are referred to.
+    /// grids:  referred to, not copied
     ///
     /// throws: Error(MissingCapability) if Embree cannot be started or has not enough memory
     explicit DenseScene(const std::vector<DenseGrid>& grids);
     ~DenseScene();
     DenseScene(DenseScene&&) = delete;
 
-    /// Appends the numbers of the grids whose boxes the whole line of a ray may meet, in no order.
+    /// Appends the numbers of the grids whose boxes the whole line of a ray may meet, in no particular order.
     void find_met(const Ray& ray, std::vector<std::uint32_t>& grids) const;
     [[nodiscard]] const std::vector<DenseGrid>& grids() const { return grids_; }
 

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// A ray through the dense grids of many control cells that share sides but have no common numbering.
+//
+//       cell A     cell B      Each grid finds the triangles of its own boundary that the ray crosses (|). Within a grid the
+//     +--------+--------+      ray walks from one of them to its partner, as in a single mesh. Edge signs are bitwise the
+//  ---|--------|--------|-->   same in both grids (points are ranked by position), so a ray that leaves A through a side
+//     +--------+--------+      enters B through the same triangle, and nothing is lost or counted twice between them.
+//       a1   a2 b1    b2
+//
+// All ends are sorted by depth. The first one that no walk has used yet starts a walk, which marks its own end at the other
+// side as used: a1 -> a2, then b1 -> b2. Light is composited in this order, and each depth once even where cells fold over
+// each other (RayWalker). A grid whose ends all lie behind the eye is left out. docs/adr/0012 gives the reasons.
 #include "dense_tracer.h"
 
 #include <algorithm>
@@ -23,7 +34,7 @@ void DenseTracer::find_ends(const RayPlane& plane, const Ray& ray) {
         }
         if (!in_front) ends_.resize(before);
     }
-    // By cell, not by the grid's number: that depends on what else is in memory.
+    // By cell, not by the number of the grid, which depends on which other grids are in memory.
     std::sort(ends_.begin(), ends_.end(),
               [](const End& a, const End& b) { return std::tie(a.t, a.cell, a.face) < std::tie(b.t, b.cell, b.face); });
 }
@@ -41,21 +52,18 @@ Segment DenseTracer::trace(const Ray& ray) {
     find_ends(plane, ray);
     if (ends_.empty()) return {};
     ++counts_.rays;
-    const double speed = glm::length(ray.direction);
-    LitDepth state;
+    RayWalker walker(ray, plane, compositor_, counts_);
     for (End& end : ends_) {
         if (end.walked) continue;
         end.walked = true;
-        const DenseGrid& grid = scene_.grids()[end.grid];
-        TetFace other = end.face;
-        const WalkOutcome outcome = walk_between(grid, plane, end.face, speed, compositor_, state, other, counts_.segments);
-        if (outcome == WalkOutcome::Opaque) break;
-        if (outcome == WalkOutcome::Lost || !mark_walked(end.grid, other)) {
+        const Walk walk = walker.between(scene_.grids()[end.grid], end.face);
+        if (walk.outcome == WalkOutcome::Opaque) break;
+        if (walk.outcome == WalkOutcome::Lost || !mark_walked(end.grid, walk.end)) {
             ++counts_.lost_rays;
             break;
         }
     }
-    return state.light;
+    return walker.light();
 }
 
 }  // namespace subvol::detail

@@ -4,27 +4,22 @@
 #include <vector>
 
 #include "dense_scene.h"
-#include "integrate_walk.h"
+#include "pixel_tiles.h"
+#include "ray_walker.h"
 
 namespace subvol::detail {
 
-struct DenseCounts {
-    std::size_t rays = 0;
-    std::size_t segments = 0;
-    std::size_t lost_rays = 0;
-};
-
-/// Integrates rays through dense grids. Keeps scratch memory: one for each thread or tile.
+/// Integrates rays through dense grids. Keeps scratch memory, so each thread or tile needs its own.
 class DenseTracer {
 public:
-    DenseTracer(const DenseScene& scene, const Optics& optics) : scene_(scene), compositor_(optics, kOpaque) {}
+    DenseTracer(const DenseScene& scene, const Optics& optics) : scene_(scene), compositor_(optics, kRayCutoff) {}
 
-    /// The part of the ray in front of its origin.
+    /// The light along the ray, from its origin on.
     [[nodiscard]] Segment trace(const Ray& ray);
-    [[nodiscard]] const DenseCounts& counts() const { return counts_; }
+    [[nodiscard]] const TraceCounts& counts() const { return counts_; }
 
 private:
-    /// A boundary face of a grid that the ray crosses: the walks pair them up.
+    /// A boundary face of a grid that the ray crosses. Each walk begins at one and ends at another.
     struct End {
         double t;
         Index cell;
@@ -37,7 +32,7 @@ private:
 
     const DenseScene& scene_;
     Compositor compositor_;
-    DenseCounts counts_;
+    TraceCounts counts_;
     std::vector<std::uint32_t> met_;
     std::vector<TetFace> faces_;
     std::vector<End> ends_;

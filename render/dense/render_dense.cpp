@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <mutex>
 
 #include "dense_passes.h"
 #include "dense_tracer.h"
+#include "subvol/detail/stopwatch.h"
 
 namespace subvol {
 
@@ -20,18 +20,8 @@ namespace {
 
 constexpr int kMostLevels = 8;  // faces of tetrahedra are numbered with 32 bits
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-void check(const HexMesh& mesh, std::span<const double> scalar, const DenseOptions& options) {
+void check(const DenseOptions& options) {
     check_samples(options.samples);
-    if (scalar.size() != mesh.points.size()) {
-        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
-                    std::to_string(mesh.points.size()) + ", one a point");
-    }
     for (const int levels : {options.levels.value_or(1), options.max_levels}) {
         if (levels >= 0 && levels <= kMostLevels) continue;
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(levels), {},
@@ -43,11 +33,9 @@ void check(const HexMesh& mesh, std::span<const double> scalar, const DenseOptio
     }
 }
 
-/// The mesh with the scalar as its only attribute.
-HexMesh with_scalar(const HexMesh& mesh, std::span<const double> scalar) {
-    HexMesh control{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
-    control.attributes.push_back({"scalar", 1, {scalar.begin(), scalar.end()}});
-    return control;
+/// The mesh with the field as its only attribute.
+HexMesh with_field_alone(const HexMesh& mesh, std::string_view field) {
+    return {mesh.points, mesh.cells, {scalar_field(mesh, field)}, mesh.creases, mesh.sharp_faces};
 }
 
 bool visible(const Optics& optics, double min, double max) {
@@ -66,23 +54,18 @@ double rms(const Image& a, const Image& b) {
     return std::sqrt(sum / (0.75 * static_cast<double>(a.rgba.size())));
 }
 
-// Traces, and hands its counts on when its tile is done.
+// Traces, and adds its counts to the sums when its tile is done.
 class CountedTracer {
 public:
-    CountedTracer(const DenseScene& scene, const Optics& optics, tbb::combinable<DenseCounts>& sums)
+    CountedTracer(const DenseScene& scene, const Optics& optics, tbb::combinable<TraceCounts>& sums)
         : tracer_(scene, optics), sums_(&sums) {}
     CountedTracer(CountedTracer&&) = delete;
-    ~CountedTracer() {
-        DenseCounts& sum = sums_->local();
-        sum.rays += tracer_.counts().rays;
-        sum.segments += tracer_.counts().segments;
-        sum.lost_rays += tracer_.counts().lost_rays;
-    }
+    ~CountedTracer() { sums_->local() += tracer_.counts(); }
     Segment operator()(const Ray& ray) { return tracer_.trace(ray); }
 
 private:
     DenseTracer tracer_;
-    tbb::combinable<DenseCounts>* sums_;
+    tbb::combinable<TraceCounts>* sums_;
 };
 
 /// Draws one level.
@@ -101,7 +84,7 @@ public:
     }
 
     DenseResult run() {
-        auto start = Clock::now();
+        Stopwatch watch;
         report_progress(options_.progress, "build", 0);
         find_seen();
         const std::size_t at_once = most_bytes_ > 0 ? options_.memory / most_bytes_ : seen_.size();
@@ -111,22 +94,20 @@ public:
         for (const DensePass& pass : passes) {
             if (!kept_suffice) build(pass.cells);
             sort_kept();
-            report_.seconds_build += seconds_since(start);
-            start = Clock::now();
+            report_.seconds_build += watch.restart();
             draw(pass.rect);
-            report_.seconds_draw += seconds_since(start);
-            start = Clock::now();
+            report_.seconds_draw += watch.restart();
         }
-        report_.seconds_build += seconds_since(start);
+        report_.seconds_build += watch.seconds();
         return {std::move(image_), report_};
     }
 
 private:
-    /// Finds what can be seen, and keeps those grids as long as they fit.
+    /// Finds the grids that are visible in the picture, and keeps them as long as they fit into memory.
     void find_seen() {
         std::mutex adding;
         std::atomic<bool> full = false;
-        const auto look = [&](const DenseCell& cell) {
+        const auto inspect = [&](const DenseCell& cell) {
             Box box;
             for (const Vec3& p : cell.points) box.add(p);
             const auto [min, max] = std::ranges::minmax(cell.values[0]);
@@ -144,7 +125,7 @@ private:
             full = true;
             drop();
         };
-        for_each_dense_cell(mesh_, refine_, {.cells = {}, .on_limit = true}, look);
+        for_each_dense_cell(mesh_, refine_, {.cells = {}, .on_limit = true}, inspect);
         std::sort(seen_.begin(), seen_.end(), [](const SeenGrid& a, const SeenGrid& b) { return a.cell < b.cell; });
     }
 
@@ -173,10 +154,10 @@ private:
 
     void draw(const PixelRect& rect) {
         const DenseScene scene(kept_);
-        tbb::combinable<DenseCounts> sums;
+        tbb::combinable<TraceCounts> sums;
         draw_in_tiles(view_, options_.samples, rect, image_, options_.progress,
                       [&] { return CountedTracer(scene, optics_, sums); });
-        sums.combine_each([&](const DenseCounts& sum) {
+        sums.combine_each([&](const TraceCounts& sum) {
             report_.rays += sum.rays;
             report_.segments += sum.segments;
             report_.lost_rays += sum.lost_rays;
@@ -197,10 +178,10 @@ private:
 
 }  // namespace
 
-DenseResult render_dense(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+DenseResult render_dense(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
                          const DenseOptions& options) {
-    check(mesh, scalar, options);
-    const HexMesh control = with_scalar(mesh, scalar);
+    check(options);
+    const HexMesh control = with_field_alone(mesh, field);
     const auto draw = [&](int levels) { return LevelPainter(control, view, optics, options, levels).run(); };
     if (options.levels) return draw(*options.levels);
     DenseResult result = draw(std::min(1, options.max_levels));

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "deadline.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -14,7 +14,51 @@ using namespace detail;
 
 namespace {
 
-/// Each pixel as a square of scale² pixels.
+/// Passes reports on to a listener, and asks to stop when the time is up.
+class Deadline : public Progress {
+public:
+    Deadline(Progress* listener, double seconds) : listener_(listener), seconds_(seconds) {}
+
+    void report(std::string_view stage, double fraction) override {
+        if (listener_) listener_->report(stage, fraction);
+    }
+    void picture(const Image& image) override {
+        if (listener_) listener_->picture(image);
+    }
+    [[nodiscard]] bool cancelled() const override { return stopped() || (armed_ && elapsed() > seconds_); }
+    [[nodiscard]] double elapsed() const { return watch_.seconds(); }
+
+    /// Does the work that may be given up. Before the first call the time does not end anything, as there is no picture yet.
+    ///
+    /// returns: whether the work was finished in time
+    /// throws:  what the work throws, Error(Cancelled) only if the listener wants to stop
+    template <class Work>
+    bool finish_in_time(const Work& work) {
+        armed_ = true;
+        try {
+            work();
+            return true;
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Cancelled || stopped()) throw;
+            return false;
+        }
+    }
+
+private:
+    [[nodiscard]] bool stopped() const { return listener_ && listener_->cancelled(); }
+
+    Progress* listener_;
+    Stopwatch watch_;
+    double seconds_;
+    bool armed_ = false;
+};
+
+void check_seconds(double seconds) {
+    if (seconds > 0) return;
+    throw Error(ErrorCode::InvalidInput, "the time is " + std::to_string(seconds), {}, "a positive number of seconds");
+}
+
+/// Repeats each pixel as a square of scale² pixels.
 template <class T>
 std::vector<T> enlarge(const std::vector<T>& small, std::size_t channels, int small_width, int scale, int width, int height) {
     std::vector<T> large;
@@ -31,10 +75,7 @@ std::vector<T> enlarge(const std::vector<T>& small, std::size_t channels, int sm
 }
 
 void check(const ProgressiveOptions& options) {
-    if (!(options.seconds > 0)) {
-        throw Error(ErrorCode::InvalidInput, "the time is " + std::to_string(options.seconds), {},
-                    "a positive number of seconds");
-    }
+    check_seconds(options.seconds);
     for (const double px : options.footprint_px) {
         if (!(px > 0))
             throw Error(ErrorCode::InvalidInput, "a footprint is " + std::to_string(px), {}, "a positive number of pixels");
@@ -49,8 +90,7 @@ public:
     ProgressiveResult run() {
         RbfVolume volume = sample({});
         draw_at(volume, 4, 0);
-        deadline_.arm();
-        try {
+        (void)deadline_.finish_in_time([&] {
             draw_at(volume, 2, 0);
             draw_at(volume, 1, 0);
             for (const double px : options_.footprint_px) {
@@ -59,9 +99,7 @@ public:
                 volume = std::move(finer);
                 draw_at(volume, 1, px);
             }
-        } catch (const Error& error) {
-            if (error.code() != ErrorCode::Cancelled || deadline_.stopped()) throw;
-        }
+        });
         result_.seconds = deadline_.elapsed();
         return std::move(result_);
     }
@@ -112,12 +150,67 @@ private:
     ProgressiveResult result_;
 };
 
+void check(const ProjectedProgressiveOptions& options) {
+    check_seconds(options.seconds);
+    for (const double lod : options.lod) {
+        if (lod >= 0 && lod <= 1) continue;
+        throw Error(ErrorCode::InvalidInput, "a fraction of the faces is " + std::to_string(lod), {}, "0..1");
+    }
+}
+
+class ProjectedSteps {
+public:
+    ProjectedSteps(ProjectedRenderer& renderer, const View& view, const Optics& optics,
+                   const ProjectedProgressiveOptions& options)
+        : renderer_(renderer), view_(view), optics_(optics), options_(options), deadline_(options.progress, options.seconds) {}
+
+    ProjectedProgressiveResult run() {
+        draw(ProjectedOrder::Havs, 0, 1);
+        result_.finished = deadline_.finish_in_time([&] {
+            for (const double lod : options_.lod) draw(ProjectedOrder::Havs, lod, 1);
+            draw(ProjectedOrder::Havs, 1, 1);
+            const bool late = result_.projected.report.late_faces > 0;
+            if (late || options_.projected.samples > 1)
+                draw(late ? ProjectedOrder::Lists : ProjectedOrder::Havs, 1, options_.projected.samples);
+        });
+        result_.seconds = deadline_.elapsed();
+        return std::move(result_);
+    }
+
+private:
+    void draw(ProjectedOrder order, double lod, int samples) {
+        ProjectedOptions options = options_.projected;
+        options.order = order;
+        options.lod = lod;
+        options.samples = samples;
+        options.progress = &deadline_;
+        result_.projected = renderer_.draw(view_, optics_, options);
+        result_.order = order;
+        result_.lod = lod;
+        ++result_.steps;
+        deadline_.picture(result_.projected.image);
+    }
+
+    ProjectedRenderer& renderer_;
+    const View& view_;
+    const Optics& optics_;
+    const ProjectedProgressiveOptions& options_;
+    Deadline deadline_;
+    ProjectedProgressiveResult result_;
+};
+
 }  // namespace
 
 ProgressiveResult render_progressively(const HexMesh& mesh, const View& view, const Optics& optics,
                                        const ProgressiveOptions& options) {
     check(options);
     return Progressive(mesh, view, optics, options).run();
+}
+
+ProjectedProgressiveResult render_progressively(ProjectedRenderer& renderer, const View& view, const Optics& optics,
+                                                const ProjectedProgressiveOptions& options) {
+    check(options);
+    return ProjectedSteps(renderer, view, optics, options).run();
 }
 
 }  // namespace subvol

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +12,7 @@
 #include "gl_splatter.h"
 #include "pixel_tiles.h"
 #include "splat_cpu.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/splat.h"
 
@@ -20,20 +20,17 @@ namespace subvol {
 
 namespace {
 
-/// Software GL is slower than the CPU and draws the same picture: it is used only when asked for.
+/// Software GL is slower than the CPU and draws the same picture, so it is used only if it is chosen.
 SplatMethod resolved(const SplatOptions& options) {
     if (options.method != SplatMethod::Auto) return options.method;
     const auto device = find_gl_device(options.device);
     return device && device->hardware ? SplatMethod::Gl : SplatMethod::Cpu;
 }
 
-/// Draws sheets in a context of its own, which is current only while it is worked with.
+/// Draws sheets in its own context, which is current only while it draws.
 class SheetDrawer {
 public:
-    explicit SheetDrawer(std::optional<int> device) : context_(device) {
-        sheets_.emplace();
-        context_.release();
-    }
+    explicit SheetDrawer(std::optional<int> device) : context_(device) { sheets_.emplace(); }
     ~SheetDrawer() {
         const detail::GlScope scope(context_);
         sheets_.reset();
@@ -56,15 +53,12 @@ std::unique_ptr<SheetDrawer> make_sheet_drawer(const SplatOptions& options) {
     if (!find_gl_device(options.device))
         throw Error(ErrorCode::MissingCapability, "sheets need OpenGL 4.5, and none was found through EGL", {},
                     "the method splat");
+    const detail::KeepCurrent keep;
     return std::make_unique<SheetDrawer>(options.device);
 }
 
 std::string cpu_threads() {
     return std::to_string(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) + " CPU threads";
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 struct Mean {
@@ -92,7 +86,7 @@ Mean mean_of(const SplatResult& drawn, int x, int y, int n) {
     return mean;
 }
 
-/// Replaces each n × n pixels by their mean; the depth is the mean of what is seen in all of them, by opacity.
+/// Replaces each n × n pixels by their mean; depths are weighted by opacity.
 void take_means(SplatResult& drawn, int n) {
     if (n == 1) return;
     Image image(drawn.image.width / n, drawn.image.height / n);
@@ -118,12 +112,12 @@ struct Splatter::State {
         if (options.method == SplatMethod::Sheets) sheets = make_sheet_drawer(options);
     }
 
-    /// The CPU prepares what it or sheet buffers draw.
-    [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& look, Progress* progress,
+    /// Draws with the CPU or with sheet buffers; the CPU prepares the frame for both.
+    [[nodiscard]] detail::Drawn draw_frame(const View& view, const detail::Classification& classification, Progress* progress,
                                            SplatReport& report) {
-        const auto start = std::chrono::steady_clock::now();
-        detail::prepare_frame(frame, scene, view, look, options.sheets, progress);
-        report.seconds_prepare += seconds_since(start);
+        const detail::Stopwatch watch;
+        detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
+        report.seconds_prepare += watch.seconds();
         report.backend = sheets ? "gl" : "cpu";
         report.device = sheets ? sheets->renderer() : cpu_threads();
         report.bin_entries = frame.tile_splats.size();
@@ -131,9 +125,9 @@ struct Splatter::State {
         return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
     }
 
-    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& look, Progress* progress,
+    [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& classification, Progress* progress,
                                             SplatReport& report) {
-        auto drawn = gpu->draw(view, look, options.sheets, progress);
+        auto drawn = gpu->draw(view, classification, options.sheets, progress);
         report.backend = "gl";
         report.device = gpu->renderer();
         report.bin_entries = gpu->report().bin_entries;
@@ -146,7 +140,7 @@ struct Splatter::State {
     detail::SplatScene scene;
     std::optional<detail::GlSplatter> gpu;
     std::unique_ptr<SheetDrawer> sheets;
-    detail::SplatFrame frame{};  // its memory is used again
+    detail::SplatFrame frame{};  // its memory is used for every picture
 };
 
 Splatter::Splatter(const RbfVolume& volume, const SplatOptions& options) {
@@ -163,16 +157,17 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     if (!progress) progress = state.options.progress;
     SplatResult result;
     auto& report = result.report;
-    const auto start = std::chrono::steady_clock::now();
-    const auto look = detail::classify(state.scene, optics);
-    report.seconds_prepare = seconds_since(start);
+    const detail::Stopwatch watch;
+    const auto classification = detail::classify(state.scene, optics);
+    report.seconds_prepare = watch.seconds();
     const int n = state.options.samples;
-    const View fine(view.camera(), n * view.width(), n * view.height());  // its pixels' centres are the samples
-    auto drawn = state.gpu ? state.draw_on_gpu(fine, look, progress, report) : state.draw_frame(fine, look, progress, report);
+    const View fine(view.camera(), n * view.width(), n * view.height());  // the centres of its pixels are the samples
+    auto drawn = state.gpu ? state.draw_on_gpu(fine, classification, progress, report)
+                           : state.draw_frame(fine, classification, progress, report);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
     take_means(result, n);
-    report.seconds_draw = seconds_since(start) - report.seconds_prepare;
+    report.seconds_draw = watch.seconds() - report.seconds_prepare;
     report.points = state.scene.volume->size();
     return result;
 }

@@ -11,7 +11,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kGranule_bytes = 16;  // a shader may see the buffer as vectors of four
+constexpr std::size_t kGranule_bytes = 16;  // a shader may declare the buffer as vectors of four words
 
 std::size_t largest_block() {
     GLint64 most = 0;
@@ -43,14 +43,14 @@ void GlBuffer::grow(std::size_t bytes) {
     if (bytes <= bytes_) return;
     if (!fits(bytes)) {
         throw Error(ErrorCode::MissingCapability,
-                    "the GL device takes buffers of " + std::to_string(largest_block()) + " bytes, this work needs " +
+                    "the GL device takes buffers of at most " + std::to_string(largest_block()) + " bytes; this work needs " +
                         std::to_string(bytes),
                     {}, "use the CPU backend");
     }
     const std::size_t room = (bytes + kGranule_bytes - 1) / kGranule_bytes * kGranule_bytes;
     const std::string where = "a buffer of " + std::to_string(room) + " bytes";
     check_gl("earlier work");
-    *this = GlBuffer();  // the old room is given back first
+    *this = GlBuffer();  // frees the old buffer before the new one is made
     GlBuffer grown;
     glCreateBuffers(1, &grown.id_);
     glNamedBufferStorage(grown.id_, size(room), nullptr, GL_DYNAMIC_STORAGE_BIT);
@@ -60,7 +60,7 @@ void GlBuffer::grow(std::size_t bytes) {
 }
 
 void GlBuffer::bind(GLuint binding) {
-    grow(1);  // nothing cannot be bound
+    grow(1);  // an empty buffer cannot be bound
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, id_);
 }
 

@@ -8,18 +8,18 @@
 
 namespace subvol::detail {
 
-/// A buffer of the current context, for shaders to read and write, that can be used again for every frame: it only grows.
+/// A storage buffer of the current context that shaders read and write. It only grows, so that frames can share it.
 ///
-/// What shaders wrote is seen by upload, read and clear; between two shaders it takes a barrier.
-/// Every member throws Error(MissingCapability) if the device has no room, or refuses the call.
+/// `upload`, `read` and `clear` see what shaders wrote before; between two shaders the caller sets a barrier.
+/// Every member throws Error(MissingCapability) if the device has no room or refuses the call.
 class GlBuffer {
 public:
     GlBuffer() = default;
 
-    /// Its content is not set.
+    /// The content is undefined.
     explicit GlBuffer(std::size_t bytes) { grow(bytes); }
 
-    /// Made, filled and bound; data may be null: the content is not set.
+    /// Makes, fills and binds a buffer; if data is null, the content is undefined.
     GlBuffer(GLuint binding, std::size_t bytes, const void* data);
 
     ~GlBuffer();
@@ -29,22 +29,22 @@ public:
         return *this;
     }
 
-    /// Makes room for at least so many bytes. Where there was less, the content is lost and the buffer must be bound again.
+    /// Makes room for at least that many bytes. If the buffer was smaller, its content is lost and it must be bound again.
     void grow(std::size_t bytes);
 
-    /// To a binding of shaders; an empty buffer gets the least room first.
+    /// Binds it for shaders; an empty buffer gets the smallest possible room first.
     void bind(GLuint binding);
 
     void upload(std::size_t bytes, const void* from, std::size_t at_byte = 0);
     void read(std::size_t bytes, void* to, std::size_t at_byte = 0) const;
 
-    /// All of it to zero.
+    /// Sets all of it to zero.
     void clear();
 
     [[nodiscard]] std::size_t bytes() const { return bytes_; }
     [[nodiscard]] GLuint id() const { return id_; }
 
-    /// Whether a shader of the current context can see a buffer of so many bytes.
+    /// Whether a shader of the current context can use a buffer of that many bytes.
     [[nodiscard]] static bool fits(std::size_t bytes);
 
 private:

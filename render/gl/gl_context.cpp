@@ -3,13 +3,16 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <array>
+
 #include "subvol/error.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostErrors = 64;  // a context that is lost, or none, may go on telling of errors for ever
+constexpr int kMostErrors = 64;  // a lost context, or none, may report errors without end
 
 OpenedGl open_gl(std::optional<int> index) {
     GlFinder finder;
@@ -40,7 +43,7 @@ std::string error_name(GLenum error) {
 std::string reset_message(GLenum status) {
     const char* cause = status == GL_GUILTY_CONTEXT_RESET     ? "by this work"
                         : status == GL_INNOCENT_CONTEXT_RESET ? "by other work on it"
-                                                              : "for a reason that it does not tell";
+                                                              : "for an unknown reason";
     return std::string("the GL device was reset ") + cause;
 }
 
@@ -56,6 +59,20 @@ void GlContext::release() const {
 GlScope::GlScope(const GlContext& context) {
     if (context.opened_.context.make_current()) return;
     throw Error(ErrorCode::MissingCapability, "the GL context is in use by another thread", context.renderer());
+}
+
+void check_picture_size(int width, int height, const char* allowed) {
+    GLint most = 0;
+    std::array<GLint, 2> viewport{};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+    most = std::min({most, viewport[0], viewport[1]});
+    const int longest = std::max(width, height);
+    if (longest <= most) return;
+    throw Error(
+        ErrorCode::MissingCapability,
+        "the GL device draws up to " + std::to_string(most) + " pixels in a row or column, not " + std::to_string(longest), {},
+        allowed);
 }
 
 void check_gl(const std::string& where) {

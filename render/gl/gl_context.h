@@ -7,12 +7,12 @@
 
 namespace subvol::detail {
 
-/// An OpenGL 4.5 core context without a window. It begins as the current one of the thread that made it; a GlScope makes it
-/// that of a piece of code. A process may have several; each is current on one thread at a time.
+/// An OpenGL 4.5 core context without a window. At first it is current on the thread that made it; a GlScope makes it current
+/// for a piece of code. A process may have several; each is current on one thread at a time.
 class GlContext {
 public:
-    /// device: its index in gl_devices(); without one, the first: hardware if there is any
-    /// throws: Error(MissingCapability) if it is not there
+    /// device: its index in gl_devices(); none: the first, which is hardware if there is any
+    /// throws: Error(MissingCapability) if there is no such device
     explicit GlContext(std::optional<int> device = {});
     ~GlContext() { opened_.context.destroy(); }
     GlContext(const GlContext&) = delete;
@@ -22,7 +22,7 @@ public:
     [[nodiscard]] const std::string& renderer() const { return opened_.device.renderer; }
     [[nodiscard]] bool hardware() const { return opened_.device.hardware; }
 
-    /// Leaves this thread without it, so that another may use it. Nothing happens if it is not current here.
+    /// Releases it from this thread, so that another thread can use it. Does nothing if it is not current here.
     void release() const;
 
 private:
@@ -30,24 +30,24 @@ private:
     OpenedGl opened_;
 };
 
-/// A context is the current one of this thread as long as this lives; then that from before is again.
+/// Makes a context current on this thread; at the end of the scope the one from before is current again.
 class GlScope {
 public:
     /// throws: Error(MissingCapability) if the context is current on another thread
     explicit GlScope(const GlContext& context);
-    ~GlScope() { (void)before_.make_current(); }
-    GlScope(const GlScope&) = delete;
-    GlScope& operator=(const GlScope&) = delete;
 
 private:
-    EglContext before_ = EglContext::current();
+    KeepCurrent keep_;
 };
 
-/// Asks the current context whether something failed since it was last asked: a call, memory, the device itself.
+/// throws: Error(MissingCapability) with the hint `allowed` if the current context cannot draw a picture of that size
+void check_picture_size(int width, int height, const char* allowed);
+
+/// Checks whether a call, memory or the device of the current context has failed since the last check.
 ///
 /// where:  what was done, for the message: "splat", a shader's file
-/// throws: Error(MissingCapability)
-/// cost:   waits for nothing: failures of work that is still under way are seen later
+/// throws: Error(MissingCapability) if something has failed
+/// cost:   does not wait: failures of work that is still under way are seen by a later check
 void check_gl(const std::string& where);
 
 }  // namespace subvol::detail

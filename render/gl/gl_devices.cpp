@@ -4,25 +4,11 @@
 
 namespace subvol {
 
-namespace {
-
-/// Listing must not take a context away from the caller.
-class KeepCurrent {
-public:
-    KeepCurrent() = default;
-    ~KeepCurrent() { (void)before_.make_current(); }
-    KeepCurrent(const KeepCurrent&) = delete;
-    KeepCurrent& operator=(const KeepCurrent&) = delete;
-
-private:
-    detail::EglContext before_ = detail::EglContext::current();
-};
-
-}  // namespace
+using namespace detail;
 
 std::vector<GlDevice> gl_devices() {
     std::vector<GlDevice> devices;
-    detail::GlFinder finder;
+    GlFinder finder;
     const KeepCurrent keep;
     while (const auto opened = finder.next()) {
         devices.push_back(opened->device);
@@ -32,13 +18,13 @@ std::vector<GlDevice> gl_devices() {
 }
 
 std::optional<GlDevice> find_gl_device(std::optional<int> index) {
-    detail::GlFinder finder;
+    GlFinder finder;
     const KeepCurrent keep;
     while (const auto opened = finder.next()) {
         opened->context.destroy();
         if (!index || opened->device.index == *index) return opened->device;
     }
-    if (index) detail::throw_no_gl(index);
+    if (index) throw_no_gl(index);
     return std::nullopt;
 }
 

@@ -16,14 +16,14 @@ namespace subvol::detail {
 
 namespace {
 
-/// A display that may have OpenGL: nothing has been asked of it yet.
+/// A display that may have OpenGL; it has not been opened yet.
 struct Candidate {
     EGLDisplay display = EGL_NO_DISPLAY;
     bool surfaceless = false;  // Mesa's own choice among what it can run on
-    std::string file;          // of the graphics card; empty if it is not told
+    std::string file;          // of the graphics card; empty if unknown
 };
 
-/// Whether a blank-separated list has a name, which may be the beginning of another.
+/// Whether a blank-separated list contains a name. A name may be the beginning of another one.
 bool has_extension(const char* list, std::string_view name) {
     std::string_view rest = list ? list : "";
     while (!rest.empty()) {
@@ -40,21 +40,22 @@ std::string card_file(EGLDeviceEXT device, const char* extensions) {
     return file ? file : "";
 }
 
-/// Epoxy ends the program where it opens a library that is not installed: ask first.
+/// Epoxy aborts the program when it opens a library that is not installed, so this is checked first.
 bool opengl_installed() {
     static const bool kInstalled =
         epoxy_has_egl() && (dlopen("libOpenGL.so.0", RTLD_LAZY) != nullptr || dlopen("libGL.so.1", RTLD_LAZY) != nullptr);
     return kInstalled;
 }
 
-/// Drivers end the program where they get no memory, Mesa's software with some hundred MB left: under a limit, ask first.
+/// Drivers abort the program when they get no memory, Mesa's software even with some hundred MB left. Where a limit is set,
+/// this is checked first.
 bool addresses_left() {
     constexpr std::size_t kOfADriver = std::size_t{1} << 30;
     void* const room = mmap(nullptr, kOfADriver, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     return room != MAP_FAILED && munmap(room, kOfADriver) == 0;
 }
 
-/// Hardware, then Mesa's software by its own platform, then by that of devices: the former may turn out to be hardware.
+/// Hardware first, then Mesa's software through its own platform, then through that of devices: the former may be hardware.
 std::vector<Candidate> find_candidates() {
     std::vector<Candidate> hardware, software;
     if (!opengl_installed() || !addresses_left()) return {};
@@ -78,7 +79,7 @@ std::vector<Candidate> find_candidates() {
     return hardware;
 }
 
-/// A current context, that tells of a lost device if the driver can; a null one if the display does not work.
+/// A current context, which reports a lost device if the driver can; a null one if the display does not work.
 EglContext make_context(EGLDisplay display) {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return {};
     if (!eglBindAPI(EGL_OPENGL_API)) return {};
@@ -98,7 +99,7 @@ EglContext make_context(EGLDisplay display) {
     std::array<EGLint, 11> attributes = kAttributes;
     EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (context == EGL_NO_CONTEXT) {
-        attributes[6] = EGL_NONE;  // a driver without robustness refuses to be asked for it
+        attributes[6] = EGL_NONE;  // a driver without robustness rejects the attribute
         context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     }
     if (context == EGL_NO_CONTEXT) return {};
@@ -119,7 +120,7 @@ bool is_software(const std::string& renderer) {
 }
 
 std::size_t device_memory_bytes() {
-    std::array<GLint, 4> kib{};  // ATI's has four figures, the first of which is the free memory
+    std::array<GLint, 4> kib{};  // ATI's query has four results; the first is the free memory
     if (epoxy_has_gl_extension("GL_NVX_gpu_memory_info")) {
         glGetIntegerv(GL_GPU_MEMORY_INFO_TOTAL_AVAILABLE_MEMORY_NVX, kib.data());
     } else if (epoxy_has_gl_extension("GL_ATI_meminfo")) {
@@ -128,7 +129,7 @@ std::size_t device_memory_bytes() {
     return static_cast<std::size_t>(std::max(kib[0], 0)) * 1024;
 }
 
-/// Of the context that is current; its index is not known here.
+/// Describes the device of the current context; the index is set by the caller.
 GlDevice describe() {
     GLint64 most = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
@@ -149,7 +150,7 @@ EglContext EglContext::current() {
 
 bool EglContext::make_current() const {
     if (!opengl_installed()) return !context;  // none was made, so none is current
-    eglBindAPI(EGL_OPENGL_API);                // a thread begins with another one
+    eglBindAPI(EGL_OPENGL_API);                // a new thread has another API bound
     if (context) return eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
     const EglContext old = current();
     return !old.context || eglMakeCurrent(old.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) == EGL_TRUE;
@@ -158,7 +159,7 @@ bool EglContext::make_current() const {
 void EglContext::destroy() const {
     if (!context) return;
     if (current() == *this) (void)EglContext{}.make_current();
-    eglDestroyContext(display, context);  // the display stays: others may use it, and eglTerminate leaks in Mesa
+    eglDestroyContext(display, context);  // the display stays open: others may use it, and eglTerminate leaks in Mesa
 }
 
 struct GlFinder::State {
@@ -168,7 +169,7 @@ struct GlFinder::State {
     int found = 0;
     bool software_found = false;
 
-    /// One card may be offered by two drivers; software is one device, however it is reached.
+    /// Two drivers may offer the same card; software counts as one device, whichever way it is reached.
     [[nodiscard]] bool known(const Candidate& candidate, const GlDevice& device) const {
         if (!device.hardware) return software_found;
         if (candidate.surfaceless) return found > 0;

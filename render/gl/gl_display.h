@@ -8,17 +8,17 @@
 
 namespace subvol::detail {
 
-/// A context as EGL knows it: its display, and itself. It has no owner: who opened it destroys it.
+/// Handles of an EGL context and its display. They are not owned: whoever opened the context destroys it.
 struct EglContext {
     void* display = nullptr;
     void* context = nullptr;
 
-    /// That of this thread; null if there is none.
+    /// The context of this thread; null if there is none.
     [[nodiscard]] static EglContext current();
 
-    /// On this thread; a null context releases the one that is current.
+    /// Makes it current on this thread; a null context releases the current one.
     ///
-    /// returns: false if EGL refuses, as it does a context that is current on another thread
+    /// returns: false if EGL refuses, for example because the context is current on another thread
     [[nodiscard]] bool make_current() const;
 
     void destroy() const;
@@ -26,12 +26,25 @@ struct EglContext {
     bool operator==(const EglContext&) const = default;
 };
 
+/// Makes the context of this thread current again at the end of a scope that opens, uses or closes others.
+class KeepCurrent {
+public:
+    KeepCurrent() = default;
+    ~KeepCurrent() { (void)before_.make_current(); }
+    KeepCurrent(const KeepCurrent&) = delete;
+    KeepCurrent& operator=(const KeepCurrent&) = delete;
+
+private:
+    EglContext before_ = EglContext::current();
+};
+
 struct OpenedGl {
     EglContext context;
     GlDevice device;
 };
 
-/// Walks through the devices in the order of gl_devices(). Each context that it opens is current and belongs to the caller.
+/// Opens the devices one by one, in the order of gl_devices(). Each context is current when it is returned, and the caller
+/// destroys it.
 class GlFinder {
 public:
     GlFinder();
@@ -39,7 +52,7 @@ public:
     GlFinder(const GlFinder&) = delete;
     GlFinder& operator=(const GlFinder&) = delete;
 
-    /// The next device that works; nothing after the last.
+    /// The next device that works; nothing after the last one.
     [[nodiscard]] std::optional<OpenedGl> next();
 
 private:
@@ -47,7 +60,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// throws: Error(MissingCapability): there is no OpenGL at all, or no device of that index, with a list of those that there are
+/// throws: Error(MissingCapability): there is no OpenGL at all, or no device with that index; lists the devices
 [[noreturn]] void throw_no_gl(std::optional<int> index);
 
 }  // namespace subvol::detail

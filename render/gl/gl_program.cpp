@@ -9,8 +9,8 @@ namespace subvol::detail {
 
 namespace {
 
-/// The source's version line, the defines, the common pieces, the rest of the source. Messages know a piece by its number: the
-/// source is 0, the common pieces follow.
+/// Puts together the source's version line, the defines, the common pieces and the rest of the source. Compiler messages name a
+/// piece by its number: the source is 0, the common pieces follow.
 std::string compose(const std::string& source, const std::string& defines, const std::vector<ShaderText>& common) {
     const auto after_version = source.find('\n') + 1;
     std::string text = source.substr(0, after_version) + defines;
@@ -18,11 +18,11 @@ std::string compose(const std::string& source, const std::string& defines, const
     return text + "\n#line 2 0\n" + source.substr(after_version);
 }
 
-/// Drivers write "1:23(5): error" or "1(23) : error": the leading number becomes a file, so that a line reads "file:23…".
+/// Drivers write "1:23(5): error" or "1(23) : error". Replaces the leading number by the file, so that a line reads "file:23…".
 std::string with_file(const std::string& line, const std::vector<std::string>& files) {
     constexpr const char* kDigits = "0123456789";
     const std::size_t end = line.find_first_not_of(kDigits);
-    if (end == 0 || end > 4 || (line[end] != ':' && line[end] != '(')) return line;  // more digits are no piece's number
+    if (end == 0 || end > 4 || (line[end] != ':' && line[end] != '(')) return line;  // a longer number does not name a piece
     const std::size_t piece = std::stoul(line), number_end = line.find_first_not_of(kDigits, end + 1);
     if (piece >= files.size() || number_end == std::string::npos || number_end == end + 1) return line;
     const std::size_t rest = number_end + (line[end] == '(' && line[number_end] == ')' ? 1 : 0);
@@ -47,7 +47,7 @@ std::string log_of(GLuint id, GetLength get_length, GetLog get_log) {
     return log;
 }
 
-/// A program until it is linked: what throws leaves none behind.
+/// Deletes the program unless it is released: an exception leaves no program behind.
 class OwnedProgram {
 public:
     OwnedProgram() : id_(glCreateProgram()) {}
@@ -68,10 +68,10 @@ public:
         if (!ok) {
             const std::string log = with_files(log_of(shader, glGetShaderiv, glGetShaderInfoLog), files(source, common));
             glDeleteShader(shader);
-            throw Error(ErrorCode::MissingCapability, "the GL driver refuses the shader: " + log, source.file);
+            throw Error(ErrorCode::MissingCapability, "the GL driver rejects the shader: " + log, source.file);
         }
         glAttachShader(id_, shader);
-        glDeleteShader(shader);  // lives as long as the program
+        glDeleteShader(shader);  // is deleted with the program
     }
 
     [[nodiscard]] GLuint link(const ShaderText& source, const std::vector<ShaderText>& common) {

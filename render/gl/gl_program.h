@@ -9,22 +9,22 @@
 
 namespace subvol::detail {
 
-/// A piece of shader source and the file that messages name.
+/// A piece of shader source, and the file name for messages.
 struct ShaderText {
     std::string file;
     std::string text;
 };
 
-/// A program of the current context. Messages of the compiler name file and line.
+/// A program of the current context. Compiler messages name file and line.
 class GlProgram {
 public:
-    /// defines: text put after the version line, which the source begins with
-    /// common:  pieces put between the defines and the source; they have no version line
+    /// defines: text that is inserted after the version line, with which the source begins
+    /// common:  pieces that are inserted between the defines and the source, without a version line
     /// throws:  Error(MissingCapability) with the driver's message
     GlProgram(const std::string& file, const std::string& source, const std::string& defines,
               const std::vector<ShaderText>& common = {});
 
-    /// Likewise, one that draws.
+    /// The same for a program that draws.
     GlProgram(const ShaderText& vertex, const ShaderText& fragment, const std::string& defines,
               const std::vector<ShaderText>& common = {});
     ~GlProgram();

@@ -7,7 +7,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::uint32_t kThreads = 256;  // of a group; a thread finds one bin
+constexpr std::uint32_t kThreads = 256;  // of a group; each thread finds one bin
 constexpr GLint kBinsLocation = 2;
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kPlan_bytes = 16;  // of a level
+constexpr std::size_t kPlan_bytes = 16;  // for each level
 constexpr GLint kLevelLocation = 2, kTopLocation = 3;
 
 }  // namespace

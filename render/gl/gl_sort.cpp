@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kDigitBits = 8;
 constexpr GLint kBinsLocation = 2, kShiftLocation = 4, kBitsLocation = 5;
-constexpr std::uint32_t kCountsWord = 4;  // of the plan: how many counts of digits there are
+constexpr std::uint32_t kCountsWord = 4;  // of the plan: the number of digit counts
 
 void use_for_digit(const GlProgram& program, int shift, int bits) {
     program.use();

@@ -10,14 +10,14 @@ class GlSort {
 public:
     GlSort();
 
-    /// Sorts pairs of a key and a value by the lowest bits of the key; what is equal there stays in order.
+    /// Sorts pairs of a key and a value by the lowest bits of the key; the sort is stable.
     ///
-    /// keys, values: words; afterwards they may be other buffers than before, of no less room: bind them again
+    /// keys, values: words; the sort may exchange the buffers for others of at least the same room: bind them again
     /// bits:         1..32
-    /// throws:       Error(InvalidInput) for fewer words than `count` may be; Error(MissingCapability) if the device has no
-    /// room cost:         a pass for 8 bits, that reads 12 bytes a pair and writes 8; scratch memory of 8.5 bytes a pair.
-    /// Changes the
-    ///               program and bindings 0..5 and 7
+    /// throws:       Error(InvalidInput) for fewer words than `count` can be;
+    ///               Error(MissingCapability) if the device has no room
+    /// cost:         a pass for each 8 bits, which reads 12 bytes and writes 8 for each pair; scratch memory of 8.5 bytes a
+    ///               pair; changes the program and bindings 0..5 and 7
     void radix_sort(GlBuffer& keys, GlBuffer& values, const GlCount& count, int bits);
 
 private:

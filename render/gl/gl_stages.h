@@ -10,7 +10,7 @@
 
 namespace subvol::detail {
 
-/// Times what the device does, a stage after the other, on the current context.
+/// Measures how long the device takes for each stage of the work, on the current context.
 class GlStages {
 public:
     ~GlStages() { clear(); }
@@ -22,14 +22,14 @@ public:
         for (const Mark& mark : marks_) glDeleteQueries(1, &mark.query);
         marks_.clear();
     }
-    /// From here on it is this stage; an empty name ends the last one.
+    /// Begins a stage; an empty name only ends the one before.
     void begin(const char* stage) {
         GLuint query = 0;
         glGenQueries(1, &query);
         glQueryCounter(query, GL_TIMESTAMP);
         marks_.push_back({stage, query});
     }
-    /// Stages of one name are added up. Waits for the device.
+    /// Stages with the same name are added up. Waits for the device.
     [[nodiscard]] std::vector<StageTime> times() const;
 
 private:

@@ -3,20 +3,72 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 
 #include "gl_dispatch.h"
-#include "list_parts.h"
+#include "subvol/error.h"
 
 namespace subvol::detail {
 
 namespace {
 
-// As the shaders have them.
+// The same as in the shaders.
 constexpr GLuint kCountsBinding = 3, kOffsetsBinding = 4, kEntriesBinding = 5, kRanksBinding = 6, kMissesBinding = 11;
 constexpr std::size_t kSegment_bytes = 16, kCrossing_bytes = 8, kPixel_bytes = 16;
-constexpr double kCounting = 0.2;  // part of the work, roughly
+constexpr double kCounting = 0.2;  // the part of counting in the work, roughly
+
+constexpr std::size_t kMostPixels = std::size_t{1} << 20;  // of a part: the numbers kept for each pixel have to fit too
+
+/// Splits a row that has too many fragments as a whole.
+void split_row(std::span<const std::uint32_t> counts, int y, std::size_t most, std::vector<PixelRect>& parts) {
+    int first = 0;
+    std::size_t sum = 0;
+    const int width = static_cast<int>(counts.size());
+    for (int x = 0; x < width; ++x) {
+        const std::size_t count = counts[static_cast<std::size_t>(x)];
+        if (count > most) {
+            throw Error(ErrorCode::InvalidInput, "a pixel has " + std::to_string(count) + " segments", {},
+                        "memory for lists of more than " + std::to_string(most));
+        }
+        if (sum + count > most) {
+            parts.push_back({first, y, x, y + 1});
+            first = x;
+            sum = 0;
+        }
+        sum += count;
+    }
+    parts.push_back({first, y, width, y + 1});
+}
 
 }  // namespace
+
+std::vector<PixelRect> split_into_parts(std::span<const std::uint32_t> counts, int width, int height,
+                                        std::size_t most_fragments) {
+    std::vector<PixelRect> parts;
+    const auto row_pixels = static_cast<std::size_t>(width);
+    PixelRect part{0, 0, width, 0};
+    std::size_t sum = 0;
+    const auto end_part = [&](int next_row) {
+        if (!part.empty()) parts.push_back(part);
+        part = {0, next_row, width, next_row};
+        sum = 0;
+    };
+    for (int y = 0; y < height; ++y) {
+        const auto row = counts.subspan(static_cast<std::size_t>(y) * row_pixels, row_pixels);
+        const std::size_t count = std::accumulate(row.begin(), row.end(), std::size_t{0});
+        const auto pixels = static_cast<std::size_t>(y + 1 - part.y0) * row_pixels;
+        if (sum + count > most_fragments || pixels > kMostPixels) end_part(y);
+        if (count > most_fragments) {
+            split_row(row, y, most_fragments, parts);
+            part = {0, y + 1, width, y + 1};
+            continue;
+        }
+        part.y1 = y + 1;
+        sum += count;
+    }
+    end_part(height);
+    return parts;
+}
 
 GlTetLists::Drawn GlTetLists::draw_tets(std::size_t most_fragments, const DrawStage& stage) {
     return draw(Items::Tets, most_fragments, stage);
@@ -53,7 +105,7 @@ std::vector<std::uint32_t> GlTetLists::count_fragments(Items items, const DrawSt
     counts_.grow(bytes);
     counts_.clear();
     counts_.bind(kCountsBinding);
-    tets_.draw_into_lists(items, tets_.program(items, "PT_COUNT"), {0, 0, view.width(), view.height()}, stage);
+    tets_.draw_into_lists(items, tets_.program(items, "FRAGMENT_COUNT"), {0, 0, view.width(), view.height()}, stage);
     counts_.read(bytes, counts.data());
     return counts;
 }
@@ -76,7 +128,7 @@ void GlTetLists::draw_part(Items items, const PixelRect& part, const std::vector
     entries_.bind(kEntriesBinding);
     ranks_.grow(offsets.back() * sizeof(std::uint32_t));
     ranks_.bind(kRanksBinding);
-    tets_.draw_into_lists(items, tets_.program(items, "PT_KEEP"), part, stage);
+    tets_.draw_into_lists(items, tets_.program(items, "FRAGMENT_KEEP"), part, stage);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     resolve_part(items, part, image);
 }

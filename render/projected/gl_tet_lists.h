@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gl_buffer.h"
@@ -9,24 +10,32 @@
 
 namespace subvol::detail {
 
-/// Keeps what GlTets draws in lists, one a pixel, and makes the picture of them. Keeps memory from picture to picture.
+/// Divides a picture into rectangles of whole rows, or of parts of a row, with at most that many fragments each.
+///
+/// counts: fragments of each pixel, rows one after the other
+/// throws: Error(InvalidInput) if a single pixel has more
+[[nodiscard]] std::vector<PixelRect> split_into_parts(std::span<const std::uint32_t> counts, int width, int height,
+                                                      std::size_t most_fragments);
+
+/// Stores what GlTets draws in a list for each pixel, and makes the picture from the lists. Keeps memory from picture to
+/// picture.
 class GlTetLists {
 public:
     struct Drawn {
         Image image;
         std::size_t fragments = 0, parts = 0;
-        std::size_t wrong_pixels = 0;  // the order of tetrahedra is wrong, or a face too late
+        std::size_t wrong_pixels = 0;  // where the order of tetrahedra is wrong, or a face too late
         std::size_t late_faces = 0;
     };
     explicit GlTetLists(GlTets& tets) : tets_(tets) {}
 
-    /// Segments of tetrahedra, sorted.
+    /// Draws the segments of tetrahedra, sorted in each pixel.
     ///
-    /// most_fragments: that lists hold at a time; the picture is drawn in parts for it
+    /// most_fragments: the most that lists hold at a time; the picture is drawn in parts if there are more
     /// throws:         Error(MissingCapability) if the device has no room
     [[nodiscard]] Drawn draw_tets(std::size_t most_fragments, const DrawStage& stage);
 
-    /// Faces, which go through a k-buffer.
+    /// Draws faces, sorted by a k-buffer in each pixel.
     [[nodiscard]] Drawn draw_faces(std::size_t kbuffer, std::size_t most_fragments, const DrawStage& stage);
 
 private:

@@ -5,26 +5,27 @@
 #include <sstream>
 
 #include "gl_context.h"
+#include "pixel_tiles.h"
 #include "shader_exp_log_glsl.h"
-#include "shader_pt_crossing_glsl.h"
-#include "shader_pt_face_frag.h"
-#include "shader_pt_face_vert.h"
-#include "shader_pt_frame_glsl.h"
-#include "shader_pt_hull_glsl.h"
-#include "shader_pt_kbuffer_comp.h"
-#include "shader_pt_resolve_comp.h"
-#include "shader_pt_segment_glsl.h"
-#include "shader_pt_tet_frag.h"
-#include "shader_pt_tet_vert.h"
+#include "shader_projected_crossing_glsl.h"
+#include "shader_projected_face_frag.h"
+#include "shader_projected_face_vert.h"
+#include "shader_projected_frame_glsl.h"
+#include "shader_projected_hull_glsl.h"
+#include "shader_projected_kbuffer_comp.h"
+#include "shader_projected_resolve_comp.h"
+#include "shader_projected_segment_glsl.h"
+#include "shader_projected_tet_frag.h"
+#include "shader_projected_tet_vert.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
 
 namespace {
 
-// As the shaders have them.
+// The same as in the shaders.
 constexpr GLuint kPointsBinding = 0, kItemsBinding = 1, kOrderBinding = 2, kKnotsBinding = 10;
-constexpr std::size_t kDrawnAtOnce = 1U << 16;  // between two looks at the progress
+constexpr std::size_t kDrawnAtOnce = 1U << 16;  // between two reports of progress
 
 template <class T>
 void fill(GlBuffer& buffer, const std::vector<T>& values) {
@@ -33,37 +34,23 @@ void fill(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(bytes, values.data());
 }
 
-void check_size(int width, int height) {
-    GLint most = 0;
-    std::array<GLint, 2> viewport{};
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
-    most = std::min({most, viewport[0], viewport[1]});
-    const int longest = std::max(width, height);
-    if (longest <= most) return;
-    throw Error(
-        ErrorCode::MissingCapability,
-        "the GL device draws up to " + std::to_string(most) + " pixels in a row or column, not " + std::to_string(longest), {},
-        "a smaller picture, or the method tets");
-}
-
 std::vector<ShaderText> resolver_texts() {
-    return {{"pt_frame.glsl", kShader_pt_frame_glsl},
+    return {{"projected_frame.glsl", kShader_projected_frame_glsl},
             {"exp_log.glsl", kShader_exp_log_glsl},
-            {"pt_segment.glsl", kShader_pt_segment_glsl}};
+            {"projected_segment.glsl", kShader_projected_segment_glsl}};
 }
 
 std::vector<ShaderText> drawing_texts() {
     auto texts = resolver_texts();
-    texts.push_back({"pt_crossing.glsl", kShader_pt_crossing_glsl});
-    texts.push_back({"pt_hull.glsl", kShader_pt_hull_glsl});
+    texts.push_back({"projected_crossing.glsl", kShader_projected_crossing_glsl});
+    texts.push_back({"projected_hull.glsl", kShader_projected_hull_glsl});
     return texts;
 }
 
 }  // namespace
 
 GlTets::GlTets() {
-    glCreateVertexArrays(1, &vertices_);  // without any attribute: nothing is drawn without one
+    glCreateVertexArrays(1, &vertices_);  // it has no attributes, but OpenGL does not draw without one
     glCreateFramebuffers(1, &framebuffer_);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
@@ -104,8 +91,8 @@ void GlTets::set_frame(const GlTetFrame& frame, const View& view) {
 
 void GlTets::make_target(int width, int height) {
     if (width_ == width && height_ == height) return;
-    check_size(width, height);
-    width_ = 0;  // until it is made
+    check_picture_size(width, height, "a smaller picture, or the method tets");
+    width_ = 0;  // in case an error is thrown below
     glDeleteTextures(1, &texture_);
     glCreateTextures(GL_TEXTURE_2D, 1, &texture_);
     glTextureStorage2D(texture_, 1, GL_RGBA32F, width, height);
@@ -123,37 +110,38 @@ std::string GlTets::defines(const char* mode, int corners) const {
     std::ostringstream text;
     const auto define = [&](const char* name, const auto& value) { text << "#define " << name << ' ' << value << '\n'; };
     define("PERSPECTIVE", int{view_->perspective()});
-    define("PT_COMPOSITE", 0);
-    define("PT_COUNT", 1);
-    define("PT_KEEP", 2);
-    define("PT_MODE", mode);
+    define("FRAGMENT_COMPOSITE", 0);
+    define("FRAGMENT_COUNT", 1);
+    define("FRAGMENT_KEEP", 2);
+    define("FRAGMENT_MODE", mode);
     define("kCorners", corners);
     define("kKnots", frame_->knots.size());
+    define("kRayCutoff", kRayCutoff);
     return text.str();
 }
 
 const GlProgram& GlTets::program(Items items, const char* mode) {
     const std::string text = defines(mode, items == Items::Tets ? 4 : 3);
     if (const auto found = programs_.find(text); found != programs_.end()) return found->second;
-    const ShaderText vertex = items == Items::Tets ? ShaderText{"pt_tet.vert", kShader_pt_tet_vert}
-                                                   : ShaderText{"pt_face.vert", kShader_pt_face_vert};
-    const ShaderText fragment = items == Items::Tets ? ShaderText{"pt_tet.frag", kShader_pt_tet_frag}
-                                                     : ShaderText{"pt_face.frag", kShader_pt_face_frag};
+    const ShaderText vertex = items == Items::Tets ? ShaderText{"projected_tet.vert", kShader_projected_tet_vert}
+                                                   : ShaderText{"projected_face.vert", kShader_projected_face_vert};
+    const ShaderText fragment = items == Items::Tets ? ShaderText{"projected_tet.frag", kShader_projected_tet_frag}
+                                                     : ShaderText{"projected_face.frag", kShader_projected_face_frag};
     return programs_.emplace(text, GlProgram(vertex, fragment, text, drawing_texts())).first->second;
 }
 
 const GlProgram& GlTets::resolver(Items items) {
-    const char* const file = items == Items::Tets ? "pt_resolve.comp" : "pt_kbuffer.comp";
-    const std::string text = defines("PT_KEEP", items == Items::Tets ? 4 : 3);
+    const char* const file = items == Items::Tets ? "projected_resolve.comp" : "projected_kbuffer.comp";
+    const std::string text = defines("FRAGMENT_KEEP", items == Items::Tets ? 4 : 3);
     const std::string key = file + text;
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
-    const char* const source = items == Items::Tets ? kShader_pt_resolve_comp : kShader_pt_kbuffer_comp;
+    const char* const source = items == Items::Tets ? kShader_projected_resolve_comp : kShader_projected_kbuffer_comp;
     return programs_.emplace(key, GlProgram(file, source, text, resolver_texts())).first->second;
 }
 
 void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) const {
     const GLuint id = program.id();
-    // In an orthographic view a pixel is a length.
+    // In an orthographic view the size of a pixel is a length.
     const double pixel = view_->perspective() ? view_->pixel() : view_->pixel() / frame_->scale;
     const Vec2 middle = 0.5 * Vec2(width_, height_) - offset_px_;
     glProgramUniform2f(id, program.uniform("middle_px"), static_cast<float>(middle.x), static_cast<float>(middle.y));
@@ -177,7 +165,7 @@ void GlTets::draw_all(Items items, const GlProgram& program, const PixelRect& re
     for (std::size_t first = 0; first < count; first += kDrawnAtOnce) {
         const std::size_t end = std::min(count, first + kDrawnAtOnce);
         glDrawArrays(GL_TRIANGLES, static_cast<GLint>(corners * first), static_cast<GLsizei>(corners * (end - first)));
-        if (stage.progress) glFinish();  // else all would be under way at once
+        if (stage.progress) glFinish();  // otherwise all of it would be queued at once
         stage.report(static_cast<double>(end) / static_cast<double>(count));
     }
     check_gl("projected tetrahedra");
@@ -194,7 +182,7 @@ Image GlTets::draw_in_order(const DrawStage& stage) {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glScissor(0, 0, width_, height_);
     glClearNamedFramebufferfv(framebuffer_, GL_COLOR, 0, kNothing.data());
-    draw_all(Items::Tets, program(Items::Tets, "PT_COMPOSITE"), whole, stage);
+    draw_all(Items::Tets, program(Items::Tets, "FRAGMENT_COMPOSITE"), whole, stage);
     Image image(width_, height_);
     glGetTextureImage(texture_, 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(image.rgba.size() * sizeof(float)),
                       image.rgba.data());

@@ -18,28 +18,28 @@
 
 namespace subvol::detail {
 
-/// What of tetrahedra changes from picture to picture: places in eye space in parts of `scale`, depths relative to that of the
-/// middle.
+/// The part of the tetrahedra's data that changes from picture to picture. Places are in eye space, in units of `scale`, and
+/// depths are relative to that of the volume's middle.
 ///
-/// points:    place, value in parts of the range of the knots
+/// points:    place; value in parts of the range of the knots
 /// order:     numbers of tetrahedra, from back to front, or of faces, from front to back
-/// eye_value: in the same parts; only for faces
+/// eye_value: the value at the eye, in the same parts; only for faces
 struct GlTetFrame {
-    /// Of the transfer function: shaders/pt_segment.glsl has the same.
+    /// A knot of the transfer function; the same as in shaders/projected_segment.glsl.
     struct Knot {
-        std::array<float, 4> look;  // colour, opacity
+        std::array<float, 4> rgba;  // colour, opacity
         std::array<float, 4> value{};
     };
     std::vector<std::array<float, 4>> points;
     std::vector<std::uint32_t> order;
     std::vector<Knot> knots;
     double scale = 1;          // world length
-    double middle_depth = 0;   // in parts of it, as the points
-    double opacity_units = 1;  // in the scale
+    double middle_depth = 0;   // in units of it
+    double opacity_units = 1;  // opacity units in the scale
     double eye_value = 0;
 };
 
-/// A part of the work, which goes from `begin` to `begin` + `size` of the whole.
+/// A part of the work, from `begin` to `begin` + `size` of the whole, for reports of progress.
 struct DrawStage {
     Progress* progress = nullptr;
     double begin = 0, size = 1;
@@ -48,39 +48,40 @@ struct DrawStage {
     void report(double fraction) const { report_progress(progress, "draw", begin + size * fraction); }
 };
 
-/// Draws tetrahedra, or their faces, on the current context. Keeps them, programs and memory from picture to picture.
+/// Draws tetrahedra or their faces on the current context. Keeps data, programs and memory from picture to picture.
+///
+/// Every member throws Error(MissingCapability) if the device has no room.
 class GlTets {
 public:
     enum class Items { Tets, Faces };
 
-    /// throws: as all members, Error(MissingCapability) if the device has no room
     GlTets();
     ~GlTets();
     GlTets(const GlTets&) = delete;
     GlTets& operator=(const GlTets&) = delete;
 
-    /// Corners by ascending number.
+    /// tets: corners, ascending
     void set_tets(std::span<const std::array<std::uint32_t, 4>> tets);
     void set_faces(std::span<const TetFaces::Face> faces);
     [[nodiscard]] bool has(Items items) const { return buffer_of(items).bytes() > 0; }
 
-    /// What is drawn next. Frame and view have to stay while it is.
+    /// Sets what is drawn next. Frame and view are referred to.
     ///
-    /// offset_px: of the rays from the centres of their pixels
+    /// offset_px: offset of the rays from the centres of their pixels
     void set_frame(const GlTetFrame& frame, const View& view);
     void set_offset(const Vec2& offset_px) { offset_px_ = offset_px; }
 
-    /// Tetrahedra blended over each other in their order.
+    /// Blends tetrahedra over each other in their order.
     [[nodiscard]] Image draw_in_order(const DrawStage& stage);
 
-    // For lists.
+    // For GlTetLists.
     [[nodiscard]] const View& view() const { return *view_; }
     [[nodiscard]] const GlTetFrame& frame() const { return *frame_; }
-    /// mode: of the fragment shader, "PT_COUNT"
+    /// mode: of the fragment shader, for example "FRAGMENT_COUNT"
     [[nodiscard]] const GlProgram& program(Items items, const char* mode);
     [[nodiscard]] const GlProgram& resolver(Items items);
     void set_uniforms(const GlProgram& program, const PixelRect& rect) const;
-    /// Draws what does not end in a picture.
+    /// Draws without writing to the picture.
     void draw_into_lists(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage);
 
 private:
@@ -95,7 +96,7 @@ private:
     GLuint vertices_ = 0, framebuffer_ = 0, texture_ = 0;
     int width_ = 0, height_ = 0;
     GlBuffer points_, tets_, faces_, order_, knots_;
-    std::map<std::string, GlProgram> programs_;  // for so many knots
+    std::map<std::string, GlProgram> programs_;  // by their defines; all of them for program_knots_ knots
     std::size_t program_knots_ = 0;
 };
 

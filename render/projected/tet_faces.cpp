@@ -28,7 +28,7 @@ double signed_volume(const TetMesh& mesh, const std::array<Index, 4>& corner) {
                mesh.points[corner[3]].position - p);
 }
 
-/// Sorts three corners; true if that turns the face over.
+/// Sorts three corners; returns whether that turns the face over.
 bool sort_corners(std::array<Index, 3>& corner) {
     bool turned = false;
     const auto sort_two = [&](std::size_t a, std::size_t b) {
@@ -42,13 +42,13 @@ bool sort_corners(std::array<Index, 3>& corner) {
     return turned;
 }
 
-/// +1 if the tetrahedron is on the side of the normal of its face with sorted corners, else −1. Whatever it is for a
-/// tetrahedron without volume, its four faces agree: a ray comes out of it as often as it goes in.
+/// +1 if the tetrahedron is on the side of the normal of its face with sorted corners, else −1. For a tetrahedron without
+/// volume the result is arbitrary but consistent for its four faces: a ray leaves it as often as it enters.
 int side_of_face(bool positive, std::uint32_t k, bool turned) {
     return (positive != (k % 2 == 0)) != turned ? 1 : -1;
 }
 
-/// Likewise for the tetrahedron across a face. Two of them may share more than one.
+/// The same for the tetrahedron across a face. Two tetrahedra may share more than one face.
 int side_of_same_face(const TetMesh& mesh, Index tet, Index from, const std::array<Index, 3>& sorted, bool positive) {
     for (std::uint32_t k = 0; k < 4; ++k) {
         if (mesh.neighbor(tet, k) != from) continue;
@@ -65,18 +65,18 @@ std::uint64_t mix_bits(std::uint64_t x) {  // the finaliser of SplitMix64
     return x ^ (x >> 31);
 }
 
-/// A throw of the face's corners, as time until it is its turn: the larger the face, the sooner. Drawing by area makes the
-/// error of a part less by a fifth than drawing without.
+/// A random waiting time made from the face's corners: the larger the face, the earlier its turn. Choosing by area makes the
+/// error of a partial picture less by a fifth than choosing evenly.
 double shuffle_key(const TetMesh& mesh, const TetFaces::Face& face) {
     std::uint64_t bits = 0x9e3779b97f4a7c15U;
     for (const Index corner : face.corner) bits = mix_bits(bits + corner);
-    const double thrown = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;  // in (0, 1)
+    const double random = (static_cast<double>(bits >> 12) + 0.5) * 0x1p-52;  // in (0, 1)
     const Vec3& p = mesh.points[face.corner[0]].position;
     const Vec3 normal = cross(mesh.points[face.corner[1]].position - p, mesh.points[face.corner[2]].position - p);
-    return -std::log(thrown) / glm::length(normal);
+    return -std::log(random) / glm::length(normal);
 }
 
-/// As an unsigned number that goes up with it.
+/// An unsigned integer that ascends with x.
 std::uint32_t ascending_bits(float x) {
     const auto bits = std::bit_cast<std::uint32_t>(x);
     return bits ^ ((bits >> 31) != 0 ? 0xffffffffU : 0x80000000U);
@@ -105,7 +105,7 @@ TetFaces find_faces(const TetMesh& mesh) {
     for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
         for (std::uint32_t k = 0; k < 4; ++k) {
             const Index other = mesh.neighbor(t, k);
-            if (other < t) continue;  // kNone is above all
+            if (other < t) continue;  // kNone is larger than any number
             auto corner = mesh.corners(4 * t + k);
             int cover = side_of_face(positive[t] != 0, k, sort_corners(corner));
             if (other != kNone) cover += side_of_same_face(mesh, other, t, corner, positive[other] != 0);
@@ -141,8 +141,8 @@ double value_at(const TetMesh& mesh, const Vec3& point) {
     struct Best {
         double inside = -std::numeric_limits<double>::infinity(), value = 0;
     };
-    // Barycentric weights; the least of them says how far inside a point is. The first of equals wins.
-    const auto look_at = [&](Best best, std::size_t t) {
+    // The least of the barycentric weights measures how far inside the point is. Among equals the first wins.
+    const auto better = [&](Best best, std::size_t t) {
         const auto& corner = mesh.tets[t].corner;
         const double volume = signed_volume(mesh, corner);
         if (volume == 0) return best;
@@ -159,7 +159,7 @@ double value_at(const TetMesh& mesh, const Vec3& point) {
     return tbb::parallel_reduce(
                tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), Best{},
                [&](const auto& range, Best best) {
-                   for (std::size_t t = range.begin(); t < range.end(); ++t) best = look_at(best, t);
+                   for (std::size_t t = range.begin(); t < range.end(); ++t) best = better(best, t);
                    return best;
                },
                [](const Best& a, const Best& b) { return b.inside > a.inside ? b : a; })

@@ -9,10 +9,10 @@
 
 namespace subvol::detail {
 
-/// The faces of tetrahedra, shared ones once.
+/// The faces of tetrahedra; shared faces are listed once.
 ///
-/// faces: first those that a ray enters or leaves by, or where cells fold over; then those inside, as if drawn at random, large
-///        ones sooner, but always the same: the first n of them lie about the mesh evenly, and are among the first n + 1
+/// faces: first those by which rays enter or leave, or at which cells fold over; then the inner ones in a reproducible random
+///        order that favours large faces, so that the first n of them are spread evenly over the mesh for every n
 struct TetFaces {
     struct Face {
         std::array<Index, 3> corner;  // ascending
@@ -21,18 +21,18 @@ struct TetFaces {
     std::vector<Face> faces;
     std::size_t outer = 0;
 
-    /// How many faces there are with a fraction of those inside, rounded up.
+    /// The number of faces that are drawn with a fraction of the inner ones, rounded up.
     [[nodiscard]] std::size_t count(double fraction) const;
 };
 
-/// cost: O(n log n), parallel; 16 bytes a face and 12 more while it sorts
+/// cost: O(n log n), parallel; 16 bytes for each face and 12 more while it sorts
 [[nodiscard]] TetFaces find_faces(const TetMesh& mesh);
 
 /// Numbers of the first `count` faces from front to back, by the eye depth of their centroids; equal ones by their number.
 [[nodiscard]] std::vector<std::uint32_t> order_faces(const TetMesh& mesh, const TetFaces& faces, std::size_t count,
                                                      const View& view);
 
-/// The value in the tetrahedron that a point is in, or is nearest to being in.
+/// The value at a point in the tetrahedron that contains it, or that comes closest to containing it.
 [[nodiscard]] double value_at(const TetMesh& mesh, const Vec3& point);
 
 }  // namespace subvol::detail

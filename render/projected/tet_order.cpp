@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Tetrahedra from back to front, so that each may be blended over what lies behind it.
+//
+// A shared face decides between its two tetrahedra: the one on the eye's side of the face's plane is nearer. These relations
+// are the arrows of a graph, and an order that respects them all is a topological sort (MPVO [williams1992], [mhc1990]):
+//
+//     eye            A before B before C: each waits until all tetrahedra behind its faces have been
+//      *  ->  C|B|A  drawn. Of those that wait for none, the one with the farthest centroid is next.
+//
+// In a convex mesh without cycles the result is exact. Where the mesh is not convex, parts without a common face are ordered by
+// their centroids (Williams' heuristic, MPVONC), which can be wrong. Three or more tetrahedra may also lie behind each other in
+// a cycle; then none is ready, the farthest one left is drawn anyway, and `cycles` counts it.
 #include "tet_order.h"
 
 #include <tbb/blocked_range.h>
@@ -33,7 +44,7 @@ std::vector<double> centroid_depths(const TetMesh& mesh, const View& view) {
     return depths;
 }
 
-/// Which side of the view a direction is on: towards the eye, as seen from a point.
+/// The direction from a point to the eye.
 Vec3 towards_eye(const View& view, const Vec3& from) {
     return view.perspective() ? view.eye() - from : -view.axes()[2];
 }
@@ -45,7 +56,7 @@ double volume_of(const TetMesh& mesh, const TetMesh::Tet& tet) {
                mesh.points[tet.corner[3]].position - p);
 }
 
-/// Whether the eye is outside the plane of the face opposite to corner k: then what is across it is nearer.
+/// Whether the eye is on the outer side of the face opposite to corner k: then the neighbour across it is nearer.
 bool faces_eye(const TetMesh& mesh, const View& view, std::uint32_t tet, std::uint32_t k, bool& edge_on) {
     const auto ids = mesh.corners(4 * tet + k);
     const Vec3& p = mesh.points[ids[0]].position;
@@ -56,9 +67,9 @@ bool faces_eye(const TetMesh& mesh, const View& view, std::uint32_t tet, std::ui
     return (eye > 0) != (inside > 0);
 }
 
-/// For every tetrahedron a bit a face: its neighbour there is nearer.
+/// For every tetrahedron, a bit for each face whose neighbour is nearer.
 ///
-/// The thicker one of two neighbours knows better where the face's plane lies between them.
+/// The tetrahedron of larger volume decides for both, as its corner lies farther from the plane of the face.
 std::vector<std::uint8_t> find_nearer(const TetMesh& mesh, const View& view) {
     std::vector<double> volumes(mesh.tets.size());
     for_each_index(volumes.size(), [&](std::size_t t) { volumes[t] = std::abs(volume_of(mesh, mesh.tets[t])); });
@@ -107,7 +118,8 @@ TetOrder order_topologically(const TetMesh& mesh, const View& view) {
     for (std::uint32_t t = 0; t < count; ++t) for_each_nearer(t, [&](Index other) { ++waits_for[other]; });
 
     constexpr std::uint8_t kDone = 255;
-    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> ready;  // places: the farthest first
+    // Positions in by_centroid: the farthest comes first.
+    std::priority_queue<std::uint32_t, std::vector<std::uint32_t>, std::greater<>> ready;
     for (std::size_t i = 0; i < count; ++i) {
         if (waits_for[by_centroid[i]] == 0) ready.push(static_cast<std::uint32_t>(i));
     }

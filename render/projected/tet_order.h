@@ -9,20 +9,21 @@
 
 namespace subvol::detail {
 
-/// From back to front.
+/// tets:   from back to front
+/// cycles: how often no tetrahedron was ready
 struct TetOrder {
     std::vector<std::uint32_t> tets;
     std::size_t cycles = 0;
 };
 
-/// By the eye depth of the centroids; equal ones by their number.
+/// Sorts by the eye depth of the centroids; equal ones by their number.
 [[nodiscard]] TetOrder order_by_centroid(const TetMesh& mesh, const View& view);
 
-/// A tetrahedron comes after all that are behind its faces; of those that are ready, the one with the farthest centroid is
-/// taken. Where cycles leave none ready, the farthest centroid of all is, and `cycles` counts it.
+/// Puts each tetrahedron after all that are behind its faces; of those that are ready, the one with the farthest centroid is
+/// taken. Where cycles leave none ready, the one with the farthest centroid of all is taken.
 ///
 /// cost:   O(n log n), the order itself on one thread
-/// source: docs/science.md (MPVO; the heuristic for meshes that are not convex is Williams')
+/// source: williams1992 (MPVO, and its heuristic for meshes that are not convex), mhc1990
 [[nodiscard]] TetOrder order_topologically(const TetMesh& mesh, const View& view);
 
 }  // namespace subvol::detail

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "pixel_tiles.h"
+
 namespace subvol::detail {
 
 namespace {
 
-constexpr double kOpaque = 1e-6;  // what lies behind less transmittance than this is not followed
 constexpr unsigned kAll = 0xff;
 constexpr double kMostPieces = 64;
 
@@ -22,7 +23,7 @@ double range_of(std::span<const double> knots) {
     return knots.back() - knots.front();
 }
 
-// Weights of inactive corners are left out. `u` is where in the cell.
+// Trilinear, over the active corners alone. u: the place in the cell, in [0,1]³.
 double value_in(const VoxelCorners& corners, const Vec3& u) {
     double sum = 0, weights = 0;
     for (unsigned k = 0; k < 8; ++k) {
@@ -44,7 +45,8 @@ GridTracer::GridTracer(const Voxels& grid, const Optics& optics, double toleranc
       origin_(grid.origin()),
       cursor_(grid.cursor()) {
     const auto [lower, upper] = grid.range();
-    cells_ = {{lower[0] - 1, lower[1] - 1, lower[2] - 1}, upper};  // half a voxel reaches into the cells before the first
+    // The first voxels reach half a voxel into the cells before them.
+    cells_ = {{lower[0] - 1, lower[1] - 1, lower[2] - 1}, upper};
 }
 
 GridTracer::Line GridTracer::to_index(const Ray& ray) const {
@@ -75,7 +77,7 @@ Voxel GridTracer::cell_at(const Line& line, double t, const Cells& within) const
     return cell;
 }
 
-// The cells all of whose voxels are in the block; the cell alone where its voxels are not.
+// The cells whose voxels are all in the block of `cell`; only the cell itself if its voxels are not.
 GridTracer::Cells GridTracer::covered(const Voxel& cell, const VoxelBlock& block) const {
     Cells cells{cell, cell};
     if (block.kind == VoxelBlock::Kind::Mixed) return cells;
@@ -94,7 +96,7 @@ void GridTracer::add_voxel_part(const Line& line, const Voxel& cell, const Voxel
     const double length = stretch.end - stretch.begin;
     const double front = value_at(stretch.begin), back = value_at(stretch.end);
     double pieces = 1;
-    if (value_tolerance_ > 0) {  // halves, thirds: a cubic that is straight there is straight
+    if (value_tolerance_ > 0) {  // a cubic that is straight at both thirds is straight
         const double one = value_at(stretch.begin + length / 3), two = value_at(stretch.begin + 2 * length / 3);
         const double bend = std::max(std::abs(one - (2 * front + back) / 3), std::abs(two - (front + 2 * back) / 3));
         pieces = std::clamp(std::ceil(std::sqrt(bend / value_tolerance_)), 1.0, kMostPieces);
@@ -112,7 +114,7 @@ void GridTracer::add_cell(const Line& line, const Voxel& cell, Stretch stretch, 
     if (corners.active == 0) return;
     ++counts_.cells;
     if (corners.active == kAll) return add_voxel_part(line, cell, corners, stretch, light);
-    // Cut in the middles, where one voxel ends and the next begins.
+    // Some corners are inactive: the stretch is cut at the middle planes, where one voxel ends and the next begins.
     std::array<double, 5> ends{stretch.begin, stretch.end, stretch.end, stretch.end, stretch.end};
     for (int k = 0; k < 3; ++k) {
         const double t = (cell[at(k)] + 0.5 - line.origin[k]) * line.inverse[k];
@@ -137,7 +139,7 @@ Segment GridTracer::trace(const Ray& ray) {
     bool met = false;
     double t = inside.begin;
     Voxel cell = cell_at(line, t, cells_);
-    while (light.transmittance >= kOpaque) {
+    while (light.transmittance >= kRayCutoff) {
         const VoxelBlock block = cursor_->block(cell);
         const Cells passed = covered(cell, block);
         int axis = 0;

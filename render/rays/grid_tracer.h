@@ -8,12 +8,12 @@
 
 namespace subvol::detail {
 
-/// Integrates rays through a grid. Keeps a cursor: one for each thread or tile.
+/// Integrates rays through a grid. Keeps a cursor, so each thread or tile needs its own.
 class GridTracer {
 public:
     GridTracer(const Voxels& grid, const Optics& optics, double tolerance);
 
-    /// The part of the ray in front of its origin.
+    /// The light along the ray, from its origin on.
     [[nodiscard]] Segment trace(const Ray& ray);
     [[nodiscard]] const GridTraceReport& counts() const { return counts_; }
 

@@ -11,7 +11,7 @@ struct PixelRect {
 
     [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
 
-    /// The least rectangle that holds both.
+    /// The smallest rectangle that contains both.
     [[nodiscard]] PixelRect with(const PixelRect& other) const {
         if (other.empty()) return *this;
         if (empty()) return other;

@@ -17,6 +17,10 @@ namespace subvol::detail {
 
 inline constexpr int kMaxSamples = 16;
 
+/// Transmittance below which a ray ends. What lies behind can change a colour by no more than this: a fifteenth of a step of a
+/// 16-bit picture.
+inline constexpr double kRayCutoff = 1e-6;
+
 /// throws: Error(InvalidInput) unless samples is in 1..16
 inline void check_samples(int samples) {
     if (samples < 1 || samples > kMaxSamples) {
@@ -68,9 +72,10 @@ void for_each_tile(const PixelRect& part, Progress* progress, const DrawTile& dr
     });
 }
 
-/// Draws a part of a picture in tiles. Every pixel depends on its own rays only, so threads change nothing.
+/// Draws a part of a picture in tiles. Every pixel depends on its own rays only, so the number of threads changes nothing.
 ///
-/// make_tracer: makes what turns a Ray into a Segment; called once a tile, so that a tracer may keep scratch memory and count
+/// make_tracer: returns a function from Ray to Segment; called once for each tile, so that a tracer can keep scratch memory and
+///              count
 template <class MakeTracer>
 void draw_in_tiles(const View& view, int samples, const PixelRect& part, Image& image, Progress* progress,
                    const MakeTracer& make_tracer) {

@@ -15,7 +15,6 @@ namespace {
 using FieldFunction = std::function<std::optional<double>(const Vec3&)>;
 
 constexpr double kEndTolerance = 1e-9;  // of a step
-constexpr double kOpaque = 1e-6;
 constexpr double kMaxSteps = 1e9;
 
 struct Interval {
@@ -55,7 +54,7 @@ public:
         const double speed = glm::length(ray.direction);
         const double steps = std::max(1.0, std::ceil((range.end - range.begin) * speed / step_world_));
         Sample last = at(ray, range.begin);
-        for (double i = 1; i <= steps && total.transmittance > kOpaque; ++i) {
+        for (double i = 1; i <= steps && total.transmittance > kRayCutoff; ++i) {
             const Sample next = at(ray, range.begin + (range.end - range.begin) * (i / steps));
             composite(total, between(ray, last, next, speed));
             last = next;
@@ -66,7 +65,7 @@ public:
 private:
     Sample at(const Ray& ray, double t) const { return {t, field_(ray.origin + t * ray.direction)}; }
 
-    // The last sample inside on the way from one inside to one outside.
+    // Bisects between a sample inside and one outside; returns the last sample inside.
     Sample end_of_field(const Ray& ray, Sample inside, Sample outside) const {
         const double tolerance = kEndTolerance * std::abs(outside.t - inside.t);
         while (std::abs(outside.t - inside.t) > tolerance) {
@@ -93,7 +92,7 @@ private:
 }  // namespace
 
 Image render_field(const FieldFunction& field, const Box& box, const View& view, const Optics& optics,
-                   const FieldOptions& options) {
+                   const MarchOptions& options) {
     check_samples(options.samples);
     if (box.empty()) return {view.width(), view.height()};
     if (!(options.step_world > 0) || !(box.diagonal() <= kMaxSteps * options.step_world)) {

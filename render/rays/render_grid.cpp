@@ -3,11 +3,11 @@
 
 #include <tbb/combinable.h>
 
-#include <chrono>
 #include <cmath>
 
 #include "grid_tracer.h"
 #include "pixel_tiles.h"
+#include "subvol/detail/stopwatch.h"
 
 namespace subvol {
 
@@ -26,7 +26,7 @@ void check(const Voxels& grid, const GridOptions& options) {
     }
 }
 
-// Traces, and hands its counts on when its tile is done.
+// Traces, and adds its counts to the sums when its tile is done.
 class CountedTracer {
 public:
     CountedTracer(GridTracer tracer, tbb::combinable<GridTraceReport>& sums) : tracer_(std::move(tracer)), sums_(&sums) {}
@@ -51,7 +51,7 @@ GridResult render_grid(const Voxels& grid, const View& view, const Optics& optic
     const auto [lower, upper] = grid.range();
     if (lower[0] > upper[0]) return {{view.width(), view.height()}, {}};
     GridResult result;
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     tbb::combinable<GridTraceReport> sums;
     result.image = draw_in_tiles(view, options.samples, options.progress,
                                  [&] { return CountedTracer(GridTracer(grid, optics, options.tolerance), sums); });
@@ -60,7 +60,7 @@ GridResult render_grid(const Voxels& grid, const View& view, const Optics& optic
         result.report.cells += sum.cells;
         result.report.blocks += sum.blocks;
     });
-    result.report.seconds_draw = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.report.seconds_draw = watch.seconds();
     return result;
 }
 

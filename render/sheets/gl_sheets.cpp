@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// The splatter of the EuroVis 2007 paper [mnmq2007]: image-aligned sheet buffers [westover1990, mc1998] on the GPU.
+//
+//             1    2    3    4     Sheets are planes of constant eye depth; this kernel is cut by 2 and 3. For each sheet:
+//     eye ->  |  .-|----|-.  |       draw       a rectangle around the section of each kernel; blending adds w and w·v to a
+//             | (  |    |  ) |                  buffer of floats (sheet_kernel.vert, .frag)
+//             |  '-|----|-'  |       composite  each pixel takes the mean x = Σ w·v / Σ w; a table of integrals of the transfer
+//                                               function gives the light between x on the last sheet and on this one, which
+//                                               is blended under the light before (sheet_composite.comp)
+//
+// The CPU lists the kernels of some sheets at a time (sheet_lists.cpp), so that memory does not grow with the number of sheets.
+// Only the rectangle that the kernels of this sheet and of the last one touch is drawn and composited. This is slower than
+// splat_gl/, which keeps the sums in registers, and serves for comparison (docs/adr/0011).
 #include "gl_sheets.h"
 
 #include <cmath>
@@ -20,10 +32,10 @@ namespace subvol::detail {
 
 namespace {
 
-/// Sheets whose kernels are listed at a time: the lists take no more room than the kernels, which are 16 words each.
+/// The number of sheets whose kernels are listed at a time: the lists take no more memory than the kernels, of 16 words each.
 constexpr int kListed = 16;
 constexpr GLuint kListBinding = 6;
-constexpr GLuint kTableBinding = 7;  // as shaders/splat_classify.glsl has it; then those of sheet_composite.comp
+constexpr GLuint kTableBinding = 7;  // the same as in splat_classify.glsl; then those of sheet_composite.comp
 
 std::string defines(const SplatFrame& frame) {
     const SplatScene& scene = *frame.scene;
@@ -31,7 +43,7 @@ std::string defines(const SplatFrame& frame) {
     text << std::scientific;
     text.precision(9);
     const auto define = [&](const char* name, auto value) { text << "#define " << name << ' ' << value << '\n'; };
-    define("KERNEL_SHAPE", static_cast<int>(scene.shape));
+    define("KERNEL_FORM", static_cast<int>(scene.form));
     define("KERNEL_STEPS", scene.kernel_table.empty() ? 1 : scene.kernel_table.size() - 1);
     define("BENT", int{scene.bent});
     define("SHADED", int{scene.shading.has_value()});
@@ -42,12 +54,12 @@ std::string defines(const SplatFrame& frame) {
     define("kCells", PreintegratedTable::kCells);
     define("kNearValues", kNearValues);
     define("kLeastWeight", kLeastWeight);
-    define("kOpaque", kOpaque);
+    define("kSplatCutoff", kSplatCutoff);
     define("kFarCells", kFarCells);
     return text.str();
 }
 
-/// Values of a program's uniforms, by name; what the compiler has dropped is left alone.
+/// Sets a program's uniforms by name; those that the compiler has removed are ignored.
 class Uniforms {
 public:
     explicit Uniforms(const GlProgram& program) : program_(program) {}
@@ -69,7 +81,7 @@ private:
     const GlProgram& program_;
 };
 
-/// What does not change from sheet to sheet.
+/// Sets the uniforms that are the same for all sheets.
 void set_frame(const SplatFrame& frame, const GlProgram& kernels, const GlProgram& composite) {
     const SplatScene& scene = *frame.scene;
     const View& view = *frame.view;
@@ -82,8 +94,9 @@ void set_frame(const SplatFrame& frame, const GlProgram& kernels, const GlProgra
     const Uniforms u(composite);
     u.set_integers("size_px", view.width(), view.height());
     u.set("near", frame.sheets.near);
-    u.set("offsets", value_offset(scene, *frame.look), scene.color_channel ? color_offset(scene, *frame.look) : 0.0f);
-    u.set("unit", frame.look->table.unit);
+    u.set("offsets", value_offset(scene, *frame.classification),
+          scene.color_channel ? color_offset(scene, *frame.classification) : 0.0f);
+    u.set("unit", frame.classification->table.unit);
     u.set("half_weight", scene.half_weight);
     u.set("least_gradient", kLeastChange * PreintegratedTable::kCells / static_cast<float>(scene.diagonal));
     if (!scene.shading) return;
@@ -102,7 +115,7 @@ void fill(GlBuffer& buffer, GLuint binding, const std::vector<T>& values) {
     buffer.bind(binding);
 }
 
-/// A pixel on its way from front to back; as in shaders/sheet_composite.comp.
+/// The state of a pixel between two sheets; the same as in shaders/sheet_composite.comp.
 struct Last {
     float value, weight, depth;
     std::uint32_t interval;
@@ -123,7 +136,7 @@ std::size_t pixels_to_do(const SplatFrame& frame) {
 }  // namespace
 
 GlSheets::GlSheets() {
-    glCreateVertexArrays(1, &vertices_);  // without any attribute: nothing is drawn without one
+    glCreateVertexArrays(1, &vertices_);  // it has no attributes, but OpenGL does not draw without one
     check_gl("sheet buffers");
 }
 
@@ -152,7 +165,7 @@ Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
         ids_.bind(kListBinding);
         for (int sheet = first; sheet < end; ++sheet) {
             const auto k = static_cast<std::size_t>(sheet - first);
-            // Where neither this sheet nor the last one has kernels no value is known, if a sum without any is none.
+            // Where neither this sheet nor the last one has kernels, there is no value, unless an empty sum counts as 0.
             const PixelRect rect = scene.normalized ? lists.rects[k].with(last) : window;
             last = lists.rects[k];
             if (rect.empty()) continue;
@@ -190,9 +203,9 @@ void GlSheets::upload(const SplatFrame& frame) {
     fill(color_bends_, 3, kernels.color_bends);
     fill(axes_, 4, kernels.axes);
     fill(kernel_table_, 5, frame.scene->kernel_table);
-    fill(table_, kTableBinding, frame.look->table.rows);
-    fill(visible_, kTableBinding + 1, frame.look->table.visible);
-    fill(color_table_, kTableBinding + 2, frame.look->colors.rows);
+    fill(table_, kTableBinding, frame.classification->table.rows);
+    fill(visible_, kTableBinding + 1, frame.classification->table.visible);
+    fill(color_table_, kTableBinding + 2, frame.classification->colors.rows);
     fill(interval_offsets_, kTableBinding + 3, frame.intervals.offsets);
     fill(intervals_, kTableBinding + 4, frame.intervals.depths);
 }
@@ -218,7 +231,7 @@ void GlSheets::draw_kernels(const SplatFrame& frame, const GlProgram& program, i
     u.set("across", across);
     u.set("to_pixels", 1.0f / (across * static_cast<float>(frame.view->pixel())));
     program.use();
-    // Triangles, not instances: hardware does not fill its units with four vertices; to software it is the same.
+    // Triangles instead of instances: hardware does not fill its units with four vertices; for software it is the same.
     glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * first), static_cast<GLsizei>(6 * count));
 }
 
@@ -252,7 +265,7 @@ Drawn GlSheets::read(const SplatFrame& frame) const {
     drawn.depth.assign(lasts.size(), std::numeric_limits<float>::infinity());
     for (std::size_t id = 0; id < lasts.size(); ++id) {
         float& opacity = rgba[4 * id + 3];
-        opacity = 1 - opacity;  // it came as the transmittance
+        opacity = 1 - opacity;  // the buffer holds the transmittance
         if (opacity > 0) drawn.depth[id] = frame.sheets.middle + lasts[id].depth / opacity;
     }
     return drawn;

@@ -4,20 +4,19 @@
 #include <map>
 #include <string>
 
-#include "drawn.h"
 #include "gl_buffer.h"
 #include "gl_program.h"
 #include "sheet_target.h"
 
 namespace subvol::detail {
 
-/// The splatter by sheet buffers, on the current context: for every sheet, front to back, the sections of the kernels that it
+/// The splatter with sheet buffers, on the current context: for every sheet, front to back, the sections of the kernels that it
 /// cuts are drawn as rectangles that add up in a buffer of floats; then the buffer is classified and composited. It has every
-/// feature of the CPU's and follows the same rules; programs and memory are kept from picture to picture.
+/// feature of the CPU's splatter and follows the same rules; programs and memory are kept from picture to picture.
 ///
-/// Pictures are bitwise the same every time: kernels are added up in their order.
-/// cost:   one draw and one dispatch a sheet, each of the sheet's rectangle only
-/// source: docs/science.md (NMM06, VG05)
+/// Pictures are bitwise reproducible: kernels are added up in their order.
+/// cost:   one draw and one dispatch for each sheet, each over the sheet's rectangle only
+/// source: mnmq2007, docs/science.md
 class GlSheets {
 public:
     GlSheets();
@@ -41,7 +40,7 @@ private:
     [[nodiscard]] std::uint32_t done_pixels() const;
     [[nodiscard]] Drawn read(const SplatFrame& frame) const;
 
-    std::map<std::string, Programs> programs_;  // by their features
+    std::map<std::string, Programs> programs_;  // by their defines
     SheetTarget target_;
     GLuint vertices_ = 0;
     GlBuffer splats_, bends_, colors_, color_bends_, axes_, kernel_table_;

@@ -11,9 +11,9 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kChunks = 64;
-constexpr float kMargin_px = 0.5f;  // rounding may not lose a section's rim
+constexpr float kMargin_px = 0.5f;  // so that rounding does not lose the rim of a section
 
-/// Where kernels cut sheets.
+/// Finds the sheets that kernels cut, and the pixels of the sections.
 class Sections {
 public:
     Sections(const SplatFrame& frame, const PixelRect& window, int first, int last)
@@ -25,7 +25,7 @@ public:
           mid_x_(0.5f * static_cast<float>(frame.view->width())),
           mid_y_(0.5f * static_cast<float>(frame.view->height())) {}
 
-    /// visit(sheet, rectangle) for each sheet on which the kernel touches the window.
+    /// Calls visit(sheet, rectangle) for each sheet on which the kernel touches the window.
     template <class Visit>
     void each(const EyeSplat& s, const Visit& visit) const {
         const SheetStack& sheets = frame_.sheets;
@@ -33,7 +33,7 @@ public:
         const auto sheet = [&](float z) {
             return std::clamp((z - sheets.first) * per_sheet, static_cast<float>(first_) - 1.0f, static_cast<float>(last_));
         };
-        // Half a sheet more on each side: rounding may not lose one. What is not cut is seen from its section.
+        // Half a sheet more on each side, so that rounding does not lose one. A sheet that is not cut has an empty section.
         const int begin = std::max(static_cast<int>(std::floor(sheet(s.depth - reach) + 0.5f)), first_);
         const int end = std::min(static_cast<int>(std::floor(sheet(s.depth + reach) + 1.5f)), last_);
         for (int k = begin; k < end; ++k) {
@@ -85,7 +85,7 @@ SheetLists list_sheets(const SplatFrame& frame, const PixelRect& window, int fir
     const Sections sections(frame, window, first, last);
     std::vector<std::size_t> next(sheets * chunks);
     std::vector<PixelRect> rects(sheets * chunks);
-    // visit(slot, kernel, rectangle); a slot is a sheet's part of a chunk of kernels
+    // Calls visit(slot, kernel, rectangle); a slot belongs to a sheet and a chunk of kernels.
     const auto each = [&](const auto& visit) {
         tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
             for (std::size_t i = splats.size() * chunk / chunks; i < splats.size() * (chunk + 1) / chunks; ++i) {

@@ -9,7 +9,7 @@
 
 namespace subvol::detail {
 
-/// The kernels that sheets cut, in their order, and the pixels that they may touch there: sheet first + k has
+/// The kernels that sheets cut, in their order, and the pixels that they may touch: sheet first + k has
 /// splats[offsets[k] .. offsets[k + 1]).
 struct SheetLists {
     std::vector<PixelRect> rects;
@@ -17,11 +17,11 @@ struct SheetLists {
     std::vector<std::uint32_t> splats;
 };
 
-/// The pixels whose rays meet the boundary: a rectangle about them. The whole picture if there is no boundary.
+/// A rectangle around the pixels whose rays meet the boundary; the whole picture if there is no boundary.
 [[nodiscard]] PixelRect seen_pixels(const SplatFrame& frame);
 
-/// A counting sort of the kernels of a frame by the sheets first..last − 1, as far as they touch `window`. The same for any
-/// number of threads.
+/// Lists the kernels of a frame that touch `window` by the sheets first..last − 1 (a counting sort). The result is the same for
+/// any number of threads.
 [[nodiscard]] SheetLists list_sheets(const SplatFrame& frame, const PixelRect& window, int first, int last);
 
 }  // namespace subvol::detail

@@ -1,30 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sheet_target.h"
 
-#include <algorithm>
-#include <string>
-
 #include "gl_context.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
-
-namespace {
-
-void check_size(int width, int height) {
-    GLint most = 0;
-    std::array<GLint, 2> viewport{};
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
-    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
-    most = std::min({most, viewport[0], viewport[1]});
-    if (std::max(width, height) <= most) return;
-    throw Error(ErrorCode::MissingCapability,
-                "the GL device draws up to " + std::to_string(most) + " pixels in a row or column, not " +
-                    std::to_string(std::max(width, height)),
-                {}, "use the CPU backend");
-}
-
-}  // namespace
 
 void SheetTarget::begin(int width, int height, bool four_more) {
     if (width != width_ || height != height_ || four_more != four_more_) make(width, height, four_more);
@@ -50,7 +30,7 @@ void SheetTarget::clear(const PixelRect& rect) {
 
 void SheetTarget::make(int width, int height, bool four_more) {
     release();
-    check_size(width, height);
+    check_picture_size(width, height, "use the CPU backend");
     check_gl("earlier work");
     constexpr std::array<GLenum, 2> kFormats{GL_RG32F, GL_RGBA32F};
     constexpr std::array<GLenum, 2> kPlaces{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
@@ -74,7 +54,7 @@ void SheetTarget::make(int width, int height, bool four_more) {
 
 void SheetTarget::release() {
     if (framebuffer_ != 0) glDeleteFramebuffers(1, &framebuffer_);
-    glDeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());  // 0 is no texture
+    glDeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());  // deleting 0 does nothing
     framebuffer_ = 0;
     textures_ = {};
     width_ = height_ = 0;

@@ -9,7 +9,7 @@
 
 namespace subvol::detail {
 
-/// The buffer that a sheet is summed in, of the current context: two floats a pixel, and four more where asked for.
+/// The buffer of the current context in which a sheet is summed: two floats for each pixel, or six.
 class SheetTarget {
 public:
     SheetTarget() = default;
@@ -19,12 +19,13 @@ public:
     SheetTarget(const SheetTarget&) = delete;
     SheetTarget& operator=(const SheetTarget&) = delete;
 
-    /// Makes room for a picture and makes it what is drawn into, all of it zero; what is drawn adds up.
+    /// Makes room for a picture, sets it to zero and makes it the target, in which everything drawn adds up.
     ///
-    /// throws: Error(MissingCapability) if the device cannot
+    /// four_more: six floats for each pixel
+    /// throws:    Error(MissingCapability) if the device cannot draw into it
     void begin(int width, int height, bool four_more);
 
-    /// Zero in a rectangle, which is also all that will be drawn into.
+    /// Sets a rectangle to zero, and restricts drawing to it.
     void clear(const PixelRect& rect);
 
 private:

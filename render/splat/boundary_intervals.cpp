@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where the ray of each pixel is inside a closed surface: a rasterizer that finds all crossings of each ray, not the nearest
+// one.
+//
+//     sign         +1      +1      −1      −1          +1 where the ray enters a shell, −1 where it leaves one
+//     ray   -------|-------|-------|-------|------->   sorted by depth
+//     sum      0       1       2       1       0       the number of shells that the ray is in; it is inside where this is > 0
+//
+// A missed or doubled crossing would exchange inside and outside for the rest of a ray, so coverage has to be exact: vertices
+// are snapped to 1/4096 of a pixel, and the edge functions E(p) = (b − a) × (p − a) [pineda1988] are 64-bit integers. A pixel
+// centre on an edge has E = 0. Of the two triangles that share the edge, the one that owns it (owns_edge) takes the centre: the
+// other one tests E − 1 ≥ 0. Triangles that come near the eye or lie far beside the picture are clipped first, so that the
+// integers cannot overflow. Bands of rows are worked on in parallel. The shaders splat_gl/shaders/boundary_*.comp cover bitwise
+// the same pixels on the GPU.
 #include "boundary_intervals.h"
 
 #include <tbb/parallel_for.h>
@@ -16,22 +29,22 @@ namespace {
 
 constexpr int kBandRows = 8;
 constexpr std::int64_t kSnap = 4096;   // units a pixel
-constexpr double kGuard_px = 1 << 17;  // beyond it edge functions could overflow 64 bits: such triangles are clipped
+constexpr double kGuard_px = 1 << 17;  // triangles that reach further out are clipped: edge functions could overflow
 constexpr std::size_t kChunks = 64;
 
 struct SnappedPoint {
     std::int64_t x, y;
 };
 
-/// A triangle on the picture with its plane in eye space.
+/// A triangle in the picture, with its plane in eye space.
 struct ScreenTriangle {
-    std::array<SnappedPoint, 3> corners;  // turned so that its area is positive
+    std::array<SnappedPoint, 3> corners;  // ordered so that the area is positive
     std::int8_t sign;                     // +1 where a ray enters the solid
     Vec3 normal;
     double offset, z_min, z_max;
 };
 
-/// A crossing of the surface by the ray of a pixel of a band.
+/// A crossing of the surface by the ray of a pixel; pixels are numbered within the band.
 struct Hit {
     std::uint32_t pixel;
     float depth;
@@ -46,12 +59,12 @@ SnappedPoint center(int x, int y) {
     return {x * kSnap + kSnap / 2, y * kSnap + kSnap / 2};
 }
 
-/// Twice the area of (a, b, p); the sign says on which side of ab p lies.
+/// Twice the area of (a, b, p): positive or negative for the two sides of ab.
 std::int64_t area(const SnappedPoint& a, const SnappedPoint& b, const SnappedPoint& p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// Of two triangles that share an edge, exactly one owns the points on it.
+/// Whether the triangle on the positive side of ab owns the points on this edge; its neighbour has the edge as ba.
 bool owns_edge(const SnappedPoint& a, const SnappedPoint& b) {
     return a.y != b.y ? b.y > a.y : b.x < a.x;
 }
@@ -93,7 +106,8 @@ private:
         }
         const std::int64_t twice_area = area(t.corners[0], t.corners[1], t.corners[2]);
         if (twice_area == 0) return;
-        // Counter-clockwise from outside has negative area where it faces us: picture rows run downwards.
+        // Triangles are counter-clockwise as seen from outside. As rows run downwards, the area is negative where they face the
+        // eye.
         t.sign = twice_area < 0 ? 1 : -1;
         if (twice_area < 0) std::swap(t.corners[1], t.corners[2]);
         t.normal = normal;
@@ -122,7 +136,7 @@ int last_pixel(std::int64_t snapped) {
     return static_cast<int>(std::floor(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
 }
 
-/// The edge function of one side of a triangle, stepped from pixel to pixel; positive inside.
+/// The edge function of one side of a triangle, updated from pixel to pixel; 0 or more inside.
 struct Edge {
     std::int64_t right, down, at_row;
 
@@ -156,7 +170,7 @@ void rasterize(const ScreenTriangle& t, const View& view, double middle, int y_b
     }
 }
 
-/// Hits by pixel, those of a pixel by depth.
+/// Sorts hits by pixel, and those of a pixel by depth.
 void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint32_t>& ends, std::vector<Hit>& sorted) {
     ends.assign(pixels + 1, 0);
     for (const Hit& hit : hits) ++ends[hit.pixel + 1];
@@ -167,7 +181,7 @@ void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint
         if (ends[i] < begin + 2) continue;
         std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin), sorted.begin() + static_cast<std::ptrdiff_t>(ends[i]),
                   [](const Hit& l, const Hit& r) {
-                      // Where two shells touch, leaving comes after entering: no gap opens between them.
+                      // Where two shells touch, the entry into one comes before the exit from the other: no gap opens.
                       return l.depth != r.depth ? l.depth < r.depth : l.sign > r.sign;
                   });
     }
@@ -175,7 +189,7 @@ void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint
 
 /// Turns the sorted hits of one pixel into intervals.
 void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths) {
-    int inside = 0;  // how many solids the eye is in
+    int inside = 0;  // number of shells that the eye is in
     for (const Hit& hit : hits) inside -= hit.sign;
     inside = std::max(inside, 0);
     float enter = near;
@@ -200,7 +214,7 @@ std::vector<std::vector<ScreenTriangle>> project(const Surface& surface, const V
 }
 
 struct Band {
-    std::vector<std::uint32_t> counts;  // intervals a pixel
+    std::vector<std::uint32_t> counts;  // intervals of each pixel
     std::vector<float> depths;
     std::size_t hits = 0;
 };
@@ -223,7 +237,7 @@ bool needs_clipping(const Surface& surface, const View& view, double near) {
 PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle) {
     const auto chunks = project(surface, view, near);
     const int band_count = (view.height() + kBandRows - 1) / kBandRows;
-    // Which triangles a band meets, so that each band looks at its own only.
+    // The triangles of each band, so that a band does not go through all of them.
     std::vector<std::vector<const ScreenTriangle*>> of_band(static_cast<std::size_t>(band_count));
     for (const auto& chunk : chunks) {
         for (const auto& t : chunk) {

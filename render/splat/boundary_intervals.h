@@ -9,22 +9,22 @@
 
 namespace subvol::detail {
 
-/// Where the ray of each pixel is inside a closed surface: pixel p (row by row) has the depth pairs {enter, exit}
-/// depths[2·offsets[p] .. 2·offsets[p+1]), ascending and disjoint.
+/// The intervals in which the ray of each pixel is inside a closed surface. Pixel p (row by row) has the depth pairs {enter,
+/// exit} depths[2·offsets[p] .. 2·offsets[p+1]), ascending and disjoint. hits: crossings of all rays.
 struct PixelIntervals {
     std::vector<std::uint32_t> offsets;
     std::vector<float> depths;
     std::size_t hits = 0;
 };
 
-/// Rasterizes a closed surface, watertight: vertices are snapped to 1/4096 px and a pixel centre on a shared edge counts once.
-/// A ray is inside while it has entered more often than left, so shells may be nested, overlap or enclose the eye.
+/// Rasterizes a closed surface without gaps: vertices are snapped to 1/4096 px, and a pixel centre on a shared edge counts
+/// once. A ray is inside while it has entered more often than it has left, so shells may be nested, overlap or enclose the eye.
 ///
 /// near:   depth below which nothing is seen
-/// middle: what all depths are taken relative to
+/// middle: the depth that all depths of the result are relative to
 [[nodiscard]] PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle);
 
-/// Whether any point of the surface lies before the near depth, or so far beside the picture that triangles are cut.
+/// Whether any point of the surface lies before the near depth, or so far beside the picture that triangles are clipped.
 [[nodiscard]] bool needs_clipping(const Surface& surface, const View& view, double near);
 
 }  // namespace subvol::detail

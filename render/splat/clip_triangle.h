@@ -8,14 +8,14 @@
 
 namespace subvol::detail {
 
-/// normal·x + offset ≥ 0 is kept.
+/// The half space normal·x + offset ≥ 0 is kept.
 struct ClipPlane {
     Vec3 normal;
     double offset;
 };
 
-/// Cuts a convex polygon by a plane. A cut edge gives the same point whichever way it is run through, so that neighbours that
-/// share it stay joined.
+/// Clips a convex polygon by a plane. An edge is cut at bitwise the same point in either direction, so that neighbours that
+/// share it stay connected.
 inline void clip_polygon(std::vector<Vec3>& polygon, const ClipPlane& plane, std::vector<Vec3>& scratch) {
     const auto height = [&](const Vec3& p) { return glm::dot(plane.normal, p) + plane.offset; };
     const auto less = [](const Vec3& a, const Vec3& b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; };

@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-/// What turns values into cells of a table.
+/// Converts values into cells of a table.
 struct Cells {
     double scale, offset;
 
@@ -20,28 +20,28 @@ struct Cells {
         : scale(PreintegratedTable::kCells / (max - min)), offset(normalized ? -min * scale : 0) {}
 };
 
-Cells opacity_cells(const SplatScene& scene, const Classification& look) {
-    return {look.table.min, look.table.max, scene.normalized};
+Cells opacity_cells(const SplatScene& scene, const Classification& classification) {
+    return {classification.table.min, classification.table.max, scene.normalized};
 }
-Cells color_cells(const SplatScene& scene, const Classification& look) {
-    return {look.colors.min, look.colors.max, scene.normalized};
+Cells color_cells(const SplatScene& scene, const Classification& classification) {
+    return {classification.colors.min, classification.colors.max, scene.normalized};
 }
 
 float to_float(double v) {
     return static_cast<float>(v);
 }
 
-/// Makes the parts of one kernel after the other, all from the same cut of its frame.
+/// Converts kernels one after the other; all parts of a kernel use the same decomposition of its frame.
 class ToEye {
 public:
     ToEye(const SplatScene& scene, const View& view)
         : scene_(scene),
           to_eye_(glm::transpose(Mat3(view.axes()[0], view.axes()[1], view.axes()[2]))),
           middle_(view.to_eye(scene.middle)),
-          reach_(scene.shape == KernelShape::Separable ? 3 : 1) {}
+          reach_(scene.form == KernelForm::Separable ? 3 : 1) {}
 
-    /// Sets the kernel that the others are about.
-    void look_at(std::size_t i) {
+    /// Sets the kernel for the other members.
+    void set_kernel(std::size_t i) {
         i_ = i;
         const Mat3 s = to_eye_ * (reach_ * matrix(scene_.volume->frames[i])) * glm::transpose(to_eye_);
         szz_ = s[2][2];
@@ -102,7 +102,7 @@ public:
 
     [[nodiscard]] EyeAxes axes() const {
         const Mat3 world = inverse_symmetric_root(scene_.volume->frames[i_]);
-        const Mat3 rows = world * glm::transpose(to_eye_);  // of an offset in eye space
+        const Mat3 rows = world * glm::transpose(to_eye_);  // for offsets in eye space
         EyeAxes result{};
         for (std::size_t a = 0; a < 3; ++a) {
             const int row = static_cast<int>(a);
@@ -121,7 +121,7 @@ private:
     [[nodiscard]] float value(const RbfChannel& channel, const Cells& cells) const {
         return to_float(static_cast<double>(channel.values[i_]) * cells.scale + cells.offset);
     }
-    /// e counts in the widened frame.
+    /// The moment for e in the widened frame.
     [[nodiscard]] float moment(const RbfChannel& channel, const Cells& cells) const {
         return to_float(static_cast<double>(channel.moments[i_]) * cells.scale * reach_);
     }
@@ -137,20 +137,20 @@ private:
 
 }  // namespace
 
-void eye_splats(EyeSplats& result, const SplatScene& scene, const View& view, const Classification& look) {
+void eye_splats(EyeSplats& result, const SplatScene& scene, const View& view, const Classification& classification) {
     const std::size_t count = scene.volume->size();
-    const bool separable = scene.shape == KernelShape::Separable;
+    const bool separable = scene.form == KernelForm::Separable;
     result.splats.resize(count);
     if (scene.convex()) result.ranges.resize(count);
     if (scene.bent) result.bends.resize(count);
     if (scene.color_channel) result.colors.resize(count);
     if (scene.color_channel && scene.bent) result.color_bends.resize(count);
     if (separable) result.axes.resize(count);
-    const Cells values = opacity_cells(scene, look), colors = color_cells(scene, look);
+    const Cells values = opacity_cells(scene, classification), colors = color_cells(scene, classification);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
         ToEye to_eye(scene, view);
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            to_eye.look_at(i);
+            to_eye.set_kernel(i);
             result.splats[i] = to_eye.splat(scene.opacity_values(), values);
             if (scene.convex()) result.ranges[i] = to_eye.range(scene.opacity_values(), values);
             if (scene.bent) result.bends[i] = to_eye.bend(scene.opacity_values(), values);
@@ -161,12 +161,12 @@ void eye_splats(EyeSplats& result, const SplatScene& scene, const View& view, co
     });
 }
 
-float value_offset(const SplatScene& scene, const Classification& look) {
-    return scene.normalized ? 0.0f : to_float(-look.table.min * opacity_cells(scene, look).scale);
+float value_offset(const SplatScene& scene, const Classification& classification) {
+    return scene.normalized ? 0.0f : to_float(-classification.table.min * opacity_cells(scene, classification).scale);
 }
 
-float color_offset(const SplatScene& scene, const Classification& look) {
-    return scene.normalized ? 0.0f : to_float(-look.colors.min * color_cells(scene, look).scale);
+float color_offset(const SplatScene& scene, const Classification& classification) {
+    return scene.normalized ? 0.0f : to_float(-classification.colors.min * color_cells(scene, classification).scale);
 }
 
 }  // namespace subvol::detail

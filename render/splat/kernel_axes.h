@@ -18,8 +18,8 @@ inline Mat3 inverse_symmetric_root(const Symmetric3& frame) {
     return result;
 }
 
-/// How far a value goes from its middle over a kernel's support, but for its moment: |g·d| ≤ √(gᵀSg), and a Hessian's part is
-/// at most half its norm times the trace of S.
+/// A bound of how much a kernel's value differs from its middle over the support, without the moment's part: |g·d| ≤ √(gᵀSg),
+/// and the Hessian's part is at most half its norm times the trace of S.
 inline double value_spread(const RbfChannel& channel, std::size_t i, const Mat3& frame) {
     const auto& g = channel.gradients[i];
     const Vec3 gradient(g[0], g[1], g[2]);

@@ -17,7 +17,7 @@ struct TileRect {
     int x0, x1, y0, y1;  // inclusive; empty if x1 < x0
 };
 
-/// The tiles that a kernel may touch on the sheets of a frame: those of a box about its ellipsoid.
+/// The tiles that a kernel may touch on the sheets of a frame: those of a box around its ellipsoid.
 class TileFinder {
 public:
     TileFinder(const SplatFrame& frame)
@@ -33,7 +33,7 @@ public:
         const float reach = 1.0f / std::sqrt(s.inv_szz);
         const float front = std::max(s.depth - reach, sheets.first);
         const float back = std::min(s.depth + reach, sheets.depth(sheets.count - 1));
-        // Rounding may not lose a sheet: a little room.
+        // A little room, so that rounding does not lose a sheet.
         if (front > back + 1e-3f * sheets.distance) return kNone;
         const auto half = [&](float extent, float shear) { return std::sqrt(extent * extent + shear * reach * shear * reach); };
         const float hx = half(s.extent_x, s.shear_x), hy = half(s.extent_y, s.shear_y);
@@ -53,7 +53,7 @@ private:
     }
     [[nodiscard]] static std::pair<int, int> tiles(float low, float high, int count, int size) {
         if (!(high > -1) || !(low < static_cast<float>(size) + 1)) return {0, -1};
-        // One pixel more on each side: rounding may not lose a kernel's rim.
+        // One pixel more on each side, so that rounding does not lose a kernel's rim.
         const auto tile = [&](float px) {
             return static_cast<int>(std::clamp(px / SplatFrame::kTile_px, 0.0f, static_cast<float>(count - 1)));
         };
@@ -65,7 +65,7 @@ private:
     float per_pixel_, mid_x_, mid_y_;
 };
 
-/// A counting sort in fixed chunks: the order within a tile is that of the kernels, whatever the number of threads.
+/// A counting sort in a fixed number of chunks: within a tile kernels keep their order, whatever the number of threads.
 void list_tiles(SplatFrame& frame) {
     const auto& splats = frame.kernels.splats;
     const auto tiles = static_cast<std::size_t>(frame.tiles_x) * static_cast<std::size_t>(frame.tiles_y);
@@ -106,23 +106,23 @@ void list_tiles(SplatFrame& frame) {
 
 }  // namespace
 
-void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& look, int sheets,
-                   Progress* progress) {
+void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
+                   int sheets, Progress* progress) {
     report_progress(progress, "prepare splats", 0);
     frame.scene = &scene;
     frame.view = &view;
-    frame.look = &look;
+    frame.classification = &classification;
     frame.sheets = make_sheets(scene, view, sheets);
     frame.tiles_x = (view.width() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
-    // Kernels and sheets count from the middle in double precision: from far away, its float is another place.
+    // Depths are relative to the middle in double precision: far from the eye, its float would be a different place.
     const double middle = view.to_eye(scene.middle).z;
     if (scene.half_weight == 0) {
         frame.intervals =
             boundary_intervals(scene.volume->boundary, view, static_cast<double>(frame.sheets.near) + middle, middle);
     }
     report_progress(progress, "prepare splats", 0.4);
-    eye_splats(frame.kernels, scene, view, look);
+    eye_splats(frame.kernels, scene, view, classification);
     report_progress(progress, "prepare splats", 0.7);
     list_tiles(frame);
     report_progress(progress, "prepare splats", 1);

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "splat_scene.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 #include <string_view>
+#include <utility>
+#include <vector>
 
-#include "kernel_profile.h"
+#include "kernel_axes.h"
 #include "subvol/error.h"
-#include "weight_inside.h"
 
 namespace subvol::detail {
 
 namespace {
 
-// Squares of lengths, and their inverses, have to be normal floats.
+// The squares of lengths and their inverses have to be normal floats.
 constexpr double kLeastSize_world = 1e-12, kMostSize_world = 1e18;
 constexpr double kLeastRange = 1e-30, kMostRange = 1e37;
 constexpr double kRounding = 0x1p-24;  // of a 32-bit float, relative
@@ -41,7 +44,7 @@ void check_range(const RbfChannel& channel, double min, double max) {
     if (!(range >= kLeastRange && range <= kMostRange)) refuse("the transfer function's range is ", range, "1e-30 to 1e37");
     for (const float v : channel.values) {
         const double value = static_cast<double>(v), rounding = std::abs(value) * kRounding;
-        // Rounded to a tenth of the range and more, a field is noise.
+        // If rounding is more than a tenth of the range, the field is noise.
         if (rounding > 0.1 * range && value + rounding >= min && value - rounding <= max) {
             refuse("beside a value of " + std::to_string(value) + " the transfer function's range is ", range,
                    "a wider range, or the field less its mean");
@@ -93,6 +96,63 @@ ColorTable color_table(const Optics& optics) {
     return table;
 }
 
+// Steps of a kernel's table, linear between them: the error is an eighth of the squared step times the second derivative, which
+// is some hundreds for the narrowest kernels.
+constexpr std::size_t kSteps = 4096;
+
+template <class Value>
+std::vector<float> sampled(const Value& value) {
+    std::vector<float> table(kSteps + 1);
+    for (std::size_t i = 0; i < kSteps; ++i) table[i] = static_cast<float>(value(static_cast<double>(i) / kSteps));
+    return table;
+}
+
+/// How the splatter evaluates a kernel, and the kernel's table if it needs one.
+std::pair<KernelForm, std::vector<float>> kernel_profile(const Kernel& kernel) {
+    if (std::holds_alternative<CompactKernel>(kernel)) return {KernelForm::Compact, {}};
+    const double radius = support_radius(kernel);
+    if (is_radial(kernel)) {
+        return {KernelForm::Radial, sampled([&](double e) { return radial_value(kernel, radius * std::sqrt(e)); })};
+    }
+    if (std::holds_alternative<TableKernel>(kernel)) {
+        throw Error(ErrorCode::InvalidInput, "kernels tabulated in three dimensions cannot be splatted", {},
+                    "radial or separable kernels");
+    }
+    // A product of one function over three axes: at the origin it is the third power of that function.
+    const double root = std::cbrt(kernel_value(kernel, Vec3(0.0)));
+    return {KernelForm::Separable,
+            sampled([&](double t) { return kernel_value(kernel, Vec3(radius * t, 0, 0)) / (root * root); })};
+}
+
+constexpr std::size_t kPlaces = 101;
+
+double weight_at(const RbfVolume& volume, const Vec3& x) {
+    const bool radial = is_radial(volume.kernel);
+    const double radius = support_radius(volume.kernel), reach = radial ? 1 : 3;  // the corner of a cube has e = 3
+    double sum = 0;
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+        const Vec3 d = x - volume.centers[i];
+        const auto& f = volume.frames[i];
+        const double reach_x = reach * static_cast<double>(f[0]), reach_y = reach * static_cast<double>(f[3]);
+        if (d.x * d.x >= reach_x || d.y * d.y >= reach_y) continue;
+        const Vec3 scaled = radius * (inverse_symmetric_root(f) * d);
+        sum += radial ? radial_value(volume.kernel, glm::length(scaled)) : kernel_value(volume.kernel, scaled);
+    }
+    return sum;
+}
+
+/// What the weights of the kernels add up to inside the volume: the median over the places of at most kPlaces kernels.
+double weight_inside(const RbfVolume& volume) {
+    if (volume.size() == 0) return 1;
+    const std::size_t places = std::min(kPlaces, volume.size());
+    std::vector<double> weights(places);
+    tbb::parallel_for(std::size_t{0}, places, [&](std::size_t k) {
+        weights[k] = weight_at(volume, volume.centers[(2 * k + 1) * volume.size() / (2 * places)]);
+    });
+    std::nth_element(weights.begin(), weights.begin() + static_cast<std::ptrdiff_t>(places / 2), weights.end());
+    return weights[places / 2];
+}
+
 }  // namespace
 
 SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
@@ -105,11 +165,11 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
     const double size = box.diagonal();
     if (!(size >= kLeastSize_world && size <= kMostSize_world)) refuse("the volume's diagonal is ", size, "1e-12 to 1e18");
 
-    const auto [shape, kernel_table] = kernel_profile(volume.kernel);
+    const auto [form, kernel_table] = kernel_profile(volume.kernel);
     SplatScene scene{.volume = &volume,
                      .channel = options.channel,
                      .color_channel = options.color_channel,
-                     .shape = shape,
+                     .form = form,
                      .kernel_table = kernel_table,
                      .normalized = options.normalized,
                      .shading = options.shading,
@@ -123,16 +183,16 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
 }
 
 Classification classify(const SplatScene& scene, const Optics& optics) {
-    Classification look{make_preintegrated_table(optics), {}};
-    check_range(scene.opacity_values(), look.table.min, look.table.max);
-    if (!finite(look.table)) {
+    Classification classification{make_preintegrated_table(optics), {}};
+    check_range(scene.opacity_values(), classification.table.min, classification.table.max);
+    if (!finite(classification.table)) {
         throw Error(ErrorCode::InvalidInput, "the extinction is beyond 32-bit floats", {}, "a larger opacity unit");
     }
     if (scene.color_channel) {
-        look.colors = color_table(optics);
-        check_range(scene.color_values(), look.colors.min, look.colors.max);
+        classification.colors = color_table(optics);
+        check_range(scene.color_values(), classification.colors.min, classification.colors.max);
     }
-    return look;
+    return classification;
 }
 
 SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
@@ -153,7 +213,7 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     }
     const double near = view.perspective() ? 1e-4 * scene.diagonal : 0.0;
     z_min = std::max(z_min, near);
-    z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all behind the eye: an empty picture
+    z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all is behind the eye: the picture is empty
     return {.count = count,
             .first = static_cast<float>(z_min - middle),
             .distance = static_cast<float>((z_max - z_min) / (count - 1)),

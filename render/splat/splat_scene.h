@@ -8,53 +8,56 @@
 
 #include "subvol/camera.h"
 #include "subvol/detail/preintegrated_table.h"
+#include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/splat_options.h"
 
 namespace subvol::detail {
 
-// The rules of reconstruction and classification that all backends follow; the shaders take them from here.
+// Rules of reconstruction and classification for all backends; shaders get these numbers as defines.
 
-/// Least weight of a sum that counts: below it a sheet knows no value at that pixel.
+/// The least sum of weights: below it a sheet has no value at that pixel.
 inline constexpr float kLeastWeight = 0.02f;
-/// Values nearer than this many cells of the table are taken as one, halfway: their quotients would lose digits.
+/// Two values nearer than this many cells of the table are replaced by their mean: the difference quotient would lose digits.
 inline constexpr float kNearValues = 0.5f;
-/// Transmittance at which a ray is done.
-inline constexpr float kOpaque = 1e-4f;
-/// Values further out, in cells of the table, look like this one.
+/// Transmittance below which a pixel is opaque. What lies behind can change a colour by no more than this: a fortieth of a step
+/// of an 8-bit picture, and less than what sheets change.
+inline constexpr float kSplatCutoff = 1e-4f;
+/// Values further out, in cells of the table, are clamped to this.
 inline constexpr float kFarCells = 1e12f;
-/// Change of the value, in parts of the range over the volume's diagonal, at which half of a surface is seen.
+/// The gradient at which shading has half its effect, in parts of the range for each diagonal of the volume.
 inline constexpr float kLeastChange = 0.25f;
-/// Sheets that are summed together: no part of the picture depends on it.
+/// The number of sheets that are summed together; the picture does not depend on it.
 inline constexpr int kBatch = 8;
 
-/// Compact: w = (1−e)³. Radial: a table over e. Separable: a product of one table over |ξ| along three axes.
-enum class KernelShape { Compact, Radial, Separable };
+/// How a kernel is evaluated. Compact: w = (1−e)³. Radial: a table over e. Separable: a product of one table over |ξ| along
+/// three axes.
+enum class KernelForm { Compact, Radial, Separable };
 
-/// What is drawn, as far as neither view nor transfer function take part.
+/// The part of what is drawn that depends on neither view nor transfer function.
 struct SplatScene {
     const RbfVolume* volume = nullptr;
-    std::size_t channel = 0;  // whose values the opacity is for, and the colour but for:
+    std::size_t channel = 0;  // whose values give the opacity, and the colour too unless there is a
     std::optional<std::size_t> color_channel{};
-    KernelShape shape = KernelShape::Compact;
+    KernelForm form = KernelForm::Compact;
     std::vector<float> kernel_table{};  // equally spaced over e or |ξ| / radius in [0,1]; the last is 0
     bool bent = false;                  // channels have Hessians
     bool normalized = true;
-    float half_weight = 0;  // > 0: there is no boundary, the volume ends where weights fall below
+    float half_weight = 0;  // > 0: there is no boundary; the volume ends where the sum of weights falls below it
     std::optional<Shading> shading{};
-    Vec3 middle{0.0};  // of the bounds; depths count from its depth
+    Vec3 middle{0.0};  // of the bounds; depths are relative to its depth
     double diagonal = 0;
 
     [[nodiscard]] const RbfChannel& opacity_values() const { return volume->channels[channel]; }
     [[nodiscard]] const RbfChannel& color_values() const { return volume->channels[color_channel.value_or(channel)]; }
-    /// Whether a sum lies between the values of its kernels.
+    /// Whether a sum always lies between the values of its kernels.
     [[nodiscard]] bool convex() const {
         return normalized && std::all_of(kernel_table.begin(), kernel_table.end(), [](float w) { return w >= 0; });
     }
-    /// Whether the short loops do: one value, compact kernels, normalised, a boundary, no light.
+    /// Whether the short loops suffice: one channel, compact kernels, normalised, with a boundary, without shading.
     [[nodiscard]] bool plain() const {
-        return shape == KernelShape::Compact && !bent && normalized && half_weight == 0 && !shading && !color_channel;
+        return form == KernelForm::Compact && !bent && normalized && half_weight == 0 && !shading && !color_channel;
     }
 };
 
@@ -62,8 +65,8 @@ struct SplatScene {
 ///         beyond 32-bit floats
 [[nodiscard]] SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options);
 
-/// Colours over the second channel's values, counted in cells like those of PreintegratedTable: {r, g, b, 0} at a cell's lower
-/// end, and the step to the next. Rows as there.
+/// The colours of the second channel's values, which are counted in cells: {r, g, b, 0} at a cell's lower end, and the step to
+/// the next. Cells and rows as in PreintegratedTable.
 struct ColorTable {
     struct Row {
         std::array<float, 4> color;
@@ -73,27 +76,34 @@ struct ColorTable {
     std::vector<Row> rows;
 };
 
-/// What a value looks like.
+/// The transfer function as tables: extinction and emission, and the colours of the second channel.
 struct Classification {
     PreintegratedTable table;
     ColorTable colors;  // empty rows: colours are those of `table`
 };
 
-/// throws: Error(InvalidInput) if ranges or extinctions are beyond 32-bit floats, or values drown in them
+/// throws: Error(InvalidInput) if ranges or extinctions are beyond 32-bit floats, or the range is lost in the rounding of
+///         values
 [[nodiscard]] Classification classify(const SplatScene& scene, const Optics& optics);
 
-/// The sheets of a frame: `count` planes of constant eye depth. Depths are relative to that of the scene's middle, which is
-/// `middle`.
+/// The sheets of a frame: `count` planes of constant eye depth. Depths are relative to `middle`, the depth of the scene's
+/// middle.
 struct SheetStack {
     int count = 0;
     float first = 0, distance = 0;
     float middle = 0;
-    float near = 0;  // relative like the others: nothing is seen before it
+    float near = 0;  // relative too; nothing before it is seen
 
     [[nodiscard]] float depth(int sheet) const { return first + static_cast<float>(sheet) * distance; }
     [[nodiscard]] int batches() const { return (count + kBatch - 1) / kBatch; }
 };
 
 [[nodiscard]] SheetStack make_sheets(const SplatScene& scene, const View& view, int count);
+
+/// A picture and the mean depth of what is seen in each pixel, weighted by opacity (eye depth; infinity where nothing is seen).
+struct Drawn {
+    Image image;
+    std::vector<float> depth;
+};
 
 }  // namespace subvol::detail

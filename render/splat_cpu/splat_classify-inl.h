@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Classification and compositing of the sheets of a batch, a block of pixels at a time. Included once for every instruction
-// set: see splat_cpu.cpp.
+// Classification of values, a block of pixels at a time. Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_CLASSIFY_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_CLASSIFY_INL_H
 #undef SUBVOL_SPLAT_CLASSIFY_INL_H
@@ -20,17 +19,18 @@ namespace subvol::detail::HWY_NAMESPACE {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-/// The pixels of a block on their way from front to back.
+/// The pixels of a block between two sheets.
 struct BlockState {
     HWY_ALIGN float transmittance[kBlock], red[kBlock], green[kBlock], blue[kBlock], depth[kBlock];
     HWY_ALIGN float value[kBlock], known[kBlock], weight[kBlock];  // on the last sheet
     HWY_ALIGN float color[kBlock], diffuse[kBlock], specular[kBlock];
-    HWY_ALIGN float enter[kBlock], exit[kBlock];  // the interval that a ray is in or comes to; enter = kNever: it is done
+    // The interval that a ray is in or reaches next; enter = kNever: the ray is done.
+    HWY_ALIGN float enter[kBlock], exit[kBlock];
     HWY_ALIGN float ray_length[kBlock];
     std::uint32_t interval[kBlock], intervals_end[kBlock];
 };
 
-/// A value's place in the table, and the four integrals from its cell's lower end.
+/// The place of a value in the table, and the four integrals from the lower end of its cell.
 struct Place {
     Floats x;
     Ints prefix[4];
@@ -38,7 +38,7 @@ struct Place {
 };
 
 #if HWY_TARGET != HWY_SCALAR
-/// The rows of every fourth lane, one in each 128 bits of a vector.
+/// Loads the rows of every fourth lane, one into each 128 bits of a vector.
 template <class D>
 HWY_ATTR inline hn::Vec<D> load_quads(D d, const float* table, const std::int32_t* offsets) {
     if constexpr (hn::MaxLanes(d) <= 4) {
@@ -51,7 +51,7 @@ HWY_ATTR inline hn::Vec<D> load_quads(D d, const float* table, const std::int32_
 
 #endif
 
-/// Four numbers a lane, from rows at offsets into a table: rows are loaded whole and turned, which gathers would not beat.
+/// Loads four numbers for each lane from rows of a table. Whole rows are loaded and transposed, which is faster than gathers.
 HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, Floats& a, Floats& b, Floats& c, Floats& e) {
     const Lanes d;
 #if HWY_TARGET == HWY_SCALAR
@@ -74,13 +74,14 @@ HWY_ATTR inline void load_rows(const float* table, const std::int32_t* offsets, 
 #endif
 }
 
-/// The optical model of a frame as vectors see it.
+/// The optical model of a frame, for vectors.
 class Classifier {
 public:
-    explicit Classifier(const Classification& look)
-        : look_(look), all_visible_(static_cast<std::size_t>(look.table.visible.back()) == look.table.rows.size()) {}
+    explicit Classifier(const Classification& classification)
+        : classification_(classification),
+          all_visible_(static_cast<std::size_t>(classification.table.visible.back()) == classification.table.rows.size()) {}
 
-    /// Mean extinction and emission (x premultiplied by extinction) of a stretch of ray between two values.
+    /// The mean extinction and emission (colour times extinction) of a stretch of ray between two values.
     HWY_ATTR void means(const Place& front, const Place& back, Floats mean[4]) const {
         const Lanes d;
         const auto dx = hn::Sub(back.x, front.x);
@@ -88,7 +89,8 @@ public:
         const auto inverse = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(near, hn::Set(d, 1.0f), dx));
         for (std::size_t c = 0; c < 4; ++c) {
             const auto counts = hn::ConvertTo(d, hn::Sub(back.prefix[c], front.prefix[c]));
-            const auto integral = hn::MulAdd(hn::Set(d, look_.table.unit[c]), counts, hn::Sub(back.within[c], front.within[c]));
+            const auto integral =
+                hn::MulAdd(hn::Set(d, classification_.table.unit[c]), counts, hn::Sub(back.within[c], front.within[c]));
             mean[c] = hn::Max(hn::Mul(integral, inverse), hn::Zero(d));
         }
         if (hn::AllFalse(d, near)) return;
@@ -104,7 +106,7 @@ public:
         Floats s, bend[4], prefix[4];
         HWY_ALIGN std::int32_t offsets[kBlock];
         find(x, s, offsets);
-        const float* rows = reinterpret_cast<const float*>(look_.table.rows.data());
+        const float* rows = reinterpret_cast<const float*>(classification_.table.rows.data());
         load_rows(rows, offsets, prefix[0], prefix[1], prefix[2], prefix[3]);
         load_rows(rows + 4, offsets, p.within[0], p.within[1], p.within[2], p.within[3]);
         load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
@@ -121,24 +123,24 @@ public:
         HWY_ALIGN std::int32_t offsets[kBlock];
         find(x, s, offsets);
         for (std::size_t i = 0; i < kBlock; ++i) offsets[i] = offsets[i] / kRowFloats * kColorFloats;
-        const float* rows = reinterpret_cast<const float*>(look_.colors.rows.data());
+        const float* rows = reinterpret_cast<const float*>(classification_.colors.rows.data());
         load_rows(rows, offsets, low[0], low[1], low[2], low[3]);
         load_rows(rows + 4, offsets, step[0], step[1], step[2], step[3]);
         for (std::size_t c = 0; c < 3; ++c) rgb[c] = hn::MulAdd(s, step[c], low[c]);
     }
 
-    /// Whether no value between two ends can be seen, in any of the lanes.
+    /// Whether all values between two ends are invisible, in each of the lanes.
     HWY_ATTR bool transparent(Mask lanes, Floats x0, Floats x1) const {
         if (all_visible_) return false;
         const Lanes d;
         const auto low = hn::IfThenElse(lanes, hn::Min(x0, x1), hn::Set(d, 3e38f));
         const auto high = hn::IfThenElse(lanes, hn::Max(x0, x1), hn::Set(d, -3e38f));
-        return look_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, low))),
-                                       static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, high))));
+        return classification_.table.transparent(static_cast<double>(hn::GetLane(hn::MinOfLanes(d, low))),
+                                                 static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, high))));
     }
 
     [[nodiscard]] bool transparent(float x0, float x1) const {
-        return look_.table.transparent(static_cast<double>(x0), static_cast<double>(x1));
+        return classification_.table.transparent(static_cast<double>(x0), static_cast<double>(x1));
     }
     [[nodiscard]] bool all_visible() const { return all_visible_; }
 
@@ -146,7 +148,7 @@ private:
     static constexpr std::int32_t kRowFloats = sizeof(PreintegratedTable::Row) / sizeof(float);
     static constexpr std::int32_t kColorFloats = sizeof(ColorTable::Row) / sizeof(float);
 
-    /// The row of a value and how far it lies in it.
+    /// The row of a value, and its place s within the row.
     HWY_ATTR static void find(Floats x, Floats& s, std::int32_t* offsets) {
         const Lanes d;
         const IntLanes di;
@@ -161,14 +163,14 @@ private:
         Floats s, bend[4];
         HWY_ALIGN std::int32_t offsets[kBlock];
         find(x, s, offsets);
-        const float* rows = reinterpret_cast<const float*>(look_.table.rows.data());
+        const float* rows = reinterpret_cast<const float*>(classification_.table.rows.data());
         load_rows(rows + 4, offsets, mean[0], mean[1], mean[2], mean[3]);
         load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
         const auto slope = hn::MulSub(hn::Set(d, 2.0f), s, hn::Set(d, 1.0f));
         for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::MulAdd(slope, bend[c], mean[c]);
     }
 
-    const Classification& look_;
+    const Classification& classification_;
     bool all_visible_;
 };
 

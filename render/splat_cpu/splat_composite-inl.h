@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From sums to light: a block of pixels through the sheets of a batch. Included once for every instruction set: see
+// From sums to light: composites a block of pixels through the sheets of a batch. Included once for every instruction set: see
 // splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_COMPOSITE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_COMPOSITE_INL_H
@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
-/// What the pixels of a block see on one sheet.
+/// The values of a block of pixels on one sheet.
 struct SheetValues {
     Floats x;  // in cells
     Mask known;
@@ -64,7 +64,7 @@ public:
         hn::Store(last_.light.specular, d, state_.specular);
     }
 
-    /// Goes on to the sheet at `back_z`, on which the pixels see `here`; the last one was at `front_z`.
+    /// Composites what lies between the last sheet, at `front_z`, and the next one, at `back_z` with the values `here`.
     HWY_ATTR void go(float front_z, float back_z, const SheetValues& here) {
         const Lanes d;
         const auto back = hn::Set(d, back_z);
@@ -72,7 +72,7 @@ public:
         Place place;
         for (auto active = hn::Lt(enter_, back); !hn::AllFalse(d, active); active = hn::And(active, hn::Lt(enter_, back))) {
             stretch(active, front_z, back_z, here, place, placed);
-            const auto opaque = hn::And(active, hn::Lt(transmittance_, hn::Set(d, kOpaque)));
+            const auto opaque = hn::And(active, hn::Lt(transmittance_, hn::Set(d, kSplatCutoff)));
             enter_ = hn::IfThenElse(opaque, hn::Set(d, kNever), enter_);
             active = hn::And(hn::AndNot(opaque, active), hn::Le(exit_, back));
             if (hn::AllFalse(d, active)) break;
@@ -83,13 +83,14 @@ public:
         if (placed) last_place_ = place;
     }
 
+    /// Takes the values of a sheet without compositing what lies before it.
     HWY_ATTR void skip_to(const SheetValues& here) {
         last_ = here;
         last_placed_ = false;
     }
 
 private:
-    /// The part of each ray between two sheets that lies in its interval.
+    /// Composites the part of each ray between two sheets that lies in its interval.
     HWY_ATTR void stretch(Mask active, float front_z, float back_z, const SheetValues& here, Place& place, bool& placed) {
         const Lanes d;
         const auto front = hn::Set(d, front_z), back = hn::Set(d, back_z);
@@ -99,7 +100,7 @@ private:
         }
         const auto seen = hn::And(hn::And(active, hn::Lt(from, to)), hn::Or(last_.known, here.known));
         if (hn::AllFalse(d, seen)) return;
-        // Rays that are done are at infinity, which would make NaN of a depth.
+        // The depths of rays that are done are infinite and would lead to NaN.
         from = hn::IfThenElse(seen, from, front);
         to = hn::IfThenElse(seen, to, front);
         const auto x_front = hn::IfThenElse(last_.known, last_.x, here.x);
@@ -122,7 +123,7 @@ private:
         }
         const auto length = hn::Mul(hn::Sub(to, from), hn::Load(d, state_.ray_length));
         const auto passes = hn::Exp(d, hn::Neg(hn::Mul(length, mean[0])));
-        // Nothing is left of rounding where there is nothing to see, and no colour is brighter than 1.
+        // Rounding must not leave light where there is none, nor make a colour brighter than 1.
         const auto visible = hn::And(seen, hn::Gt(mean[0], hn::Zero(d)));
         const auto opacity = hn::IfThenElseZero(visible, hn::Sub(hn::Set(d, 1.0f), passes));
         for (std::size_t c = 1; c < 4; ++c) mean[c] = hn::Min(mean[c], mean[0]);
@@ -143,13 +144,13 @@ private:
             green_ = hn::Add(green_, hn::MulAdd(lit, mean[2], gloss));
             blue_ = hn::Add(blue_, hn::MulAdd(lit, mean[3], gloss));
         }
-        // Rays that are done have no middle: 0 times infinity.
+        // Rays that are done have no middle: it would be 0 times infinity.
         const auto middle = hn::IfThenElseZero(visible, hn::Mul(hn::Set(d, 0.5f), hn::Add(from, to)));
         depth_ = hn::MulAdd(light, middle, depth_);
         transmittance_ = hn::IfThenElse(visible, hn::Mul(transmittance_, passes), transmittance_);
     }
 
-    /// Without a boundary the volume ends where the weight, linear between sheets, falls below a level.
+    /// Without a boundary the volume ends where the sum of weights, linear between sheets, falls below a level.
     HWY_ATTR void cut_where_weights_end(Floats front, Floats back, Floats weight, Floats& from, Floats& to) const {
         const Lanes d;
         const auto level = hn::Set(d, frame_.scene->half_weight);
@@ -162,7 +163,7 @@ private:
         to = hn::IfThenElse(inside1, to, hn::Min(to, crossing));
     }
 
-    /// The extinction stays, the emission is its product with the mean of the second channel's colours at the ends.
+    /// Keeps the extinction; the emission becomes its product with the mean of the second channel's colours at both ends.
     HWY_ATTR void take_second_color(const SheetValues& here, Floats mean[4]) const {
         const Lanes d;
         Floats front[3], back[3];
@@ -172,7 +173,7 @@ private:
             mean[c + 1] = hn::Mul(hn::Mul(hn::Set(d, 0.5f), mean[0]), hn::Add(front[c], back[c]));
     }
 
-    /// The sum over the two ends of a stretch; an end that knows nothing is like the other.
+    /// The sum over the two ends of a stretch; an end without a value is taken to be like the other.
     HWY_ATTR Floats both_ends(Floats front, Floats back, const SheetValues& here) const {
         return hn::Add(hn::IfThenElse(last_.known, front, back), hn::IfThenElse(here.known, back, front));
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The splatter for CPUs: a tile at a time, a batch of sheets at a time, front to back; pixels in vectors as wide as the machine
-// has them. This file is compiled once for every instruction set, and the best one is chosen where it runs.
+// The splatter for CPUs: tile by tile, in each tile batches of sheets from front to back, with pixels in vectors as wide as the
+// machine has them. Highway compiles this file once for every instruction set; the best one is chosen at run time.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "drawn.h"
 #include "splat_frame.h"
 #include "subvol/progress.h"
 
 namespace subvol::detail {
 
-/// Draws a frame on all threads of the CPU, tile by tile, batch of sheets by batch.
+/// Draws a frame on all threads of the CPU, tile by tile.
 [[nodiscard]] Drawn draw_splats_cpu(const SplatFrame& frame, Progress* progress);
 
 }  // namespace subvol::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums of kernels of any shape, with Hessians, a second value and gradients: what splat_sums-inl.h does for the plain ones.
-// Included once for every instruction set: see splat_cpu.cpp.
+// Sums of kernels of any form, with Hessians, a second channel and gradients; splat_sums-inl.h has the short loop for the plain
+// ones. Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_GENERAL_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_GENERAL_INL_H
 #undef SUBVOL_SPLAT_GENERAL_INL_H
@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
-/// Places of a block on a sheet, from the middle of a kernel's section.
+/// The places of a block on a sheet, relative to the middle of a kernel's section.
 struct Offsets {
     Floats x, y, zs, e;
 };
@@ -74,11 +74,11 @@ private:
 
     HWY_ATTR Floats weight(std::uint32_t id, const Offsets& at) const {
         const Lanes d;
-        if (scene_.shape == KernelShape::Compact) {
+        if (scene_.form == KernelForm::Compact) {
             const auto left = hn::Max(hn::Sub(hn::Set(d, 1.0f), at.e), hn::Zero(d));
             return hn::Mul(hn::Mul(left, left), left);
         }
-        if (scene_.shape == KernelShape::Radial) return profile(at.e);
+        if (scene_.form == KernelForm::Radial) return profile(at.e);
         const auto& rows = frame_.kernels.axes[id].rows;
         auto product = hn::Set(d, 1.0f);
         for (std::size_t a = 0; a < 3; ++a) {
@@ -90,7 +90,7 @@ private:
         return product;
     }
 
-    /// The kernel's table over [0,1], linear between its entries; 0 beyond.
+    /// The kernel's table over [0,1], linear between its entries, and 0 beyond.
     HWY_ATTR Floats profile(Floats t) const {
         const Lanes d;
         const IntLanes di;
@@ -117,7 +117,7 @@ private:
         return hn::MulAdd(hn::Mul(hn::Set(d, bend->yy), at.y), at.y, v);
     }
 
-    /// Of what a kernel stands for, in eye space.
+    /// The gradient of the value that a kernel represents, in eye space.
     HWY_ATTR static Vector gradient(const EyeSplat& s, const EyeBend* bend, const Offsets& at) {
         const Lanes d;
         const auto set = [&](float v) HWY_ATTR { return hn::Set(d, v); };
@@ -137,7 +137,7 @@ private:
             g.z = hn::Add(g.z,
                           hn::MulAdd(set(2 * bend->zz), at.zs, hn::MulAdd(set(bend->zx), at.x, hn::Mul(set(bend->zy), at.y))));
         }
-        // Offsets are from the section's middle, which moves with the depth.
+        // Offsets are relative to the section's middle, which moves with the depth.
         g.z = hn::NegMulAdd(set(s.shear_x), g.x, hn::NegMulAdd(set(s.shear_y), g.y, g.z));
         return g;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light on the surfaces of equal value. Included once for every instruction set: see splat_cpu.cpp.
+// Light on the surfaces of equal value (Shading). Included once for every instruction set: see splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_LIGHT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_LIGHT_INL_H
 #undef SUBVOL_SPLAT_LIGHT_INL_H
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
-/// What the light does to a colour: a factor, and the white that is added.
+/// The effect of light on a colour: a factor, and white that is added.
 struct Light {
     Floats diffuse, specular;
 };
@@ -34,7 +34,9 @@ HWY_ATTR inline Vector normalize(const Vector& v) {
     return {hn::Mul(v.x, scale), hn::Mul(v.y, scale), hn::Mul(v.z, scale)};
 }
 
-/// gradient: cells a world length, in eye space; to_eye: of unit length; least: gradient at which half of a surface is seen
+/// gradient: in cells for each world length, in eye space
+/// to_eye:   of unit length
+/// least:    the gradient at which shading has half its effect
 HWY_ATTR inline Light light(const Shading& shading, const Vector& gradient, const Vector& to_eye, float least) {
     const Lanes d;
     const auto set = [&](double v) HWY_ATTR { return hn::Set(d, static_cast<float>(v)); };
@@ -50,7 +52,7 @@ HWY_ATTR inline Light light(const Shading& shading, const Vector& gradient, cons
     const auto lit = hn::MulAdd(set(shading.diffuse), hn::Mul(half, hn::Add(head, side)), set(shading.ambient));
     const auto shine =
         hn::Mul(set(shading.specular), hn::Mul(half, hn::Add(gloss(head), gloss(hn::Abs(dot(normal, halfway))))));
-    // Where the value hardly changes there is no surface to be lit.
+    // Where the value hardly changes there is no surface to light.
     const auto square = dot(gradient, gradient);
     const auto surface = hn::Div(square, hn::Add(square, hn::Set(d, least * least)));
     const auto one = hn::Set(d, 1.0f);

@@ -25,23 +25,23 @@ using Floats = hn::Vec<Lanes>;
 using Ints = hn::Vec<IntLanes>;
 using Mask = hn::Mask<Lanes>;
 
-/// Pixels are handled in blocks of one vector: as square as it can be.
+/// Pixels are handled in blocks of one vector, which are as square as possible.
 constexpr std::size_t kBlock = hn::MaxLanes(Lanes());
 constexpr std::size_t kBlockWidth = kBlock < 4 ? kBlock : 4, kBlockHeight = kBlock / kBlockWidth;
 constexpr std::size_t kTile = SplatFrame::kTile_px;
 constexpr std::size_t kColumns = kTile / kBlockWidth, kRows = kTile / kBlockHeight, kBlocks = kColumns * kRows;
 
-/// What is summed for each pixel and sheet: Σw, Σwv, and where asked for Σw of the colour's v and Σw∇v.
+/// The sums for each pixel and sheet: Σw, Σwv, and if needed Σwv of the colour's channel and Σw∇v.
 constexpr std::size_t kWeight = 0, kValue = 1, kColor = 2, kGradient = 3, kSums = kGradient + 3;
 
-/// Where the pixels of a tile are: slopes of each lane, absolute, so that tiles do not matter.
+/// The places of the pixels of a tile: the slopes of their rays, which do not depend on the division into tiles.
 struct TilePixels {
     HWY_ALIGN float x[kColumns * kBlock];
     HWY_ALIGN float y[kRows * kBlock];
     float left = 0, top = 0;  // of the tile, in pixels
 };
 
-/// The sheets of a batch as a kernel sees them.
+/// The sections of a kernel with the sheets of a batch, and the blocks that they may touch.
 struct Cuts {
     HWY_ALIGN float zs[kBatch], x[kBatch], y[kBatch], e[kBatch], v[kBatch];
     std::int32_t column0[kBatch], column1[kBatch], row0[kBatch], row1[kBatch];
@@ -65,7 +65,7 @@ HWY_ATTR inline void cut(const EyeSplat& s, const BatchView& batch, const TilePi
         cuts.y[k] = y;
         cuts.e[k] = zs * zs * s.inv_szz;
         cuts.v[k] = s.value + zs * s.value_slope;
-        // In blocks from the tile's corner; half a pixel and a little for rounding more than the section.
+        // In blocks from the tile's corner. The margin is half a pixel and a little for rounding.
         const float scale = batch.to_pixels[k];
         const float px = x * scale + (batch.mid_x - tile.left), hx = s.extent_x * root * scale + margin;
         const float py = (batch.mid_y - tile.top) - y * scale, hy = s.extent_y * root * scale + margin;
@@ -86,7 +86,7 @@ HWY_ATTR inline void cut(const EyeSplat& s, const BatchView& batch, const TilePi
     }
 }
 
-/// Adds a compact kernel with one value: the loop that most pictures spend their time in.
+/// Adds a compact kernel with one value: the loop in which most pictures spend their time.
 HWY_ATTR inline void add_plain(const EyeSplat& s, const BatchView& batch, const TilePixels& tile, Cuts& cuts, float* sums) {
     const Lanes d;
     cut(s, batch, tile, cuts);

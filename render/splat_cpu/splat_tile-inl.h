@@ -1,5 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// One tile of the picture. Included once for every instruction set: see splat_cpu.cpp.
+// Draws one tile of the picture: the method of sheet buffers [mnmq2007, westover1990, mc1998], cut up so that sums stay in
+// cache.
+//
+// The volume is cut by planes of constant eye depth, the sheets. On each sheet the field is the normalised sum over the kernels
+// that it cuts, x = Σ w·v / Σ w. Between two sheets the field is taken to be linear along the ray, so the light of a stretch
+// follows from its two values and a table of integrals of the transfer function (pre-integration [rke2000]):
+//
+//     eye -> | batch 0 | batch 1 | ...     For each batch of kBatch sheets, front to back:
+//            |.|.|.|.|.|.|.|.|.|.|           sum        add the tile's kernels to Σw and Σwv of its pixels and sheets
+//            sheets                          composite  walk each block of pixels through the sheets: classify, blend
+//
+// A batch is passed over if no ray is inside the volume there, or if bounds of its kernels' values show that all of it is
+// invisible. A block is one vector of pixels, as square as possible. kPlain selects the short loops for volumes without
+// Hessians, second channel or light. docs/adr/0011 gives the reasons. Included once for every instruction set: see
+// splat_cpu.cpp.
 #if defined(SUBVOL_SPLAT_TILE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_SPLAT_TILE_INL_H
 #undef SUBVOL_SPLAT_TILE_INL_H
@@ -24,10 +38,10 @@ template <bool kPlain>
 class TileRenderer {
 public:
     explicit TileRenderer(const SplatFrame& frame)
-        : frame_(frame), view_(*frame.view), sheets_(frame.sheets), classifier_(*frame.look), general_(frame) {
+        : frame_(frame), view_(*frame.view), sheets_(frame.sheets), classifier_(*frame.classification), general_(frame) {
         scratch().resize();
-        x_offset_ = value_offset(*frame.scene, *frame.look);
-        color_offset_ = color_offset(*frame.scene, *frame.look);
+        x_offset_ = value_offset(*frame.scene, *frame.classification);
+        color_offset_ = color_offset(*frame.scene, *frame.classification);
         batch_.mid_x = 0.5f * static_cast<float>(view_.width());
         batch_.mid_y = 0.5f * static_cast<float>(view_.height());
         least_gradient_ = kLeastChange * PreintegratedTable::kCells / static_cast<float>(frame.scene->diagonal);
@@ -39,7 +53,7 @@ public:
         place_pixels();
         if (!start_blocks()) return;
         list_batches(tile);
-        bool passed_over = false;  // whether the batch before was wanted, but had nothing to be seen
+        bool passed_over = false;  // whether the batch before was needed but invisible
         for (int batch = 0; batch < sheets_.batches() && !done(); ++batch) {
             if (!scratch().wanted[static_cast<std::size_t>(batch)]) continue;
             if (invisible(batch)) {
@@ -55,9 +69,9 @@ public:
     }
 
 private:
-    static constexpr std::size_t kStride = kPlain ? 2 : kSums;  // sums a pixel
+    static constexpr std::size_t kStride = kPlain ? 2 : kSums;  // sums for each pixel
 
-    /// Memory that a thread keeps from tile to tile.
+    /// Memory that each thread keeps from tile to tile.
     struct Scratch {
         std::vector<float> sums_storage;
         float* sums = nullptr;
@@ -99,7 +113,7 @@ private:
         }
     }
 
-    /// Returns whether any pixel of the tile sees the volume.
+    /// Returns whether the ray of any pixel of the tile meets the volume.
     HWY_ATTR bool start_blocks() {
         bool any = false;
         const std::size_t batches = static_cast<std::size_t>(sheets_.batches());
@@ -136,7 +150,7 @@ private:
         return true;
     }
 
-    /// Marks the batches whose sheets are needed between two depths: those on either side, too.
+    /// Marks the batches with sheets between two depths, and with the next sheet on either side.
     void want(float enter, float exit) {
         const auto batch = [&](float z, float more) {
             const float sheet =
@@ -156,14 +170,14 @@ private:
         const auto sheet = [&](float z) {
             return std::clamp((z - sheets_.first) * per_sheet, -1.0f, static_cast<float>(sheets_.count));
         };
-        // Half a sheet more on each side: rounding may not lose one.
+        // Half a sheet more on each side, so that rounding does not lose one.
         constexpr float kMore = 0.5f;
         const int first = std::max(static_cast<int>(sheet(s.depth - reach) - kMore), 0);
         const int last = std::min(static_cast<int>(sheet(s.depth + reach) + kMore), sheets_.count - 1);
         return {first / kBatch, last / kBatch};
     }
 
-    /// Sorts the tile's kernels by batches, in their order.
+    /// Lists the tile's kernels by batches; within a batch they keep their order.
     void list_batches(int tile) {
         auto& offsets = scratch().offsets;
         auto& splats = scratch().splats;
@@ -185,7 +199,7 @@ private:
         for (std::size_t b = 1; b < offsets.size(); ++b) offsets[b] += offsets[b - 1];
         splats.resize(offsets.back());
         each([&](std::uint32_t id, std::size_t b) { splats[offsets[b]++] = id; });
-        std::rotate(offsets.begin(), offsets.end() - 1, offsets.end());  // each became the next one's
+        std::rotate(offsets.begin(), offsets.end() - 1, offsets.end());  // each offset has become that of the next batch
         offsets.front() = 0;
     }
 
@@ -199,7 +213,7 @@ private:
         return true;
     }
 
-    /// Whether no value between the sheets of a batch, and from the last sheet before it, can be seen.
+    /// Whether all values between the sheets of a batch, and between it and the sheet before, are invisible.
     [[nodiscard]] bool invisible(int batch) const {
         const auto& ranges = frame_.kernels.ranges;
         if (ranges.empty() || classifier_.all_visible()) return false;
@@ -213,7 +227,7 @@ private:
         return range.low > range.high || classifier_.transparent(range.low, range.high);
     }
 
-    /// Brings the pixels to the last sheet of a batch that was passed over.
+    /// Takes the values of the last sheet of a batch that was passed over.
     HWY_ATTR void look_back(int batch) {
         sum(batch, kBatch - 1, kBatch);
         for (std::size_t block = 0; block < kBlocks; ++block) {

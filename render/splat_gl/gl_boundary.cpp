@@ -33,7 +33,7 @@ std::uint32_t groups_for(std::size_t items) {
 
 }  // namespace
 
-/// shaders/boundary_frame.glsl has the same.
+/// The same as in shaders/boundary_frame.glsl.
 struct alignas(32) GlBoundary::Camera {
     std::array<double, 4> right{}, up{}, forward{}, scale{};
     std::int32_t width = 0, height = 0, perspective = 0;
@@ -78,7 +78,7 @@ void GlBoundary::upload_surface(const Surface& surface) {
     eye_points_.grow(points_ * kEyePoint_bytes);
     boxes_.grow(triangles * kBox_bytes);
     strips_.grow((triangles + 1) * kWord_bytes);
-    triangles_ = triangles;  // now they are there: what throws is done again
+    triangles_ = triangles;  // set last: after an error all of this is done again
 }
 
 void GlBoundary::find(const Surface& surface, const View& view, double near, double middle, GlStages& stages) {
@@ -89,7 +89,7 @@ void GlBoundary::find(const Surface& surface, const View& view, double near, dou
     if (!on_device_now_) return upload_intervals(boundary_intervals(surface, view, near, middle));
 
     stages.begin("boundary");
-    room_ = std::min(room_, intervals_.bytes() / kPair_bytes);  // less where the device has refused to give more
+    room_ = std::min(room_, intervals_.bytes() / kPair_bytes);  // less if the device could not provide more
     if (triangles_ == 0) upload_surface(surface);
     Camera camera(view, near, middle);
     camera.points = static_cast<std::uint32_t>(points_);

@@ -9,26 +9,27 @@
 
 namespace subvol::detail {
 
-/// boundary_intervals() on the current context: the same pixels are covered, depths are the same but for rounding. Surfaces
-/// that have to be clipped go through the CPU.
+/// boundary_intervals() on the current context. Coverage is bitwise the same, depths differ by rounding only. The CPU does
+/// surfaces that have to be clipped.
 class GlBoundary {
 public:
     /// on_device: false: the CPU finds all intervals
     explicit GlBoundary(bool on_device);
 
-    /// Starts to find the intervals of a surface that is the same every time. Waits for the device the first time only.
+    /// Starts to find the intervals of a surface, which has to be the same in every call. Waits for the device in the first
+    /// call only.
     void find(const Surface& surface, const View& view, double near, double middle, GlStages& stages);
 
     /// Whether there was room for all hits; if not, they have to be found again. Waits for the device.
     [[nodiscard]] bool found_all();
 
-    /// Of what was found last.
+    /// The number of hits of the last call.
     [[nodiscard]] std::size_t hits() const { return hits_; }
 
-    /// Of each pixel {first, end}, and the {enter, exit} of intervals.
+    /// For each pixel {first, end}; and the {enter, exit} of intervals.
     void bind(GLuint ranges, GLuint intervals);
 
-    /// What shaders made, for tests.
+    /// The result of the shaders, for tests.
     [[nodiscard]] PixelIntervals read(std::size_t pixels) const;
 
 private:

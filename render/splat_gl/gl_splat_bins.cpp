@@ -14,7 +14,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kSplat_bytes = 64, kVector_bytes = 16, kWord_bytes = 4;
-constexpr std::uint32_t kThreads = 256;  // of a group
+constexpr std::uint32_t kThreads = 256;  // of a work group
 
 std::uint32_t groups_for(std::uint32_t items) {
     return (items + kThreads - 1) / kThreads;

@@ -13,28 +13,28 @@
 
 namespace subvol::detail {
 
-/// Kernels in eye space, listed by (tile, batch) bins in ascending order, on the current context. The frame's uniforms have to
-/// be bound.
+/// Converts kernels to eye space and lists them by bins (tile, batch) in ascending order, on the current context. The frame's
+/// uniforms have to be bound.
 class GlSplatBins {
 public:
     GlSplatBins(const std::string& defines, std::uint32_t extras);
 
-    /// The most that a kernel takes of any buffer.
+    /// The most bytes that a kernel takes in any buffer.
     [[nodiscard]] static std::size_t kernel_bytes(std::uint32_t extras);
 
     void upload(const GlKernelData& data);
     [[nodiscard]] std::uint32_t kernels() const { return kernels_; }
 
-    /// To eye space, and how many entries each kernel has.
+    /// Converts kernels to eye space, and counts the entries of each.
     void count(GlStages& stages);
 
-    /// How many entries the last count found; beyond 2³² − 1 the lower digits do not matter. Waits for the device.
+    /// The number of entries of the last count; inexact beyond 2³² − 1. Waits for the device.
     [[nodiscard]] std::uint64_t entries() const;
 
-    /// Lists the entries by bins, as many as the frame allows.
+    /// Lists the entries by bins, at most as many as the frame allows.
     void list(const GlSplatFrame& frame, GlStages& stages);
 
-    /// For the shader that draws.
+    /// Binds the buffers for the shader that draws.
     void bind();
 
 private:

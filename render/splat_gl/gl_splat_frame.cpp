@@ -11,7 +11,7 @@ std::array<double, 4> row(const Vec3& axis, double last) {
     return {axis.x, axis.y, axis.z, last};
 }
 
-/// What turns values into cells of the table from `min` to `max`.
+/// Factor and offset that convert values into cells of the table from `min` to `max`.
 std::array<double, 2> cells_of(double min, double max, bool normalized) {
     const double scale = PreintegratedTable::kCells / (max - min);
     return {scale, normalized ? -min * scale : 0};
@@ -27,17 +27,17 @@ void set_light(GlSplatFrame& frame, const Shading& shading) {
 
 }  // namespace
 
-GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Classification& look, const SheetStack& sheets,
-                            int tile_px, int batch) {
+GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Classification& classification,
+                            const SheetStack& sheets, int tile_px, int batch) {
     GlSplatFrame frame;
     const Vec3 middle = view.to_eye(scene.middle);
     frame.right = row(view.axes()[0], middle.x);
     frame.up = row(view.axes()[1], middle.y);
     frame.forward = row(view.axes()[2], 0);
-    const auto values = cells_of(look.table.min, look.table.max, scene.normalized);
-    const auto colors = cells_of(look.colors.min, look.colors.max, scene.normalized);
+    const auto values = cells_of(classification.table.min, classification.table.max, scene.normalized);
+    const auto colors = cells_of(classification.colors.min, classification.colors.max, scene.normalized);
     frame.cells = {values[0], values[1], colors[0], colors[1]};
-    frame.unit = look.table.unit;
+    frame.unit = classification.table.unit;
     if (scene.shading) set_light(frame, *scene.shading);
     frame.width = view.width();
     frame.height = view.height();
@@ -46,14 +46,14 @@ GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Cla
     frame.sheets = sheets.count;
     frame.batches = (sheets.count + batch - 1) / batch;
     frame.perspective = view.perspective();
-    frame.all_visible = static_cast<std::size_t>(look.table.visible.back()) == look.table.rows.size();
+    frame.all_visible = static_cast<std::size_t>(classification.table.visible.back()) == classification.table.rows.size();
     frame.first_depth = sheets.first;
     frame.sheet_distance = sheets.distance;
     frame.middle_depth = sheets.middle;
     frame.near_depth = sheets.near;
     frame.pixel = static_cast<float>(view.pixel());
-    frame.value_offset = value_offset(scene, look);
-    frame.color_offset = color_offset(scene, look);
+    frame.value_offset = value_offset(scene, classification);
+    frame.color_offset = color_offset(scene, classification);
     frame.half_weight = scene.half_weight;
     frame.least_gradient = kLeastChange * PreintegratedTable::kCells / static_cast<float>(scene.diagonal);
     frame.kernel_cells = scene.kernel_table.empty() ? 0 : static_cast<float>(scene.kernel_table.size() - 1);

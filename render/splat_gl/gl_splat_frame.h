@@ -8,7 +8,7 @@
 
 namespace subvol::detail {
 
-/// What the shaders know of a frame: shaders/splat_frame.glsl has the same.
+/// The data of a frame for the shaders; the same as in shaders/splat_frame.glsl.
 struct alignas(32) GlSplatFrame {
     std::array<double, 4> right{}, up{}, forward{};
     std::array<double, 4> cells{};
@@ -27,8 +27,8 @@ struct alignas(32) GlSplatFrame {
     [[nodiscard]] std::uint32_t bins() const { return tiles() * static_cast<std::uint32_t>(end_batch - first_batch); }
 };
 
-/// All but the kernels' number and the pass.
-[[nodiscard]] GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Classification& look,
+/// Fills all but the number of kernels and the pass.
+[[nodiscard]] GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Classification& classification,
                                           const SheetStack& sheets, int tile_px, int batch);
 
 }  // namespace subvol::detail

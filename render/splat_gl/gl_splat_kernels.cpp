@@ -21,7 +21,7 @@ void pack_kernel(const SplatScene& scene, std::size_t i, float* to) {
     const Vec3 center = volume.centers[i] - scene.middle;
     const auto& f = volume.frames[i];
     const auto& g = channel.gradients[i];
-    const double reach = scene.shape == KernelShape::Separable ? 3 : 1;
+    const double reach = scene.form == KernelForm::Separable ? 3 : 1;
     const float packed[GlKernelData::kFloats] = {to_float(center.x),
                                                  to_float(center.y),
                                                  to_float(center.z),
@@ -56,11 +56,11 @@ void pack_extras(const SplatScene& scene, const GlExtras& layout, std::size_t i,
         slot(layout.color + 1)[0] = channel.moments[i];
         if (scene.bent) pack_bend(channel, i, slot(layout.color_bend));
     }
-    if (scene.shape == KernelShape::Separable) {
+    if (scene.form == KernelForm::Separable) {
         const Mat3 world = inverse_symmetric_root(scene.volume->frames[i]);
         for (int row = 0; row < 3; ++row) {
             float* out = slot(layout.axes + static_cast<std::uint32_t>(row));
-            // Column `row` of the rotated matrix, as eye_splats.cpp has it.
+            // Column `row` of the rotated matrix, as in eye_splats.cpp.
             for (int column = 0; column < 3; ++column) out[column] = to_float(world[column][row]);
         }
     }
@@ -77,7 +77,7 @@ GlExtras::GlExtras(const SplatScene& scene) {
     bend = take(scene.bent, 2);
     color = take(scene.color_channel.has_value(), 2);
     color_bend = take(scene.color_channel && scene.bent, 2);
-    axes = take(scene.shape == KernelShape::Separable, 3);
+    axes = take(scene.form == KernelForm::Separable, 3);
 }
 
 std::string gl_scene_defines(const SplatScene& scene) {
@@ -86,22 +86,22 @@ std::string gl_scene_defines(const SplatScene& scene) {
     const auto number = [&](const char* name, std::uint32_t n) {
         text += std::string("#define ") + name + " " + std::to_string(n) + "\n";
     };
-    flag("COMPACT", scene.shape == KernelShape::Compact);
-    flag("SEPARABLE", scene.shape == KernelShape::Separable);
+    flag("COMPACT", scene.form == KernelForm::Compact);
+    flag("SEPARABLE", scene.form == KernelForm::Separable);
     flag("BENT", scene.bent);
     flag("COLORED", scene.color_channel.has_value());
     flag("SHADED", scene.shading.has_value());
     flag("NORMALIZED", scene.normalized);
     flag("CONVEX", scene.convex());
     flag("UNBOUNDED", scene.half_weight > 0);
-    flag("GENERAL", scene.bent || scene.color_channel || scene.shading || scene.shape == KernelShape::Separable);
+    flag("GENERAL", scene.bent || scene.color_channel || scene.shading || scene.form == KernelForm::Separable);
     const GlExtras extras(scene);
     number("kBendAt", extras.bend);
     number("kColorAt", extras.color);
     number("kColorBendAt", extras.color_bend);
     number("kAxesAt", extras.axes);
     number("kExtras", extras.count);
-    text += scene.shape == KernelShape::Separable ? "#define kReach 3.0\n" : "#define kReach 1.0\n";
+    text += scene.form == KernelForm::Separable ? "#define kReach 3.0\n" : "#define kReach 1.0\n";
     return text;
 }
 

@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
+// The splatter on the GPU: the method of splat_cpu/splat_tile-inl.h (sums of kernels on sheets, then pre-integrated compositing
+// [mnmq2007, rke2000]) as compute shaders.
+//
+//     splat_eye     each kernel: to eye space, and how many bins (tile, batch of sheets) it meets
+//     scan, emit    an entry (bin, kernel) for each of them; a prefix sum of the counts gives the places
+//     sort, ranges  entries sorted by bin, and where each bin begins; within a bin kernels stay in ascending order
+//     boundary      the intervals of each pixel inside the volume (gl_boundary.cpp)
+//     splat_draw    a work group for each tile, a thread for each pixel: batches front to back, sums in registers
+//
+// The sort is stable and no float is added atomically, so each sum has one order and pictures are bitwise reproducible. The
+// number of entries is not known before they are counted, and waiting for it would stall the device: the room of the last
+// picture is used, and only at the end is the count compared with it (draw_at_once). If kernels or entries exceed the room of
+// a buffer, the batches are halved until each range fits (split), and the state of the pixels is kept between the passes.
 #include "gl_splatter.h"
 
 #include <tbb/parallel_for.h>
@@ -26,8 +39,8 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kPixel_bytes = 16;  // of the picture
-constexpr std::size_t kState_bytes = 64;  // of a pixel, between passes
+constexpr std::size_t kPixel_bytes = 16;  // for each pixel of the picture
+constexpr std::size_t kState_bytes = 64;  // for each pixel, between passes
 
 std::string decimal(float value) {
     char text[32];
@@ -40,7 +53,7 @@ std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
     return gl_scene_defines(scene) + line("kTile", std::to_string(tuning.tile_px)) +
            line("kBatch", std::to_string(tuning.batch)) + line("kChunk", tuning.batch <= 8 ? "64" : "32") +
            line("kCells", std::to_string(PreintegratedTable::kCells)) + line("kLeastWeight", decimal(kLeastWeight)) +
-           line("kNearValues", decimal(kNearValues)) + line("kOpaque", decimal(kOpaque)) +
+           line("kNearValues", decimal(kNearValues)) + line("kSplatCutoff", decimal(kSplatCutoff)) +
            line("kFarCells", decimal(kFarCells));
 }
 
@@ -50,19 +63,13 @@ void upload(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(values.size() * sizeof(T), values.data());
 }
 
-/// The context that was current is so again.
-struct KeepCurrent {
-    EglContext before = EglContext::current();
-    ~KeepCurrent() { (void)before.make_current(); }
-};
-
-/// The kernels that may meet some batches, a sheet more on each side: rounding may not lose one.
+/// The kernels that may meet some sheets, with a sheet more on each side, so that rounding does not lose one.
 std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
                                            int end_sheet) {
     const double middle = view.to_eye(scene.middle).z, distance = static_cast<double>(sheets.distance);
     const double front = static_cast<double>(sheets.depth(first_sheet)) - distance;
     const double back = static_cast<double>(sheets.depth(end_sheet - 1)) + distance;
-    const double widening = scene.shape == KernelShape::Separable ? 3 : 1;
+    const double widening = scene.form == KernelForm::Separable ? 3 : 1;
     std::vector<char> wanted(scene.volume->size());
     tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
         const Vec3& forward = view.axes()[2];
@@ -107,13 +114,13 @@ public:
         if (resident_) bins_.upload(pack_kernels(scene));
     }
 
-    Drawn draw(const View& view, const Classification& look, int sheets, Progress* progress);
+    Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
 
     GlContext context;
     GlSplatReport report;
 
 private:
-    void prepare(const View& view, const Classification& look);
+    void prepare(const View& view, const Classification& classification);
     void find_intervals(const View& view);
     [[nodiscard]] bool draw_at_once();
     [[nodiscard]] bool fits_bins(int first, int end) const;
@@ -126,8 +133,8 @@ private:
     const SplatScene& scene_;
     GlTuning tuning_;
     std::size_t most_kernels_ = 0, most_entries_ = 0, most_bins_ = 0;
-    bool resident_ = false;  // all kernels are on the device
-    std::size_t room_ = 0;   // entries that there is room for
+    bool resident_ = false;  // whether all kernels are on the device
+    std::size_t room_ = 0;   // for so many entries
     SheetStack sheets_;
     GlSplatFrame frame_;
     GlSplatBins bins_;
@@ -137,12 +144,12 @@ private:
     GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_;
 };
 
-void GlSplatter::State::prepare(const View& view, const Classification& look) {
+void GlSplatter::State::prepare(const View& view, const Classification& classification) {
     stages_.clear();
-    frame_ = gl_splat_frame(scene_, view, look, sheets_, tuning_.tile_px, tuning_.batch);
-    upload(rows_, look.table.rows);
-    upload(visible_, look.table.visible);
-    upload(color_rows_, look.colors.rows);
+    frame_ = gl_splat_frame(scene_, view, classification, sheets_, tuning_.tile_px, tuning_.batch);
+    upload(rows_, classification.table.rows);
+    upload(visible_, classification.table.visible);
+    upload(color_rows_, classification.colors.rows);
     const std::size_t pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
     picture_.grow(pixels * 4 * sizeof(float));
     depths_.grow(pixels * sizeof(float));
@@ -183,11 +190,11 @@ void GlSplatter::State::draw_pass() {
     check_gl("splat");
 }
 
-Drawn GlSplatter::State::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
+Drawn GlSplatter::State::draw(const View& view, const Classification& classification, int sheets, Progress* progress) {
     report_progress(progress, "splat", 0);
     report = {};
     sheets_ = make_sheets(scene_, view, sheets);
-    prepare(view, look);
+    prepare(view, classification);
     if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
     // Likewise for the boundary's hits.
     if (scene_.half_weight == 0 && !boundary_.found_all()) {
@@ -202,7 +209,8 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& look, int 
     return drawn;
 }
 
-/// As much room as the last picture took is mostly enough: the device is asked only at the end. Returns whether it was.
+/// Draws all batches in one pass with the room that the last picture needed, and reads back the number of entries only at the
+/// end. Returns whether there was enough room.
 bool GlSplatter::State::draw_at_once() {
     if (room_ == 0 || !resident_ || !fits_bins(0, frame_.batches)) return false;
     set_pass(0, frame_.batches);
@@ -238,7 +246,7 @@ void GlSplatter::State::draw_in_passes(const View& view, int first, int end, Pro
 
 void GlSplatter::State::split(const View& view, int first, int end, Progress* progress) {
     if (end - first == 1) {
-        throw Error(ErrorCode::MissingCapability, "a few sheets meet more kernels than the GL device has room for", {},
+        throw Error(ErrorCode::MissingCapability, "the kernels of a few sheets need more room than the GL device has", {},
                     "more sheets, a smaller picture or the CPU backend");
     }
     const int middle = first + (end - first) / 2;
@@ -267,10 +275,10 @@ GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const
 GlSplatter::~GlSplatter() {
     if (!state_) return;
     try {
-        const GlScope scope(state_->context);  // what is on the device goes with it
+        const GlScope scope(state_->context);  // its buffers are freed in it
         state_.reset();
     } catch (const Error&) {
-        (void)state_.release();  // a device that is in use elsewhere keeps it
+        (void)state_.release();  // the context is in use by another thread: its buffers cannot be freed
     }
 }
 
@@ -280,9 +288,9 @@ GlSplatter& GlSplatter::operator=(GlSplatter&& other) noexcept {
     return *this;
 }
 
-Drawn GlSplatter::draw(const View& view, const Classification& look, int sheets, Progress* progress) {
+Drawn GlSplatter::draw(const View& view, const Classification& classification, int sheets, Progress* progress) {
     const GlScope scope(state_->context);
-    return state_->draw(view, look, sheets, progress);
+    return state_->draw(view, classification, sheets, progress);
 }
 
 const std::string& GlSplatter::renderer() const {

@@ -5,18 +5,19 @@
 #include <optional>
 #include <string>
 
-#include "drawn.h"
 #include "splat_scene.h"
 #include "subvol/camera.h"
 #include "subvol/gl_device.h"
 
 namespace subvol::detail {
 
-/// How the work is cut up. The picture does not depend on it.
+/// How the work is divided. The picture does not depend on it.
 ///
-/// tile_px: 8, 16; batch: sheets, 1..16
-/// most_buffer_bytes: of a buffer, if the device does not set a lower limit; most_entries: pairs of a bin and a kernel
-/// boundary_on_device: also if it is software, whose rasterizer for boundaries is slower than the CPU's own
+/// tile_px:            8 or 16
+/// batch:              sheets, 1..16
+/// most_buffer_bytes:  limit for a buffer, if the device has no lower one
+/// most_entries:       limit for the pairs of a bin and a kernel
+/// boundary_on_device: rasterize the boundary with OpenGL even if it is software, which is slower than the CPU's rasterizer
 struct GlTuning {
     int tile_px = 16;
     int batch = kBatch;
@@ -29,14 +30,14 @@ struct GlSplatReport {
     std::size_t bin_entries = 0;    // (tile, batch, kernel)
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     int passes = 0;
-    std::vector<StageTime> stages;  // by the device's clock
+    std::vector<StageTime> stages;  // measured by the device
 };
 
-/// The splatter on an OpenGL device: step for step what the CPU does, all but rounding. What does not depend on the view is
-/// there from the start. The scene has to stay where it is.
+/// The splatter on an OpenGL device: the same steps as on the CPU, with other rounding. Data that does not depend on the view
+/// is uploaded once. The scene is referred to, not copied.
 ///
-/// What a buffer cannot hold is drawn in passes over ranges of batches, front to back. Pictures are bitwise the same every
-/// time, whatever the tuning.
+/// If a buffer is too small, the picture is drawn in passes over ranges of batches, front to back. Pictures are bitwise
+/// reproducible, whatever the tuning.
 class GlSplatter {
 public:
     /// device: as for GlContext
@@ -47,11 +48,11 @@ public:
     GlSplatter& operator=(GlSplatter&&) noexcept;
 
     /// throws: Error(MissingCapability) if the device has no room or is lost
-    [[nodiscard]] Drawn draw(const View& view, const Classification& look, int sheets, Progress* progress);
+    [[nodiscard]] Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
 
     [[nodiscard]] const std::string& renderer() const;
 
-    /// About the last picture.
+    /// The report of the last picture.
     [[nodiscard]] const GlSplatReport& report() const;
 
 private:

@@ -7,7 +7,7 @@ namespace subvol::detail {
 
 namespace {
 
-// Embree hands the context through to the filter.
+// Embree passes a pointer to the context to the filter: what follows it in memory comes along.
 struct Query {
     RTCIntersectContext context;
     std::span<const TetFace> boundary;

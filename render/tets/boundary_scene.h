@@ -11,16 +11,17 @@
 
 namespace subvol::detail {
 
-/// The boundary of a mesh in Embree, in single precision: it proposes faces, double precision decides.
+/// The boundary of a mesh in Embree. Embree works in single precision, so the faces that it finds are candidates only; callers
+/// decide in double precision.
 class BoundaryScene {
 public:
-    /// box: of the points that cells use
+    /// box:    of the points that cells use
     /// throws: Error(MissingCapability) if Embree cannot be started or has not enough memory
     BoundaryScene(const TetMesh& mesh, const Box& box);
     ~BoundaryScene();
     BoundaryScene(BoundaryScene&&) = delete;
 
-    /// Appends the boundary faces that the whole line of a ray crosses, behind its origin too, in no order.
+    /// Appends the boundary faces that the whole line of a ray may cross, behind its origin too, in no particular order.
     void find_crossed(const Ray& ray, std::vector<TetFace>& faces) const;
 
     /// The boundary faces at a point.

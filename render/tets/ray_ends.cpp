@@ -23,7 +23,7 @@ void RayEnds::find(const RayPlane& plane, const Ray& ray) {
     for (const TetFace face : hits_) {
         const auto before = ends_.size();
         add(plane, face);
-        // Single precision took the wrong side of an edge: the face that the ray does cross is a neighbour.
+        // In single precision the ray was on the wrong side of an edge: it crosses a neighbour of the face.
         if (ends_.size() == before) add_near(plane, face);
     }
 }
@@ -42,7 +42,7 @@ void RayEnds::mark_walked(const RayPlane& plane, TetFace start, TetFace end) {
         return std::find_if(ends_.begin(), ends_.end(), [&](const End& e) { return e.face == face; });
     };
     find(start)->walked = true;
-    if (find(end) == ends_.end()) {  // single precision did not see it, nor maybe others beside it
+    if (find(end) == ends_.end()) {  // missed in single precision, and maybe others beside it too
         add(plane, end);
         add_near(plane, start);
         add_near(plane, end);

@@ -8,19 +8,19 @@
 
 namespace subvol::detail {
 
-/// The boundary faces that a ray crosses: walks pair them up. Keeps its memory from ray to ray.
+/// The boundary faces that a ray crosses. Each walk begins at one and ends at another. Keeps its memory from ray to ray.
 class RayEnds {
 public:
     RayEnds(const TetMesh& mesh, const BoundaryScene& scene) : mesh_(&mesh), scene_(&scene) {}
 
-    /// Finds those of a ray, none of them walked yet.
+    /// Finds those of a ray, and marks none as walked.
     void find(const RayPlane& plane, const Ray& ray);
     [[nodiscard]] bool empty() const { return ends_.empty(); }
 
-    /// The first one along the ray from which or to which no walk has gone; kNone if there is none.
+    /// The first one along the ray at which no walk has begun or ended; kNone if there is none.
     [[nodiscard]] TetFace first_unwalked() const;
 
-    /// Both ends of a walk.
+    /// Marks both ends of a walk.
     void mark_walked(const RayPlane& plane, TetFace start, TetFace end);
 
 private:

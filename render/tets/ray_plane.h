@@ -10,16 +10,18 @@
 
 namespace subvol::detail {
 
-/// A mesh point as a ray sees it: (x,y) off the ray, in the plane across its dominant axis, and t along it.
+/// A mesh point in the coordinates of a ray: (x,y) is its offset from the ray in the plane across the dominant axis, t its
+/// place along the ray.
 struct SeenPoint {
     Index id = kNone;
     double x = 0, y = 0, t = 0;
     double value = 0;
 };
 
-/// Twice the signed area of (ray, a, b), and its sign, which is exact for the seen coordinates and never zero: ties are decided
-/// as if the ray were moved by (ε, ε²), points seen as one by their ids. So the signs of all edges fit together, and every ray
-/// goes through the inside of the faces that it crosses, through vertices and along edges too.
+/// Twice the signed area of (ray, a, b), and its sign: on which side of the edge ab the ray passes. The sign is exact for the
+/// seen coordinates and never zero: ties are decided as if the ray were moved by (ε, ε²) [em1990], and by ids between points
+/// that coincide for the ray. So the signs of all edges are consistent, and every ray crosses the inside of faces, even through
+/// a vertex or along an edge.
 struct Side {
     double area = 0;
     bool left = false;
@@ -45,7 +47,7 @@ public:
         return {id, p[x_] - slope_x_ * p[z_], p[y_] - slope_y_ * p[z_], p[z_] * per_depth_, value};
     }
 
-    /// False if the line certainly misses a box, with `margin` about it.
+    /// False if the line certainly misses a box that is widened by `margin`.
     [[nodiscard]] bool may_meet(const Vec3& center, const Vec3& half, double margin) const {
         const Vec3 p = center - origin_;
         const double x = p[x_] - slope_x_ * p[z_], y = p[y_] - slope_y_ * p[z_];
@@ -55,7 +57,7 @@ public:
     }
     [[nodiscard]] const Vec3& origin() const { return origin_; }
 
-    /// The axes that are seen as x, y and depth, and how they are sheared.
+    /// The axes of space that become x, y and depth, and their shear.
     [[nodiscard]] std::array<int, 3> axes() const { return {x_, y_, z_}; }
     [[nodiscard]] double slope_x() const { return slope_x_; }
     [[nodiscard]] double slope_y() const { return slope_y_; }
@@ -67,15 +69,16 @@ private:
     double slope_x_, slope_y_, per_depth_;
 };
 
-/// a·d − b·c to a relative error of two roundings, so with its exact sign: Kahan's algorithm (Jeannerod, Louvet, Muller 2013).
+/// a·d − b·c with a relative error of at most two roundings, hence with the right sign: Kahan's algorithm (Jeannerod, Louvet,
+/// Muller 2013).
 [[nodiscard]] inline double exact_difference(double a, double d, double b, double c) {
     const double bc = b * c;
     return std::fma(a, d, -bc) + std::fma(-b, c, bc);
 }
 
-/// Above this share of its terms an area is taken as rounded. Its sign would be right from 3.4e-16 on ((3 + 16ε)ε of Shewchuk's
-/// 2-D orientation test). But areas are the weights of a crossing too: without right digits it lies beside the ray, by up to
-/// the whole face where that is seen almost edge on.
+/// An area larger than this share of its terms is used as it was rounded, a smaller one is computed exactly. For the sign alone
+/// 3.4e-16 would do ((3 + 16ε)ε of Shewchuk's 2-D orientation test). But areas are also the weights of a crossing: without
+/// right digits the crossing would lie beside the ray, by up to the whole face where it is seen almost edge on.
 inline constexpr double kSideError = 1e-7;
 
 [[nodiscard]] inline Side side_of(const SeenPoint& a, const SeenPoint& b) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tbb/combinable.h>
 
-#include <chrono>
-
 #include "boundary_scene.h"
 #include "pixel_tiles.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/render_tets.h"
 #include "tet_mesh.h"
 #include "tet_packet_tracer.h"
@@ -15,13 +14,7 @@ using namespace detail;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Draws a tile: as `trace_pixel` for each of its pixels, but all pixels at once.
+/// Draws a tile: the same as `trace_pixel` for each of its pixels, with the rays of all pixels at once.
 void draw_tile(const View& view, int samples, const PixelRect& tile, TetPacketTracer& tracer, Image& image) {
     std::vector<Ray> rays;
     std::vector<Segment> seen, sums;
@@ -59,13 +52,14 @@ struct TetsRenderer::State {
     TetsReport built;
 };
 
-TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, Progress* progress)
+TetsRenderer::TetsRenderer(const HexMesh& mesh, std::string_view field, Progress* progress)
     : state_(std::make_unique<State>()) {
-    check_tet_input(mesh, scalar);
-    const auto start = Clock::now();
+    validate(mesh);
+    const Attribute& shown = scalar_field(mesh, field);
+    const Stopwatch watch;
     report_progress(progress, "build", 0);
     TetMesh& tets = state_->tets;
-    tets = build_tet_mesh(mesh, scalar);
+    tets = build_tet_mesh(mesh, shown.values);
     report_progress(progress, "build", 0.8);
     state_->scene.emplace(tets, bounds(mesh));
     report_progress(progress, "build", 1);
@@ -75,7 +69,7 @@ TetsRenderer::TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, 
     built.inverted_tets = tets.inverted_tets;
     built.bytes = tets.tets.size() * (sizeof(TetMesh::Tet) + sizeof(tets.links[0])) +
                   tets.points.size() * sizeof(TetMesh::Point) + tets.boundary.size() * sizeof(TetFace);
-    built.seconds_build = seconds_since(start);
+    built.seconds_build = watch.seconds();
 }
 
 TetsRenderer::~TetsRenderer() = default;
@@ -90,30 +84,27 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
     check_samples(options.samples);
     TetsResult result{{}, state_->built};
     TetsReport& report = result.report;
-    const auto start = Clock::now();
+    const Stopwatch watch;
     tbb::combinable<TraceCounts> sums;
     result.image = Image(view.width(), view.height());
     for_each_tile({0, 0, view.width(), view.height()}, options.progress, [&](const PixelRect& tile) {
         TetPacketTracer tracer(state_->tets, *state_->scene, optics);
         draw_tile(view, options.samples, tile, tracer, result.image);
-        TraceCounts& sum = sums.local();
-        sum.rays += tracer.counts().rays;
-        sum.segments += tracer.counts().segments;
-        sum.lost_rays += tracer.counts().lost_rays;
+        sums.local() += tracer.counts();
     });
     sums.combine_each([&](const TraceCounts& sum) {
         report.rays += sum.rays;
         report.segments += sum.segments;
         report.lost_rays += sum.lost_rays;
     });
-    report.seconds_draw = seconds_since(start);
+    report.seconds_draw = watch.seconds();
     return result;
 }
 
-TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
+TetsResult render_tets(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
                        const TetsOptions& options) {
     check_samples(options.samples);
-    return TetsRenderer(mesh, scalar, options.progress).draw(view, optics, options);
+    return TetsRenderer(mesh, field, options.progress).draw(view, optics, options);
 }
 
 }  // namespace subvol

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kTetsPerCell = 6;
 constexpr std::size_t kMaxCells = (std::size_t{1} << 32) / (4 * kTetsPerCell) - 1;
 
-// Below this part of the cube over its longest edge a volume is rounding of the coordinates.
+// A volume below this part of the cube over the longest edge is only rounding of the coordinates.
 constexpr double kZeroVolume = 1e-13;
 
 struct FaceRecord {
@@ -64,7 +64,7 @@ void connect(TetMesh& mesh) {
             for (std::size_t k = i; k < end; ++k) mesh.boundary.push_back(faces[k].face);
         }
     }
-    std::sort(mesh.boundary.begin(), mesh.boundary.end());  // cell order: near in the list is near in space
+    std::sort(mesh.boundary.begin(), mesh.boundary.end());  // in the order of cells: neighbours in the list are near in space
 }
 
 enum class Shape { Regular, Degenerate, Inverted };
@@ -101,21 +101,7 @@ void count_shapes(TetMesh& mesh) {
 
 }  // namespace
 
-void check_tet_input(const HexMesh& mesh, std::span<const double> scalar) {
-    if (scalar.size() != mesh.points.size()) {
-        throw Error(ErrorCode::InvalidInput, "the scalar has " + std::to_string(scalar.size()) + " values", {},
-                    std::to_string(mesh.points.size()) + ", one a point");
-    }
-    validate(mesh);
-    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        for (const Index p : mesh.cells[c]) {
-            if (std::isfinite(scalar[p])) continue;
-            throw Error(ErrorCode::InvalidInput, "the scalar is not finite", "point " + std::to_string(p));
-        }
-    }
-}
-
-TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> scalar) {
+TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
     if (hexes.cells.size() > kMaxCells) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.cells.size()) + " cells", {},
                     "at most " + std::to_string(kMaxCells));
@@ -126,7 +112,7 @@ TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> scalar) {
     }
     TetMesh mesh;
     mesh.points.resize(hexes.points.size());
-    for_each_index(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], scalar[p]}; });
+    for_each_index(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], values[p]}; });
     mesh.tets.resize(kTetsPerCell * hexes.cells.size());
     for_each_index(hexes.cells.size(), [&](std::size_t c) {
         const auto split = split_cell(hexes.cells[c]);

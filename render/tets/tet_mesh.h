@@ -13,7 +13,8 @@ namespace subvol::detail {
 /// A face of a tetrahedron: 4 · tetrahedron + the corner opposite to it.
 using TetFace = Index;
 
-/// What lies across a face: the tetrahedron, and its corner that is not on the face. One number, for a walk loads it as one.
+/// What lies across a face: the tetrahedron and its corner that is not on the face, in one number, so that a walk loads both at
+/// once.
 class TetLink {
 public:
     TetLink() = default;
@@ -29,10 +30,10 @@ private:
     std::uint64_t bits_ = ~std::uint64_t{0};
 };
 
-/// A mesh of tetrahedra that knows its neighbours.
+/// A mesh of tetrahedra with their neighbours.
 ///
-/// links: of a tetrahedron half a cache line, one for each face, by the rank of the opposite corner's id among the four: so a
-///        walk, which knows the ids from the face that it came by, needs nothing else
+/// links: for each tetrahedron one link for each face, half a cache line in all, by the rank of the opposite corner's id among
+///        the four. A walk knows the ids from the face by which it came, so it reads nothing else
 struct TetMesh {
     struct Tet {
         std::array<Index, 4> corner;
@@ -59,21 +60,20 @@ struct TetMesh {
         return std::size_t{c[0] < c[k]} + std::size_t{c[1] < c[k]} + std::size_t{c[2] < c[k]} + std::size_t{c[3] < c[k]};
     }
 
-    // What a walk asks of any mesh.
+    // What `walk` needs of a mesh.
     [[nodiscard]] std::size_t tet_count() const { return tets.size(); }
     [[nodiscard]] const std::array<Index, 4>& corners_of_tet(Index tet) const { return tets[tet].corner; }
     [[nodiscard]] Index neighbor(Index tet, Index k) const { return links[tet][rank(tet, k)].tet(); }
     [[nodiscard]] const Point& point(Index id) const { return points[id]; }
 };
 
-/// throws: Error(InvalidInput) if there is not one finite value for every point of a cell, or the mesh is not valid
-void check_tet_input(const HexMesh& mesh, std::span<const double> scalar);
-
 /// Splits every cell into 6 and finds the neighbours by sorting the faces. A face of more than two tetrahedra is a boundary
-/// of each of them.
+/// face of each of them.
 ///
+/// mesh:   a valid one
+/// values: one for each point
 /// throws: Error(InvalidInput) if the mesh has more cells than 32-bit faces can number, or more points than 32 bits can
-/// cost:   O(n log n), parallel; about 120 bytes a tetrahedron while it sorts, 55 after
-[[nodiscard]] TetMesh build_tet_mesh(const HexMesh& mesh, std::span<const double> scalar);
+/// cost:   O(n log n), parallel; about 120 bytes for each tetrahedron while it sorts, 55 afterwards
+[[nodiscard]] TetMesh build_tet_mesh(const HexMesh& mesh, std::span<const double> values);
 
 }  // namespace subvol::detail

@@ -1,5 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for every instruction set; the best one is chosen where it runs.
+// One step of a walk through tetrahedra (tet_walk.cpp) for sixteen rays at once, one in each lane of the vectors. It does what
+// walk() does, with masks instead of branches, as the face by which a ray leaves is unpredictable:
+//
+//        c                  The ray came in through the face abc, drawn as the ray sees it: the ray is the point *.
+//       / \                 d is the fourth corner (the apex). The three edges a-d, b-d, c-d divide the face, and
+//      / * \                the signs of the areas (*,a,d), (*,b,d), (*,c,d) say which part contains *:
+//     /  d  \                  left of a-d, not left of c-d:  b is dropped, the ray leaves through c a d
+//    a-------b                 left of b-d, not left of a-d:  c is dropped, the ray leaves through a b d
+//                              else:                          a is dropped, the ray leaves through b c d
+//
+// The dropped corner is replaced by d, and the rank of its id among the four selects the link to the next tetrahedron. Areas
+// are rounded as in the scalar code (no fused operations), so both give the same bits. Lanes whose areas are too close to zero
+// are reported as undecided, and the caller traces those rays one by one with exact signs. docs/adr/0013 gives the reasons.
+// The walk from cell to cell is that of [garrity1990].
+//
+// Highway compiles this file once for every instruction set; the best one is chosen at run time.
 #include "tet_packet.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -19,7 +34,7 @@ using Doubles = hn::Vec<Lanes>;
 using Ints = hn::Vec<IntLanes>;
 using Mask = hn::Mask<Lanes>;
 
-/// `Side` of an edge, and whether its sign is certain.
+/// As Side, and whether the sign is certain.
 struct Sides {
     Doubles area;
     Mask left, certain;
@@ -46,7 +61,7 @@ HWY_ATTR inline void store(Doubles v, TetPacket::Row<double>& row, std::size_t i
     hn::Store(v, Lanes(), row.data() + i);
 }
 
-/// The lanes of one vector, from i on.
+/// Does the step for the lanes of one vector, from lane i on.
 class VectorStep {
 public:
     HWY_ATTR VectorStep(const TetMesh& mesh, TetPacket& packet, std::size_t i)
@@ -73,7 +88,7 @@ private:
 
     HWY_ATTR void see_apex() {
         const Lanes d;
-        const auto at = hn::ShiftLeft<2>(apex_);  // four numbers a point
+        const auto at = hn::ShiftLeft<2>(apex_);  // a point has four numbers
         const auto p = [&](std::size_t k) HWY_ATTR {
             const auto number = hn::GatherIndex(d, points_, hn::Add(at, load(packet_.axis[k], i_)));
             return hn::Sub(number, load(packet_.origin[k], i_));
@@ -85,7 +100,7 @@ private:
         value_ = hn::GatherIndex(d, points_, hn::Add(at, hn::Set(IntLanes(), 3)));
     }
 
-    /// Which corner a, b or c the apex takes the place of.
+    /// Finds which corner of a, b, c the apex replaces.
     HWY_ATTR void decide() {
         const auto side = [&](std::size_t k)
                               HWY_ATTR { return side_of(load(packet_.x[k], i_), load(packet_.y[k], i_), x_, y_); };
@@ -128,7 +143,7 @@ private:
         return v;
     }
 
-    /// As CrossedFace::crossing, and what integrate_walk makes of it.
+    /// As CrossedFace::crossing, and the stretch of ray that RayWalker would integrate.
     HWY_ATTR void cross_face() {
         const Lanes d;
         const auto zero = hn::Zero(d), one = hn::Set(d, 1.0);
@@ -148,7 +163,7 @@ private:
         const auto counts = hn::Gt(t, from);
         auto front = last_value;
         const auto late = hn::And(counts, hn::Gt(lit_t, last_t));
-        if (HWY_UNLIKELY(!hn::AllFalse(d, late))) {  // folded: depths up to lit_t have counted
+        if (HWY_UNLIKELY(!hn::AllFalse(d, late))) {  // folded mesh: depths up to lit_t have been integrated already
             const auto slope = hn::Div(hn::Sub(value, last_value), hn::Sub(t, last_t));
             front = hn::IfThenElse(late, hn::Add(last_value, hn::Mul(hn::Sub(from, last_t), slope)), front);
         }
@@ -161,7 +176,7 @@ private:
         store(value, packet_.here_value, i_);
     }
 
-    /// returns: where there is none
+    /// returns: the lanes that have no next tetrahedron
     HWY_ATTR hn::Mask<IntLanes> enter_next(hn::Mask<IntLanes> walking) {
         const IntLanes di;
         const auto low = hn::Set(di, 0xffffffff);

@@ -15,9 +15,7 @@ TetPacketTracer::TetPacketTracer(const TetMesh& mesh, const BoundaryScene& scene
 
 TraceCounts TetPacketTracer::counts() const {
     TraceCounts sum = one_by_one_.counts();
-    sum.rays += counts_.rays;
-    sum.segments += counts_.segments;
-    return sum;
+    return sum += counts_;
 }
 
 void TetPacketTracer::trace(std::span<const Ray> rays, std::span<Segment> seen) {

@@ -8,21 +8,21 @@
 
 namespace subvol::detail {
 
-/// Integrates many rays, some of them side by side in vectors. Those for which vectors do not do, at ties of edge signs and in
-/// meshes that fold over their boundary, go one by one: what comes out for a ray is in any case what TetTracer gives, to the
-/// last bit. Keeps scratch memory: one for each thread or tile.
+/// Integrates many rays, side by side in vectors. Rays with ties of edge signs, and rays through meshes that fold over their
+/// boundary, are traced one by one instead. In any case a ray gets the same bits as from TetTracer. Keeps scratch memory, so
+/// each thread or tile needs its own.
 class TetPacketTracer {
 public:
     TetPacketTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics);
 
-    /// The parts of the rays in front of their origins.
+    /// seen: the light along each ray, from its origin on
     void trace(std::span<const Ray> rays, std::span<Segment> seen);
     [[nodiscard]] TraceCounts counts() const;
 
 private:
     struct Lane {
         Lane(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics)
-            : plane(Ray{Vec3(0.0), Vec3(0.0, 0.0, 1.0)}), ends(mesh, scene), compositor(optics, kOpaque) {}
+            : plane(Ray{Vec3(0.0), Vec3(0.0, 0.0, 1.0)}), ends(mesh, scene), compositor(optics, kRayCutoff) {}
         std::size_t ray = 0;
         RayPlane plane;
         RayEnds ends;
@@ -44,7 +44,7 @@ private:
     TraceCounts counts_;
     std::vector<Lane> lanes_;
     TetPacket packet_;
-    std::uint32_t walking_ = 0;  // lanes, bit by bit
+    std::uint32_t walking_ = 0;  // a bit for each lane
     std::span<const Ray> rays_;
     std::span<Segment> seen_;
     std::size_t next_ = 0;

@@ -8,16 +8,14 @@ Segment TetTracer::trace(const Ray& ray) {
     ends_.find(plane, ray);
     if (ends_.empty()) return {};
     ++counts_.rays;
-    const double speed = glm::length(ray.direction);
-    LitDepth state;
+    RayWalker walker(ray, plane, compositor_, counts_);
     for (TetFace start; (start = ends_.first_unwalked()) != kNone;) {
-        TetFace other = start;
-        const WalkOutcome outcome = walk_between(mesh_, plane, start, speed, compositor_, state, other, counts_.segments);
-        if (outcome == WalkOutcome::Lost) ++counts_.lost_rays;
-        if (outcome == WalkOutcome::Lost || outcome == WalkOutcome::Opaque) break;
-        ends_.mark_walked(plane, start, other);
+        const Walk walk = walker.between(mesh_, start);
+        if (walk.outcome == WalkOutcome::Lost) ++counts_.lost_rays;
+        if (walk.outcome == WalkOutcome::Lost || walk.outcome == WalkOutcome::Opaque) break;
+        ends_.mark_walked(plane, start, walk.end);
     }
-    return state.light;
+    return walker.light();
 }
 
 }  // namespace subvol::detail

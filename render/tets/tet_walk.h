@@ -16,7 +16,7 @@ struct Crossing {
     double value = 0;
 };
 
-/// A face that the ray crosses: its corners as seen, counter-clockwise about the ray, and the sides of its edges.
+/// A face that the ray crosses: its corners in the ray's coordinates, counter-clockwise about it, and the sides of its edges.
 struct CrossedFace {
     std::array<SeenPoint, 3> corner;
     std::array<Side, 3> side;  // of edges 0→1, 1→2, 2→0; all left
@@ -31,7 +31,7 @@ struct CrossedFace {
     }
 };
 
-/// The triangle as the ray crosses it; nothing if it does not.
+/// The triangle if the ray crosses it.
 [[nodiscard]] std::optional<CrossedFace> cross_triangle(const std::array<SeenPoint, 3>& corners);
 
 template <class Mesh>
@@ -46,11 +46,12 @@ template <class Mesh>
     return cross_triangle({see(mesh, plane, a), see(mesh, plane, b), see(mesh, plane, c)});
 }
 
-/// Follows a ray from a boundary face through the mesh to another boundary face. Because the signs of edges fit together, a
-/// tetrahedron that is entered has exactly one other face that the ray crosses: the walk cannot fail or turn in circles, in
-/// flat or inverted tetrahedra either (there t stands still or runs back).
+/// Follows a ray from a boundary face through the mesh to another boundary face. Because the signs of edges are consistent, a
+/// tetrahedron that is entered has exactly one other face that the ray crosses. So the walk cannot fail or turn in circles, not
+/// even in flat or inverted tetrahedra (there t stands still or runs back).
 ///
-/// visit: bool(Crossing): called at every face crossed after the first; false ends the walk
+/// face:    `start` as the ray crosses it
+/// visit:   bool(Crossing), called at every face crossed after the first; false ends the walk
 /// returns: the boundary face at the end; nothing if visit ended the walk
 template <class Mesh, class Visit>
 std::optional<TetFace> walk(const Mesh& mesh, const RayPlane& plane, TetFace start, CrossedFace face, const Visit& visit) {

@@ -13,10 +13,10 @@ namespace subvol::test {
 
 using namespace detail;
 
-/// Of distance², a triangle's area as seen by the ray: its sides are rounding.
+/// A triangle's area as seen by the ray, in parts of its distance², below which it is rounding.
 inline constexpr double kThin = 1e-14;
 
-/// Whether the corners of a whole cell are numbered the other way about.
+/// Whether the corners of the cells are numbered in the opposite orientation.
 inline bool left_handed(const TetMesh& mesh, std::size_t cell) {
     double volume = 0;
     for (std::size_t t = 6 * cell; t < 6 * cell + 6; ++t) {
@@ -26,7 +26,7 @@ inline bool left_handed(const TetMesh& mesh, std::size_t cell) {
     return volume < 0;
 }
 
-/// Length of the line where the boundary winds about it, in front of the ray's origin: by all triangles, one after the other,
+/// The length of the ray, from its origin on, for which the boundary's winding number is not 0: from all triangles one by one,
 /// without any adjacency.
 inline double length_inside(const TetMesh& mesh, const Ray& ray) {
     struct Cut {
@@ -43,7 +43,7 @@ inline double length_inside(const TetMesh& mesh, const Ray& ray) {
                      c = dot(ray.direction, cross(p[2], p[0]));
         if ((a > 0) != (b > 0) || (b > 0) != (c > 0)) continue;
         if (std::abs(a + b + c) < kThin * glm::length(ray.direction) * dot(p[0], p[0])) continue;
-        // Which side is inside is said by the numbers, not the shape, of a tetrahedron: so that folds cancel.
+        // The inner side follows from the numbering of a tetrahedron, not from its shape, so that folds cancel.
         const int parity = (face % 4 % 2 == 0 ? 1 : -1) * (left_handed(mesh, face / 24) ? -1 : 1);
         cuts.push_back({dot(p[0], normal) / dot(ray.direction, normal), (a > 0 ? 1 : -1) * parity});
     }
@@ -57,11 +57,12 @@ inline double length_inside(const TetMesh& mesh, const Ray& ray) {
     return length * glm::length(ray.direction);
 }
 
-/// Of the diagonal: how far beside a ray the boundary is crossed.
+/// The offset of the rays beside a ray, in diagonals.
 inline constexpr double kBeside = 1e-6;
 
-/// How far a length inside, in diagonals, is from that of the boundary beside the ray. A ray along the boundary is inside or
-/// outside, or by turns: if it is off by more than `tolerance`, it has to lie between those of eight rays beside it.
+/// The difference of a length inside, in diagonals, from that between the boundary's crossings. A ray along the boundary is
+/// inside or outside or alternates: if the difference exceeds `tolerance`, the length has to lie between those of eight rays
+/// beside it.
 inline double length_error(const TetMesh& mesh, const Ray& ray, double length, double diagonal, double tolerance) {
     const Vec3 right = normalize(cross(ray.direction, Vec3(0.3, 0.5, 0.8))), up = normalize(cross(right, ray.direction));
     const auto error = [&](int count) {
@@ -79,7 +80,7 @@ inline double length_error(const TetMesh& mesh, const Ray& ray, double length, d
     return one > tolerance ? error(8) : one;
 }
 
-/// Along axes, diagonals of faces and diagonals of a cube: 26.
+/// The 26 directions along axes, diagonals of faces and diagonals of a cube.
 inline std::vector<Vec3> directions() {
     std::vector<Vec3> all;
     for (int k = 0; k < 27; ++k) {

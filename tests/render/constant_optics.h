@@ -12,7 +12,7 @@ inline Optics constant_optics() {
     return {{{{0, {1, 1, 1}}}, {{0, 0.5}}}, 1.0};
 }
 
-/// Its opacity over a length.
+/// Their opacity over a length.
 inline double constant_alpha(double length) {
     return -std::expm1(-std::log(2.0) * length);
 }

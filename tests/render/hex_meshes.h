@@ -7,6 +7,7 @@
 #include <functional>
 #include <numeric>
 #include <random>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -14,7 +15,9 @@
 
 namespace subvol::test {
 
-/// A lattice of n.x × n.y × n.z cells over [0,1]³, those that `keep` (given a cell's lower corner in the lattice) wants.
+/// A lattice of n.x × n.y × n.z cells over [0,1]³.
+///
+/// keep: whether the cell with that lower corner is there
 inline HexMesh lattice(
     std::array<Index, 3> n, const std::function<bool(Index, Index, Index)>& keep = [](Index, Index, Index) { return true; }) {
     HexMesh mesh;
@@ -52,12 +55,12 @@ inline HexMesh jittered_box(Index n, double amount, unsigned seed) {
     return mesh;
 }
 
-/// Two thirds of a box: the cells with x < ½ or z < ½ are there, so rays along the top leave the mesh.
+/// The cells of a box with x < ½ or z < ½. The mesh is not convex: rays along the top leave it.
 inline HexMesh l_shape(Index n) {
     return lattice({n, n, n}, [n](Index i, Index, Index k) { return 2 * i < n || 2 * k < n; });
 }
 
-/// The ball of radius 1 about the origin: concentric cubes to concentric spheres.
+/// The ball of radius 1 around the origin: concentric cubes are mapped to concentric spheres.
 inline HexMesh ball(Index n) {
     HexMesh mesh = box(n);
     for (Vec3& p : mesh.points) {
@@ -69,7 +72,7 @@ inline HexMesh ball(Index n) {
     return mesh;
 }
 
-/// The mesh with its points numbered by position, as dense grids number theirs: then both split cells alike.
+/// The mesh with its points numbered by position, as in dense grids, so that both split cells alike.
 inline HexMesh numbered_by_position(const HexMesh& mesh) {
     std::vector<Index> order(mesh.points.size()), rank(mesh.points.size());
     std::iota(order.begin(), order.end(), Index{0});
@@ -93,6 +96,18 @@ inline std::vector<double> evaluate(const HexMesh& mesh, const std::function<dou
     std::vector<double> values;
     for (const Vec3& p : mesh.points) values.push_back(field(p));
     return values;
+}
+
+/// The mesh with these values as its only attribute.
+inline HexMesh valued(HexMesh mesh, std::span<const double> values) {
+    mesh.attributes = {{"value", 1, {values.begin(), values.end()}}};
+    return mesh;
+}
+inline HexMesh valued(const HexMesh& mesh, double value) {
+    return valued(mesh, std::vector<double>(mesh.points.size(), value));
+}
+inline HexMesh valued(const HexMesh& mesh, const std::function<double(const Vec3&)>& field) {
+    return valued(mesh, evaluate(mesh, field));
 }
 
 }  // namespace subvol::test

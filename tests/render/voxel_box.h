@@ -48,7 +48,7 @@ private:
             for (unsigned k = 0; k < 8; ++k) {
                 const auto v = grid_.at({lower[0] + int(k & 1), lower[1] + int(k >> 1 & 1), lower[2] + int(k >> 2)});
                 if (v) corners.active |= 1u << k;
-                corners.values[k] = v.value_or(1e9);  // never to be seen
+                corners.values[k] = v.value_or(1e9);  // must never be used
             }
             return corners;
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drivers' own are too coarse for 1 − exp(−x) near 0; this is good to the last bit or two, and the same everywhere.
+// The drivers' own functions are too coarse for 1 − exp(−x) near 0. These are right to the last bit or two, and the same on
+// every device.
 float exp_of(float x) {
     x = clamp(x, -87.0, 87.0);
     precise float n = floor(fma(x, 1.44269504, 0.5));
@@ -11,7 +12,7 @@ float exp_of(float x) {
     return p;
 }
 
-// Of a normal number > 0.
+// The logarithm of a normal number > 0.
 float log_of(float x) {
     int bits = floatBitsToInt(x), power = (bits - 0x3f3504f3) >> 23;
     precise float m = intBitsToFloat(bits - (power << 23)), s = (m - 1.0) / (m + 1.0), q = s * s;

@@ -1,6 +1,6 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Where the keys of each bin begin, by halving: a bin without keys costs no more than a full one.
+// Finds where the keys of each bin begin, by bisection: a bin without keys costs no more than a full one.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Keys { uint keys[]; };
 layout(std430, binding = 1) writeonly buffer Offsets { uint offsets[]; };

@@ -1,12 +1,12 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Each value becomes the sum of those before it: in its block, and of the blocks before, whose sums have been scanned already.
+// Replaces each value by the sum of those before it: in its block, and in earlier blocks, whose sums have been scanned already.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) buffer Values { uint values[]; };
 layout(std430, binding = 1) readonly buffer Sums { uint sums[]; };
 layout(std430, binding = 2) readonly buffer Plan { uvec4 plan[]; };
 layout(location = 2) uniform uint level;
-layout(location = 3) uniform bool top;  // one block, nothing before it
+layout(location = 3) uniform bool top;  // there is one block, and nothing before it
 
 shared uint block[kPaddedBlock];
 

@@ -1,6 +1,6 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// How many groups each level of a scan takes: the sums of a level's blocks are the items of the next.
+// The number of groups of each level of a scan. The sums of a level's blocks are the items of the next level.
 layout(local_size_x = 1) in;
 layout(std430, binding = 0) writeonly buffer Plan { uvec4 plan[]; };
 layout(location = 2) uniform uint levels;

@@ -1,6 +1,7 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// How often each digit is in each block; all blocks of a digit lie together, so that a scan gives where the block's first goes.
+// Counts how often each digit occurs in each block. The counts of a digit lie side by side for all blocks, so that a scan gives
+// the place of the first item of each block.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Keys { uint keys[]; };
 layout(std430, binding = 1) writeonly buffer Counts { uint counts[]; };
@@ -14,7 +15,7 @@ void main() {
     barrier();
     for (uint k = 0u; k < kItems; ++k) {
         uint i = group * kBlock + k * kThreads + thread;
-        if (i < items) atomicAdd(block_counts[digit(keys[i])], 1u);  // a sum of integers: any order gives the same
+        if (i < items) atomicAdd(block_counts[digit(keys[i])], 1u);  // integers: the order of the additions does not matter
     }
     barrier();
     if (thread < (1u << bits) && group < blocks) counts[thread * blocks + group] = block_counts[thread];

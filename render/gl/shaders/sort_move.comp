@@ -1,7 +1,7 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// A pass of the sort: a block is sorted by its digit in shared memory, four bits at a time, then its runs of equal digits are
-// written to where the scanned counts say.
+// A pass of the sort: sorts a block by its digit in shared memory, four bits at a time, then writes its runs of equal digits to
+// the places given by the scanned counts.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer KeysIn { uint keys_in[]; };
 layout(std430, binding = 1) readonly buffer ValuesIn { uint values_in[]; };
@@ -12,13 +12,13 @@ layout(std430, binding = 5) readonly buffer Plan { uvec4 plan[]; };
 
 shared uint block_keys[kPaddedBlock];
 shared uint block_values[kPaddedBlock];
-shared uint counters[kPaddedBlock];  // 8 rows of a word a thread; a word counts two of the 16 digits in its halves
+shared uint counters[kPaddedBlock];  // 8 rows with a word for each thread; each half of a word counts one of the 16 digits
 shared uint starts[256];
 
 uint half_of(uint word, uint nibble) { return (word >> (16u * (nibble >> 3))) & 0xffffu; }
 
-// Each counter becomes the number of items that come before those it counts: of smaller digits, or of threads before. The upper
-// digits are in the upper halves and come after all the lower ones.
+// Replaces each counter by the number of items that come before those it counts: with smaller digits, or of earlier threads.
+// The upper eight digits are in the upper halves and come after all the lower ones.
 void scan_counters() {
     uint first = gl_LocalInvocationIndex * kItems, sum = 0u;
     for (uint k = 0u; k < kItems; ++k) sum += counters[padded(first + k)];
@@ -31,7 +31,7 @@ void scan_counters() {
     }
 }
 
-// Sorts the block by four bits of the digit; what is equal stays in order, as a thread's items are neighbours.
+// Sorts the block by four bits of the digit. The sort is stable, as the items of a thread are neighbours.
 void split(uint from_bit) {
     uint thread = gl_LocalInvocationIndex;
     uint key[kItems], value[kItems], rank[kItems];
@@ -60,7 +60,7 @@ void main() {
     uint total = plan[0].w, group = group_number(), thread = gl_LocalInvocationIndex, first = group * kBlock;
     uint items = first < total ? min(total - first, kBlock) : 0u;
     for (uint i = thread; i < kBlock; i += kThreads) {
-        // Beyond the end are the largest keys: they stay behind all others.
+        // The places beyond the end get the largest keys, which stay behind all others.
         block_keys[padded(i)] = i < items ? keys_in[first + i] : 0xffffffffu;
         block_values[padded(i)] = i < items ? values_in[first + i] : 0u;
     }

@@ -8,7 +8,7 @@
 #include "subvol/render_dense.h"
 #include "subvol/render_field.h"
 #include "subvol/render_grid.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
 #include "subvol/splat_options.h"

@@ -1,10 +1,10 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Classifies a sheet and composites what lies between it and the last one.
+// Classifies a sheet and composites the stretches of rays between it and the last one.
 layout(local_size_x = 8, local_size_y = 8) in;
 struct Last {
     float value, weight, depth;
-    uint interval;  // that the ray is in or comes to
+    uint interval;  // that the ray is in or reaches next
 };
 layout(binding = 0) uniform sampler2D sums;
 layout(binding = 1) uniform sampler2D more_sums;
@@ -14,11 +14,11 @@ layout(std430, binding = 12) buffer Beams { vec4 beams[]; };  // colour, transmi
 layout(std430, binding = 13) buffer Lasts { Last lasts[]; };
 layout(std430, binding = 14) buffer Looks { vec4 looks[]; };  // of the last sheet: second colour's value, light
 layout(std430, binding = 15) buffer Done { uint done_pixels; };
-uniform ivec4 rectangle;  // corners; the second is outside
+uniform ivec4 rectangle;  // two corners; the second one is outside
 uniform ivec2 size_px;
 uniform vec2 middle_px;
 uniform float pixel, front_z, back_z, near;
-uniform vec2 offsets;  // added to the value and the second colour's where sums are not normalised
+uniform vec2 offsets;  // are added to the values of both channels where sums are not normalised
 uniform bool first;
 
 bool is_known(float weight) {
@@ -67,7 +67,7 @@ void main() {
     Last last = lasts[id];
     uint end = intervals_end(id);
     if (last.interval >= end) return;
-    if (interval(last.interval).x >= back_z + 1.5 * (back_z - front_z)) {  // the next sheet will not need this one
+    if (interval(last.interval).x >= back_z + 1.5 * (back_z - front_z)) {  // the next sheet does not need these values
         if (last.weight != 0.0) lasts[id].weight = 0.0;
         return;
     }
@@ -87,12 +87,12 @@ void main() {
             vec2 inside = interval(last.interval);
             if (inside.x >= back_z) break;
             follow(beam, before, here, front_z, back_z, inside.x, inside.y, ray_length);
-            if (beam.transmittance < kOpaque) last.interval = end - 1u;
+            if (beam.transmittance < kSplatCutoff) last.interval = end - 1u;
             else if (inside.y > back_z) break;
         }
         beams[id] = vec4(beam.color, beam.transmittance);
         last.depth = beam.depth;
-        if (last.interval >= end) atomicAdd(done_pixels, 1u);  // each pixel once: the order does not matter
+        if (last.interval >= end) atomicAdd(done_pixels, 1u);  // integers: the order of the additions does not matter
     }
     lasts[id] = Last(here.value, here.weight, last.depth, last.interval);
 #if SHADED || COLORED

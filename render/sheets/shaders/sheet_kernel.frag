@@ -1,6 +1,6 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// What a kernel adds to the sums of a sheet.
+// The contribution of a kernel to the sums of a sheet.
 uniform vec2 middle_px;
 uniform float pixel, across;
 
@@ -12,7 +12,7 @@ flat in vec3 depths;
 
 layout(location = 0) out vec2 sums;  // w, w·v
 #if SHADED || COLORED
-layout(location = 1) out vec4 more_sums;  // w·∇v, w times the colour's v
+layout(location = 1) out vec4 more_sums;  // w·∇v, and w·v of the colour's channel
 #endif
 
 void main() {
@@ -36,7 +36,7 @@ void main() {
 #if BENT
     more.xyz += bend_gradient(bends[splat], d, zs);
 #endif
-    more.z -= dot(depths.xy, more.xy);  // offsets are from the section's middle, which moves with the depth
+    more.z -= dot(depths.xy, more.xy);  // offsets are relative to the section's middle, which moves with the depth
 #endif
 #if COLORED
     EyeColor c = colors[splat];

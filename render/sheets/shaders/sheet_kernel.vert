@@ -1,6 +1,6 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The section of a kernel with a sheet: a rectangle about it, two triangles each.
+// The section of a kernel with a sheet: a rectangle around it, as two triangles.
 layout(std430, binding = 6) readonly buffer Listed { uint listed[]; };
 uniform vec2 middle_px, size_px;
 uniform float sheet_z, across, to_pixels;  // across: world length of a unit of slope
@@ -27,7 +27,7 @@ void main() {
     int turn = gl_VertexID % 6, at = turn < 3 ? turn : turn - 2;  // corners 0 1 2, 1 2 3
     vec2 corner = vec2(at & 1, at >> 1) * 2.0 - 1.0;
     vec2 half_px = s.extent * sqrt(max(1.0 - e, 0.0)) * to_pixels + kMargin_px;
-    // Rows count downwards, in the target too. What is cut off is outside the picture.
+    // Rows run downwards, in the target too.
     vec2 at_px = middle_px + vec2(middle.x, -middle.y) * to_pixels + corner * half_px;
     gl_Position = vec4(clamp(at_px, vec2(-1.0), size_px + 1.0) / size_px * 2.0 - 1.0, 0.0, 1.0);
 }

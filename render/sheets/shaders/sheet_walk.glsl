@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// From sums to light, between two sheets: src/splat_composite-inl.h.
+// From sums to light, between two sheets; the same as splat_cpu/splat_composite-inl.h.
 
-// What a ray sees on a sheet. Values are in cells of their tables; light is a factor, and the white that is added.
+// The values of a ray on a sheet. Values are in cells of their tables; light is a factor, and white that is added.
 struct Seen {
     float value, weight, color;
     vec2 light;
     bool known;
 };
 
-// On its way from front to back; depth is weighted by opacity.
+// The state of a ray between two sheets; depth is weighted by opacity.
 struct Beam {
     vec3 color;
     float transmittance, depth;
 };
 
-// Without a boundary the volume ends where the weight, linear between sheets, falls below a level.
+// Without a boundary the volume ends where the sum of weights, linear between sheets, falls below a level.
 void cut_where_weights_end(Seen front, Seen back, float front_z, float back_z, inout float from, inout float to) {
     bool inside0 = front.weight > half_weight, inside1 = back.weight > half_weight;
     if (!inside0 && !inside1) to = from;
@@ -24,14 +24,14 @@ void cut_where_weights_end(Seen front, Seen back, float front_z, float back_z, i
     else from = max(from, crossing);
 }
 
-// Follows a beam between two sheets, where it is inside the volume: from `enter` to `exit`.
+// Composites the part of a ray between two sheets that is inside the volume: from `enter` to `exit`.
 void follow(inout Beam beam, Seen front, Seen back, float front_z, float back_z, float enter, float exit, float ray_length) {
     float from = max(enter, front_z), to = min(exit, back_z);
 #if !BOUNDED
     cut_where_weights_end(front, back, front_z, back_z, from, to);
 #endif
     if (!(from < to) || !(front.known || back.known)) return;
-    // An end that knows nothing is like the other.
+    // An end without a value is taken to be like the other.
     if (!front.known) front = back;
     if (!back.known) back = front;
     float slope = (back.value - front.value) * (1.0 / (back_z - front_z));
@@ -39,7 +39,7 @@ void follow(inout Beam beam, Seen front, Seen back, float front_z, float back_z,
     float x1 = to == back_z ? back.value : slope * (to - front_z) + front.value;
     if (transparent(x0, x1)) return;
     vec4 mean = means(place_of(x0), place_of(x1));
-    if (!(mean.x > 0.0)) return;  // nothing is left of rounding where there is nothing to see
+    if (!(mean.x > 0.0)) return;  // rounding must not leave light where there is none
     mean.yzw = min(mean.yzw, mean.xxx);
 #if COLORED
     mean.yzw = 0.5 * mean.x * (color_at(front.color) + color_at(back.color));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a value looks like: src/splat_classify-inl.h.
+// The optical properties of a value; the same as splat_cpu/splat_classify-inl.h.
 struct Row {
     ivec4 prefix;
     vec4 mean, bend;
@@ -11,7 +11,7 @@ layout(std430, binding = 7) readonly buffer Rows { Row rows[]; };
 layout(std430, binding = 8) readonly buffer Visible { int visible[]; };
 layout(std430, binding = 9) readonly buffer ColorRows { ColorRow color_rows[]; };
 
-// A value's place in the table, and the four integrals from its cell's lower end.
+// The place of a value in the table, and the four integrals from the lower end of its cell.
 struct Place {
     float x;
     ivec4 prefix;
@@ -20,7 +20,7 @@ struct Place {
 
 int row_of(float x) { return int(clamp(floor(x), -1.0, float(kCells))) + 1; }
 
-// How far a value lies in its row.
+// The place of a value within its row.
 float part_of(float x) { return x - clamp(floor(x), -1.0, float(kCells)); }
 
 Place place_of(float x) {
@@ -30,7 +30,7 @@ Place place_of(float x) {
     return Place(x, row.prefix, within);
 }
 
-// Mean extinction and emission of a stretch of ray between two values.
+// The mean extinction and emission of a stretch of ray between two values.
 vec4 means(Place front, Place back) {
     precise float dx = back.x - front.x;
     precise vec4 mean;
@@ -51,5 +51,5 @@ vec3 color_at(float x) {
     return color;
 }
 
-// Whether no value between two ends can be seen.
+// Whether all values between two ends are invisible.
 bool transparent(float x0, float x1) { return visible[row_of(max(x0, x1)) + 1] == visible[row_of(min(x0, x1))]; }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of src/boundary_intervals.cpp, bit for bit: where pixels are covered no rounding may differ, so every number that
-// decides it is `precise` or whole.
+// The rules of splat/boundary_intervals.cpp, bit for bit: coverage must not depend on rounding, so every number that decides
+// about it is `precise` or an integer.
 layout(std140, binding = 1) uniform Camera {
-    dvec4 right, up, forward;  // the last parts: the eye's x, y, z
-    dvec4 scale;               // pixel, middle depth, near depth from there
+    dvec4 right, up, forward;  // the last components: the eye's x, y, z
+    dvec4 scale;               // pixel, middle depth, near depth relative to it
     ivec2 size;
     bool perspective;
     uint points, triangles, most_hits;
@@ -11,13 +11,13 @@ layout(std140, binding = 1) uniform Camera {
 
 struct EyePoint {
     double x, y, z;
-    ivec2 px;  // in 1/4096
+    ivec2 px;  // in 1/4096 px
 };
 
 const int kSnap = 4096;
-const int kStrip_px = 32;  // pixels of a row that a thread looks at
+const int kStrip_px = 32;  // the pixels of a row that a thread works on
 
-// The 64 bits of (a − o) × (b − o): compared, they say on which side a point lies.
+// The 64-bit product (a − o) × (b − o), of which the sign gives the side on which a point lies.
 struct Product {
     int high;
     uint low;

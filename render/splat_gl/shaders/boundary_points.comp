@@ -1,11 +1,11 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The surface's points in eye space and on the picture.
+// The surface's points in eye space and in the picture.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer Positions { double positions[]; };
 layout(std430, binding = 1) writeonly buffer EyePoints { EyePoint eye_points[]; };
 
-// To the nearest, halves away from 0.
+// Rounds to the nearest integer, halves away from 0.
 int snap(double px) {
     precise double scaled = px * double(kSnap), low = floor(scaled), part = scaled - low;
     return int(low) + (part > 0.5lf || (part == 0.5lf && scaled > 0.0lf) ? 1 : 0);

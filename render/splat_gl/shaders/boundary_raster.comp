@@ -1,14 +1,14 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Which pixels the triangles cover. FILL 0 counts the hits of each pixel, FILL 1 writes them, in any order.
+// The pixels that the triangles cover. FILL 0 counts the hits of each pixel, FILL 1 writes them in any order.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer StripOffsets { uint strip_offsets[]; };
 layout(std430, binding = 1) readonly buffer EyePoints { EyePoint eye_points[]; };
 layout(std430, binding = 2) readonly buffer Triangles { uint corners[]; };
 layout(std430, binding = 3) readonly buffer Boxes { ivec4 boxes[]; };
-layout(std430, binding = 4) buffer Counts { uint counts[]; };  // of a pixel; FILL: how many are there already
+layout(std430, binding = 4) buffer Counts { uint counts[]; };  // of each pixel; FILL: the hits written so far
 layout(std430, binding = 5) readonly buffer HitOffsets { uint hit_offsets[]; };
-layout(std430, binding = 6) writeonly buffer Hits { vec2 hits[]; };  // depth from the middle, +1 where the ray enters
+layout(std430, binding = 6) writeonly buffer Hits { vec2 hits[]; };  // depth relative to the middle; +1 where the ray enters
 
 struct Plane {
     dvec3 normal;
@@ -32,7 +32,7 @@ double depth_at(Plane p, int x, int y) {
     return clamp(z, p.z_min, p.z_max);
 }
 
-// Of two triangles that share an edge, exactly one owns the points on it.
+// Whether the triangle with the edge ab owns the points on it; its neighbour has the edge as ba.
 bool owns_edge(ivec2 a, ivec2 b) { return a.y != b.y ? b.y > a.y : b.x < a.x; }
 
 bool inside_edge(ivec2 a, ivec2 b, ivec2 p) {
@@ -44,7 +44,8 @@ void cover(uint id, uint strip) {
     EyePoint a = eye_points[corners[3u * id]], b = eye_points[corners[3u * id + 1u]], c = eye_points[corners[3u * id + 2u]];
     ivec4 box = boxes[id];
     int y = box.y + int(strip) / box.z, x0 = box.x + int(strip) % box.z * kStrip_px, x1 = min(x0 + kStrip_px - 1, box.w);
-    // Counter-clockwise from outside has negative area where it faces us: picture rows run downwards.
+    // Triangles are counter-clockwise as seen from outside. As rows run downwards, the area is negative where they face the
+    // eye.
     bool enters = less_product(product(b.px.x - a.px.x, c.px.y - a.px.y), product(b.px.y - a.px.y, c.px.x - a.px.x));
     ivec2 second = enters ? c.px : b.px, third = enters ? b.px : c.px;
 #if FILL
@@ -65,7 +66,7 @@ void main() {
     uint total = strip_offsets[triangles];
     uint step_size = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kThreads;
     for (uint item = group_number() * kThreads + gl_LocalInvocationIndex; item < total; item += step_size) {
-        uint low = 0u, high = triangles - 1u;  // the last triangle that begins at or before the strip
+        uint low = 0u, high = triangles - 1u;  // finds the last triangle that begins at or before the strip
         while (low < high) {
             uint middle = (low + high + 1u) / 2u;
             if (strip_offsets[middle] <= item) low = middle;

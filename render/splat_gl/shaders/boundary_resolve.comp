@@ -1,12 +1,12 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The hits of each pixel, sorted, become intervals in the same place.
+// Sorts the hits of each pixel and replaces them by intervals.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer HitOffsets { uint hit_offsets[]; };
 layout(std430, binding = 1) buffer Hits { vec2 hits[]; };
 layout(std430, binding = 2) writeonly buffer IntervalRanges { uvec2 interval_ranges[]; };  // first, end
 
-// Where two shells touch, leaving comes after entering: no gap opens between them.
+// Where two shells touch, the entry into one comes before the exit from the other: no gap opens.
 bool before(vec2 l, vec2 r) { return l.x != r.x ? l.x < r.x : l.y > r.y; }
 
 void sort_hits(uint first, uint end) {
@@ -19,7 +19,7 @@ void sort_hits(uint first, uint end) {
 }
 
 uint resolve(uint first, uint end) {
-    int inside = 0;  // how many solids the eye is in
+    int inside = 0;  // number of shells that the eye is in
     for (uint i = first; i < end; ++i) inside -= int(hits[i].y);
     inside = max(inside, 0);
     float enter = float(scale.z);

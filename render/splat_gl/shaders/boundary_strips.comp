@@ -1,13 +1,13 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The pixels that each triangle may cover, and in how many strips of a row that is.
+// The pixels that each triangle may cover, and the number of strips of rows that they need.
 layout(local_size_x = 256) in;
 layout(std430, binding = 1) readonly buffer EyePoints { EyePoint eye_points[]; };
 layout(std430, binding = 2) readonly buffer Triangles { uint corners[]; };
 layout(std430, binding = 3) writeonly buffer Boxes { ivec4 boxes[]; };  // first x, y; strips in a row; last x
 layout(std430, binding = 4) writeonly buffer Strips { uint strips[]; };
 
-// Of a snapped place: the first pixel whose centre is at it or beyond, the last whose centre is at it or before.
+// The first pixel whose centre is at a snapped place or beyond, and the last whose centre is at it or before.
 int first_pixel(int snapped) { return (snapped + kSnap / 2 - 1) >> 12; }
 int last_pixel(int snapped) { return (snapped - kSnap / 2) >> 12; }
 

@@ -1,14 +1,14 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// A work group a tile, a thread a pixel; batches of sheets front to back, sums in registers. No order depends on chance, and no
-// number on where tiles and batches begin: pictures are bitwise repeatable.
+// A work group for each tile, a thread for each pixel; batches of sheets from front to back, with sums in registers. Every
+// order is fixed, and no number depends on where tiles and batches begin: pictures are bitwise reproducible.
 layout(local_size_x = kTile, local_size_y = kTile) in;
 layout(std430, binding = 2) readonly buffer Ranges { vec2 ranges[]; };
 layout(std430, binding = 11) writeonly buffer Picture { vec4 picture[]; };
 layout(std430, binding = 12) writeonly buffer Depths { float depths[]; };
 struct State {
-    vec4 color;    // transmittance in the last part
-    vec4 going;    // depth, enter, exit; the interval's number
+    vec4 color;    // transmittance in the last component
+    vec4 going;    // depth, enter, exit; the number of the interval
     vec4 on_last;  // x, known, weight, color
     vec4 light;
 };
@@ -16,7 +16,7 @@ layout(std430, binding = 13) buffer States { State states[]; };  // of the pixel
 
 const int kNone = 0x7fffffff;
 
-// Three of each: one is read, one is written and one made ready, a barrier apart.
+// Three of each: one is read, one is written and one is cleared between two barriers.
 shared int next_batch[3];
 shared int range_low[3];
 shared int range_high[3];
@@ -24,7 +24,7 @@ shared int range_high[3];
 uint pixel_id;
 bool in_picture;
 uint step_number = 0u;
-int ranged = -2;  // the batch that `range` is of
+int ranged = -2;  // the batch to which `range` belongs
 vec2 range;
 
 int ordered(float f) {
@@ -86,7 +86,7 @@ void store() {
     depths[pixel_id] = opacity > 0.0 ? mean_depth : uintBitsToFloat(0x7f800000u);
 }
 
-// The batch in which the pixel needs a sheet first: that before its interval, and a little for rounding.
+// The first batch of which the pixel needs a sheet: with the sheet before its interval, and a little for rounding.
 int wanted_batch(int from) {
     if (enter_z == kNever) return kNone;
     float sheet = clamp((enter_z - first_depth) / sheet_distance - 1.01, 0.0, float(sheets - 1));
@@ -106,7 +106,7 @@ int vote(int from) {
     return next_batch[slot];
 }
 
-// What the values of a bin's kernels are within.
+// Bounds of the values of a bin's kernels.
 vec2 range_of(uint bin) {
     uint slot = step_number % 3u;
     vec2 own = vec2(kNever, -kNever);
@@ -123,8 +123,8 @@ vec2 range_of(uint bin) {
     return empty ? vec2(kNever, -kNever) : vec2(from_ordered(range_low[slot]), from_ordered(range_high[slot]));
 }
 
-// Whether no value between the sheets of a batch, and from the last sheet before it, can be seen. Where a pass begins that
-// sheet's kernels are not at hand, where it ends the next one needs the last values.
+// Whether all values between the sheets of a batch, and between it and the sheet before, are invisible. False for the first
+// batch of a pass, as the kernels of the sheet before are not there, and for the last one, as the next pass needs its values.
 bool invisible(int batch, uint bin) {
 #if CONVEX
     if (all_visible || (batch == first_batch && batch > 0) || (batch + 1 == end_batch && end_batch < batches)) return false;
@@ -168,7 +168,7 @@ Sheet first_sum() {
     return here_on(weights[0], values[0], color, gradient);
 }
 
-// The next sheet's sums come to the front: registers cannot be indexed.
+// Moves the next sheet's sums to the front, as registers cannot be indexed.
 void shift_sums() {
     for (int k = 0; k + 1 < kBatch; ++k) {
         weights[k] = weights[k + 1];
@@ -182,7 +182,7 @@ void shift_sums() {
     }
 }
 
-// Brings the pixels to the last sheet of a batch that was passed over.
+// Takes the values of the last sheet of a batch that was passed over.
 void look_back(uint bin, int batch) {
     sum_kernels(bin, batch * kBatch, 1u << (kBatch - 1), true);
     for (int k = 0; k + 1 < kBatch; ++k) shift_sums();
@@ -220,7 +220,7 @@ void main() {
     start_pixel(tile);
     load_state();
     uint first_bin = tile * uint(end_batch - first_batch);
-    bool passed_over = false;  // the batch before
+    bool passed_over = false;  // whether the batch before was passed over
     int batch = vote(first_batch), before = -2;
     while (batch < end_batch) {
         uint bin = first_bin + uint(batch - first_batch);

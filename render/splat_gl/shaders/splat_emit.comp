@@ -1,8 +1,8 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// A key and a kernel for each bin that a kernel meets. A thread an entry: it finds its kernel by halving.
+// Writes a key and a kernel for each bin that a kernel meets. Each thread writes an entry and finds its kernel by bisection.
 layout(local_size_x = 256) in;
-layout(std430, binding = 0) readonly buffer Offsets { uint offsets[]; };  // of each kernel's entries; the last is their number
+layout(std430, binding = 0) readonly buffer Offsets { uint offsets[]; };  // of each kernel's entries; the last one is the total
 layout(std430, binding = 1) readonly buffer Rects { uvec4 rects[]; };
 layout(std430, binding = 2) writeonly buffer Keys { uint keys[]; };
 layout(std430, binding = 3) writeonly buffer Ids { uint ids[]; };
@@ -10,7 +10,7 @@ layout(std430, binding = 3) writeonly buffer Ids { uint ids[]; };
 void main() {
     uint entry = group_number() * kThreads + gl_LocalInvocationIndex;
     if (entry >= min(offsets[kernels], most_entries)) return;
-    uint low = 0u, high = kernels - 1u;  // the last kernel that begins at or before the entry
+    uint low = 0u, high = kernels - 1u;  // finds the last kernel that begins at or before the entry
     while (low < high) {
         uint middle = (low + high + 1u) / 2u;
         if (offsets[middle] <= entry) low = middle;

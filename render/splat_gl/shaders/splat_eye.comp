@@ -1,12 +1,13 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Kernels to eye space, and how many (tile, batch) bins each one meets: what src/eye_splats.cpp and splat_frame.cpp do.
+// Converts kernels to eye space and counts the bins (tile, batch) that each one meets, as splat/eye_splats.cpp and
+// splat/splat_frame.cpp do.
 layout(local_size_x = 256) in;
 struct Kernel {
-    vec4 center;    // from the scene's middle; value
+    vec4 center;    // relative to the scene's middle; value
     vec4 frame;     // xx xy xz yy
     vec4 gradient;  // frame's yz, zz; gradient x, y
-    vec4 rest;      // gradient z, moment, how far the value goes from its middle over the support, unused
+    vec4 rest;      // gradient z, moment, largest difference of the value from its middle over the support, unused
 };
 layout(std430, binding = 0) readonly buffer Kernels { Kernel kernel[]; };
 layout(std430, binding = 1) readonly buffer KernelExtras { vec4 kernel_extras[]; };
@@ -17,7 +18,7 @@ layout(std430, binding = 5) writeonly buffer Rects { uvec4 rects[]; };    // x, 
 layout(std430, binding = 6) writeonly buffer Counts { uint counts[]; };
 layout(std430, binding = 7) buffer Total { uint total[2]; };  // 64 bits
 
-const uint kMostOfOne = 1u << 23;  // entries of one kernel
+const uint kMostOfOne = 1u << 23;  // the most entries of one kernel
 
 shared uint group_entries;
 
@@ -88,7 +89,7 @@ Splat splat_of(Kernel k, Section c) {
     return s;
 }
 
-// What a kernel's value stays within over its support, in cells; widened by more than rounding.
+// Bounds of a kernel's value over its support, in cells; widened by more than rounding.
 vec2 range_of(Kernel k, Splat s) {
     float bow = s.rest.y, spread = k.rest.z * abs(float(cells.x)) * 1.001 + 1e-5 * (abs(s.slope.y) + abs(bow)) + 0.01;
     return vec2(s.slope.y - spread + min(bow, 0.0), s.slope.y + spread + max(bow, 0.0));
@@ -102,13 +103,14 @@ vec2 pixels(float low, float high, float front, float back) {
     return vec2(min(low * a, low * b), max(high * a, high * b));
 }
 
-// First and last tile; none if the last is before the first. A pixel more on each side: rounding may not lose a kernel's rim.
+// First and last tile; none if the last is before the first. With a pixel more on each side, so that rounding does not lose a
+// kernel's rim.
 ivec2 tile_range(vec2 reach, int count, int pixels) {
     if (!(reach.y > -1.0) || !(reach.x < float(pixels) + 1.0)) return ivec2(0, -1);
     return ivec2(clamp((reach + vec2(-1.0, 1.0)) / float(kTile), 0.0, float(count - 1)));
 }
 
-// Half a sheet more on each side, likewise.
+// First and last batch, with half a sheet more on each side.
 ivec2 batch_range(float depth, float reach) {
     vec2 sheet = clamp((vec2(depth - reach, depth + reach) - first_depth) * (1.0 / sheet_distance), -1.0, float(sheets));
     ivec2 of_sheet = ivec2(max(int(sheet.x - 0.5), 0), min(int(sheet.y + 0.5), sheets - 1));
@@ -150,7 +152,7 @@ void main() {
         uint bins = find_bins(id, s);
         counts[id] = bins;
         atomicAdd(group_entries, min(bins, kMostOfOne));
-        if (bins > kMostOfOne) atomicAdd(total[1], 1u);  // too many, whatever the others have
+        if (bins > kMostOfOne) atomicAdd(total[1], 1u);  // too many, regardless of the other kernels
     }
     barrier();
     if (gl_LocalInvocationIndex != 0u || group_entries == 0u) return;

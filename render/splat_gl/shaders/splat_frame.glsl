@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the splatter's shaders know of a frame; src/gl_splat_frame.h has the same. The host puts in the constants: kReach, kBatch,
-// kTile and so on, what the scene has (BENT, COLORED …), and where a kernel's extras are.
+// The data of a frame for the splatter's shaders; the same as in gl_splat_frame.h. The host defines the constants kReach,
+// kBatch, kTile and so on, the features of the scene (BENT, COLORED …), and the places of a kernel's extras.
 layout(std140, binding = 0) uniform Frame {
-    dvec4 right, up, forward;  // rotation to eye space; the last parts: x, y of the middle there
-    dvec4 cells;               // value · x + y are cells of the table; z, w for the second channel
+    dvec4 right, up, forward;  // rotation to eye space; the last components: x, y of the middle there
+    dvec4 cells;               // value · x + y is in cells of the table; z, w for the second channel
     vec4 unit;                 // of the table's prefixes
     vec4 key;                  // towards the key light, of unit length
     vec4 material;             // ambient, diffuse, specular, shininess
@@ -18,7 +18,7 @@ layout(std140, binding = 0) uniform Frame {
 
 const float kNever = 3e38;
 
-// Ellipsoids in eye space: src/eye_splats.h says what the numbers are.
+// Ellipsoids in eye space: splat/eye_splats.h explains the numbers.
 struct Splat {
     vec4 place;   // center x, y, depth, 1 / S_zz
     vec4 shape;   // shear x, y, root xx, xy

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums of kernels on the sheets of a batch, for the pixel of each thread. Kernels are cut by the sheets once for the whole group
-// and laid in shared memory, a chunk at a time. Each block of 8×4 pixels knows which kernels it may meet, and on which sheets:
-// its threads go through these only, together.
+// Sums of kernels on the sheets of a batch, for the pixel of each thread. The group cuts kernels by the sheets and puts them
+// into shared memory, a chunk at a time. For each block of 8×4 pixels, bits mark the kernels and sheets that it may meet: its
+// threads go through these only, together.
 layout(std430, binding = 0) readonly buffer Splats { Splat splats[]; };
 layout(std430, binding = 1) readonly buffer SplatExtras { vec4 splat_extras[]; };
 layout(std430, binding = 3) readonly buffer BinOffsets { uint bin_offsets[]; };
@@ -12,11 +12,11 @@ const uint kPixels = uint(kTile) * uint(kTile);
 const uint kWords = kChunk / 32;
 const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBlocksY;
 
-shared vec4 cuts[kChunk * kBatch];  // of a kernel on a sheet: its middle x, y; e and value there
+shared vec4 cuts[kChunk * kBatch];  // of a kernel with a sheet: middle x, y; e and value there
 shared vec4 shapes[kChunk];         // root xx, xy, yy; moment
 shared vec2 gradients[kChunk];
-shared uint met_sheets[kChunk * kBlocks];  // a bit a sheet
-shared uint met_kernels[kWords * kBlocks];  // a bit a kernel
+shared uint met_sheets[kChunk * kBlocks];  // a bit for each sheet
+shared uint met_kernels[kWords * kBlocks];  // a bit for each kernel
 #if GENERAL
 shared vec4 rests[kChunk];  // depth, 1 / S_zz, value slope
 shared vec2 shears[kChunk];
@@ -25,8 +25,8 @@ shared vec2 shears[kChunk];
 shared vec4 extras[kChunk * kExtras];
 #endif
 
-uint block;      // of this thread's pixel
-vec2 ray;        // slopes of the pixel, absolute, so that tiles do not matter
+uint block;      // the block of this thread's pixel
+vec2 ray;        // slopes of the pixel's ray, which do not depend on the division into tiles
 float across[kBatch];  // world length of a unit of slope, on each sheet
 ivec2 tile_px;
 
@@ -41,7 +41,7 @@ precise vec3 gradient_sums[kBatch];
 
 float across_at(int sheet) { return perspective ? middle_depth + sheet_depth(sheet) : 1.0; }
 
-// Marks the blocks that a section with its middle at px may meet: half a pixel and a little for rounding more than it has.
+// Marks the blocks that a section with its middle at px may meet, with a margin of half a pixel and a little for rounding.
 void mark_blocks(uint j, uint k, vec2 px, vec2 half_size) {
     const vec2 kSize = vec2(8.0, 4.0);
     ivec2 first = max(ivec2(clamp((px - half_size) / kSize, -1.0, 64.0) + 1.0) - 1, 0);
@@ -78,9 +78,9 @@ void cut(uint j, uint k, uint id, int sheet, bool wanted) {
 #endif
 }
 
-// Lays kernels `first` to `end` in shared memory.
+// Puts kernels `first` to `end` into shared memory.
 void stage(uint first, uint end, int first_sheet, uint wanted_sheets) {
-    barrier();  // the last chunk has been used
+    barrier();  // until the last chunk is not used any more
     for (uint i = gl_LocalInvocationIndex; i < kChunk * kBlocks; i += kPixels) met_sheets[i] = 0u;
     for (uint i = gl_LocalInvocationIndex; i < kWords * kBlocks; i += kPixels) met_kernels[i] = 0u;
     barrier();
@@ -92,7 +92,7 @@ void stage(uint first, uint end, int first_sheet, uint wanted_sheets) {
 }
 
 #if !COMPACT
-// The kernel's table over [0,1], linear between its entries; 0 beyond.
+// The kernel's table over [0,1], linear between its entries, and 0 beyond.
 float profile(float t) {
     float at = min(t * kernel_cells, kernel_cells), cell = min(floor(at), kernel_cells - 1.0);
     float low = kernel_table[int(cell)], high = kernel_table[int(cell) + 1];
@@ -140,7 +140,7 @@ float color_of(uint j, vec3 d, float e) {
 #endif
 
 #if SHADED
-// Of what a kernel stands for, in eye space.
+// The gradient of the value that a kernel represents, in eye space.
 vec3 gradient_of(uint j, vec3 d) {
     vec4 shape = shapes[j], rest = rests[j];
     vec2 gradient = gradients[j], shear = shears[j];
@@ -157,7 +157,7 @@ vec3 gradient_of(uint j, vec3 d) {
     g.y += fma(b.z, d.z, 2.0 * fma(more.x, d.x, more.y * d.y));
     g.z += fma(2.0 * b.x, d.z, fma(b.y, d.x, b.z * d.y));
 #endif
-    // Offsets are from the section's middle, which moves with the depth.
+    // Offsets are relative to the section's middle, which moves with the depth.
     g.z = fma(-shear.x, g.x, fma(-shear.y, g.y, g.z));
     return g;
 }
@@ -193,7 +193,7 @@ void add_kernel(uint j, uint met, int first_sheet) {
     }
 }
 
-// Sums the wanted sheets of a batch; pixels that are not awake are left as they come.
+// Sums the wanted sheets of a batch; the sums of pixels that are not awake stay 0.
 void sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
     for (int k = 0; k < kBatch; ++k) {
         across[k] = across_at(first_sheet + k);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pixel on its way from front to back: src/splat_composite-inl.h.
+// Composites a pixel from front to back; the same as splat_cpu/splat_composite-inl.h.
 layout(std430, binding = 5) readonly buffer IntervalRanges { uvec2 interval_ranges[]; };  // first, end
 layout(std430, binding = 6) readonly buffer Intervals { vec2 intervals[]; };  // enter, exit
 
-// What a pixel sees on one sheet.
+// The values of a pixel on one sheet.
 struct Sheet {
     float x;  // in cells
     bool known;
@@ -15,7 +15,7 @@ struct Sheet {
 precise float transmittance;
 precise vec3 seen_color;
 precise float seen_depth;
-float enter_z, exit_z;  // the interval that the ray is in or comes to; enter = kNever: it is done
+float enter_z, exit_z;  // the interval that the ray is in or reaches next; enter = kNever: the ray is done
 uint interval, intervals_end;
 float ray_length;
 Sheet last;
@@ -29,7 +29,7 @@ void take_interval() {
     exit_z = depths.y;
 }
 
-// Without a boundary the volume ends where the weight, linear between sheets, falls below a level.
+// Without a boundary the volume ends where the sum of weights, linear between sheets, falls below a level.
 void cut_where_weights_end(float front, float back, float weight, inout float from, inout float to) {
     bool inside0 = last.weight > half_weight, inside1 = weight > half_weight;
     precise float part = (half_weight - last.weight) / (inside0 != inside1 ? weight - last.weight : 1.0);
@@ -38,7 +38,7 @@ void cut_where_weights_end(float front, float back, float weight, inout float fr
     to = inside1 ? to : min(to, crossing);
 }
 
-// The part of the ray between two sheets that lies in its interval.
+// Composites the part of the ray between two sheets that lies in its interval.
 void stretch(float front, float back, Sheet here, inout Place place, inout bool placed) {
     float from = max(enter_z, front), to = min(exit_z, back);
 #if UNBOUNDED
@@ -61,7 +61,7 @@ void stretch(float front, float back, Sheet here, inout Place place, inout bool 
     } else {
         mean = means(place_of(x0), place_of(x1));
     }
-    // Nothing is left of rounding where there is nothing to see, and no colour is brighter than 1.
+    // Rounding must not leave light where there is none, nor make a colour brighter than 1.
     if (!(mean.x > 0.0)) return;
     precise float depth = (to - from) * ray_length * mean.x, passes = exp_of(-depth), light = transmittance * (1.0 - passes);
     precise vec3 emission = min(mean.yzw, mean.x);
@@ -70,7 +70,7 @@ void stretch(float front, float back, Sheet here, inout Place place, inout bool 
 #endif
     precise float per_extinction = light / max(mean.x, 1e-37);
 #if SHADED
-    // An end that knows nothing is like the other.
+    // An end without a value is taken to be like the other.
     precise vec2 lit = 0.5 * ((last.known ? last.light : here.light) + (here.known ? here.light : last.light)) * vec2(per_extinction, light);
     seen_color += fma(vec3(lit.x), emission, vec3(lit.y));
 #else
@@ -85,13 +85,13 @@ void skip_to(Sheet here) {
     last_placed = false;
 }
 
-// Goes on to the sheet at depth `back`, on which the pixel sees `here`; the last one was at `front`.
+// Composites what lies between the last sheet, at `front`, and the next one, at `back` with the values `here`.
 void go(float front, float back, Sheet here) {
     Place place;
     bool placed = false;
     while (enter_z < back) {
         stretch(front, back, here, place, placed);
-        if (transmittance < kOpaque) {
+        if (transmittance < kSplatCutoff) {
             enter_z = exit_z = kNever;
             break;
         }

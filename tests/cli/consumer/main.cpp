@@ -16,7 +16,7 @@ int main() {
     const auto grids = subvol::rasterize(fine, std::vector{density.name}, {.resolution = 16});
     const subvol::View view(subvol::parse_camera("iso", bounds(fine)), 16, 16);
     const subvol::Optics optics(subvol::transfer_function_preset("viridis", 0, 1), 0.1);
-    const subvol::Image image = render_tets(fine, density.values, view, optics).image;
+    const subvol::Image image = render_tets(fine, density.name, view, optics).image;
     const bool right = fine.cells.size() == 8 * mesh.cells.size() && grids.front().report().active_voxels > 0 &&
                        compare_images(image, image).max == 0;
     return right ? 0 : 1;

@@ -20,6 +20,18 @@ double opacity(const Optics& optics, double value) {
     return -std::expm1(-optics.extinction(value) * optics.opacity_unit());
 }
 
+TEST(TransferFunctions, AreLinearBetweenKnotsAndConstantBeyond) {
+    const TransferFunction function{{{1, {1, 0, 0}}, {3, {0, 0.5, 1}}}, {{0, 0.25}, {2, 0.75}}};
+    EXPECT_EQ(color_at(function, 0), Vec3(1, 0, 0));
+    EXPECT_EQ(color_at(function, 1), Vec3(1, 0, 0));
+    EXPECT_EQ(color_at(function, 2.5), Vec3(0.25, 0.375, 0.75));
+    EXPECT_EQ(color_at(function, 9), Vec3(0, 0.5, 1));
+    EXPECT_EQ(alpha_at(function, -1), 0.25);
+    EXPECT_EQ(alpha_at(function, 0.5), 0.375);
+    EXPECT_EQ(alpha_at(function, 2), 0.75);
+    EXPECT_EQ(alpha_at(function, 5), 0.75);
+}
+
 TEST(Preset, EachIsValidOverAnyRange) {
     for (const char* name : {"viridis", "coolwarm", "grey", "bone", "xray", "isosurface", "surface", "constant"}) {
         for (const auto& [min, max] : {std::pair{-1.0, 1.0},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sequence of levels: pictures of dense grids, and of the tetrahedra of refined meshes, go to the limit's with the second
-// order, that of trilinear cells.
+// Convergence over levels: pictures of dense grids, and of the tetrahedra of refined meshes, converge to that of the limit with
+// the second order of trilinear cells.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 struct Sequence {
     const char* model;
     int resolution;
-    double part_of_view;  // seen: of the ball without its silhouette, which crosses pixel centres and is of lower order
+    double part_of_view;  // < 1 for the ball: without the silhouette, which crosses pixel centres and is of lower order
 };
 void PrintTo(const Sequence& sequence, std::ostream* out) {
     *out << sequence.model;
@@ -33,12 +33,10 @@ TEST_P(Levels, AreOfTheSecondOrderByDenseGridsAndByTetrahedra) {
     camera.fovy_deg *= GetParam().part_of_view;
     const View view(camera, 96, 96);
     const Optics optics(transfer_function_preset("viridis", -1, 1), box.diagonal() / 30);
-    const auto dense = [&](int levels) {
-        return render_dense(mesh, mesh.attributes[0].values, view, optics, {.levels = levels}).image;
-    };
+    const auto dense = [&](int levels) { return render_dense(mesh, {}, view, optics, {.levels = levels}).image; };
     const auto tets = [&](int levels) {
         const HexMesh fine = on_limit(refine(mesh, {.levels = levels}), Scheme::Mcq);
-        return render_tets(fine, fine.attributes[0].values, view, optics).image;
+        return render_tets(fine, {}, view, optics).image;
     };
     Image limit = dense(kFinest);
     const Image before = dense(kFinest - 1);

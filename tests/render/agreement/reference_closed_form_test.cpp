@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slab, ramp, ball and Gaussian by every reference renderer against their closed forms.
+// Slab, ramp, ball and Gaussian: every reference renderer against the closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,10 +17,11 @@ namespace {
 
 using test::Reference;
 
-constexpr double kTol = 1e-5;  // what is asked for, in linear light; double precision but for the image, and projected ones
+// The requirement, in linear light. All but the image and projected tetrahedra is in double precision.
+constexpr double kTol = 1e-5;
 const Vec3 kFront(0.9, 0.5, 0.1), kBack(0.2, 0.4, 0.8);
 
-/// Extinction `most` · value on [0,1], as near as α between knots comes to it: to D·most²/(8·knots²), 3e-7; colours from
+/// Extinction `most` · value on [0,1], up to the error of a linear α between knots, D·most²/(8·knots²) = 3e-7; colours from
 /// kFront at 0 to kBack at 1.
 Optics linear_extinction(double most) {
     constexpr double kUnit = 0.005;
@@ -47,7 +48,7 @@ Segment constant_light(double length) {
     return {-std::expm1(-length * std::numbers::ln2) * kFront, std::pow(0.5, length)};
 }
 
-/// ∫₀ˣ exp(t²) dt, by its series.
+/// ∫₀ˣ exp(t²) dt, by its power series.
 double exp_square_integral(double x) {
     double sum = 0, power = x;
     for (int n = 0; n < 200; ++n) {
@@ -57,7 +58,7 @@ double exp_square_integral(double x) {
     return sum;
 }
 
-/// A stretch on which extinction and colour go linearly from front to back [wms1998].
+/// A stretch on which extinction and colour are linear from front to back [wms1998].
 Segment linear_stretch(double front, double back, const Vec3& front_color, const Vec3& back_color, double length) {
     if (!(length > 0)) return {};
     const double zeta = std::exp(-length * (front + back) / 2), k = (back - front) / length;
@@ -77,7 +78,7 @@ Segment linear_stretch(double front, double back, const Vec3& front_color, const
     return {front_color * (1 - psi) + back_color * (psi - zeta), zeta};
 }
 
-/// What each pixel's ray should show.
+/// The expected light of each pixel's ray.
 template <class Expected>
 Image picture(const View& view, const Expected& expected) {
     Image image(view.width(), view.height());
@@ -128,7 +129,7 @@ Segment slab_light(const Ray& ray) {
     return constant_light(glm::length(ray.direction) / std::abs(ray.direction.z));
 }
 
-/// The value is z, but for a rim either side in which it stays.
+/// The value is z, except in a rim on either side, where it is constant.
 Segment ramp_light(const Ray& ray, double most, double rim) {
     const double slant = glm::length(ray.direction) / std::abs(ray.direction.z);
     const double front = ray.direction.z > 0 ? rim : 1 - rim, back = 1 - front;
@@ -152,7 +153,7 @@ TEST_P(ClosedForm, SlabHasTheLengthOfItsSlant) {
 TEST_P(ClosedForm, RampIsPsi) {
     constexpr double kMost = 3;
     const Optics optics = linear_extinction(kMost);
-    // Beyond the centres of the outermost voxels nothing is known: there the value stays.
+    // Beyond the centres of the outermost voxels the value is constant.
     const double rim = GetParam() == Reference::Voxels ? 0.5 / kSlabCells : 0;
     for (const View& view : slab_views()) {
         const Image image = draw(
@@ -183,21 +184,21 @@ std::function<double(const Vec3&)> gaussian(double sigma) {
 }
 
 TEST_P(ClosedForm, GaussianAlongLatticeLinesIsTheTrapezoidalRule) {
-    // Which for a Gaussian is right to exp(-2π²σ²/h²): here a ray through lattice points sees the closed form. Of the tails,
-    // 6e-7 are outside.
+    // The sum over a lattice is exact to exp(−2π²σ²/h²) for a Gaussian, so a ray through lattice points sees the closed form.
+    // The part of the tails outside is 6e-7.
     constexpr double kSigma = 0.2;
     constexpr int kCells = 16, kSize = 15;
     const Optics optics = white_linear_extinction();
     const View view({.eye = {0, 0, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .ortho_height = 2.0 * kSize / kCells}, kSize,
                     kSize);
-    const bool voxels = GetParam() == Reference::Voxels;  // whose centres are the lattice
+    const bool voxels = GetParam() == Reference::Voxels;  // their centres are the lattice
     const Box box{Vec3(voxels ? -1 - 1.0 / kCells : -1), Vec3(voxels ? 1 + 1.0 / kCells : 1)};
     const Image image = draw(box, voxels ? kCells + 1 : kCells, gaussian(kSigma), view, optics, 0);
     expect_light(image, view, [&](const Ray& ray) { return gaussian_light(ray, kSigma); });
 }
 
 TEST_P(ClosedForm, GaussianIsOfSecondOrderAndExtrapolatesToTheClosedForm) {
-    // Beyond the outermost centres voxels know nothing: there theirs has fallen to e⁻⁹.
+    // Beyond the outermost centres voxels have no value: there the field has fallen to e⁻⁹.
     const bool voxels = GetParam() == Reference::Voxels;
     const double sigma = voxels ? 0.25 : 1;
     const int coarsest = voxels ? 32 : 10;
@@ -224,14 +225,14 @@ test::VoxelBox voxel_ball(int n) {
     return {{Vec3(-1), Vec3(1)}, n, [](const Vec3& p) { return dot(p, p) <= 1 ? std::optional(1.0) : std::nullopt; }};
 }
 
-/// Of the ball, where it is made of n³ cells or voxels.
+/// The ball made of n³ cells or voxels.
 Image draw_ball(Reference reference, int n, const View& view, const Optics& optics) {
     if (reference == Reference::Voxels) return render_grid(voxel_ball(n), view, optics).image;
     const HexMesh mesh = test::ball(static_cast<Index>(n));
     return test::draw(reference, mesh, std::vector<double>(mesh.points.size(), 1.0), view, optics, kBallLevel);
 }
 
-/// Length of a ray in active voxels, from plane to plane of all of them.
+/// The length of a ray in active voxels, summed from plane to plane.
 double length_in_voxels(const test::VoxelBox& grid, const Ray& ray) {
     std::vector<double> cuts;
     for (int k = 0; k < 3; ++k) {
@@ -270,7 +271,7 @@ TEST_P(ClosedForm, BallHasTheChordsOfItsOwnFaces) {
     expect_light(image, ball_view(), [&](const Ray& ray) { return constant_light(length(ray)); });
 }
 
-/// RMS of the opacity's error where rays pass the centre by less than .9: silhouettes are of lower order.
+/// RMS of the opacity's error for rays that pass the centre at less than .9, as silhouettes are of lower order.
 double ball_error(Reference reference, int n) {
     const View view = ball_view();
     const Image image = draw_ball(reference, n, view, constant_optics());
@@ -292,7 +293,8 @@ double ball_error(Reference reference, int n) {
 TEST_P(ClosedForm, BallIsReachedWithItsOrder) {
     const double coarse = ball_error(GetParam(), 8), fine = ball_error(GetParam(), 32);
     RecordProperty("rms_8_32", std::to_string(coarse) + " " + std::to_string(fine));
-    // Facets miss the sphere by the square of their size; voxels are stairs, and those that a ray meets are a matter of chance.
+    // Facets differ from the sphere by the square of their size. Voxels are stairs, and which of them a ray meets is a matter
+    // of chance.
     const bool voxels = GetParam() == Reference::Voxels;
     EXPECT_NEAR(std::log2(coarse / fine) / 2, voxels ? 1 : 2, voxels ? 0.3 : 0.15);
 }

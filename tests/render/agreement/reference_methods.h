@@ -9,26 +9,27 @@
 #include "render/voxel_box.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 
 namespace subvol::test {
 
 /// The reference renderers.
-enum class Reference { Tets, Dense, Voxels, PtTopological, PtLists };
+enum class Reference { Tets, Dense, Voxels, ProjectedTopological, ProjectedLists };
 
-inline const std::vector<Reference> kReferences{Reference::Tets, Reference::Dense, Reference::Voxels, Reference::PtTopological,
-                                                Reference::PtLists};
+inline const std::vector<Reference> kReferences{Reference::Tets, Reference::Dense, Reference::Voxels,
+                                                Reference::ProjectedTopological, Reference::ProjectedLists};
 
 inline std::string name_of(Reference reference) {
-    return std::vector<std::string>{"Tets", "Dense", "Voxels", "PtTopological", "PtLists"}[static_cast<std::size_t>(reference)];
+    return std::vector<std::string>{"Tets", "Dense", "Voxels", "ProjectedTopological",
+                                    "ProjectedLists"}[static_cast<std::size_t>(reference)];
 }
 inline void PrintTo(Reference reference, std::ostream* out) {
     *out << name_of(reference);
 }
 
 [[nodiscard]] inline bool needs_gl(Reference reference) {
-    return reference == Reference::PtTopological || reference == Reference::PtLists;
+    return reference == Reference::ProjectedTopological || reference == Reference::ProjectedLists;
 }
 
 inline double largest_difference(const Image& a, const Image& b) {
@@ -40,25 +41,26 @@ inline double largest_difference(const Image& a, const Image& b) {
     return largest;
 }
 
-/// Over all four channels.
+/// The largest difference over all four channels.
 inline double rms(const Image& a, const Image& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
     return std::sqrt(sum / static_cast<double>(a.rgba.size()));
 }
 
-/// A field on a mesh; dense grids at `levels` of MCQ. Voxels have no mesh.
+/// Draws a field on a mesh; dense grids at `levels` of MCQ. Not for voxels, which have no mesh.
 inline Image draw(Reference reference, const HexMesh& mesh, std::span<const double> values, const View& view,
                   const Optics& optics, int levels = 1) {
     switch (reference) {
         case Reference::Tets:
-            return render_tets(mesh, values, view, optics).image;
+            return render_tets(valued(mesh, values), {}, view, optics).image;
         case Reference::Dense:
-            return render_dense(mesh, values, view, optics, {.levels = levels}).image;
-        case Reference::PtTopological:
-        case Reference::PtLists:
-            return render_projected_tets(mesh, values, view, optics,
-                                         {.order = reference == Reference::PtLists ? PtOrder::Lists : PtOrder::Topological})
+            return render_dense(valued(mesh, values), {}, view, optics, {.levels = levels}).image;
+        case Reference::ProjectedTopological:
+        case Reference::ProjectedLists:
+            return render_projected(
+                       valued(mesh, values), {}, view, optics,
+                       {.order = reference == Reference::ProjectedLists ? ProjectedOrder::Lists : ProjectedOrder::Topological})
                 .image;
         case Reference::Voxels:
             break;
@@ -66,7 +68,7 @@ inline Image draw(Reference reference, const HexMesh& mesh, std::span<const doub
     return {};
 }
 
-/// A field in a box, as `cells`³ cells with their inner points moved by up to `jitter` cell widths, or as so many voxels.
+/// Draws a field in a box, on `cells`³ cells with their inner points moved by up to `jitter` cell widths, or on as many voxels.
 inline Image draw(Reference reference, const Box& box, int cells, double jitter,
                   const std::function<double(const Vec3&)>& field, const View& view, const Optics& optics, int levels = 1) {
     if (reference == Reference::Voxels) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twisted block, whose exact picture is known, small enough for a test: who is how near to it.
+// The twisted block, of which the exact picture is known: the errors of the methods.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,12 +51,12 @@ TEST_P(TwistedBlock, SecondOrderSplatsBeatPlainOnesAndTheTrilinearMesh) {
         return rmse(render_splats(volume, view, optics_used, {.method = SplatMethod::Cpu, .sheets = 400}).image, exact);
     };
     const double plain = splat(Correction::None), second = splat(Correction::Second);
-    const double trilinear = rmse(render_tets(mesh, mesh.attributes[0].values, view, optics_used).image, exact);
-    // At 40 cells and 512² the ratio of plain to second order is 8; with cells twice as large higher orders take their part.
+    const double trilinear = rmse(render_tets(mesh, {}, view, optics_used).image, exact);
+    // At 40 cells and 512² the ratio of plain to second order is 8; with cells twice as large higher orders reduce it.
     EXPECT_LT(second, plain / 3);
     EXPECT_LT(second, trilinear / 3);
-    // The second-order error falls at least with the square of the cell size from .0002 and .0014 at 40 cells, with room for
-    // the third order; and an error at all says that the pictures are not two times the same one.
+    // The second-order error is .0002 and .0014 at 40 cells and grows with the square of the cell size, with room for the third
+    // order. It is not 0, so the pictures are not of the same method.
     EXPECT_LT(second, sharp ? .016 : .0024);
     EXPECT_GT(second, 1e-6);
 }

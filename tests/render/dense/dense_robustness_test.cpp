@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dense grids of real meshes by rays from 26 directions, one of each picture through a point of the grids: no ray is lost, and
-// the length inside is that between the entries and exits of the limit's boundary, found without any adjacency.
+// Rays through the dense grids of real meshes from 26 directions, one ray of each picture through a point of the grids: no ray
+// is lost, and the length inside equals that between the crossings of the limit's boundary, found without any adjacency.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace subvol {
 using namespace detail;
 namespace {
 
-constexpr double kLengthTol = 1e-4;  // of the diagonal: what is asked for; pictures are floats, 2e-7 of it
+constexpr double kLengthTol = 1e-4;  // of the diagonal: the requirement; pictures are floats, 2e-7 of it
 constexpr int kSize = 9;             // odd: there is a ray in the middle
 constexpr int kLevel = 1;
 
@@ -41,7 +41,7 @@ void expect_robust(const HexMesh& mesh, const std::string& name) {
                          .up = {0.1, 0.2, 1},
                          .ortho_height = 1.5 * diagonal},
                         kSize, kSize);
-        const auto result = render_dense(mesh, ones, view, optics, {.levels = kLevel});
+        const auto result = render_dense(valued(mesh, ones), {}, view, optics, {.levels = kLevel});
         EXPECT_EQ(result.report.lost_rays, 0u) << name;
         for (int y = 0; y < kSize; ++y) {
             for (int x = 0; x < kSize; ++x) {

@@ -22,7 +22,7 @@ using test::constant_alpha;
 using test::constant_optics;
 using test::evaluate;
 
-// Images are single precision; double everywhere before.
+// Images are in single precision, all before in double.
 constexpr double kFloatTol = 1e-6;
 
 Optics ramp_optics(double unit = 1) {
@@ -66,10 +66,10 @@ double largest_difference(const Image& a, const Image& b) {
     return largest;
 }
 
-/// The same volume by `refine` and the walk through the whole mesh of tetrahedra.
+/// The same volume drawn by render_tets after `refine`.
 Image by_tets(const HexMesh& mesh, const RefineOptions& options, const View& view, const Optics& optics) {
     const HexMesh fine = test::numbered_by_position(on_limit(refine(mesh, options), options.scheme.kind));
-    return render_tets(fine, fine.attributes[0].values, view, optics).image;
+    return render_tets(fine, {}, view, optics).image;
 }
 
 HexMesh with_field(HexMesh mesh, const std::function<double(const Vec3&)>& field) {
@@ -86,7 +86,7 @@ TEST(RenderDense, ConstantBoxHasAnalyticChords) {
     const std::vector<double> ones(mesh.points.size(), 1.0);
     for (const View& view : {straight_view(33), slanted_view(48)}) {
         for (const int levels : {0, 1, 3}) {
-            const auto result = render_dense(mesh, ones, view, constant_optics(), {.levels = levels});
+            const auto result = render_dense(valued(mesh, ones), {}, view, constant_optics(), {.levels = levels});
             EXPECT_EQ(result.report.lost_rays, 0u);
             EXPECT_EQ(result.report.blocks, 27u);
             EXPECT_EQ(result.report.micro_cells, 27u << (3 * levels));
@@ -105,8 +105,8 @@ TEST(RenderDense, RaysThroughLatticePointsAndEdgesAreExact) {
     const HexMesh mesh = test::box(2);
     const std::vector<double> ones(mesh.points.size(), 1.0);
     for (const int size : {5, 9, 17}) {  // pixel centres lie on lattice points, edges and diagonals of all levels
-        const auto result =
-            render_dense(mesh, ones, straight_view(size, double(size) / (size - 1)), constant_optics(), {.levels = 2});
+        const auto result = render_dense(valued(mesh, ones), {}, straight_view(size, double(size) / (size - 1)),
+                                         constant_optics(), {.levels = 2});
         EXPECT_EQ(result.report.lost_rays, 0u);
         for (int y = 1; y + 1 < size; ++y) {
             for (int x = 1; x + 1 < size; ++x) ASSERT_NEAR(result.image.pixel(x, y)[3], constant_alpha(1), kFloatTol);
@@ -115,7 +115,7 @@ TEST(RenderDense, RaysThroughLatticePointsAndEdgesAreExact) {
     for (const Vec3& direction : {Vec3(1, 1, 1), Vec3(1, 1, 0), Vec3(-1, 1, 1), Vec3(0, 1, -1)}) {
         const View view({.eye = Vec3(0.5) + 4.0 * direction, .target = Vec3(0.5), .up = {0.1, 0.2, 1}, .ortho_height = 1.0}, 41,
                         41);
-        const auto result = render_dense(mesh, ones, view, constant_optics(), {.levels = 2});
+        const auto result = render_dense(valued(mesh, ones), {}, view, constant_optics(), {.levels = 2});
         EXPECT_EQ(result.report.lost_rays, 0u);
         EXPECT_NEAR(result.image.pixel(20, 20)[3], constant_alpha(glm::length(direction)), kFloatTol);
     }
@@ -125,10 +125,10 @@ TEST(RenderDense, LinearFieldIsOneSegment) {
     const auto ramp = [](const Vec3& p) { return dot(Vec3(0.5, 0.2, 0.3), p); };
     const HexMesh mesh = test::jittered_box(4, 0.2, 5);
     const View view = slanted_view(48);
-    const auto dense = render_dense(mesh, evaluate(mesh, ramp), view, ramp_optics(), {.levels = 2});
-    // A box of one cell holds the same field exactly, if values follow positions: schemes are affine.
+    const auto dense = render_dense(valued(mesh, ramp), {}, view, ramp_optics(), {.levels = 2});
+    // Schemes are affine, so values that are linear in space stay linear, and a box of one cell has the same field exactly.
     const HexMesh one = test::box(1);
-    const auto exact = render_tets(one, evaluate(one, ramp), view, ramp_optics());
+    const auto exact = render_tets(valued(one, ramp), {}, view, ramp_optics());
     EXPECT_LT(largest_difference(dense.image, exact.image), kFloatTol);
     EXPECT_EQ(dense.report.lost_rays, 0u);
 }
@@ -137,8 +137,7 @@ TEST(RenderDense, BallHasItsOpticalDepth) {
     const View view({.eye = {0.3, 1, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .ortho_height = 2.2}, 64, 64);
     const auto error = [&](Index cells, int levels) {
         const HexMesh mesh = test::ball(cells);
-        const auto result =
-            render_dense(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics(), {.levels = levels});
+        const auto result = render_dense(valued(mesh, 1.0), {}, view, constant_optics(), {.levels = levels});
         EXPECT_EQ(result.report.lost_rays, 0u);
         double sum = 0;
         for (int y = 0; y < 64; ++y) {
@@ -152,8 +151,9 @@ TEST(RenderDense, BallHasItsOpticalDepth) {
         return std::sqrt(sum / (64 * 64));
     };
     const double coarse = error(8, 3), fine = error(16, 2);
-    // Off the control points the sphere is missed by what quadratic extrapolation at the cube's edges leaves: the third order
-    // of the cell size, so an eighth; silhouettes of single pixels blur that. Facets add the same little at equal fineness.
+    // Between control points the surface differs from the sphere by the error of quadratic extrapolation at the cube's edges:
+    // of third order in the cell size, so it falls to an eighth, blurred by the silhouettes of single pixels. Facets add the
+    // same small error at equal fineness.
     EXPECT_LT(fine, coarse / 4);
     EXPECT_LT(fine, 1e-3);
 }
@@ -166,8 +166,7 @@ TEST(RenderDense, IsTheWalkThroughTheRefinedMesh) {
             RefineOptions refine{.scheme = {scheme}, .levels = levels};
             for (const HexMesh* mesh : {&box, &ball}) {
                 const View view = mesh == &box ? slanted_view(40) : ball_view(40);
-                const auto dense = render_dense(*mesh, mesh->attributes[0].values, view, ramp_optics(0.3),
-                                                {.refine = refine, .levels = levels});
+                const auto dense = render_dense(*mesh, {}, view, ramp_optics(0.3), {.refine = refine, .levels = levels});
                 EXPECT_EQ(dense.report.lost_rays, 0u);
                 EXPECT_LT(largest_difference(dense.image, by_tets(*mesh, refine, view, ramp_optics(0.3))), kFloatTol)
                     << "scheme " << static_cast<int>(scheme) << " level " << levels;
@@ -179,7 +178,7 @@ TEST(RenderDense, IsTheWalkThroughTheRefinedMesh) {
 TEST(RenderDense, EyeInsideSeesWhatIsInFront) {
     const HexMesh mesh = with_field(test::jittered_box(3, 0.3, 7), waves);
     const View view({.eye = {0.3, 0.45, 0.62}, .target = {1, 0.5, 0.2}, .up = {0, 1, 0}, .fovy_deg = 100}, 48, 48);
-    const auto dense = render_dense(mesh, mesh.attributes[0].values, view, ramp_optics(0.3), {.levels = 2});
+    const auto dense = render_dense(mesh, {}, view, ramp_optics(0.3), {.levels = 2});
     EXPECT_LT(largest_difference(dense.image, by_tets(mesh, {.levels = 2}, view, ramp_optics(0.3))), kFloatTol);
 }
 
@@ -189,9 +188,7 @@ TEST(RenderDense, ConvergesToTheLimitWithTheSecondOrder) {
     const Optics optics({.color = {{-1, {.1, .2, .9}}, {0, {.9, .9, .9}}, {1, {.9, .2, .1}}},
                          .opacity = {{-1, .30}, {-.3, .05}, {0, 0}, {.3, .05}, {1, .40}}},
                         0.1);
-    const auto draw = [&](int levels) {
-        return render_dense(mesh, mesh.attributes[0].values, view, optics, {.levels = levels}).image;
-    };
+    const auto draw = [&](int levels) { return render_dense(mesh, {}, view, optics, {.levels = levels}).image; };
     std::vector<double> change;
     Image last = draw(1);
     for (int levels = 2; levels <= 5; ++levels) {
@@ -217,31 +214,28 @@ TEST(RenderDense, NearsTheExactFieldWithLevelsAndCells) {
         render_field([](const Vec3& x) { return TwistField{}.value(x); }, box, view, optics, {.step_world = .004});
     const auto error = [&](int cells, int levels) {
         const HexMesh mesh = make_model("twist", cells);
-        return rms(render_dense(mesh, mesh.attributes[0].values, view, optics, {.levels = levels}).image, exact);
+        return rms(render_dense(mesh, {}, view, optics, {.levels = levels}).image, exact);
     };
     const double control = error(16, 0), first = error(16, 1), second = error(16, 2);
     EXPECT_LT(first, control / 2.5);
     EXPECT_LT(second, first);
-    // What is left at level 2 is mostly the scheme's own error against the field: of more than second order.
+    // The error left at level 2 is mostly the scheme's error against the field, of more than second order.
     EXPECT_LT(second, error(8, 2) / 4);
 }
 
 TEST(RenderDense, LevelsRiseUntilThePictureStays) {
     const HexMesh mesh = with_field(make_model("ball", 2), waves);
     const View view = ball_view(32);
-    const auto result = render_dense(mesh, mesh.attributes[0].values, view, ramp_optics(0.3), {.image_tolerance = 2e-3});
+    const auto result = render_dense(mesh, {}, view, ramp_optics(0.3), {.image_tolerance = 2e-3});
     EXPECT_TRUE(result.report.converged);
     ASSERT_TRUE(result.report.image_change);
     EXPECT_LT(*result.report.image_change, 2e-3);
     const int levels = result.report.levels;
     ASSERT_GT(levels, 1);
-    const auto draw = [&](int l) {
-        return render_dense(mesh, mesh.attributes[0].values, view, ramp_optics(0.3), {.levels = l}).image;
-    };
+    const auto draw = [&](int l) { return render_dense(mesh, {}, view, ramp_optics(0.3), {.levels = l}).image; };
     EXPECT_EQ(draw(levels).rgba, result.image.rgba);
     EXPECT_NEAR(*result.report.image_change, rms(draw(levels), draw(levels - 1)), 1e-12);
-    const auto capped =
-        render_dense(mesh, mesh.attributes[0].values, view, ramp_optics(0.3), {.max_levels = 2, .image_tolerance = 1e-9});
+    const auto capped = render_dense(mesh, {}, view, ramp_optics(0.3), {.max_levels = 2, .image_tolerance = 1e-9});
     EXPECT_EQ(capped.report.levels, 2);
     EXPECT_FALSE(capped.report.converged);
 }
@@ -250,8 +244,7 @@ TEST(RenderDense, ThreadsAndMemoryChangeNoBit) {
     const HexMesh mesh = with_field(test::jittered_box(5, 0.35, 3), waves);
     const auto draw = [&](std::size_t threads, std::size_t memory) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return render_dense(mesh, mesh.attributes[0].values, slanted_view(90), ramp_optics(0.3),
-                            {.levels = 2, .memory = memory, .samples = 2});
+        return render_dense(mesh, {}, slanted_view(90), ramp_optics(0.3), {.levels = 2, .memory = memory, .samples = 2});
     };
     const auto one = draw(1, std::size_t{1} << 30), two = draw(2, std::size_t{1} << 30), little = draw(2, 600'000);
     EXPECT_EQ(one.report.passes, 1u);
@@ -270,38 +263,37 @@ TEST(RenderDense, InvisibleBlocksAreSkippedWithoutChange) {
     const HexMesh mesh = with_field(test::box(6), [](const Vec3& p) { return p.x; });
     const View view = slanted_view(48);
     const Optics optics({{{0, {1, 0, 0}}, {1, {0, 1, 1}}}, {{0.7, 0}, {0.75, 0.9}, {0.8, 0}}}, 0.2);
-    const auto dense = render_dense(mesh, mesh.attributes[0].values, view, optics, {.levels = 1});
+    const auto dense = render_dense(mesh, {}, view, optics, {.levels = 1});
     EXPECT_EQ(dense.report.blocks, 36u);  // the layer between x = 4/6 and 5/6
     EXPECT_EQ(dense.report.skipped_blocks, 180u);
     EXPECT_LT(largest_difference(dense.image, by_tets(mesh, {.levels = 1}, view, optics)), kFloatTol);
 }
 
 TEST(RenderDense, PlaceDoesNotMatter) {
-    // Quarters stay equal where they are equal: the order of positions, which decides how cells are split, is kept.
+    // Coordinates are quarters, so equal ones stay equal: the order of positions, which decides how cells are split, is kept.
     const HexMesh mesh = with_field(test::jittered_box(4, 0.3, 8), waves);
     const auto draw = [&](const Vec3& move) {
         HexMesh moved = mesh;
         for (Vec3& p : moved.points) p += move;
         const Camera camera{.eye = Vec3(2.1, 1.7, 2.9) + move, .target = Vec3(0.5) + move, .fovy_deg = 35};
-        const auto result = render_dense(moved, mesh.attributes[0].values, View(camera, 64, 64), ramp_optics(), {.levels = 2});
+        const auto result =
+            render_dense(valued(moved, mesh.attributes[0].values), {}, View(camera, 64, 64), ramp_optics(), {.levels = 2});
         EXPECT_EQ(result.report.lost_rays, 0u);
         return result.image;
     };
-    // At 1e6 a coordinate is rounded by 1e-10, which the steepest silhouette and field turn into less than 1e-7.
+    // At 1e6 a coordinate is rounded by 1e-10; the steepest silhouette and field make less than 1e-7 of it.
     EXPECT_LT(largest_difference(draw(Vec3(0)), draw(Vec3(1e6, -1e6, 1e6))), 1e-6);
 }
 
 TEST(RenderDense, TangledCellsLoseNoRay) {
     const HexMesh mesh = test::jittered_box(5, 0.9, 99);
     const View view = slanted_view(64);
-    const auto result =
-        render_dense(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics(), {.levels = 2});
+    const auto result = render_dense(valued(mesh, 1.0), {}, view, constant_optics(), {.levels = 2});
     EXPECT_EQ(result.report.lost_rays, 0u);
     for (const float value : result.image.rgba) ASSERT_TRUE(std::isfinite(value) && value >= 0 && value <= 1 + kFloatTol);
     HexMesh flat = test::box(2);
     for (Vec3& p : flat.points) p = Vec3(0.5);
-    const auto nothing =
-        render_dense(flat, std::vector<double>(flat.points.size(), 1.0), view, constant_optics(), {.levels = 1});
+    const auto nothing = render_dense(valued(flat, 1.0), {}, view, constant_optics(), {.levels = 1});
     for (const float value : nothing.image.rgba) ASSERT_EQ(value, 0.0f);
 }
 
@@ -310,12 +302,12 @@ TEST(RenderDense, RefusesWrongInput) {
     const std::vector<double> ones(8, 1.0);
     const View view = slanted_view(4);
     const Optics optics = constant_optics();
-    EXPECT_THROW((void)render_dense(mesh, std::vector<double>(7), view, optics), Error);
-    EXPECT_THROW((void)render_dense(mesh, std::vector<double>(8, std::nan("")), view, optics), Error);
-    EXPECT_THROW((void)render_dense(mesh, ones, view, optics, {.levels = 9}), Error);
-    EXPECT_THROW((void)render_dense(mesh, ones, view, optics, {.levels = -1}), Error);
-    EXPECT_THROW((void)render_dense(mesh, ones, view, optics, {.image_tolerance = 0}), Error);
-    EXPECT_THROW((void)render_dense(mesh, ones, view, optics, {.samples = 0}), Error);
+    EXPECT_THROW((void)render_dense(valued(mesh, std::vector<double>(7)), {}, view, optics), Error);
+    EXPECT_THROW((void)render_dense(valued(mesh, std::nan("")), {}, view, optics), Error);
+    EXPECT_THROW((void)render_dense(valued(mesh, ones), {}, view, optics, {.levels = 9}), Error);
+    EXPECT_THROW((void)render_dense(valued(mesh, ones), {}, view, optics, {.levels = -1}), Error);
+    EXPECT_THROW((void)render_dense(valued(mesh, ones), {}, view, optics, {.image_tolerance = 0}), Error);
+    EXPECT_THROW((void)render_dense(valued(mesh, ones), {}, view, optics, {.samples = 0}), Error);
 }
 
 }  // namespace

@@ -65,23 +65,23 @@ TEST(Progressive, WithoutTimeTheFirstPictureIsReturned) {
     EXPECT_EQ(result.splat.depth.size(), 64u * 64);
     const auto* pixel = &result.splat.image.rgba[4 * (32 * 64 + 32)];
     EXPECT_GT(pixel[3], .1f);
-    EXPECT_EQ(pixel[3], pixel[4 * 3 + 3]) << "a pixel of the small picture is four wide";
+    EXPECT_EQ(pixel[3], pixel[4 * 3 + 3]) << "a pixel of the small picture is four pixels wide";
 }
 
-TEST(Progressive, AWishToStopEndsTheWork) {
+TEST(Progressive, RequestToStopEndsTheWork) {
     Pictures pictures;
     pictures.stop_after = 2;
     try {
         (void)render_progressively(make_model("twist", 8), View(kCamera, 64, 64), optics(),
                                    {.seconds = 600, .splat = {.method = SplatMethod::Cpu}, .progress = &pictures});
-        FAIL() << "it went on";
+        FAIL() << "the work was not stopped";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::Cancelled);
     }
     EXPECT_EQ(pictures.images.size(), 2);
 }
 
-class ProgressivePt : public testing::Test {
+class ProgressiveProjected : public testing::Test {
 protected:
     void SetUp() override {
         if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
@@ -90,55 +90,56 @@ protected:
     View view_{kCamera, 70, 61};
 };
 
-TEST_F(ProgressivePt, PicturesComeNearerToTheExactOne) {
+TEST_F(ProgressiveProjected, PicturesConvergeToTheExactOne) {
     const auto& values = mesh_.attributes[0].values;
-    PtRenderer renderer(mesh_, values);
-    const auto exact = render_tets(mesh_, values, view_, optics()).image;
+    ProjectedRenderer renderer(valued(mesh_, values));
+    const auto exact = render_tets(valued(mesh_, values), {}, view_, optics()).image;
     Pictures pictures;
     const auto result = render_progressively(renderer, view_, optics(), {.seconds = 600, .progress = &pictures});
     EXPECT_TRUE(result.finished);
     EXPECT_EQ(result.lod, 1);
     ASSERT_EQ(pictures.images.size(), static_cast<std::size_t>(result.steps));
     ASSERT_GE(result.steps, 5);  // the boundary, three fractions, all
-    EXPECT_EQ(pictures.images.back().rgba, result.pt.image.rgba);
+    EXPECT_EQ(pictures.images.back().rgba, result.projected.image.rgba);
     double last = 1;
     for (int i = 0; i < 5; ++i) {
         const double error = rmse(pictures.images[static_cast<std::size_t>(i)], exact);
         EXPECT_LT(error, last) << i;
         last = error;
     }
-    EXPECT_LT(last, 1e-5);  // single precision, as in render_pt_test
+    EXPECT_LT(last, 1e-5);  // single precision, as in render_projected_test
 }
 
-TEST_F(ProgressivePt, WhatTheKBufferMissesListsFind) {
+TEST_F(ProgressiveProjected, ListsDrawWhatTheKBufferMisses) {
     for (Vec3& p : mesh_.points) p.z *= 0.02;  // flat cells
     const auto& values = mesh_.attributes[0].values;
-    PtRenderer renderer(mesh_, values);
-    const auto havs = renderer.draw(view_, optics(), {.order = PtOrder::Havs, .kbuffer = 1});
+    ProjectedRenderer renderer(valued(mesh_, values));
+    const auto havs = renderer.draw(view_, optics(), {.order = ProjectedOrder::Havs, .kbuffer = 1});
     ASSERT_GT(havs.report.late_faces, 0u);
-    const auto result = render_progressively(renderer, view_, optics(), {.seconds = 600, .pt = {.kbuffer = 1, .samples = 2}});
+    const auto result =
+        render_progressively(renderer, view_, optics(), {.seconds = 600, .projected = {.kbuffer = 1, .samples = 2}});
     EXPECT_TRUE(result.finished);
-    const auto lists = renderer.draw(view_, optics(), {.order = PtOrder::Lists, .samples = 2});
-    EXPECT_EQ(result.pt.image.rgba, lists.image.rgba);
+    const auto lists = renderer.draw(view_, optics(), {.order = ProjectedOrder::Lists, .samples = 2});
+    EXPECT_EQ(result.projected.image.rgba, lists.image.rgba);
 }
 
-TEST_F(ProgressivePt, WithoutTimeTheBoundaryIsReturned) {
-    PtRenderer renderer(mesh_, mesh_.attributes[0].values);
+TEST_F(ProgressiveProjected, WithoutTimeTheBoundaryIsReturned) {
+    ProjectedRenderer renderer(mesh_);
     const auto result = render_progressively(renderer, view_, optics(), {.seconds = 1e-9});
     EXPECT_EQ(result.steps, 1);
     EXPECT_EQ(result.lod, 0);
     EXPECT_FALSE(result.finished);
-    const auto boundary = renderer.draw(view_, optics(), {.order = PtOrder::Havs, .lod = 0});
-    EXPECT_EQ(result.pt.image.rgba, boundary.image.rgba);
+    const auto boundary = renderer.draw(view_, optics(), {.order = ProjectedOrder::Havs, .lod = 0});
+    EXPECT_EQ(result.projected.image.rgba, boundary.image.rgba);
 }
 
-TEST_F(ProgressivePt, AWishToStopEndsTheWork) {
-    PtRenderer renderer(mesh_, mesh_.attributes[0].values);
+TEST_F(ProgressiveProjected, RequestToStopEndsTheWork) {
+    ProjectedRenderer renderer(mesh_);
     Pictures pictures;
     pictures.stop_after = 2;
     try {
         (void)render_progressively(renderer, view_, optics(), {.seconds = 600, .progress = &pictures});
-        FAIL() << "it went on";
+        FAIL() << "the work was not stopped";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::Cancelled);
     }

@@ -17,7 +17,7 @@ Optics constant_optics(double alpha, double unit, const Vec3& color = {1, .5, .2
     return Optics({.color = {{0, color}, {1, color}}, .opacity = {{0, alpha}, {1, alpha}}}, unit);
 }
 
-/// A nested-cubes mesh drawn onto the unit ball: irregular inside, curved outside.
+/// Nested cubes mapped onto the unit ball: irregular inside, curved outside.
 HexMesh make_ball(Index n) {
     HexMesh mesh = test::make_nested_cubes(n);
     for (auto& p : mesh.points) {
@@ -56,7 +56,7 @@ std::vector<SplatMethod> methods() {
 }
 
 TEST(RenderSplats, AConstantFieldIsExactlyThatConstant) {
-    // A slab seen straight on: alpha = 1 − exp(−τL) wherever the box is, colour premultiplied; however kernels overlap.
+    // A slab seen straight on: alpha = 1 − exp(−τL) everywhere in the box, however kernels overlap; colours are premultiplied.
     HexMesh box = test::make_box(4, 3, 4);
     test::add_field(box, "f", [](const Vec3&) { return .7; });
     const double alpha = 1 - std::pow(1 - .3, 3 / 1.5);
@@ -82,7 +82,7 @@ TEST(RenderSplats, ABallHasItsClosedFormOpticalDepth) {
         for (int x = 0; x < 96; ++x) {
             const Vec2 p = view.slopes(x + .5, y + .5);
             const double b2 = p.x * p.x + p.y * p.y;
-            if (b2 > .97) continue;  // the silhouette is that of facets
+            if (b2 > .97) continue;  // near the silhouette, which is made of facets
             const double chord = 2 * std::sqrt(1 - b2);
             // The refined boundary's facets have sides h ≤ .16 and lie up to h²/4 = .0064 inside the sphere: twice that in
             // chord length, over the cosine of the angle to the surface.
@@ -102,7 +102,7 @@ TEST(RenderSplats, BackendsDrawTheSameImage) {
         const RbfVolume volume = sample_rbf_points(ball, {.correction = correction}).volume;
         const auto cpu = render_splats(volume, view, optics, {.method = SplatMethod::Cpu}).image;
         const auto gl = render_splats(volume, view, optics, {.method = SplatMethod::Gl}).image;
-        // The same operations in another order of rounding: 200 sheets of float sums.
+        // The same operations with other rounding: float sums on 200 sheets.
         EXPECT_LT(largest_difference(cpu, gl), 1e-4);
         double sum = 0;
         for (const float v : cpu.rgba) sum += v;
@@ -122,8 +122,8 @@ TEST(RenderSplats, TheImageDoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(RenderSplats, AHoleLetsTheBackgroundThrough) {
-    // A ring of cells about a square hole: a ray through it sees nothing, one beside it sees the ring, one across it sees two
-    // walls.
+    // A ring of cells around a square hole: a ray through the hole sees nothing, one beside it sees the ring, one across it
+    // sees two walls.
     HexMesh ring = test::make_box(3, 3, 1);
     ring.cells.erase(ring.cells.begin() + 4);
     test::add_field(ring, "f", [](const Vec3&) { return .5; });
@@ -163,12 +163,12 @@ TEST(RenderSplats, HalvingTheSheetDistanceQuartersTheError) {
         return std::sqrt(sum / double(image.rgba.size()));
     };
     const double coarse = rmse(draw(33)), fine = rmse(draw(65));
-    EXPECT_GT(coarse / fine, 3.0);  // second order is 4; entries and exits between sheets take a little of it
+    EXPECT_GT(coarse / fine, 3.0);  // second order would be 4; entries and exits between sheets reduce it a little
     EXPECT_LT(fine, 1e-3);
 }
 
 TEST(RenderSplats, ValuesBeyondTheKnotsKeepTheEndsOpacity) {
-    // The function has its knots far above the field, which is steep: nothing may be seen. Then far below: the last opacity.
+    // The knots are far above the values of a steep field: nothing is visible. Then far below: the last opacity everywhere.
     HexMesh box = test::make_box(3, 3, 3);
     test::add_field(box, "f", [](const Vec3& p) { return p.x + p.y; });
     const RbfVolume volume = sample(box);
@@ -184,7 +184,7 @@ TEST(RenderSplats, ValuesBeyondTheKnotsKeepTheEndsOpacity) {
 }
 
 TEST(RenderSplats, ASmallRangeBesideALargeValueIsDrawn) {
-    // The same field, once from 0 to 1 and once from 4096 to 4097: sums over kernels may not lose what the values still have.
+    // The same field, once from 0 to 1 and once from 4096 to 4097: sums over kernels must not lose digits that the values have.
     HexMesh box = test::make_box(3, 3, 3);
     const View view(orthographic(4), 24, 24);
     for (const SplatMethod method : methods()) {
@@ -263,7 +263,7 @@ TEST(RenderSplats, SamplesAreTheMeanOfAFinerPicture) {
                 rim += alpha > 0 && fine.image.pixel(3 * x, 3 * y)[3] == 0 ? 1 : 0;
             }
         }
-        EXPECT_GT(rim, 5) << "some pixels are seen in part";
+        EXPECT_GT(rim, 5) << "some pixels are covered in part";
     }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What drop_invisible drops must not be missed in any picture.
+// Points that drop_invisible drops do not change any picture.
 #include "subvol/visible_points.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@ TEST_P(EmptySpace, NoPixelChangesWhereInvisiblePointsAreDropped) {
 }
 
 TEST_P(EmptySpace, ABandInTheMiddleOfTheRangeKeepsWhatPassesThroughIt) {
-    // No point has a value within the band, but the field between the points has: dropping by values would lose the surface.
+    // No point has a value within the band, but the field between points has: dropping points by their own values would lose
+    // the surface.
     const HexMesh mesh = make_model("ball", 6);
     const auto volume = sample_rbf_points(mesh, {.correction = GetParam()}).volume;
     auto values = volume.channels[0].values;

@@ -39,7 +39,7 @@ std::string message_of(const auto& work) {
         EXPECT_EQ(error.code(), ErrorCode::MissingCapability) << error.what();
         return error.what();
     }
-    ADD_FAILURE() << "nothing was thrown";
+    ADD_FAILURE() << "no error was thrown";
     return {};
 }
 
@@ -73,7 +73,7 @@ TEST_F(GlContexts, AreThoseOfTheList) {
     EXPECT_EQ(find_gl_device()->index, 0);
 }
 
-TEST_F(GlContexts, OfNoSuchNumberListWhatThereIs) {
+TEST_F(GlContexts, OfAnUnknownNumberAreRefusedWithAList) {
     for (const int index : {-1, static_cast<int>(gl_devices().size())}) {
         const std::string message = message_of([&] { const GlContext context(index); });
         EXPECT_NE(message.find(std::to_string(index)), std::string::npos) << message;
@@ -92,9 +92,9 @@ TEST_F(GlContexts, LiveSideBySide) {
             const GlScope scope(first);
             EXPECT_TRUE(glIsShader(made));
             EXPECT_EQ(gl_devices().front().index, 0);
-            EXPECT_TRUE(glIsShader(made)) << "listing devices leaves the current context alone";
+            EXPECT_TRUE(glIsShader(made)) << "listing devices does not change the current context";
         }
-        EXPECT_FALSE(glIsShader(made)) << "the scope gives the second back";
+        EXPECT_FALSE(glIsShader(made)) << "after the scope the second one is current again";
         EXPECT_EQ(doubled({1, 2, 3}), (std::vector<std::uint32_t>{2, 4, 6}));
     }
     const GlScope scope(first);
@@ -133,14 +133,14 @@ TEST_F(GlContexts, WorkOnSeveralThreadsAtOnce) {
     for (const auto& result : results) EXPECT_EQ(result, (std::vector<std::uint32_t>{2, 20, 200}));
 }
 
-TEST_F(GlContexts, TellOfErrorsOnce) {
+TEST_F(GlContexts, ReportEachErrorOnce) {
     const GlContext context;
     EXPECT_NO_THROW(check_gl("nothing"));
     glEnable(0xffff);
     glDispatchCompute(1, 1, 1);  // without a program
     const std::string message = message_of([] { check_gl("the test"); });
     EXPECT_EQ(message.find("the test: "), 0U) << message;
-    EXPECT_NE(message.find("invalid enumerant"), std::string::npos) << "the first counts: " << message;
+    EXPECT_NE(message.find("invalid enumerant"), std::string::npos) << "the first error is reported: " << message;
     EXPECT_NO_THROW(check_gl("nothing"));
 }
 
@@ -152,7 +152,7 @@ TEST_F(GlBuffers, GrowAreFilledReadAndCleared) {
     buffer.grow(40);
     const GLuint id = buffer.id();
     buffer.grow(20);
-    EXPECT_EQ(buffer.id(), id) << "it is used again";
+    EXPECT_EQ(buffer.id(), id) << "the buffer is used again";
     std::array<std::uint32_t, 10> numbers;
     std::iota(numbers.begin(), numbers.end(), 1U);
     buffer.upload(40, numbers.data());
@@ -176,7 +176,7 @@ TEST_F(GlBuffers, ThatDoNotFitAreRefused) {
     GlBuffer buffer(16);
     const std::string message = message_of([&] { buffer.grow(context.device().max_ssbo_bytes + 1); });
     EXPECT_NE(message.find(std::to_string(context.device().max_ssbo_bytes)), std::string::npos) << message;
-    EXPECT_EQ(buffer.bytes(), 16U) << "it is as it was";
+    EXPECT_EQ(buffer.bytes(), 16U) << "the buffer has not changed";
 }
 
 TEST_F(GlPrograms, NameFileAndLineOfAnError) {

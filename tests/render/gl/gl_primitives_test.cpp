@@ -25,8 +25,8 @@ using detail::GlScan;
 using detail::GlSort;
 using Words = std::vector<std::uint32_t>;
 
-/// Below, at and beyond a thread group's width and a block; 100003 takes two levels of a scan;
-/// 2.3 million take two rows of groups, of which one group has nothing to do.
+/// Below, at and beyond the width of a work group and of a block; 100003 needs two levels of a scan, 2.3 million two rows of
+/// groups, of which one group has nothing to do.
 constexpr std::uint32_t kSizes[] = {0, 1, 7, 255, 256, 257, 2047, 2048, 2049, 4095, 100003, 2303000};
 constexpr std::uint32_t kGuard = 0xdeadbeef;
 
@@ -63,7 +63,7 @@ Words random_words(std::size_t count, std::uint32_t most) {
 
 constexpr std::uint32_t kAny = std::numeric_limits<std::uint32_t>::max();
 
-/// Keys that are hard on a radix sort, each in its way.
+/// Several kinds of keys that are difficult for a radix sort.
 struct KeyKind {
     const char* name;
     std::function<Words(std::uint32_t)> make;
@@ -102,7 +102,7 @@ Words picked(const Words& words, const Words& order) {
     return result;
 }
 
-/// Sorts the first `count` of the keys, that many as a number or from a buffer, with their numbers as values.
+/// Sorts the first `count` keys, with their numbers as values; the count is a number or in a buffer.
 void expect_sorted(GlSort& sort, const Words& keys, std::uint32_t count, int bits, bool count_on_device) {
     Words numbers(keys.size());
     std::iota(numbers.begin(), numbers.end(), 0U);
@@ -140,7 +140,7 @@ TEST_F(GlPrimitives, ScanTakesItsCountFromABuffer) {
     GlScan scan;
     const std::uint32_t room = 100003;
     for (const std::uint32_t count : {0U, 1U, 2047U, 2048U, 70000U, room, room + 9}) {
-        const std::uint32_t used = std::min(count, room);  // a count beyond the room is cut
+        const std::uint32_t used = std::min(count, room);  // a count beyond the room is reduced
         const GlBuffer counts = buffer_of({count});
         Words words = random_words(room + 1, 100);
         GlBuffer buffer = buffer_of(words);
@@ -177,7 +177,7 @@ TEST_F(GlPrimitives, SortTakesItsCountFromABuffer) {
     }
 }
 
-TEST_F(GlPrimitives, SortLeavesWhatIsBeyondTheCountOutOfIt) {
+TEST_F(GlPrimitives, SortIgnoresItemsBeyondTheCount) {
     GlSort sort;
     Words keys(3000, 0);
     std::fill(keys.begin(), keys.begin() + 2500, 5U);

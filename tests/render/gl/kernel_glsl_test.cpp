@@ -51,7 +51,7 @@ std::vector<Four> random_places(double reach) {
     return places;
 }
 
-/// Value and gradient at every place, by the shader.
+/// Value and gradient at every place, computed by the shader.
 std::vector<Four> evaluate(const GlProgram& program, const Kernel& kernel, const std::vector<Four>& places) {
     const KernelCode code = kernel_code(kernel);
     const std::vector<float> table(code.table.begin(), code.table.end());
@@ -70,7 +70,7 @@ std::vector<Four> evaluate(const GlProgram& program, const Kernel& kernel, const
     return results;
 }
 
-/// How much the kernel and its gradient change over a few float steps about x: what rounding an offset may do, kinks and all.
+/// The largest change of the kernel and its gradient over a few float steps around x: the effect of rounding, also at kinks.
 struct Spread {
     double value = 0;
     Vec3 gradient{0.0};
@@ -106,7 +106,7 @@ TEST(KernelGlsl, EqualsCppToFloatAccuracy) {
             const double value = kernel_value(kernel, x);
             const Vec3 gradient = kernel_gradient(kernel, x);
             const Spread spread = spread_about(kernel, x);
-            // Float rounds at 6e-8; the polynomials of ρ ≤ 3 sum terms of up to 10, gradients of up to 30.
+            // Floats round at 6e-8; the polynomials of ρ ≤ 3 have terms of up to 10, their gradients of up to 30.
             ASSERT_NEAR(results[i][0], value, 3e-6 + 2 * spread.value) << name << " at " << x.x << " " << x.y << " " << x.z;
             for (int axis = 0; axis < 3; ++axis) {
                 ASSERT_NEAR(results[i][static_cast<std::size_t>(axis + 1)], gradient[axis], 2e-5 + 2 * spread.gradient[axis])

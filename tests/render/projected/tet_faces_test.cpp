@@ -71,7 +71,7 @@ TEST(TetFaces, PartsHaveTheBoundaryAndLieEvenly) {
         for (const Index p : faces.faces[i].corner) x += mesh.points[p].position.x / 3;
         left += x < 0.5 ? 1 : 0;
     }
-    // Half of them, to four standard deviations of as many throws of a coin.
+    // Half of them, within four standard deviations of a binomial distribution.
     EXPECT_NEAR(static_cast<double>(left), 0.5 * static_cast<double>(tenth), 2 * std::sqrt(static_cast<double>(tenth)));
 }
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "list_parts.h"
+#include "gl_tet_lists.h"
 #include "render/hex_meshes.h"
 #include "subvol/error.h"
 
@@ -30,7 +30,7 @@ View inside() {
     return {{.eye = {0.43, 0.37, 0.52}, .target = {0.9, 0.8, 0.3}, .up = {0, 0, 1}}, 8, 8};
 }
 
-/// The place of every tetrahedron; all of them are there once.
+/// The position of every tetrahedron; checks that each occurs once.
 std::vector<std::size_t> places(const TetOrder& order, std::size_t count) {
     std::vector<std::size_t> result(count, count);
     EXPECT_EQ(order.tets.size(), count);
@@ -39,7 +39,7 @@ std::vector<std::size_t> places(const TetOrder& order, std::size_t count) {
     return result;
 }
 
-/// A point of a tetrahedron lies on the eye's side of a face or not.
+/// Whether a point of a tetrahedron lies on the eye's side of a face.
 double side(const TetMesh& mesh, TetFace face, const Vec3& direction_from_face) {
     const auto ids = mesh.corners(face);
     const Vec3& p = mesh.points[ids[0]].position;
@@ -73,7 +73,7 @@ TEST(TetOrder, WhatIsBehindASharedFaceComesFirst) {
         }
     }
     const TetMesh mesh = split(test::jittered_box(5, 0.3, 7));
-    EXPECT_GT(wrong_faces(mesh, order_by_centroid(mesh, perspective()), perspective()), 0u) << "else the test tells nothing";
+    EXPECT_GT(wrong_faces(mesh, order_by_centroid(mesh, perspective()), perspective()), 0u) << "otherwise the test is void";
 }
 
 TEST(TetOrder, CentroidsGoFromBackToFront) {
@@ -91,7 +91,7 @@ TEST(TetOrder, CentroidsGoFromBackToFront) {
 }
 
 TEST(TetOrder, EveryTetrahedronComesOnceWhereCellsFoldOver) {
-    // Points moved by more than a cell: nothing but the end of the work can be hoped for.
+    // Points are moved by more than a cell: no order is right, but the work has to end.
     const TetMesh mesh = split(test::jittered_box(6, 1.5, 3));
     EXPECT_GT(mesh.inverted_tets, 0u);
     const TetOrder order = order_topologically(mesh, perspective());

@@ -16,7 +16,7 @@ Optics constant_optics() {
     return {{{{0, {1, 0.5, 0.25}}}, {{0, 0.5}}}, 1.0};
 }
 
-// Opacity rises with the value; no kink inside [0,1], so that the order of convergence can be seen.
+// Opacity rises with the value, without a kink inside [0,1], so that the order of convergence can be measured.
 Optics smooth_optics() {
     return {{{{0, {0, 0, 0}}, {1, {1, 1, 1}}}, {{0, 0}, {1, 0.9}}}, 1.0};
 }

@@ -17,12 +17,12 @@
 namespace subvol {
 namespace {
 
-// Images are single precision; double everywhere before.
+// Images are in single precision, all before in double.
 constexpr double kFloatTol = 1e-6;
 
 using Place = std::function<std::optional<double>(const Vec3&)>;
 
-/// n³ voxels about the origin, in blocks of 8 that are known to be empty, constant or neither, and the field that they mean.
+/// n³ voxels around the origin, in blocks of 8³ that are empty, constant or mixed, and the field that they represent.
 class TestGrid : public Voxels {
 public:
     TestGrid(int n, const Mat3& to_world, const Vec3& origin, const Place& field)
@@ -48,7 +48,7 @@ public:
         }
         return voxels_[static_cast<std::size_t>(c[0] + n_ * (c[1] + n_ * c[2]))];
     }
-    /// Written anew, as the words of the header say it.
+    /// An independent implementation of the rules in the header.
     std::optional<double> value(const Vec3& world) const {
         const Vec3 x = glm::inverse(to_world_) * (world - origin_);
         const auto voxel = [](const Vec3& v) { return Voxel{int(v.x), int(v.y), int(v.z)}; };
@@ -107,7 +107,7 @@ Optics smooth_optics() {
     return {{{{0, {0, 0, 0}}, {1, {1, 1, 1}}}, {{0, 0}, {1, 0.9}}}, 1.0};
 }
 
-/// Turned, sheared and moved.
+/// Rotated, sheared and translated voxels.
 const Mat3 kAxes(Vec3(0.08, 0.03, 0), Vec3(-0.02, 0.09, 0.01), Vec3(0.01, 0, 0.07));
 const Vec3 kOrigin(3, -2, 5);
 
@@ -118,7 +118,7 @@ View view_of(int size) {
 struct Chord {
     double begin = 0, end = 1e300;
 };
-/// Of the n³ voxels, which reach half a voxel beyond their centres.
+/// The box of the n³ voxels, which extend half a voxel beyond their centres.
 Chord chord_of(const Ray& ray, int n) {
     const Mat3 to_index = glm::inverse(kAxes);
     const Vec3 o = to_index * (ray.origin - kOrigin) + double(n / 2) + 0.5, d = to_index * ray.direction;
@@ -178,7 +178,7 @@ TEST(RenderGrid, LinearFieldIsOneSegment) {
             }
             if (!(inner.begin < inner.end)) continue;
             ++seen;
-            // The rims: clamped to the box of centres, which for a linear field is what normalised weights are.
+            // In the rims normalised weights clamp a linear field to the box of centres.
             const auto clamped = [&](double t) {
                 const Vec3 c = glm::clamp(to_index * (at(t) - kOrigin), -kSize / 2.0, kSize - 1 - kSize / 2.0);
                 return linear(kAxes * c + kOrigin);
@@ -224,7 +224,7 @@ TEST(RenderGrid, IsItsOwnFieldMarched) {
 }
 
 TEST(RenderGrid, SmoothFieldConvergesWithOrderTwo) {
-    // A cube whose faces are voxels' faces at every resolution.
+    // The faces of the cube are faces of voxels at every resolution.
     const auto field = [](const Vec3& p) { return 0.5 + 0.4 * std::sin(5 * p.x + 1) * std::cos(4 * p.y + p.z); };
     const View view({.eye = {2.1, 1.7, 2.9}, .target = {0, 0, 0}, .up = {0, 1, 0}, .fovy_deg = 22}, 16, 16);
     const auto in_cube = [&](const Vec3& p) {
@@ -241,7 +241,7 @@ TEST(RenderGrid, SmoothFieldConvergesWithOrderTwo) {
         return std::sqrt(sum / static_cast<double>(image.rgba.size()));
     };
     const double coarse = error(8), middle = error(16), fine = error(32);
-    EXPECT_NEAR(std::log2(coarse / middle), 2, 0.3);  // of next order: the outer half voxels
+    EXPECT_NEAR(std::log2(coarse / middle), 2, 0.3);  // the outer half voxels are of a higher order
     EXPECT_NEAR(std::log2(middle / fine), 2, 0.3);
 }
 

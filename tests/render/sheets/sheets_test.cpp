@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sheet buffers against the CPU: they follow the same rules, so that only rounding may part them.
+// Sheet buffers against the CPU: both follow the same rules, so the pictures differ by rounding only.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace subvol {
 namespace {
 
-/// Largest and root of the mean squared difference of two pictures, linear; and how bright they are.
+/// The largest and the RMS difference of two linear pictures, and their mean brightness.
 struct Difference {
     double largest = 0, rms = 0, mean = 0;
 };
@@ -54,18 +54,18 @@ protected:
         const auto cpu = render_splats(volume, view, optics, options);
         const Difference d = compare(drawn.image, cpu.image);
         RecordProperty(what + " largest", std::to_string(d.largest));
-        // The same operations in another order of rounding: floats of 24 bits, 200 sheets, slopes of transfer functions to 30.
+        // The same operations with other rounding: floats of 24 bits, 200 sheets, slopes of transfer functions up to 30.
         // Measured with Mesa's software: 1.5e-5 at most, 4e-7 in the mean.
         EXPECT_LT(d.largest, 1e-4) << what;
         EXPECT_LT(d.rms, 1e-5) << what;
         EXPECT_GT(d.mean, .01) << what << ": something is in the picture";
         for (std::size_t i = 0; i < cpu.depth.size(); ++i) {
-            if (cpu.image.rgba[4 * i + 3] < .01f) continue;  // a mean by hardly any opacity
+            if (cpu.image.rgba[4 * i + 3] < .01f) continue;  // the mean is divided by hardly any opacity
             ASSERT_NEAR(drawn.depth[i], cpu.depth[i], 1e-3) << what << ", pixel " << i;
         }
     }
 
-    /// Sharp: a surface, which shows every ripple.
+    /// Sharp: a surface, on which every ripple is visible.
     static Optics optics(bool sharp) {
         TransferFunction f{.color = {{-1, {.1, .2, .9}}, {0, {.9, .9, .9}}, {1, {.9, .2, .1}}},
                            .opacity = {{-1, .30}, {-.3, .05}, {0, 0}, {.3, .05}, {1, .40}}};
@@ -125,7 +125,7 @@ TEST_F(Sheets, DrawEveryKernelAsTheCpuDoes) {
     expect_as_cpu("Gaussian", sampled_ball(Correction::Second, GaussianKernel{}), view(), optics(false));
     expect_as_cpu("BC spline", sampled_ball(Correction::None, BcSplineKernel{}), view(), optics(false));
     auto separable = sampled_ball(Correction::Second, GaussianKernel{});
-    separable.kernel = SeparableGaussianKernel{};  // in the same frames, along their axes
+    separable.kernel = SeparableGaussianKernel{};  // in the same frames
     expect_as_cpu("separable", separable, view(), optics(false));
 }
 
@@ -155,7 +155,7 @@ TEST_F(Sheets, ArePixelForPixelTheSameEveryTime) {
     const auto volume = sampled_ball(Correction::Second);
     const auto first = sheets(volume, view(), optics(true)).image;
     EXPECT_EQ(first.rgba, sheets(volume, view(), optics(true)).image.rgba);
-    // A splatter that has drawn larger and smaller pictures before keeps nothing of them.
+    // Larger and smaller pictures that were drawn before do not matter.
     Splatter splatter(volume, {.method = SplatMethod::Sheets});
     (void)splatter.draw(view(40, 30), optics(false));
     (void)splatter.draw(view(140, 130), optics(false));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One kernel a control vertex against the limit volume, where edges and vertices are extraordinary.
+// One kernel for each control vertex against the limit volume, at extraordinary edges and vertices.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Optics optics_of(bool sharp) {
     return {f, 0.1};
 }
 
-/// Pixels that see the volume, as their eight neighbours do: a silhouette differs by less than a pixel.
+/// The pixels that see the volume and whose eight neighbours do too: silhouettes differ by less than a pixel.
 std::vector<bool> interior(const HexMesh& mesh) {
     const Optics solid({.color = {{0, {1, 1, 1}}}, .opacity = {{0, .5}}}, .1);
     const Image image =
@@ -60,15 +60,15 @@ TEST(SplatBall, OneKernelAControlVertexIsNearTheLimit) {
     const auto inside = interior(mesh);
     EXPECT_GT(std::count(inside.begin(), inside.end(), true), kSize_px * kSize_px / 2);
     for (const bool sharp : {false, true}) {
-        const Image limit = render_tets(fine, fine.attributes[0].values, view(), optics_of(sharp)).image;
+        const Image limit = render_tets(fine, {}, view(), optics_of(sharp)).image;
         const auto splat = [&](Correction correction) {
             const auto volume = sample_rbf_points(mesh, {.correction = correction}).volume;
             const SplatOptions options{.method = SplatMethod::Cpu, .sheets = 400};
             return rmse_where(inside, render_splats(volume, view(), optics_of(sharp), options).image, limit);
         };
         const double none = splat(Correction::None), second = splat(Correction::Second), full = splat(Correction::Full);
-        // The trilinear cells of the second refinement err by some .0004 (smooth) and .002 themselves: a third of what they
-        // differ from those of the first by. A sharp peak has slopes of 30 where the smooth function has one.
+        // The error of the trilinear cells at level 2 is some .0004 (smooth) and .002: a third of the difference from level 1.
+        // A sharp peak has slopes of 30 where the smooth function has a slope of 1.
         EXPECT_LT(second, none / (sharp ? 3 : 7));
         EXPECT_LT(full, none / (sharp ? 4 : 7));
         EXPECT_TRUE(sharp || second < .001) << second;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values are reconstructed first and classified then.
+// Values are reconstructed first and classified afterwards.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -13,7 +13,7 @@ namespace {
 constexpr int kSize_px = 64;
 
 TEST(SplatClassification, AValueBetweenTwoSamplesIsSeen) {
-    // Values are 0 on one side of a box and 1 on the other; only what is near 1/2 can be seen.
+    // Values are 0 on one side of a box and 1 on the other; only values near 1/2 are visible.
     HexMesh cell = test::box(1);
     add_field(cell, "f", [](const Vec3& p) { return p.x; });
     const Optics optics({.color = {{0, {1, 1, 1}}, {1, {1, 1, 1}}}, .opacity = {{0, 0}, {.4, 0}, {.5, .9}, {.6, 0}, {1, 0}}},
@@ -57,7 +57,7 @@ Optics two_peaks() {
                   .05);
 }
 
-/// The same kernels, each with the colour and extinction of its own value, marched in small steps.
+/// The same kernels with the colour and extinction of their own values, classified before they are added.
 Image classified_by_kernel(const RbfVolume& volume, const View& view, const Optics& optics) {
     constexpr int kSteps = 256;
     Image image(view.width(), view.height());
@@ -108,7 +108,7 @@ TEST(SplatClassification, ClassifyingTheSumBeatsClassifyingKernels) {
     const double at_17 = rmse(draw(17), exact), at_33 = rmse(draw(33), exact), at_65 = rmse(draw(65), exact);
     EXPECT_GT(by_kernel, .05);
     EXPECT_LT(at_17, by_kernel / 10);
-    // Second order: a quarter, and more as long as peaks are thinner than sheets.
+    // Second order: the error falls to a quarter, or below while peaks are thinner than the distance of sheets.
     EXPECT_LT(at_33, at_17 / 3.3);
     EXPECT_LT(at_65, at_33 / 3.3);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of splats that have a closed form.
+// Pictures of splats with a closed form.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSigma = 0.43;  // of the kernels below, whose sample interval is 1
 
-/// Isotropic Gaussians in a box that holds all of their supports.
+/// Isotropic Gaussians in a box that contains their supports.
 RbfVolume gaussians(const std::vector<Vec3>& centers, const std::vector<float>& values, double half_box) {
     RbfVolume volume;
     volume.kernel = GaussianKernel{.sigma = kSigma, .amplitude = 1, .radius = 3};
@@ -31,7 +31,7 @@ RbfVolume gaussians(const std::vector<Vec3>& centers, const std::vector<float>& 
 
 constexpr double kSmallAlpha = 1e-4;
 
-/// Extinction equal to the value, but for a relative error of kSmallAlpha / 2 times the value.
+/// Extinction equal to the value, up to a relative error of kSmallAlpha / 2 times the value.
 Optics linear_extinction(double max) {
     return Optics({.color = {{0, {1, .5, .25}}, {max, {1, .5, .25}}}, .opacity = {{0, 0}, {max, kSmallAlpha * max}}},
                   kSmallAlpha);
@@ -54,8 +54,8 @@ TEST(SplatClosedForm, OneGaussianHasItsOpticalDepth) {
             const double expected =
                 .8 * std::exp(-glm::dot(p, p) / (2 * kSigma * kSigma)) * kSigma * std::sqrt(2 * std::numbers::pi);
             const double depth = optical_depth(image.pixel(x, y)[3]);
-            // Sums over planes of a Gaussian are exact; what is left are the 5e-5 of the function, the kernel's table (5e-6 of
-            // its peak, over a length of 1) and the opacity's float.
+            // Sums of a Gaussian over planes are exact; the errors are 5e-5 of the function, 5e-6 of the kernel's table (of the
+            // peak, over a length of 1) and the rounding of the opacity.
             EXPECT_NEAR(depth, expected, 5e-5 * expected + 1e-5);
             total += depth;
         }
@@ -86,13 +86,13 @@ TEST(SplatClosedForm, GaussiansAddUp) {
                 expected += static_cast<double>(values[i]) * std::exp(-away * away / (2 * kSigma * kSigma));
             }
             expected *= kSigma * std::sqrt(2 * std::numbers::pi);
-            // The function errs by 5e-5 of the value, up to 3 here; tables by 5e-6 for each kernel.
+            // The error of the function is 5e-5 of the value, which is up to 3 here; that of the tables 5e-6 for each kernel.
             EXPECT_NEAR(optical_depth(image.pixel(x, y)[3]), expected, 1.5e-4 * expected + 5e-5);
         }
     }
 }
 
-/// Where a ray is in a box: the depths of entry and exit; entry > exit if it misses.
+/// The depths at which a ray enters and leaves a box; entry > exit if it misses.
 Vec2 through_box(const Ray& ray, const Vec3& lower, const Vec3& upper) {
     const Vec3 a = (lower - ray.origin) / ray.direction, b = (upper - ray.origin) / ray.direction;
     const Vec3 near = glm::min(a, b), far = glm::max(a, b);
@@ -114,7 +114,7 @@ TEST(SplatClosedForm, ALinearFieldInASlabIsExactAtEveryAngle) {
         for (int x = 0; x < 48; ++x) {
             const Ray ray = view.ray(x + .5, y + .5);
             const Vec2 t = through_box(ray, Vec3(0.0), {4, 1, 4});
-            if (t[1] - t[0] < .05) continue;  // an edge: the boundary's corners are snapped to 1/4096 of a pixel
+            if (t[1] - t[0] < .05) continue;  // near an edge: the boundary's corners are snapped to 1/4096 of a pixel
             ++inside;
             const Segment expected =
                 optics.integrate(field(ray.origin + t[0] * ray.direction), field(ray.origin + t[1] * ray.direction),
@@ -129,7 +129,7 @@ TEST(SplatClosedForm, ALinearFieldInASlabIsExactAtEveryAngle) {
 }
 
 TEST(SplatClosedForm, AConstantIsThatConstantForKernelsOfEveryShape) {
-    HexMesh box = test::box(3);  // further apart than on a lattice, some kernels leave holes
+    HexMesh box = test::box(3);  // a lattice: if points were further apart, kernels would leave holes
     add_field(box, "f", [](const Vec3&) { return .7; });
     RbfVolume volume = sample_rbf_points(box).volume;
     const Optics optics({.color = {{0, {1, .5, .25}}, {1, {0, .5, 1}}}, .opacity = {{0, 0}, {1, .5}}}, .5);
@@ -147,7 +147,7 @@ TEST(SplatClosedForm, AConstantIsThatConstantForKernelsOfEveryShape) {
         for (int y = 0; y < 40; ++y) {
             for (int x = 0; x < 40; ++x) {
                 const bool inside = std::min(x, y) >= 4 && std::max(x, y) < 36;
-                // Products of 200 floats.
+                // The rounding of products of 200 floats.
                 EXPECT_NEAR(image.pixel(x, y)[3], inside ? 1 - expected.transmittance : 0, 5e-6) << x << ' ' << y;
                 EXPECT_NEAR(image.pixel(x, y)[0], inside ? expected.color.x : 0, 5e-6) << x << ' ' << y;
             }
@@ -155,7 +155,7 @@ TEST(SplatClosedForm, AConstantIsThatConstantForKernelsOfEveryShape) {
     }
 }
 
-/// A box of 3³ cells without the one in its middle.
+/// A box of 3³ cells without the middle one.
 RbfVolume hollow_box() {
     HexMesh mesh = lattice({3, 3, 3}, [](Index i, Index j, Index k) { return i != 1 || j != 1 || k != 1; });
     for (Vec3& p : mesh.points) p *= 3.0;
@@ -172,8 +172,8 @@ TEST(SplatClosedForm, ACavityIsEmptySeenFromOutsideAndFromWithin) {
     // Two walls of length 1 in the middle, three cells beside it.
     EXPECT_NEAR(outside.image.pixel(15, 15)[3], .75, 5e-6);
     EXPECT_NEAR(outside.image.pixel(5, 15)[3], .875, 5e-6);
-    // Half of the light is of each wall's own: front 1/2, back 1/4; a wall's mean depth is its front and what the exponential
-    // has before it, ∫₀¹ s e^{−τs} τ ds / (1 − e^{−τ}).
+    // The light of the front wall is 1/2, that of the back wall 1/4. The mean depth of a wall is that of its front plus
+    // ∫₀¹ s e^{−τs} τ ds / (1 − e^{−τ}).
     const double tau = std::numbers::ln2, mean = 1 / tau - 1;
     EXPECT_NEAR(outside.depth[15 * 31 + 15], (.5 * (3 + mean) + .25 * (5 + mean)) / .75, 2e-5);
     const auto within =
@@ -207,7 +207,7 @@ TEST(SplatClosedForm, CellCenteredPointsWithoutABoundaryFillTheirBox) {
             const bool outside = x < -.25 || x > kCells + .25, within = x > .25 && x < kCells - .25;
             EXPECT_TRUE(alpha == 0 || !outside) << x;
             EXPECT_TRUE(alpha > 0 || !within) << x;
-            // Inside, the depth that is seen errs by a quarter of a cell at either end, too.
+            // Inside, the error of the depth is a quarter of a cell at either end, too.
             if (x > 1 && x < kCells - 1) {
                 EXPECT_GT(alpha, 1 - std::pow(.8, kCells - .5)) << x;
                 EXPECT_LT(alpha, 1 - std::pow(.8, kCells + .5)) << x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a picture of splats may not depend on: threads, the order of points, batches that are passed over.
+// A picture of splats does not depend on threads, on the order of points or on batches that are passed over.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -23,23 +23,23 @@ RbfVolume waves(Correction correction = Correction::Second) {
     return sample_rbf_points(with_waves(nested_ball(4)), {.correction = correction}).volume;
 }
 
-/// Opaque somewhere, nothing to be seen over most of the range.
+/// Opaque for some values, invisible over most of the range.
 Optics one_peak(double value) {
     return Optics({.color = {{0, {.1, .2, .9}}, {1, {.9, .2, .1}}},
                    .opacity = {{0, 0}, {value - .03, 0}, {value, .9}, {value + .03, 0}, {1, 0}}},
                   .2);
 }
 
-/// One frame, with its parts at hand.
+/// A frame and all that it refers to.
 struct Frame {
     detail::SplatScene scene;
-    detail::Classification look;
+    detail::Classification classification;
     View view;
     detail::SplatFrame frame;
 
     Frame(const RbfVolume& volume, const Optics& optics, const SplatOptions& options, const View& seen = test::view())
-        : scene(detail::make_scene(volume, options)), look(classify(scene, optics)), view(seen) {
-        prepare_frame(frame, scene, view, look, options.sheets, nullptr);
+        : scene(detail::make_scene(volume, options)), classification(classify(scene, optics)), view(seen) {
+        prepare_frame(frame, scene, view, classification, options.sheets, nullptr);
     }
     [[nodiscard]] detail::Drawn draw() const { return draw_splats_cpu(frame, nullptr); }
 };
@@ -86,7 +86,7 @@ TEST(SplatInvariance, PictureAndDepthAreBitwiseThatOfOneThread) {
 }
 
 TEST(SplatInvariance, TilesListTheirPointsInTheirOrder) {
-    // Points from last to first are the same as each tile's list from last to first.
+    // Points in reverse order are the same as the list of each tile in reverse order.
     const RbfVolume volume = waves();
     std::vector<std::size_t> backwards(volume.size());
     for (std::size_t i = 0; i < backwards.size(); ++i) backwards[i] = volume.size() - 1 - i;
@@ -109,8 +109,8 @@ TEST(SplatInvariance, TheOrderOfPointsIsSeenInRoundingOnly) {
     std::shuffle(order.begin(), order.end(), std::mt19937(5));
     const RbfVolume shuffled = reordered(volume, order);
     for (const SplatOptions& options : all_kinds()) {
-        // Sums of some ten floats each, 1e-6 of the range; slopes of 1 to 2, some times as steep where weights are not divided
-        // by.
+        // Sums of some ten floats are right to 1e-6 of the range; slopes are 1 to 2, and some times steeper for sums that are
+        // not normalised.
         EXPECT_LT(largest_difference(render_splats(volume, view(), smooth_optics(), options).image,
                                      render_splats(shuffled, view(), smooth_optics(), options).image),
                   options.normalized ? 1e-5 : 4e-5);
@@ -118,7 +118,7 @@ TEST(SplatInvariance, TheOrderOfPointsIsSeenInRoundingOnly) {
 }
 
 TEST(SplatInvariance, BatchesThatArePassedOverAreNotMissed) {
-    // Values rise with the depth: what can be seen is in few of the batches, which most kernels of the others do not reach.
+    // Values rise with the depth: visible values are in few of the batches, and most other kernels do not reach these.
     HexMesh mesh = nested_ball(6);
     const Vec3 forward = view().axes()[2];
     add_field(mesh, "f", [&](const Vec3& p) { return .5 + .4 * glm::dot(p, forward) + .03 * std::sin(5 * p.z); });
@@ -141,8 +141,8 @@ TEST(SplatInvariance, BatchesThatArePassedOverAreNotMissed) {
 
 TEST(SplatInvariance, WhatLiesBetweenBatchesIsNotMissed) {
     // Layers of kernels 1/17 apart that reach .084 to either side, and ten sheets, of which the first batch has those up to a
-    // depth of 7/9 = .778. Kernels with a value of .9 end at .706 + .084, behind that sheet but far before the next one: there
-    // and further on there is nothing to be seen, but between the two there is.
+    // depth of 7/9 = .778. Kernels with a value of .9 end at .706 + .084, behind that sheet but far before the next one. There
+    // and further on nothing is visible, but between the two sheets something is.
     HexMesh mesh = test::box(17);
     add_field(mesh, "f", [](const Vec3& p) { return p.y < .73 ? .9 : .1; });
     const RbfVolume volume = sample_rbf_points(mesh, {.correction = Correction::None}).volume;

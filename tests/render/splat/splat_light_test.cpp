@@ -14,7 +14,7 @@ View view_along_y(double height) {
     return {{.eye = {.5, -5, .5}, .target = {.5, 0, .5}, .up = {0, 0, 1}, .ortho_height = height}, kSize_px, kSize_px};
 }
 
-/// One colour and opacity; `range` says how much a value has to change to be a surface.
+/// One colour and opacity; the larger the range, the larger the gradient of a surface.
 Optics plain_optics(double range) {
     return Optics({.color = {{0, {.8, .4, .2}}, {range, {.8, .4, .2}}}, .opacity = {{0, .3}, {range, .3}}}, .5);
 }
@@ -33,14 +33,14 @@ TEST(SplatLight, ASlabWithAConstantGradientHasItsClosedForm) {
             return .5 * (std::pow(std::abs(glm::dot(normal, a)), power) + std::pow(std::abs(glm::dot(normal, b)), power));
         };
         const double lit = .2 + .6 * both(to_eye, to_key, 1), gloss = .3 * both(to_eye, halfway, 5);
-        // A thousandth of the range is a surface for all but 1e-7.
+        // With a thousandth of the range the field is a surface up to 1e-7.
         const auto image =
             render_splats(volume, view_along_y(1.2), plain_optics(1e-3), {.method = SplatMethod::Cpu, .shading = shading})
                 .image;
         for (int y = 8; y < 40; ++y) {
             for (int x = 8; x < 40; ++x) {
                 const auto pixel = image.pixel(x, y);
-                // Gradients are sums of those of some ten kernels, floats on the way; powers of five.
+                // Gradients are float sums over some ten kernels; the shininess is five.
                 EXPECT_NEAR(pixel[0], alpha * (.8 * lit + gloss), 2e-5);
                 EXPECT_NEAR(pixel[2], alpha * (.2 * lit + gloss), 2e-5);
                 EXPECT_NEAR(pixel[3], alpha, 2e-6);
@@ -61,7 +61,7 @@ TEST(SplatLight, TheSideTowardsTheKeyLightIsBrighter) {
     };
     constexpr int kNear = 12, kFar = kSize_px - 1 - kNear, kMiddle = kSize_px / 2;
     const Vec3 from_left(-1, 0, -.3), from_above(0, 1, -.3);
-    // Surfaces are lit from either side: what leans to the light behind leans away in front, which covers it.
+    // Surfaces are lit from either side: the back of the ball leans to the light but is covered by the front, which leans away.
     EXPECT_GT(brightness(from_left, kNear, kMiddle), brightness(from_left, kMiddle, kNear) + .02F);
     EXPECT_GT(brightness(from_above, kMiddle, kNear), brightness(from_above, kNear, kMiddle) + .02F);
     EXPECT_GT(brightness(from_left, kNear, kMiddle), brightness(from_left, kFar, kMiddle));
@@ -76,7 +76,7 @@ TEST(SplatLight, AConstantFieldHasNoSurfaces) {
         return render_splats(volume, view_along_y(1.2), smooth_optics(), {.method = SplatMethod::Cpu, .shading = shading})
             .image;
     };
-    EXPECT_LT(largest_difference(draw(Shading{}), draw({})), 2e-6);  // other loops: products of 200 floats, rounded elsewhere
+    EXPECT_LT(largest_difference(draw(Shading{}), draw({})), 2e-6);  // other loops: the rounding of products of 200 floats
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace subvol::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLeastWeight = 0.02;  // below it a sheet knows no value
+constexpr double kLeastWeight = 0.02;  // below it a sheet has no value
 
 /// S^(−1/2) by the iteration of Denman and Beavers.
 Mat3 inverse_root(const Mat3& s) {
@@ -29,7 +29,7 @@ Mat3 inverse_root(const Mat3& s) {
     return inverse / std::sqrt(scale);
 }
 
-/// What a ray sees on one sheet.
+/// The values of a ray on one sheet.
 struct SheetSample {
     bool known = false;
     double weight = 0, value = 0, color_value = 0;
@@ -53,7 +53,7 @@ public:
     [[nodiscard]] SplatResult draw() const {
         SplatResult result{Image(view_.width(), view_.height()), {}, {}};
         result.depth.resize(result.image.rgba.size() / 4);
-        // Depths of entries and exits are floats: relative to the volume's middle they lose less.
+        // Depths of entries and exits are floats; relative to the volume's middle they are more precise.
         const double middle = view_.to_eye(box_of(volume_).center()).z;
         const auto inside = detail::boundary_intervals(volume_.boundary, view_, near_, middle);
         tbb::parallel_for(0, view_.height(), [&](int y) {
@@ -99,7 +99,7 @@ private:
         return kernel_value(volume_.kernel, roots_[i] * d);
     }
 
-    /// A kernel's value at d from its centre, and that value's gradient.
+    /// A kernel's value and gradient at an offset d from its centre.
     [[nodiscard]] double value(const RbfChannel& channel, std::size_t i, const Vec3& d, Vec3& gradient) const {
         const Vec3 g(channel.gradients[i][0], channel.gradients[i][1], channel.gradients[i][2]), q = inverses_[i] * d;
         const Mat3 h = channel.hessians.empty() ? Mat3(0.0) : matrix(channel.hessians[i]);
@@ -140,7 +140,7 @@ private:
         const Vec3 normal = gradient / std::max(glm::length(gradient), 1e-300);
         const double head = std::abs(glm::dot(normal, to_eye)), side = std::abs(glm::dot(normal, to_key));
         const double halfway = std::abs(glm::dot(normal, glm::normalize(to_key + to_eye)));
-        // Half of a surface is where the value changes by a quarter of the function's range over the volume's diagonal.
+        // Shading has half its effect where the gradient is a quarter of the function's range over the volume's diagonal.
         const double range = optics_.knots().back() - optics_.knots().front();
         const double change = glm::length(gradient) * diagonal_ / (0.25 * range);
         const double surface = change * change / (1 + change * change);
@@ -174,7 +174,7 @@ private:
         depth_seen = static_cast<float>(opacity > 0 ? depths / opacity : kInfinity);
     }
 
-    /// Without a boundary the volume ends where the weight, linear between sheets, is half of what it is inside.
+    /// Without a boundary the volume ends where the sum of weights, linear between sheets, is half of its value inside.
     void cut_at_half_weight(double w0, double w1, double z0, double z1, Vec2& part) const {
         if (w0 <= half_weight_ && w1 <= half_weight_) part[1] = part[0];
         const double crossing = z0 + (half_weight_ - w0) / (w1 - w0) * (z1 - z0);
@@ -182,7 +182,7 @@ private:
         if (w0 > half_weight_ && w1 <= half_weight_) part[1] = std::min(part[1], crossing);
     }
 
-    /// A stretch from part[0] to part[1] of the way between two sheets.
+    /// A stretch from part[0] to part[1] of the way from one sheet to the next.
     [[nodiscard]] Segment classify(const SheetSample& front, const SheetSample& back, const Vec2& part, double length) const {
         const double slope = back.value - front.value, v0 = front.value + part[0] * slope, v1 = front.value + part[1] * slope;
         Segment s = optics_.integrate(v0, v1, length);

@@ -5,12 +5,12 @@
 
 namespace subvol::test {
 
-/// Preintegrated: the emission of a stretch is taken as mixed evenly with its extinction, as the splatter takes it.
-/// Exact: what is in front covers what is behind.
+/// Preintegrated: the emission of a stretch is mixed evenly with its extinction, as in the splatter.
+/// Exact:         the front of a stretch covers its back.
 enum class Emission { Preintegrated, Exact };
 
-/// The splatter's rules, readable and slow: double precision, every kernel at every pixel of every sheet, straight from the
-/// volume. A ray never ends for being opaque. Backend and progress are ignored; the report is empty.
+/// A readable and slow implementation of the splatter's rules: in double precision, every kernel at every pixel of every sheet.
+/// Rays do not end when they are opaque. Backend and progress are ignored; the report is empty.
 ///
 /// cost: pixels × sheets × kernels × some 10 ns, on all cores
 [[nodiscard]] SplatResult draw_oracle(const RbfVolume& volume, const View& view, const Optics& optics,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The splatter for CPUs against the readable one.
+// The splatter for CPUs against the readable oracle.
 #include "splat_oracle.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 namespace subvol::test {
 namespace {
 
-// Sums are floats, 1e-6 of the range at worst, and opacity and colour follow them with the slope of the transfer function: one
-// or two for the smooth one, .9 over 1/32 of the range, seen from sheet to sheet, for the sharp one.
+// Sums are floats, right to 1e-6 of the range. The slope of the transfer function multiplies their error: one or two for the
+// smooth one, .9 over 1/32 of the range for the sharp one.
 constexpr double kSmooth = 1e-5, kSharp = 1e-4;
 
 struct Look {
@@ -22,7 +22,7 @@ struct Look {
 
 void expect_same(const RbfVolume& volume, const Look& look, SplatOptions options, double tolerance) {
     options.method = SplatMethod::Cpu;
-    const View view(look.camera, 40, 37);  // tiles that end in the picture
+    const View view(look.camera, 40, 37);  // the last tiles reach beyond the picture
     const Optics unscaled = look.sharp ? sharp_optics() : smooth_optics();
     const Optics optics(unscaled.function(), look.opacity_unit * unscaled.opacity_unit());
     const auto drawn = render_splats(volume, view, optics, options);
@@ -34,7 +34,7 @@ void expect_same(const RbfVolume& volume, const Look& look, SplatOptions options
         EXPECT_EQ(std::isfinite(drawn.depth[i]), drawn.image.rgba[4 * i + 3] > 0);
         if (opacity < 0.01) continue;
         const double difference = static_cast<double>(drawn.depth[i]) - static_cast<double>(expected.depth[i]);
-        of_depth = std::max(of_depth, opacity * std::abs(difference));  // a depth is a sum that opacity divides
+        of_depth = std::max(of_depth, opacity * std::abs(difference));  // a depth is a sum divided by the opacity
     }
     EXPECT_LT(largest_difference(drawn.image, expected.image), tolerance);
     EXPECT_LT(of_depth, std::max(tolerance, 1e-7 * glm::length(look.camera.eye)));  // floats, as seen from the eye
@@ -91,8 +91,8 @@ TEST(SplatOracle, AgreesForKernelsOfEveryShape) {
         }
         volume.kernel = kernel;
         for (const bool sharp : {false, true}) {
-            // Tables of kernels are 5e-6 from them at worst, five times as much as rounding. Separable kernels have lobes of
-            // both signs: their sums are of larger terms.
+            // The error of kernels' tables is at most 5e-6, five times that of rounding. Separable kernels have lobes of both
+            // signs, so their sums have larger terms.
             const double tolerance = (is_radial(kernel) ? 1 : 3) * (sharp ? 2 * kSharp : kSmooth);
             expect_same(volume, {.sharp = sharp}, {.sheets = 24}, tolerance);
             expect_same(volume, {.sharp = sharp}, {.sheets = 24, .normalized = false}, tolerance);
@@ -131,14 +131,14 @@ TEST(SplatOracle, AgreesWithoutABoundary) {
             for (const bool sharp : {false, true}) {
                 const SplatOptions options{.sheets = 40, .shading = Shading{}};
                 expect_same(ball_without_boundary(kernel), {.sharp = sharp, .camera = camera}, options,
-                            sharp ? kSharp : 3 * kSmooth);  // where the weight ends is a quotient of its differences
+                            sharp ? kSharp : 3 * kSmooth);  // the end of the volume is a quotient of differences of weights
             }
         }
     }
 }
 
 TEST(SplatOracle, AgreesWhereASheetBesideTheVolumeKnowsNothing) {
-    // Few sheets: many have no weight where the volume has just ended, and take value, colour and light from the other side.
+    // With few sheets, many have no weight where the volume has just ended: value, colour and light come from the other sheet.
     const RbfVolume volume = ball_without_boundary(CompactKernel{});
     for (const int sheets : {4, 8, 9, 10}) {
         SCOPED_TRACE(sheets);
@@ -175,8 +175,9 @@ TEST(SplatOracle, AgreesFromFarAway) {
 }
 
 TEST(SplatOracle, EmissionIsMixedWithExtinctionToThirdOrder) {
-    // Of a stretch of optical depth t over which the colour changes by c, the front's colour is seen t²c/12 more than evenly
-    // mixed. The smooth function: 60 stretches of 2/60 world lengths, τ up to 1.4, slopes of colour and value of 2 and 1.
+    // On a stretch of optical depth t over which the colour changes by c, the exact light has t²c/12 more of the front's colour
+    // than the even mixture. The smooth function: 60 stretches of 2/60 world lengths, τ up to 1.4, slopes of colour and value
+    // of 2 and 1.
     expect_same(ball(), {.emission = Emission::Exact}, {.sheets = 60}, 60 * std::pow(1.4 / 30, 2) * (2. / 30) / 12);
 }
 

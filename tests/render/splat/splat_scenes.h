@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-/// A nested-cubes mesh drawn onto the unit ball: extraordinary edges and vertices inside, curved outside.
+/// Nested cubes mapped onto the unit ball: extraordinary edges and vertices inside, curved outside.
 inline HexMesh nested_ball(Index n) {
     HexMesh mesh = make_nested_cubes(n);
     for (auto& p : mesh.points) {
@@ -22,7 +22,7 @@ inline HexMesh nested_ball(Index n) {
     return mesh;
 }
 
-/// Gives a mesh about the origin two waves between 0 and 1.
+/// Gives a mesh around the origin a field of two waves between 0 and 1.
 inline HexMesh with_waves(HexMesh mesh) {
     add_field(mesh, "f", [](const Vec3& p) { return .5 + .3 * std::sin(2.5 * p.x + p.y) + .2 * std::cos(2 * p.z - p.y); });
     add_field(mesh, "g", [](const Vec3& p) { return .5 + .5 * std::cos(3 * p.x * p.y + 2 * p.z); });

@@ -44,7 +44,7 @@ void expect_like_cpu(const Surface& surface, const View& view) {
     EXPECT_EQ(found.offsets, expected.offsets);
     ASSERT_EQ(found.depths.size(), expected.depths.size());
     EXPECT_GT(found.depths.size(), 100u);
-    // The same operations in doubles; a float's rounding may still go the other way.
+    // The same operations in double precision; the final rounding to float may differ.
     for (std::size_t i = 0; i < found.depths.size(); ++i) EXPECT_NEAR(found.depths[i], expected.depths[i], 1e-6) << i;
 }
 
@@ -70,7 +70,7 @@ TEST_F(GlBoundaries, NestedTouchingAndCrumpledShellsAreAsOnTheCpu) {
         Surface surface = surface_of(test::make_nested_cubes(2), 1, {0, 0, 0});
         append(surface, surface_of(test::make_nested_cubes(1), .4, {.1, .1, .2}));
         append(surface, surface_of(test::make_box(2, 1, 3), .4, {1, -.2, -1}));
-        append(surface, surface_of(test::make_box(1, 1, 1), .4, {1, .2, -1}));  // a face against that before
+        append(surface, surface_of(test::make_box(1, 1, 1), .4, {1, .2, -1}));  // one of its faces touches the box before
         expect_like_cpu(surface, view_of(perspective));
         std::mt19937 random(3);
         std::uniform_real_distribution<double> shift(-.2, .2);
@@ -80,7 +80,7 @@ TEST_F(GlBoundaries, NestedTouchingAndCrumpledShellsAreAsOnTheCpu) {
 }
 
 TEST_F(GlBoundaries, EdgesThroughPixelCentresAreOwnedOnce) {
-    // Whole pixels a unit: edges, diagonals and corners lie on pixel centres.
+    // A unit is a whole number of pixels: edges, diagonals and corners lie on pixel centres.
     Surface surface = surface_of(test::make_box(5, 3, 5), 1, {0, 0, 0});
     const View view({.eye = {2.5, -4, 2.5}, .target = {2.5, 0, 2.5}, .up = {0, 0, 1}, .ortho_height = 7}, 49, 49);
     expect_like_cpu(surface, view);

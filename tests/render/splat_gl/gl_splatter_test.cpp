@@ -22,7 +22,7 @@ using detail::Drawn;
 using detail::GlSplatter;
 using detail::GlTuning;
 
-/// Nested cubes drawn onto the unit ball: irregular edges and vertices inside.
+/// Nested cubes mapped onto the unit ball: irregular edges and vertices inside.
 HexMesh make_ball() {
     HexMesh mesh = test::make_nested_cubes(4);
     for (auto& p : mesh.points) {
@@ -34,14 +34,14 @@ HexMesh make_ball() {
     return mesh;
 }
 
-/// Peaks, ramps, and a gap without opacity between.
+/// Peaks, ramps, and a gap without opacity between them.
 Optics optics() {
     return Optics({.color = {{0, {0, 0, 1}}, {.5, {.1, 1, .2}}, {1, {1, 0, 0}}},
                    .opacity = {{0, 0}, {.2, .3}, {.3, 0}, {.42, 0}, {.5, .6}, {.6, .05}, {1, .3}}},
                   .3);
 }
 
-/// Most of the volume cannot be seen at all.
+/// Most of the volume is invisible.
 Optics one_shell() {
     return Optics({.color = {{0, {1, 1, .5}}}, .opacity = {{0, 0}, {.78, 0}, {.8, .7}, {.82, 0}, {1, 0}}}, .3);
 }
@@ -56,9 +56,9 @@ View inside() {
     return View({.eye = {.2, -.3, .1}, .target = {0, 1, .2}, .up = {0, 0, 1}, .fovy_deg = 80}, 40, 33);
 }
 
-Drawn draw_on_cpu(const detail::SplatScene& scene, const View& view, const detail::Classification& look, int sheets) {
+Drawn draw_on_cpu(const detail::SplatScene& scene, const View& view, const detail::Classification& classification, int sheets) {
     detail::SplatFrame frame;
-    detail::prepare_frame(frame, scene, view, look, sheets, nullptr);
+    detail::prepare_frame(frame, scene, view, classification, sheets, nullptr);
     return detail::draw_splats_cpu(frame, nullptr);
 }
 
@@ -71,7 +71,7 @@ float largest_difference(const std::vector<float>& a, const std::vector<float>& 
     return largest;
 }
 
-/// A depth is a quotient by the opacity: it weighs as much as can be seen there.
+/// Depths are quotients by the opacity, so their differences are weighted with it.
 float largest_depth_difference(const Drawn& a, const Drawn& b) {
     float largest = 0;
     for (std::size_t i = 0; i < a.depth.size(); ++i) {
@@ -86,7 +86,7 @@ RbfVolume sampled(Correction correction, const std::function<void(RbfVolume&)>& 
     return volume;
 }
 
-/// Gives a volume another kernel of the same reach.
+/// Gives a volume another kernel with the same reach.
 void set_kernel(RbfVolume& volume, Kernel kernel) {
     const double scale = std::pow(support_radius(kernel) / support_radius(volume.kernel), 2);
     for (auto& frame : volume.frames) {
@@ -104,22 +104,23 @@ protected:
 
 constexpr int kSheets = 45;  // five batches and a part
 
-// The same operations, some with another last bit, in sums of some ten kernels over 45 sheets: a few 1e-7 were seen. Depths
-// likewise.
+// The same operations, some with another last bit, in sums of some ten kernels over 45 sheets: differences of a few 1e-7 were
+// measured, also for depths.
 constexpr float kRounding = 2e-6f, kDepthRounding = 1e-5f;
 
-// Plain sums keep the rounding that a quotient of two sums loses.
+// In plain sums rounding does not cancel as in a quotient of two sums.
 constexpr float kPlainRounding = 1e-5f;
-// Where weights end is a quotient of small differences.
+// The end of the volume is a quotient of small differences of weights.
 constexpr float kCutRounding = 2e-5f;
 
 /// Draws every view on both backends.
 void expect_like_cpu(const RbfVolume& volume, const SplatOptions& options, float most_color = kRounding) {
     const auto scene = detail::make_scene(volume, options);
-    const auto look = detail::classify(scene, optics());
+    const auto classification = detail::classify(scene, optics());
     GlSplatter gpu(scene, {});
     for (const View& view : {perspective(), orthographic(), inside()}) {
-        const Drawn cpu = draw_on_cpu(scene, view, look, kSheets), gl = gpu.draw(view, look, kSheets, nullptr);
+        const Drawn cpu = draw_on_cpu(scene, view, classification, kSheets),
+                    gl = gpu.draw(view, classification, kSheets, nullptr);
         const float color = largest_difference(cpu.image.rgba, gl.image.rgba);
         const float depth = largest_depth_difference(cpu, gl);
         EXPECT_LT(color, most_color);
@@ -171,13 +172,13 @@ TEST_F(GlSplats, TilesBatchesAndRepeatsChangeNoBit) {
         }
         for (const auto& [view, seen] :
              {std::pair(perspective(), optics()), {perspective(), one_shell()}, {inside(), optics()}}) {
-            const auto look = detail::classify(scene, seen);
-            const Drawn expected = reference.draw(view, look, kSheets, nullptr);
-            EXPECT_LT(largest_difference(draw_on_cpu(scene, view, look, kSheets).image.rgba, expected.image.rgba),
+            const auto classification = detail::classify(scene, seen);
+            const Drawn expected = reference.draw(view, classification, kSheets, nullptr);
+            EXPECT_LT(largest_difference(draw_on_cpu(scene, view, classification, kSheets).image.rgba, expected.image.rgba),
                       kCutRounding);
-            EXPECT_EQ(reference.draw(view, look, kSheets, nullptr).image.rgba, expected.image.rgba);
+            EXPECT_EQ(reference.draw(view, classification, kSheets, nullptr).image.rgba, expected.image.rgba);
             for (GlSplatter& other : others) {
-                const Drawn drawn = other.draw(view, look, kSheets, nullptr);
+                const Drawn drawn = other.draw(view, classification, kSheets, nullptr);
                 EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
                 EXPECT_EQ(drawn.depth, expected.depth);
             }
@@ -186,40 +187,40 @@ TEST_F(GlSplats, TilesBatchesAndRepeatsChangeNoBit) {
 }
 
 TEST_F(GlSplats, PassesChangeNoBit) {
-    constexpr int kMany = 80;  // thin batches: a third of the kernels meets each
+    constexpr int kMany = 80;  // thin batches: each meets a third of the kernels
     for (const bool bounded : {true, false}) {
         const RbfVolume volume = sampled(Correction::Full, [&](RbfVolume& v) {
             if (!bounded) v.boundary = {};
         });
         const auto scene = detail::make_scene(volume, {.color_channel = 1});
-        const auto look = detail::classify(scene, optics());
+        const auto classification = detail::classify(scene, optics());
         GlSplatter reference(scene, {});
-        const Drawn expected = reference.draw(perspective(), look, kMany, nullptr);
+        const Drawn expected = reference.draw(perspective(), classification, kMany, nullptr);
         EXPECT_EQ(reference.report().passes, 1);
         for (const GlTuning& tuning : {GlTuning{.most_entries = reference.report().bin_entries / 3},
                                        GlTuning{.batch = 4, .most_buffer_bytes = 64 * volume.size()}}) {
             GlSplatter splatter(scene, {}, tuning);
             for (int repeat = 0; repeat < 2; ++repeat) {
-                const Drawn drawn = splatter.draw(perspective(), look, kMany, nullptr);
+                const Drawn drawn = splatter.draw(perspective(), classification, kMany, nullptr);
                 EXPECT_GT(splatter.report().passes, 2);
                 EXPECT_EQ(drawn.image.rgba, expected.image.rgba);
                 EXPECT_EQ(drawn.depth, expected.depth);
             }
         }
         GlSplatter tiny(scene, {}, {.most_entries = 100});
-        EXPECT_THROW((void)tiny.draw(perspective(), look, kMany, nullptr), Error);
+        EXPECT_THROW((void)tiny.draw(perspective(), classification, kMany, nullptr), Error);
     }
 }
 
-TEST_F(GlSplats, WhatThePictureBeforeLeftDoesNotMatter) {
+TEST_F(GlSplats, PicturesDoNotDependOnEarlierOnes) {
     // Less, then more than there is room for, and another transfer function.
     const RbfVolume volume = sampled(Correction::Second);
     const auto scene = detail::make_scene(volume, {});
-    const auto look = detail::classify(scene, optics());
+    const auto classification = detail::classify(scene, optics());
     GlSplatter kept(scene, {});
     for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(), kSheets}, {inside(), 33}}) {
-        const Drawn drawn = kept.draw(view, look, sheets, nullptr),
-                    fresh = GlSplatter(scene, {}).draw(view, look, sheets, nullptr);
+        const Drawn drawn = kept.draw(view, classification, sheets, nullptr),
+                    fresh = GlSplatter(scene, {}).draw(view, classification, sheets, nullptr);
         EXPECT_EQ(drawn.image.rgba, fresh.image.rgba);
         EXPECT_EQ(drawn.depth, fresh.depth);
     }
@@ -228,10 +229,11 @@ TEST_F(GlSplats, WhatThePictureBeforeLeftDoesNotMatter) {
 TEST_F(GlSplats, TheDevicesOwnBoundaryIsThatOfTheCpu) {
     const RbfVolume volume = sampled(Correction::Second);
     const auto scene = detail::make_scene(volume, {});
-    const auto look = detail::classify(scene, optics());
+    const auto classification = detail::classify(scene, optics());
     GlSplatter own(scene, {}, {.boundary_on_device = true}), from_cpu(scene, {});
     for (const auto& [view, sheets] : {std::pair(orthographic(), 20), {perspective(120, 90), 33}, {inside(), 33}}) {
-        const Drawn drawn = own.draw(view, look, sheets, nullptr), expected = from_cpu.draw(view, look, sheets, nullptr);
+        const Drawn drawn = own.draw(view, classification, sheets, nullptr),
+                    expected = from_cpu.draw(view, classification, sheets, nullptr);
         EXPECT_EQ(own.report().boundary_hits, from_cpu.report().boundary_hits);
         EXPECT_LT(largest_difference(drawn.image.rgba, expected.image.rgba), kRounding);
     }

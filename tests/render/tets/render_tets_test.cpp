@@ -17,7 +17,7 @@ using test::constant_alpha;
 using test::constant_optics;
 using test::evaluate;
 
-// Images are single precision; double everywhere before.
+// Images are in single precision, all before in double.
 constexpr double kFloatTol = 1e-6;
 
 // Colour and opacity change with the value in [0,1], with kinks.
@@ -93,7 +93,7 @@ double largest_difference(const Image& a, const Image& b) {
 TEST(RenderTets, ConstantSlabIsBeerLambert) {
     const HexMesh mesh = test::box(5);
     const View view = straight_view(33);
-    const auto result = render_tets(mesh, evaluate(mesh, [](const Vec3&) { return 1.0; }), view, constant_optics());
+    const auto result = render_tets(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_EQ(result.report.tets, 6u * 125);
     EXPECT_EQ(result.report.degenerate_tets, 0u);
     EXPECT_EQ(result.report.inverted_tets, 0u);
@@ -104,7 +104,7 @@ TEST(RenderTets, ConstantSlabIsBeerLambert) {
 TEST(RenderTets, ConstantBoxInPerspectiveHasAnalyticChords) {
     for (const HexMesh& mesh : {test::box(1), test::box(6), test::jittered_box(7, 0.3, 11)}) {
         const View view = slanted_view(64);
-        expect_constant_box(render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics()), view);
+        expect_constant_box(render_tets(valued(mesh, 1.0), {}, view, constant_optics()), view);
     }
 }
 
@@ -113,9 +113,10 @@ TEST(RenderTets, RaysThroughLatticePointsAndEdgesAreExact) {
     const HexMesh mesh = test::box(4);
     const std::vector<double> ones(mesh.points.size(), 1.0);
     for (const int size : {5, 9, 17}) {
-        // The outermost pixel centres lie on the box's sides, where being in or out is equally right: left out below.
+        // The outermost pixel centres lie on the box's sides, where inside and outside are equally right: they are left out
+        // below.
         const View view = straight_view(size, double(size) / (size - 1));
-        const auto result = render_tets(mesh, ones, view, constant_optics());
+        const auto result = render_tets(valued(mesh, ones), {}, view, constant_optics());
         EXPECT_EQ(result.report.lost_rays, 0u);
         for (int y = 1; y + 1 < size; ++y) {
             for (int x = 1; x + 1 < size; ++x) {
@@ -126,12 +127,12 @@ TEST(RenderTets, RaysThroughLatticePointsAndEdgesAreExact) {
 }
 
 TEST(RenderTets, RaysAlongDiagonalsAreExact) {
-    // Along (1,1,1) and (1,1,0) rays run in faces and along the diagonals of the split.
+    // Along (1,1,1) and (1,1,0) rays run in faces and along diagonals of the split.
     for (const Vec3& direction : {Vec3(1, 1, 1), Vec3(1, 1, 0), Vec3(-1, 1, 1)}) {
         const HexMesh mesh = test::box(4);
         const View view({.eye = Vec3(0.5) + 4.0 * direction, .target = Vec3(0.5), .up = {0, 0, 1}, .ortho_height = 1.0}, 41,
                         41);
-        const auto result = render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+        const auto result = render_tets(valued(mesh, 1.0), {}, view, constant_optics());
         EXPECT_EQ(result.report.lost_rays, 0u);
         const double chord = glm::length(direction);
         EXPECT_NEAR(result.image.pixel(20, 20)[3], constant_alpha(chord), kFloatTol);
@@ -143,7 +144,7 @@ TEST(RenderTets, LinearFieldIsOneSegment) {
     const auto ramp = [&](const Vec3& p) { return dot(gradient, p); };
     for (const HexMesh& mesh : {test::box(4), test::jittered_box(6, 0.3, 5)}) {
         for (const View& view : {straight_view(32), slanted_view(48)}) {
-            const auto result = render_tets(mesh, evaluate(mesh, ramp), view, ramp_optics());
+            const auto result = render_tets(valued(mesh, ramp), {}, view, ramp_optics());
             EXPECT_EQ(result.report.lost_rays, 0u);
             EXPECT_GT(result.report.segments, result.report.rays);
             expect_ramp_box(result.image, view, gradient);
@@ -154,7 +155,7 @@ TEST(RenderTets, LinearFieldIsOneSegment) {
 TEST(RenderTets, BallHasItsOpticalDepth) {
     const HexMesh mesh = test::ball(40);
     const View view({.eye = {0.3, 1, 5}, .target = {0, 0, 0}, .up = {0, 1, 0}, .ortho_height = 2.2}, 64, 64);
-    const auto result = render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    const auto result = render_tets(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_EQ(result.report.lost_rays, 0u);
     // Facets are at most 2/40 wide (in the middle of the cube's faces), their corners 0.05/√2 from their centre, so they lie up
     // to half the square of that below the sphere: the depth is between those of two spheres.
@@ -177,7 +178,7 @@ TEST(RenderTets, LShapeIsLeftAndEnteredAgain) {
     // Looking along x over a U: cells with the middle third of the top missing, so that rays leave and come back.
     const HexMesh mesh = test::lattice({3, 2, 2}, [](Index i, Index, Index k) { return k == 0 || i != 1; });
     const View view({.eye = {-3, 0.5, 0.5}, .target = {0, 0.5, 0.5}, .up = {0, 0, 1}, .ortho_height = 1}, 32, 32);
-    const auto result = render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    const auto result = render_tets(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_EQ(result.report.lost_rays, 0u);
     for (int y = 0; y < 32; ++y) {
         for (int x = 0; x < 32; ++x) {
@@ -186,7 +187,7 @@ TEST(RenderTets, LShapeIsLeftAndEnteredAgain) {
     }
     const HexMesh l = test::l_shape(4);
     const View oblique({.eye = {4, 0.9, 1.8}, .target = {0.5, 0.5, 0.5}, .up = {0, 0, 1}, .fovy_deg = 25}, 48, 48);
-    const auto constant = render_tets(l, std::vector<double>(l.points.size(), 1.0), oblique, constant_optics());
+    const auto constant = render_tets(valued(l, 1.0), {}, oblique, constant_optics());
     EXPECT_EQ(constant.report.lost_rays, 0u);
     for (int y = 0; y < 48; ++y) {
         for (int x = 0; x < 48; ++x) {
@@ -200,7 +201,7 @@ TEST(RenderTets, LShapeIsLeftAndEnteredAgain) {
 }
 
 TEST(RenderTets, ComponentsThatTouchAreBothSeen) {
-    HexMesh mesh = test::box(3);  // and a copy of it, with points of its own, at x in 1..2
+    HexMesh mesh = test::box(3);  // and a copy with its own points at x in 1..2
     const HexMesh other = mesh;
     const auto offset = static_cast<Index>(mesh.points.size());
     for (const Vec3& p : other.points) mesh.points.push_back(p + Vec3(1, 0, 0));
@@ -209,7 +210,7 @@ TEST(RenderTets, ComponentsThatTouchAreBothSeen) {
         mesh.cells.push_back(cell);
     }
     const View view({.eye = {-3, 0.5, 0.5}, .target = {0, 0.5, 0.5}, .up = {0, 0, 1}, .ortho_height = 0.97}, 24, 24);
-    const auto result = render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    const auto result = render_tets(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_EQ(result.report.lost_rays, 0u);
     for (const auto x : {0, 7, 12, 23}) EXPECT_NEAR(result.image.pixel(x, x)[3], constant_alpha(2), kFloatTol);
 }
@@ -217,11 +218,11 @@ TEST(RenderTets, ComponentsThatTouchAreBothSeen) {
 TEST(RenderTets, EyeInsideSeesWhatIsInFront) {
     const HexMesh mesh = test::jittered_box(5, 0.3, 23);
     const View view({.eye = {0.3, 0.45, 0.62}, .target = {1, 0.5, 0.2}, .up = {0, 1, 0}, .fovy_deg = 100}, 48, 48);
-    const auto ones = render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    const auto ones = render_tets(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_EQ(ones.report.rays, 48u * 48);
     expect_constant_box(ones, view);
     const Vec3 gradient(0.1, 0.6, 0.3);
-    const auto ramp = render_tets(mesh, evaluate(mesh, [&](const Vec3& p) { return dot(gradient, p); }), view, ramp_optics());
+    const auto ramp = render_tets(valued(mesh, [&](const Vec3& p) { return dot(gradient, p); }), {}, view, ramp_optics());
     expect_ramp_box(ramp.image, view, gradient);
 }
 
@@ -229,7 +230,7 @@ TEST(RenderTets, EyeOnAPointOfTheMesh) {
     const HexMesh mesh = test::box(4);
     for (const Vec3& eye : {Vec3(0.5), Vec3(0.25, 0.5, 0.75), Vec3(0, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0.3, 0.4)}) {
         const View view({.eye = eye, .target = {0.8, 0.8, 0.8}, .up = {0, 1, 0}, .fovy_deg = 80}, 33, 33);
-        expect_constant_box(render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics()), view);
+        expect_constant_box(render_tets(valued(mesh, 1.0), {}, view, constant_optics()), view);
     }
 }
 
@@ -238,7 +239,7 @@ TEST(RenderTets, ThreadsChangeNoBit) {
     const auto field = evaluate(mesh, [](const Vec3& p) { return 0.5 + 0.5 * std::sin(9 * p.x) * std::cos(7 * p.y + p.z); });
     const auto draw = [&](std::size_t threads) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-        return render_tets(mesh, field, slanted_view(70), ramp_optics(), {.samples = 2});
+        return render_tets(valued(mesh, field), {}, slanted_view(70), ramp_optics(), {.samples = 2});
     };
     const auto one = draw(1), two = draw(2);
     EXPECT_EQ(std::memcmp(one.image.rgba.data(), two.image.rgba.data(), one.image.rgba.size() * sizeof(float)), 0);
@@ -253,12 +254,13 @@ TEST(RenderTets, PlaceAndSizeDoNotMatter) {
         HexMesh moved = mesh;
         for (Vec3& p : moved.points) p = scale * p + move;
         const Camera camera{.eye = scale * Vec3(2.1, 1.7, 2.9) + move, .target = scale * Vec3(0.5) + move, .fovy_deg = 35};
-        const auto result = render_tets(moved, field, View(camera, 64, 64), Optics(ramp_optics().function(), scale));
+        const auto result =
+            render_tets(valued(moved, field), {}, View(camera, 64, 64), Optics(ramp_optics().function(), scale));
         EXPECT_EQ(result.report.lost_rays, 0u);
         return result.image;
     };
     const Image here = draw(1, Vec3(0));
-    // At 1e6 a coordinate is rounded by 1e-10, which the steepest silhouette and field turn into less than 1e-7.
+    // At 1e6 a coordinate is rounded by 1e-10; the steepest silhouette and field make less than 1e-7 of it.
     EXPECT_LT(largest_difference(here, draw(1, Vec3(1e6, -1e6, 1e6))), 1e-6);
     EXPECT_LT(largest_difference(here, draw(1e-2, Vec3(0))), 1e-6);
     EXPECT_LT(largest_difference(here, draw(1e6, Vec3(0))), 1e-6);
@@ -268,7 +270,7 @@ TEST(RenderTets, TangledInnerPointsAreFollowed) {
     // Points moved by more than a cell: many inverted tetrahedra, yet the mesh still fills the box, each depth counted once.
     const HexMesh mesh = test::jittered_box(6, 0.9, 99);
     const View view = slanted_view(64);
-    const auto result = render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    const auto result = render_tets(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_GT(result.report.inverted_tets, 0u);
     expect_constant_box(result, view);
 }
@@ -280,7 +282,7 @@ TEST(RenderTets, InvertedAndFlatCellsDoNotStopRays) {
     }
     const View view = slanted_view(48);
     const std::vector<double> ones(mesh.points.size(), 1.0);
-    const auto inverted = render_tets(mesh, ones, view, constant_optics());
+    const auto inverted = render_tets(valued(mesh, ones), {}, view, constant_optics());
     EXPECT_EQ(inverted.report.inverted_tets, 6u * 10);
     expect_constant_box(inverted, view);
 
@@ -288,13 +290,13 @@ TEST(RenderTets, InvertedAndFlatCellsDoNotStopRays) {
     for (Vec3& p : flat.points) {
         if (p.z == 0.5) p.z = 0.25;  // a layer of cells without thickness
     }
-    const auto collapsed = render_tets(flat, ones, view, constant_optics());
+    const auto collapsed = render_tets(valued(flat, ones), {}, view, constant_optics());
     EXPECT_EQ(collapsed.report.degenerate_tets, 6u * 16);
     expect_constant_box(collapsed, view);
 
     HexMesh inside_out = test::box(3);
     inside_out.points[inside_out.cells.back()[6]] = Vec3(-0.3, -0.2, -0.4);  // a corner pulled through the whole mesh
-    const auto folded = render_tets(inside_out, std::vector<double>(inside_out.points.size(), 1.0), view, constant_optics());
+    const auto folded = render_tets(valued(inside_out, 1.0), {}, view, constant_optics());
     EXPECT_GT(folded.report.inverted_tets, 0u);
     for (const float value : folded.image.rgba) ASSERT_TRUE(std::isfinite(value) && value >= 0 && value <= 1 + kFloatTol);
 }
@@ -302,7 +304,7 @@ TEST(RenderTets, InvertedAndFlatCellsDoNotStopRays) {
 TEST(RenderTets, EveryCornerInOnePointDrawsNothing) {
     HexMesh mesh = test::box(2);
     for (Vec3& p : mesh.points) p = Vec3(0.5);
-    const auto result = render_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), slanted_view(16), constant_optics());
+    const auto result = render_tets(valued(mesh, 1.0), {}, slanted_view(16), constant_optics());
     EXPECT_EQ(result.report.degenerate_tets, result.report.tets);
     for (const float value : result.image.rgba) ASSERT_EQ(value, 0.0f);
 }
@@ -310,8 +312,8 @@ TEST(RenderTets, EveryCornerInOnePointDrawsNothing) {
 TEST(RenderTets, SamplesAreMeansOverThePixel) {
     const HexMesh mesh = test::box(2);
     const std::vector<double> ones(mesh.points.size(), 1.0);
-    const auto fine = render_tets(mesh, ones, slanted_view(48), constant_optics());
-    const auto coarse = render_tets(mesh, ones, slanted_view(16), constant_optics(), {.samples = 3});
+    const auto fine = render_tets(valued(mesh, ones), {}, slanted_view(48), constant_optics());
+    const auto coarse = render_tets(valued(mesh, ones), {}, slanted_view(16), constant_optics(), {.samples = 3});
     EXPECT_EQ(coarse.report.rays, fine.report.rays);
     for (int y = 0; y < 16; ++y) {
         for (int x = 0; x < 16; ++x) {
@@ -322,16 +324,32 @@ TEST(RenderTets, SamplesAreMeansOverThePixel) {
     }
 }
 
+TEST(RenderTets, ShowsTheNamedFieldOrTheFirstScalar) {
+    HexMesh mesh = test::box(2);
+    const auto rising = evaluate(mesh, [](const Vec3& p) { return p.x; });
+    mesh.attributes = {{"velocity", 3, std::vector<double>(3 * mesh.points.size())},
+                       {"constant", 1, std::vector<double>(mesh.points.size(), 0.2)},
+                       {"rising", 1, rising}};
+    const auto draw = [](const HexMesh& of, std::string_view field) {
+        return render_tets(of, field, slanted_view(12), ramp_optics()).image.rgba;
+    };
+    EXPECT_EQ(draw(mesh, ""), draw(valued(mesh, 0.2), ""));
+    EXPECT_EQ(draw(mesh, "rising"), draw(valued(mesh, rising), ""));
+    EXPECT_THROW((void)draw(mesh, "velocity"), Error);
+    EXPECT_THROW((void)draw(mesh, "pressure"), Error);
+    EXPECT_THROW((void)draw(test::box(1), ""), Error);
+}
+
 TEST(RenderTets, RefusesWrongInput) {
     const HexMesh mesh = test::box(1);
     const std::vector<double> ones(8, 1.0);
-    EXPECT_THROW((void)render_tets(mesh, std::vector<double>(7), slanted_view(4), constant_optics()), Error);
-    EXPECT_THROW((void)render_tets(mesh, ones, slanted_view(4), constant_optics(), {.samples = 0}), Error);
-    EXPECT_THROW((void)render_tets(mesh, ones, slanted_view(4), constant_optics(), {.samples = 17}), Error);
-    EXPECT_THROW((void)render_tets(mesh, std::vector<double>(8, std::nan("")), slanted_view(4), constant_optics()), Error);
+    EXPECT_THROW((void)render_tets(valued(mesh, std::vector<double>(7)), {}, slanted_view(4), constant_optics()), Error);
+    EXPECT_THROW((void)render_tets(valued(mesh, ones), {}, slanted_view(4), constant_optics(), {.samples = 0}), Error);
+    EXPECT_THROW((void)render_tets(valued(mesh, ones), {}, slanted_view(4), constant_optics(), {.samples = 17}), Error);
+    EXPECT_THROW((void)render_tets(valued(mesh, std::nan("")), {}, slanted_view(4), constant_optics()), Error);
     HexMesh broken = mesh;
     broken.cells[0][3] = 99;
-    EXPECT_THROW((void)render_tets(broken, ones, slanted_view(4), constant_optics()), Error);
+    EXPECT_THROW((void)render_tets(valued(broken, ones), {}, slanted_view(4), constant_optics()), Error);
 }
 
 class Stopper : public Progress {
@@ -346,11 +364,11 @@ TEST(RenderTets, ReportsProgressAndStops) {
     const HexMesh mesh = test::box(1);
     const std::vector<double> ones(8, 1.0);
     Stopper progress;
-    (void)render_tets(mesh, ones, slanted_view(40), constant_optics(), {.progress = &progress});
+    (void)render_tets(valued(mesh, ones), {}, slanted_view(40), constant_optics(), {.progress = &progress});
     EXPECT_EQ(progress.last, 1.0);
     progress.stop = true;
     try {
-        (void)render_tets(mesh, ones, slanted_view(40), constant_optics(), {.progress = &progress});
+        (void)render_tets(valued(mesh, ones), {}, slanted_view(40), constant_optics(), {.progress = &progress});
         FAIL() << "not stopped";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::Cancelled);

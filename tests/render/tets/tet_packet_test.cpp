@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays side by side are rays one by one, to the last bit: through points and along edges, in folded and flat meshes too.
+// Rays side by side give the same bits as rays one by one: through points and along edges, in folded and flat meshes too.
 #include "tet_packet_tracer.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ public:
           scene_(tets_, box_),
           optics_(sharp_optics(unit * box_.diagonal())) {}
 
-    /// Rays from all sides: through points, middles of edges and anywhere, along axes and not; some meet nothing.
+    /// Rays from all sides: through points, middles of edges and other places, along axes and not; some miss the mesh.
     [[nodiscard]] std::vector<Ray> rays(std::size_t count) {
         std::vector<Ray> all;
         for (std::size_t i = 0; i < count; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays through points, edges and anywhere, along axes and diagonals, through all meshes there are: no ray is lost, and the
-// length inside is that between the entries and exits of the boundary, found without any adjacency. SUBVOL_SWEEP=n takes n
-// times as many rays.
+// Rays through points, edges and other places, along axes and diagonals, through many meshes: no ray is lost, and the length
+// inside equals that between the crossings of the boundary, found without any adjacency. SUBVOL_SWEEP=n takes n times as many
+// rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace subvol {
 using namespace detail;
 namespace {
 
-constexpr double kLengthTol = 1e-4;  // of the diagonal: what is asked for; offsets of 10⁶ diagonals round by 1e-10 of it
+constexpr double kLengthTol = 1e-4;  // of the diagonal: the requirement; offsets of 10⁶ diagonals round by 1e-10 of it
 constexpr std::size_t kRays = 3;     // of each kind and direction
 
 std::size_t sweep() {
@@ -53,14 +53,15 @@ public:
         testing::Test::RecordProperty(name_ + ": off", std::to_string(missed_));
         testing::Test::RecordProperty(name_ + ": worst length, 1e-9 diagonals", std::to_string(1e9 * worst_));
         EXPECT_EQ(tracer_.counts().lost_rays, 0u) << name_ << ": of " << tracer_.counts().rays;
-        // Where a crushed mesh folds over itself, two walks may share a stretch that the boundary counts as none.
+        // Where a crushed mesh folds over itself, two walks may share a stretch that is outside by the boundary's winding
+        // number.
         EXPECT_LE(missed_, traced_ / 1000) << name_ << ": lengths off, of " << traced_ << " rays, by up to " << worst_
                                            << " of the diagonal";
     }
 
 private:
     double part() { return std::uniform_real_distribution<double>(0, 1)(random_); }
-    /// A corner of the last tetrahedron taken; corner 0 takes another one.
+    /// A corner of the last tetrahedron that was chosen; corner 0 chooses another one.
     Vec3 corner(std::size_t k) {
         if (k == 0) tet_ = std::uniform_int_distribution<std::size_t>(0, tets_.tets.size() - 1)(random_);
         return tets_.points[tets_.tets[tet_].corner[k]].position;

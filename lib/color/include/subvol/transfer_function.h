@@ -26,6 +26,12 @@ struct TransferFunction {
     std::vector<OpacityKnot> opacity;
 };
 
+/// Colour (in linear light) of a value. No list of the function may be empty.
+[[nodiscard]] Vec3 color_at(const TransferFunction& function, double value);
+
+/// Opacity of a value, likewise.
+[[nodiscard]] double alpha_at(const TransferFunction& function, double value);
+
 /// A named transfer function over a field's range.
 ///
 /// viridis:    the default. The opacity ramps from 0 to .5 over the range, and colours are right to 1/512, as in coolwarm

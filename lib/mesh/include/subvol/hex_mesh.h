@@ -38,6 +38,11 @@ struct HexMesh {
     [[nodiscard]] const Attribute* find_attribute(std::string_view name) const;
 };
 
+/// The attribute of that name with one channel; without a name, the first with one channel.
+///
+/// throws: Error(InvalidInput) if there is no attribute of that name with one channel; lists those that exist
+[[nodiscard]] const Attribute& scalar_field(const HexMesh& mesh, std::string_view name = {});
+
 /// Checks the mesh for all later stages.
 ///
 /// throws: Error(InvalidInput) if there is no cell, a corner is out of range or listed twice in a cell, a used point is not
@@ -70,12 +75,6 @@ struct SelectedField {
 /// name:   may name a vector, whose length is taken; "name.k" takes channel k
 /// throws: Error(InvalidInput) if no attribute has that name; lists those that exist
 [[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name);
-
-/// The field that a call of the library works on.
-///
-/// field:  names an attribute of one channel; empty: the first one
-/// throws: Error(InvalidInput) if there is no such attribute
-[[nodiscard]] const Attribute& scalar_field(const HexMesh& mesh, std::string_view field);
 
 /// The mesh with no attribute but this one. throws: as `scalar_field`
 [[nodiscard]] HexMesh with_scalar_field(const HexMesh& mesh, std::string_view field);

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
+#include <string_view>
 
 #include "subvol/camera.h"
 #include "subvol/image.h"
@@ -14,11 +14,11 @@
 namespace subvol {
 
 /// refine:          scheme, tension and creases; its levels and progress are not used
-/// levels:          0 to 8; none: raised from 1 until the picture changes by less than image_tolerance, or to max_levels
+/// levels:          0 to 8; none: raised from 1 until the picture changes by less than image_tolerance, at most to max_levels
 /// image_tolerance: RMS over the RGB of all pixels
-/// memory:          bytes that grids may take at once (a tile of 16 pixels takes what it needs): parts of the picture are drawn
-///                  one after the other, and what a part needs is refined anew for it
-/// samples:         n × n rays a pixel on a regular grid, 1..16
+/// memory:          bytes that grids may take at once: if they need more, parts of the picture are drawn one after the other,
+///                  and the cells of each part are refined anew. A part of 16 × 16 pixels takes what it needs
+/// samples:         n × n rays for each pixel on a regular grid, 1..16
 struct DenseOptions {
     RefineOptions refine{};
     std::optional<int> levels{};
@@ -30,13 +30,13 @@ struct DenseOptions {
 };
 
 /// image_change: RMS by which the picture changed at the last level; none if only one level was drawn
-/// converged:    it was below the tolerance
+/// converged:    whether that was below the tolerance
 /// bytes:        the most that grids took at once
 struct DenseReport {
     int levels = 0;
     std::optional<double> image_change{};
     bool converged = false;
-    std::size_t blocks = 0;          // control cells whose values are visible, in the picture
+    std::size_t blocks = 0;          // control cells in the picture whose values are visible
     std::size_t skipped_blocks = 0;  // the others
     std::size_t micro_cells = 0;     // of all control cells at this level
     std::size_t passes = 0;
@@ -52,15 +52,17 @@ struct DenseResult {
     DenseReport report;
 };
 
-/// The picture of the limit volume by rays through dense grids: each control cell's level-L grid of the scheme, its vertices on
-/// the limit, its micro-cells split into tetrahedra that fit together on any mesh, each segment integrated exactly. Cells whose
-/// values are invisible are skipped. Bitwise the same for any number of threads and any `memory`.
+/// The picture of the limit volume by rays through dense grids. Each control cell becomes the scheme's level-L grid with its
+/// vertices on the limit, and each micro-cell is split into tetrahedra that match those of its neighbours on any mesh. Each
+/// segment is integrated exactly. Cells whose values are invisible are skipped. Bitwise the same for any number of threads and
+/// any `memory`.
 ///
-/// scalar: one value a point of the control mesh
-/// throws: Error(InvalidInput) if scalar.size() != mesh.points.size() or an option is out of range, and as `refine`
-/// cost:   memory: 42 bytes (level 5) to 63 (level 2) a vertex of the grids kept; each pass refines its cells once
+/// field:  the attribute of the control mesh that is shown, as in scalar_field
+/// throws: Error(InvalidInput) if an option is out of range, and as scalar_field and `refine`
+/// cost:   memory: 42 bytes (level 5) to 63 (level 2) for each vertex of the grids that are kept; each pass refines its cells
+///         once
 /// source: docs/adr/0012
-[[nodiscard]] DenseResult render_dense(const HexMesh& mesh, std::span<const double> scalar, const View& view,
-                                       const Optics& optics, const DenseOptions& options = {});
+[[nodiscard]] DenseResult render_dense(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
+                                       const DenseOptions& options = {});
 
 }  // namespace subvol

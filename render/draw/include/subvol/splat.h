@@ -17,28 +17,28 @@ namespace subvol {
 
 struct SplatReport {
     std::string backend;  // "gl" or "cpu"
-    std::string device;   // GL renderer string, or the number of CPU threads
+    std::string device;   // name of the GL device, or the number of CPU threads
     std::size_t points = 0;
-    std::size_t bin_entries = 0;    // pairs of a tile and a kernel; on a GPU, of a tile, a batch of sheets and a kernel
+    std::size_t bin_entries = 0;    // pairs of a tile and a kernel; on a GPU, triples with a batch of sheets
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_prepare = 0, seconds_draw = 0;
     std::vector<StageTime> stages{};  // of the GPU
 };
 
-/// depth: of each pixel, the mean eye depth of what is seen, by opacity; infinity where nothing is
+/// depth: for each pixel the mean eye depth of what is seen, weighted by opacity; infinity where nothing is seen
 struct SplatResult {
     Image image;
     std::vector<float> depth;
     SplatReport report;
 };
 
-/// Draws an RBF volume: kernels summed on image-aligned sheets, clipped per pixel to the boundary's entry and exit depths, the
-/// transfer function applied after reconstruction, intervals pre-integrated, composited front to back. Without a boundary the
-/// volume ends where the sum of weights falls to half of what it is inside.
+/// Draws an RBF volume. Kernels are summed on image-aligned sheets, rays are clipped to the boundary's entry and exit depths,
+/// the transfer function is applied to the reconstructed field, and the stretches between sheets are pre-integrated and
+/// composited from front to back. Without a boundary the volume ends where the sum of weights falls to half of its value
+/// inside.
 ///
-/// Keeps what does not depend on the view, and its memory, from picture to picture. The volume is referred to, not copied: it
-/// has to stay where it is. Pictures are bitwise the same for any number of threads. One picture at a
-/// time.
+/// Keeps data that does not depend on the view, and its memory, from picture to picture. The volume is referred to, not copied.
+/// Pictures are bitwise the same for any number of threads. Not for several threads at once.
 /// throws: Error(InvalidInput) for options out of range, or sizes, values and extinctions beyond 32-bit floats;
 ///         Error(MissingCapability) if SplatMethod::Gl or Sheets finds no OpenGL 4.5
 /// source: docs/science.md
@@ -49,7 +49,7 @@ public:
     Splatter(Splatter&&) noexcept;
     Splatter& operator=(Splatter&&) noexcept;
 
-    /// progress: who listens to this picture; null: the options' own
+    /// progress: listener for this picture; null: that of the options
     [[nodiscard]] SplatResult draw(const View& view, const Optics& optics, Progress* progress = nullptr);
 
 private:

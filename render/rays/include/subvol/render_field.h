@@ -11,18 +11,21 @@
 
 namespace subvol {
 
-/// step_world: distance between samples, > 0; ends are found by bisection to 1e-9 of it
-struct FieldOptions {
+/// step_world: distance between samples, > 0; entries and exits are found by bisection to 1e-9 of it
+/// samples:    n × n rays for each pixel on a regular grid, 1..16
+struct MarchOptions {
     double step_world = 0.002;
     int samples = 1;
     Progress* progress = nullptr;
 };
 
 /// Marches rays through any field: the oracle for fields with a closed form. Entries and exits are found by bisection between
-/// samples inside and outside; what is thinner than a step may be missed.
+/// a sample inside and one outside; parts thinner than a step may be missed.
 ///
-/// box: where the field may have values
+/// field:  the value at a place; nothing outside
+/// box:    where the field may have values
+/// throws: Error(InvalidInput) if an option is out of range
 [[nodiscard]] Image render_field(const std::function<std::optional<double>(const Vec3&)>& field, const Box& box,
-                                 const View& view, const Optics& optics, const FieldOptions& options = {});
+                                 const View& view, const Optics& optics, const MarchOptions& options = {});
 
 }  // namespace subvol

@@ -11,8 +11,8 @@
 
 namespace subvol {
 
-/// samples:   n × n rays a pixel on a regular grid, 1..16
-/// tolerance: how far the value may be from the straight lines that are integrated, as part of the range of the knots, > 0
+/// samples:   n × n rays for each pixel on a regular grid, 1..16
+/// tolerance: how far the value may be from the straight lines that are integrated, as a part of the range of the knots, > 0
 struct GridOptions {
     int samples = 1;
     double tolerance = 1e-4;
@@ -22,7 +22,7 @@ struct GridOptions {
 struct GridTraceReport {
     std::size_t rays = 0;    // that met an active voxel
     std::size_t cells = 0;   // between eight voxels, that were integrated
-    std::size_t blocks = 0;  // passed at once
+    std::size_t blocks = 0;  // that were crossed in one step
     double seconds_draw = 0;
 };
 
@@ -31,12 +31,12 @@ struct GridResult {
     GridTraceReport report;
 };
 
-/// Rays through a grid, from cell to cell between eight voxels; blocks that are empty or of one value are passed at once. In a
-/// cell the value along the ray is a cubic, cut where it enters another voxel if some are inactive, and integrated exactly
-/// between as many places as the tolerance asks for.
+/// Rays through a grid, from cell to cell between eight voxels; blocks that are empty or constant are crossed in one step. In a
+/// cell the value along the ray is a cubic. It is cut where the ray enters another voxel if some are inactive, and
+/// integrated exactly as a polyline with as many pieces as the tolerance requires.
 ///
 /// throws: Error(InvalidInput) if an option is out of range or the grid's axes are not independent
-/// cost:   of a ray, the cells that it crosses; pictures are bitwise the same for any number of threads
+/// cost:   proportional to the cells that rays cross; pictures are bitwise the same for any number of threads
 [[nodiscard]] GridResult render_grid(const Voxels& grid, const View& view, const Optics& optics,
                                      const GridOptions& options = {});
 

@@ -9,17 +9,17 @@
 
 namespace subvol {
 
-/// Who draws kernels, and how; the pictures are the same.
+/// How kernels are drawn; the pictures are the same.
 ///
 /// Auto:   Gl where there is a hardware GPU, else Cpu
 /// Cpu:    tiles of the picture, batches of sheets, on all threads
 /// Gl:     the same by OpenGL compute shaders
-/// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, software too: the way of the EuroVis 2007 paper,
-///         for comparison
+/// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, also by software: the method of the EuroVis 2007
+///         paper, for comparison
 enum class SplatMethod { Auto, Cpu, Gl, Sheets };
 
-/// Light on the surfaces of equal value: Blinn and Phong's, with one light at the eye and a key light, both from either side.
-/// Where the value hardly changes there is no surface, and colours stay what they are.
+/// Light on the surfaces of equal value: the model of Blinn and Phong, with a light at the eye and a key light, both of which
+/// light either side. Where the value hardly changes there is no surface, and colours are not changed.
 ///
 /// ambient, diffuse, specular: parts of the light, ≥ 0
 /// key:                        towards the key light, in eye space (right, up, away from the eye)
@@ -31,11 +31,11 @@ struct Shading {
     Vec3 key{-0.5, 0.7, -0.5};
 };
 
-/// samples:       n × n places a pixel on a regular grid, of which the mean is taken, 1..16
+/// samples:       the mean of n × n places on a regular grid in each pixel is taken, 1..16
 /// sheets:        planes of constant eye depth over the volume's depth range, 2..65536
-/// channel:       which channel of the volume is shown
-/// device:        of OpenGL, its number in gl_devices(); none: the first hardware, else software
-/// color_channel: takes the colours from another channel than the opacities; not pre-integrated
+/// channel:       the channel of the volume that is shown
+/// device:        the OpenGL device's number in gl_devices(); none: the first hardware, else software
+/// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
 struct SplatOptions {
     SplatMethod method = SplatMethod::Auto;

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
+#include <string_view>
 
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
@@ -13,7 +13,7 @@
 
 namespace subvol {
 
-/// samples: n × n rays a pixel on a regular grid, 1..16
+/// samples: n × n rays for each pixel on a regular grid, 1..16
 struct TetsOptions {
     int samples = 1;
     Progress* progress = nullptr;
@@ -21,13 +21,13 @@ struct TetsOptions {
 
 struct TetsReport {
     std::size_t tets = 0;
-    std::size_t degenerate_tets = 0;  // of zero volume: crossed, never sampled
+    std::size_t degenerate_tets = 0;  // of zero volume: rays cross them, and nothing is integrated there
     std::size_t inverted_tets = 0;
     std::size_t rays = 0;       // that met the volume
     std::size_t segments = 0;   // tetrahedra crossed, over all rays
     std::size_t lost_rays = 0;  // that met the volume and could not be followed to its other side
     std::size_t bytes = 0;      // of points, tetrahedra and boundary, without Embree's tree
-    double seconds_build = 0;   // of the renderer, the same in all its pictures
+    double seconds_build = 0;   // of the renderer, the same for all its pictures
     double seconds_draw = 0;
 };
 
@@ -36,17 +36,18 @@ struct TetsResult {
     TetsReport report;
 };
 
-/// The reference: rays through the mesh split into tetrahedra, Embree for the entry, then from cell to cell through shared
-/// faces, each segment integrated exactly with the value linear in the tetrahedron.
+/// The reference renderer: the mesh is split into tetrahedra, Embree finds where a ray enters, and from there the ray walks
+/// from tetrahedron to tetrahedron through shared faces. The value is linear in each; each segment is integrated exactly.
 ///
-/// Keeps the tetrahedra and Embree's tree from picture to picture; mesh and scalar need not stay. Pictures are bitwise the same
-/// for any number of threads.
+/// Keeps the tetrahedra and Embree's tree from picture to picture; the mesh is not needed any more. Pictures are bitwise the
+/// same for any number of threads.
 /// source: docs/science.md
 class TetsRenderer {
 public:
-    /// scalar: one value a point of the mesh
-    /// throws: Error(InvalidInput) if scalar.size() != mesh.points.size(), or a value at a used point is not finite
-    TetsRenderer(const HexMesh& mesh, std::span<const double> scalar, Progress* progress = nullptr);
+    /// field:  the attribute that is shown, as in scalar_field
+    /// throws: Error(InvalidInput) as validate(mesh) and scalar_field, or if the mesh has too many cells or points;
+    ///         Error(MissingCapability) if Embree cannot be started or has not enough memory
+    explicit TetsRenderer(const HexMesh& mesh, std::string_view field = {}, Progress* progress = nullptr);
     ~TetsRenderer();
     TetsRenderer(TetsRenderer&&) noexcept;
     TetsRenderer& operator=(TetsRenderer&&) noexcept;
@@ -61,7 +62,7 @@ private:
 };
 
 /// One picture of a TetsRenderer.
-[[nodiscard]] TetsResult render_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view,
-                                     const Optics& optics, const TetsOptions& options = {});
+[[nodiscard]] TetsResult render_tets(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
+                                     const TetsOptions& options = {});
 
 }  // namespace subvol

@@ -1,16 +1,16 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// A tetrahedron at a pixel. What becomes of the segment: PT_COMPOSITE blends it over what was drawn before; PT_COUNT counts it;
-// PT_KEEP stores it in the pixel's list.
+// The segment of a pixel's ray in a tetrahedron. FRAGMENT_COMPOSITE blends it over what was drawn before, FRAGMENT_COUNT counts
+// it, FRAGMENT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2, corner3;
 flat in uint rank;
 
-#if PT_MODE == PT_COMPOSITE
+#if FRAGMENT_MODE == FRAGMENT_COMPOSITE
 layout(location = 0) out vec4 color;
 #else
 layout(std430, binding = 3) buffer Counts { uint counts[]; };
 #endif
-#if PT_MODE == PT_KEEP
+#if FRAGMENT_MODE == FRAGMENT_KEEP
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) writeonly buffer Segments { vec4 segments[]; };  // depths of both ends, values there
 layout(std430, binding = 6) writeonly buffer Ranks { uint ranks[]; };
@@ -23,7 +23,7 @@ bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
     bool s01, s02, s03, s12, s13, s23;
     float a01 = doubled_area(q0, q1, s01), a02 = doubled_area(q0, q2, s02), a03 = doubled_area(q0, q3, s03);
     float a12 = doubled_area(q1, q2, s12), a13 = doubled_area(q1, q3, s13), a23 = doubled_area(q2, q3, s23);
-    // A face is crossed if its edges go round the ray. That is so for two faces or none.
+    // A face is crossed if its edges go round the ray. This holds for two faces or for none.
     bool c123 = s12 == s23 && s12 != s13, c023 = s02 == s23 && s02 != s03;
     bool c013 = s01 == s13 && s01 != s03, c012 = s01 == s12 && s01 != s02;
     if (int(c123) + int(c023) + int(c013) + int(c012) != 2) return false;
@@ -34,7 +34,7 @@ bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
     vec2 one = c123 ? f123 : c023 ? f023 : f013, other = c012 ? f012 : c013 ? f013 : f023;
     front = one.x < other.x ? one : other;
     back = one.x < other.x ? other : one;
-    float eye = -middle_depth;  // nothing is seen behind it
+    float eye = -middle_depth;  // nothing behind the eye is seen
     if (front.x < eye && back.x > eye) front = vec2(eye, mix(front.y, back.y, (eye - front.x) / (back.x - front.x)));
     return front.x >= eye && front.x < back.x;
 }
@@ -42,15 +42,15 @@ bool find_segment(vec2 slope, out vec2 front, out vec2 back) {
 void main() {
     vec2 slope = (gl_FragCoord.xy - middle_px) * vec2(pixel, -pixel), front, back;
     if (!find_segment(slope, front, back)) discard;
-#if PT_MODE != PT_COMPOSITE
+#if FRAGMENT_MODE != FRAGMENT_COMPOSITE
     ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
     int id = place.y * (rectangle.z - rectangle.x) + place.x;
     uint before = atomicAdd(counts[id], 1u);
 #endif
-#if PT_MODE == PT_COMPOSITE
+#if FRAGMENT_MODE == FRAGMENT_COMPOSITE
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     color = segment_light(front.y, back.y, (back.x - front.x) * ray_length);
-#elif PT_MODE == PT_KEEP
+#elif FRAGMENT_MODE == FRAGMENT_KEEP
     segments[offsets[id] + before] = vec4(front.x, back.x, front.y, back.y);
     ranks[offsets[id] + before] = rank;
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pt_frame.h"
+#include "projected_frame.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -13,10 +13,10 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kMostUnits = 1e30;  // that a float holds, with room
-constexpr double kFarValue = 1e12;   // values further out look like this one
+constexpr double kMostUnits = 1e30;  // fits into a float, with room
+constexpr double kFarValue = 1e12;   // values further out are taken as this one
 
-/// Of the values of the knots: they are counted in parts of it.
+/// The range of the knots, in parts of which values are counted.
 struct Values {
     double first, range;
 

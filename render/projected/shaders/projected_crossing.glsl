@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which faces the ray of a pixel crosses, and where. It follows from the edges alone, and an edge is the same to every face that
-// has it: so nothing is lost or counted twice between neighbours (src/ray_plane.h, in single precision).
+// Which faces the ray of a pixel crosses, and where. This follows from the edges alone, and all faces about an edge compute the
+// same for it, so nothing is lost or counted twice between neighbours. The same as tets/ray_plane.h, in single precision.
 
-// Off the ray, in the plane across the view.
+// The offset from the ray, in the plane across the view.
 vec2 off_ray(vec2 slope, vec4 corner) {
     precise vec2 q = corner.xy - (perspective ? slope * (middle_depth + corner.z) : slope);
     return q;
 }
 
-// Twice the area of (ray, a, b), and whether that is to the left; never neither: SeenPoint's side_of. Rounding of the products
-// may make them equal but does not exchange them.
+// Twice the area of (ray, a, b), and on which side the ray passes: to the left or to the right, never neither (`side_of` in
+// ray_plane.h). Rounding may make the two products equal but does not exchange them.
 float doubled_area(vec2 a, vec2 b, out bool left) {
     precise float one = a.x * b.y, other = b.x * a.y;
     left = one > other;

@@ -1,12 +1,12 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Where the ray of a pixel crosses a face. PT_COUNT counts that, PT_KEEP stores it in the pixel's list.
+// The crossing of a pixel's ray with a face. FRAGMENT_COUNT counts it, FRAGMENT_KEEP stores it in the pixel's list.
 flat in vec4 corner0, corner1, corner2;
 flat in uint rank;
 flat in uint cover;  // 2 + tetrahedra on the side of the face's normal − those on the other
 
 layout(std430, binding = 3) buffer Counts { uint counts[]; };
-#if PT_MODE == PT_KEEP
+#if FRAGMENT_MODE == FRAGMENT_KEEP
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
 layout(std430, binding = 5) writeonly buffer Crossings { vec2 crossings[]; };  // depth, value
 layout(std430, binding = 6) writeonly buffer Marks { uint marks[]; };  // 8 · rank + 2 + tetrahedra behind the face − before it
@@ -24,7 +24,7 @@ void main() {
     ivec2 place = ivec2(gl_FragCoord.xy) - rectangle.xy;
     int id = place.y * (rectangle.z - rectangle.x) + place.x;
     uint before = atomicAdd(counts[id], 1u);
-#if PT_MODE == PT_KEEP
+#if FRAGMENT_MODE == FRAGMENT_KEEP
     uint behind = s01 ? 4u - cover : cover;  // to the left: the normal points towards the eye
     crossings[offsets[id] + before] = here;
     marks[offsets[id] + before] = 8u * rank + behind;

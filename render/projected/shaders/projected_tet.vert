@@ -1,32 +1,33 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The silhouette of a tetrahedron, two triangles or one, and what its fragments need to know of it.
+// The silhouette of a tetrahedron, two triangles or one, and the data that its fragments need.
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };  // eye space, value in parts of the knots' range
 layout(std430, binding = 1) readonly buffer Tets { uvec4 tets[]; };  // corners, ascending
 layout(std430, binding = 2) readonly buffer Order { uint order[]; };
 
-flat out vec4 corner0, corner1, corner2, corner3;  // by ascending number: what tetrahedra share, they compute alike
-flat out uint rank;                                // its place in the order, from back to front
+// By ascending number, so that tetrahedra compute the same for an edge that they share.
+flat out vec4 corner0, corner1, corner2, corner3;
+flat out uint rank;  // position in the order, from back to front
 
-// The silhouette's corners in their order about it; there are 3 or 4.
+// The 3 or 4 corners of the silhouette in order.
 int find_silhouette(vec2 q[4], out ivec4 ring) {
     bvec4 left = bvec4(doubled_area(q[1], q[2], q[3]) > 0.0, doubled_area(q[0], q[3], q[2]) > 0.0,
                        doubled_area(q[0], q[1], q[3]) > 0.0, doubled_area(q[0], q[2], q[1]) > 0.0);
     int count = int(left.x) + int(left.y) + int(left.z) + int(left.w);
-    if (count == 2) {  // an edge is seen from outside where two faces of different sides meet: opposite ones are of one side
+    if (count == 2) {  // an edge is on the silhouette where a front and a back face meet
         int other = left.y == left.x ? 1 : left.z == left.x ? 2 : 3;
         int second = other == 1 ? 2 : 1, last = other == 3 ? 2 : 3;
         ring = ivec4(0, second, other, last);
         return 4;
     }
-    bool lone = count == 1;  // the face that is alone on its side covers the other three
+    bool lone = count == 1;  // the one face that is alone on its side covers the other three
     int inner = left.x == lone ? 0 : left.y == lone ? 1 : left.z == lone ? 2 : 3;
     ring = ivec4(inner == 0 ? 1 : 0, inner <= 1 ? 2 : 1, inner <= 2 ? 3 : 2, inner);
     return 3;
 }
 
 vec2 place_corner(vec3 p[4], int at) {
-    const int corners[4] = int[4](0, 1, 3, 2);  // strip to ring
+    const int corners[4] = int[4](0, 1, 3, 2);  // from the order of a strip to that of a ring
     vec2 q[4], result;
     if (find_places(p, q)) {
         ivec4 ring;

@@ -1,7 +1,7 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The k-buffer of each pixel, over its list of faces: they come in the order in which they were drawn, at most kbuffer of them
-// wait, and of those and the next one the nearest goes on. Between it and the one that went before, the value is linear.
+// The k-buffer of each pixel, applied to its list of faces. Faces come in the order in which they were drawn. At most kbuffer
+// of them wait; of those and the next one, the nearest is released. The value is linear between it and the one released before.
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) writeonly buffer Pictures { vec4 picture[]; };
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
@@ -12,10 +12,9 @@ uniform ivec4 rectangle;
 uniform uint kbuffer;
 uniform float eye_value;
 
-const float kTouch = 1e-5;  // of two faces that are closer nothing can be told
-const float kOpaque = 1e-6;
+const float kTouch = 1e-5;  // for two faces that are closer the order is rounding
 
-// The device draws in order but may store out of it. Nearly sorted: insertion is quick.
+// The device draws in order but may store out of order. The list is nearly sorted, so insertion sort is fast.
 void sort_by_rank(uint first, uint end) {
     for (uint i = first + 1u; i < end; ++i) {
         vec2 crossing = crossings[i];
@@ -29,7 +28,7 @@ void sort_by_rank(uint first, uint end) {
     }
 }
 
-// What an entry passes on its way to the front are those that wait: there are no more than that.
+// An entry moves past waiting entries only, of which there are at most kbuffer.
 void sort_in_window(uint first, uint end) {
     for (uint i = first + 1u; i < end; ++i) {
         vec2 crossing = crossings[i];
@@ -45,8 +44,8 @@ void sort_in_window(uint first, uint end) {
 
 int change_at(uint i) { return int(marks[i] & 7u) - 2; }
 
-// Where parts of the volume touch with faces of their own, rounding decides which comes first: the one that is left has to, for
-// the values on the two may differ.
+// Where parts of the volume touch without sharing a face, rounding decides which of the two faces comes first. The ray has to
+// leave one part before it enters the other, as their values may differ.
 void leave_before_entering(uint i, uint end) {
     if (i + 1u >= end || change_at(i) <= 0 || change_at(i + 1u) >= 0) return;
     vec2 here = crossings[i], next = crossings[i + 1u];
@@ -70,7 +69,7 @@ void main() {
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     float eye = -middle_depth;
     vec2 before = perspective ? vec2(eye, eye_value) : vec2(-1e30, 0.0);
-    int cover = 0;  // tetrahedra about the place: a ray ends outside
+    int cover = 0;  // tetrahedra at this place; at the end of the ray there are none
     for (uint i = first; i < end; ++i) cover -= change_at(i);
     vec4 sum = vec4(0.0);
     uint late = 0u;
@@ -78,11 +77,11 @@ void main() {
         if (cover > 0) leave_before_entering(i, end);
         vec2 here = crossings[i];
         float from = max(before.x, eye);
-        if (cover > 0 && from < here.x && 1.0 - sum.a > kOpaque) {
+        if (cover > 0 && from < here.x && 1.0 - sum.a > kRayCutoff) {
             float value = mix(before.y, here.y, (from - before.x) / (here.x - before.x));
             sum += (1.0 - sum.a) * segment_light(value, here.y, (here.x - from) * ray_length);
         }
-        if (here.x < before.x - kTouch) ++late;  // only where the volume begins or ends is of use yet
+        if (here.x < before.x - kTouch) ++late;  // of a late face only the change of cover is used
         else if (cover == 0 || here.x > before.x) before = here;
         cover += change_at(i);
     }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "gl_context.h"
 #include "gl_tet_lists.h"
 #include "gl_tets.h"
 #include "pixel_tiles.h"
-#include "pt_frame.h"
+#include "projected_frame.h"
+#include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "tet_faces.h"
 #include "tet_mesh.h"
@@ -21,23 +21,13 @@ using namespace detail;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using detail::DrawStage;
 using detail::GlTets;
 
-// OpenGL numbers vertices by signed integers; tetrahedra have 6, faces 3; a face's rank leaves 3 bits.
+// OpenGL numbers vertices with signed 32-bit integers; a tetrahedron has 6, a face 3. The mark of a face needs 3 bits beside
+// its rank (projected_face.frag).
 constexpr std::size_t kMostTets = std::size_t{0x7fffffff} / 6, kMostFaces = std::size_t{1} << 29;
 constexpr int kMostEntries = 65536;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// The context that was current is so again.
-struct KeepCurrent {
-    detail::EglContext before = detail::EglContext::current();
-    ~KeepCurrent() { (void)before.make_current(); }
-};
 
 const std::optional<int>& checked_device(const std::optional<int>& device) {
     if (find_gl_device(device)) return device;
@@ -51,7 +41,7 @@ void check_count(const char* what, std::size_t count, std::size_t most) {
                 "at most " + std::to_string(most) + ", or the method tets");
 }
 
-void check_options(const PtOptions& options) {
+void check_options(const ProjectedOptions& options) {
     check_samples(options.samples);
     if (options.kbuffer < 1 || options.kbuffer > kMostEntries) {
         throw Error(ErrorCode::InvalidInput, "the k-buffer has " + std::to_string(options.kbuffer) + " entries", {},
@@ -60,21 +50,21 @@ void check_options(const PtOptions& options) {
     if (!(options.lod >= 0 && options.lod <= 1)) {
         throw Error(ErrorCode::InvalidInput, "the fraction of the faces is " + std::to_string(options.lod), {}, "0..1");
     }
-    if (options.lod != 1 && options.order != PtOrder::Havs)
+    if (options.lod != 1 && options.order != ProjectedOrder::Havs)
         throw Error(ErrorCode::InvalidInput, "only faces can be left out", {}, "the order havs");
 }
 
 std::size_t most_fragments(std::size_t list_bytes, const GlDevice& device, GlTets::Items items) {
     const bool tets = items == GlTets::Items::Tets;
-    const std::size_t fragment_bytes = tets ? 20 : 12, entry_bytes = tets ? 16 : 8;  // of two buffers, of the larger one
-    constexpr std::size_t kMost = std::size_t{1} << 31;                              // that 32 bits number, with room
+    const std::size_t fragment_bytes = tets ? 20 : 12, entry_bytes = tets ? 16 : 8;  // in both buffers, in the larger one
+    constexpr std::size_t kMost = std::size_t{1} << 31;                              // fits into 32 bits, with room
     return std::min({list_bytes / fragment_bytes, device.max_ssbo_bytes / entry_bytes, kMost});
 }
 
 }  // namespace
 
-struct PtRenderer::State {
-    State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device, Progress* progress);
+struct ProjectedRenderer::State {
+    State(const HexMesh& mesh, const Attribute& field, const std::optional<int>& device, Progress* progress);
     ~State() {
         const detail::GlScope scope(context);
         lists.reset();
@@ -84,26 +74,26 @@ struct PtRenderer::State {
     State& operator=(const State&) = delete;
 
     void upload(GlTets::Items items);
-    void order(detail::GlTetFrame& frame, const View& view, const PtOptions& options, PtReport& report);
-    [[nodiscard]] Image draw_sample(const PtOptions& options, PtReport& report, const DrawStage& stage);
-    [[nodiscard]] Image draw_lists(const PtOptions& options, PtReport& report, const DrawStage& stage);
-    [[nodiscard]] Image draw_samples(const PtOptions& options, PtReport& report);
+    void order(detail::GlTetFrame& frame, const View& view, const ProjectedOptions& options, ProjectedReport& report);
+    [[nodiscard]] Image draw_sample(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage);
+    [[nodiscard]] Image draw_lists(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage);
+    [[nodiscard]] Image draw_samples(const ProjectedOptions& options, ProjectedReport& report);
 
-    Clock::time_point start = Clock::now();
+    Stopwatch build_watch;
     TetMesh tets;
-    std::optional<TetFaces> faces;  // once they are drawn
+    std::optional<TetFaces> faces;  // found when they are drawn for the first time
     Box box;
-    PtReport built;
+    ProjectedReport built;
     detail::GlContext context;
     std::optional<GlTets> drawer;
     std::optional<detail::GlTetLists> lists;
 };
 
-PtRenderer::State::State(const HexMesh& mesh, std::span<const double> scalar, const std::optional<int>& device,
-                         Progress* progress)
+ProjectedRenderer::State::State(const HexMesh& mesh, const Attribute& field, const std::optional<int>& device,
+                                Progress* progress)
     : context(checked_device(device)) {
     report_progress(progress, "build", 0);
-    tets = build_tet_mesh(mesh, scalar);
+    tets = build_tet_mesh(mesh, field.values);
     check_count("tetrahedra", tets.tets.size(), kMostTets);
     box = bounds(mesh);
     drawer.emplace();
@@ -114,10 +104,10 @@ PtRenderer::State::State(const HexMesh& mesh, std::span<const double> scalar, co
     built.degenerate_tets = tets.degenerate_tets;
     built.inverted_tets = tets.inverted_tets;
     report_progress(progress, "build", 1);
-    built.seconds_build = seconds_since(start);
+    built.seconds_build = build_watch.seconds();
 }
 
-void PtRenderer::State::upload(GlTets::Items items) {
+void ProjectedRenderer::State::upload(GlTets::Items items) {
     if (items == GlTets::Items::Faces && !faces) {
         faces = find_faces(tets);
         check_count("faces", faces->faces.size(), kMostFaces);
@@ -133,20 +123,22 @@ void PtRenderer::State::upload(GlTets::Items items) {
     drawer->set_tets(corners);
 }
 
-void PtRenderer::State::order(detail::GlTetFrame& frame, const View& view, const PtOptions& options, PtReport& report) {
-    if (options.order == PtOrder::Havs) {
+void ProjectedRenderer::State::order(detail::GlTetFrame& frame, const View& view, const ProjectedOptions& options,
+                                     ProjectedReport& report) {
+    if (options.order == ProjectedOrder::Havs) {
         report.faces = faces->faces.size();
         report.faces_drawn = faces->count(options.lod);
         frame.order = order_faces(tets, *faces, report.faces_drawn, view);
         return;
     }
-    TetOrder found = options.order == PtOrder::Topological ? order_topologically(tets, view) : order_by_centroid(tets, view);
+    TetOrder found =
+        options.order == ProjectedOrder::Topological ? order_topologically(tets, view) : order_by_centroid(tets, view);
     frame.order = std::move(found.tets);
     report.cycles = found.cycles;
 }
 
-Image PtRenderer::State::draw_lists(const PtOptions& options, PtReport& report, const DrawStage& stage) {
-    const auto items = options.order == PtOrder::Havs ? GlTets::Items::Faces : GlTets::Items::Tets;
+Image ProjectedRenderer::State::draw_lists(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage) {
+    const auto items = options.order == ProjectedOrder::Havs ? GlTets::Items::Faces : GlTets::Items::Tets;
     const std::size_t most = most_fragments(options.list_bytes, context.device(), items);
     auto drawn = items == GlTets::Items::Faces ? lists->draw_faces(static_cast<std::size_t>(options.kbuffer), most, stage)
                                                : lists->draw_tets(most, stage);
@@ -157,13 +149,13 @@ Image PtRenderer::State::draw_lists(const PtOptions& options, PtReport& report, 
     return std::move(drawn.image);
 }
 
-Image PtRenderer::State::draw_sample(const PtOptions& options, PtReport& report, const DrawStage& stage) {
-    const bool in_order = options.order == PtOrder::Centroid || options.order == PtOrder::Topological;
+Image ProjectedRenderer::State::draw_sample(const ProjectedOptions& options, ProjectedReport& report, const DrawStage& stage) {
+    const bool in_order = options.order == ProjectedOrder::Centroid || options.order == ProjectedOrder::Topological;
     return in_order ? drawer->draw_in_order(stage) : draw_lists(options, report, stage);
 }
 
-/// The grid of rays of trace_pixel, one picture for each of its places.
-Image PtRenderer::State::draw_samples(const PtOptions& options, PtReport& report) {
+/// The same grid of rays as in trace_pixel, with one picture for each place of the grid.
+Image ProjectedRenderer::State::draw_samples(const ProjectedOptions& options, ProjectedReport& report) {
     const int n = options.samples;
     const DrawStage whole{options.progress};
     if (n == 1) return draw_sample(options, report, whole);
@@ -182,50 +174,49 @@ Image PtRenderer::State::draw_samples(const PtOptions& options, PtReport& report
     return image;
 }
 
-PtRenderer::PtRenderer(const HexMesh& mesh, std::span<const double> scalar, std::optional<int> device, Progress* progress) {
-    check_tet_input(mesh, scalar);
+ProjectedRenderer::ProjectedRenderer(const HexMesh& mesh, std::string_view field, std::optional<int> device,
+                                     Progress* progress) {
+    validate(mesh);
+    const Attribute& shown = scalar_field(mesh, field);
     const KeepCurrent keep;
-    state_ = std::make_unique<State>(mesh, scalar, device, progress);
+    state_ = std::make_unique<State>(mesh, shown, device, progress);
 }
 
-PtRenderer::~PtRenderer() = default;
-PtRenderer::PtRenderer(PtRenderer&&) noexcept = default;
-PtRenderer& PtRenderer::operator=(PtRenderer&&) noexcept = default;
+ProjectedRenderer::~ProjectedRenderer() = default;
+ProjectedRenderer::ProjectedRenderer(ProjectedRenderer&&) noexcept = default;
+ProjectedRenderer& ProjectedRenderer::operator=(ProjectedRenderer&&) noexcept = default;
 
-double PtRenderer::seconds_build() const {
+double ProjectedRenderer::seconds_build() const {
     return state_->built.seconds_build;
 }
 
-PtResult PtRenderer::draw(const View& view, const Optics& optics, const PtOptions& options) {
+ProjectedResult ProjectedRenderer::draw(const View& view, const Optics& optics, const ProjectedOptions& options) {
     check_options(options);
     State& state = *state_;
     const detail::GlScope scope(state.context);
-    PtResult result{{}, state.built};
-    PtReport& report = result.report;
-    const bool faces = options.order == PtOrder::Havs;
+    ProjectedResult result{{}, state.built};
+    ProjectedReport& report = result.report;
+    const bool faces = options.order == ProjectedOrder::Havs;
 
-    auto start = Clock::now();
+    Stopwatch watch;
     state.upload(faces ? GlTets::Items::Faces : GlTets::Items::Tets);
     detail::GlTetFrame frame = detail::make_tet_frame(state.tets, state.box, view, optics, faces);
-    report.seconds_prepare = seconds_since(start);
+    report.seconds_prepare = watch.restart();
 
-    start = Clock::now();
     state.order(frame, view, options, report);
-    report.seconds_sort = seconds_since(start);
+    report.seconds_sort = watch.restart();
 
-    start = Clock::now();
     state.drawer->set_frame(frame, view);
     result.image = state.draw_samples(options, report);
-    report.seconds_draw = seconds_since(start);
+    report.seconds_draw = watch.seconds();
     if (options.count_violations && !report.violations) (void)state.draw_lists(options, report, {options.progress});
     return result;
 }
 
-PtResult render_projected_tets(const HexMesh& mesh, std::span<const double> scalar, const View& view, const Optics& optics,
-                               const PtOptions& options) {
-    check_tet_input(mesh, scalar);
+ProjectedResult render_projected(const HexMesh& mesh, std::string_view field, const View& view, const Optics& optics,
+                                 const ProjectedOptions& options) {
     check_options(options);
-    return PtRenderer(mesh, scalar, options.device, options.progress).draw(view, optics, options);
+    return ProjectedRenderer(mesh, field, options.device, options.progress).draw(view, optics, options);
 }
 
 }  // namespace subvol

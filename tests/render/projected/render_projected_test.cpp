@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 
 #include <gtest/gtest.h>
 
 #include "lib/test_meshes.h"
-#include "pt_scenes.h"
+#include "projected_scenes.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
@@ -14,10 +14,10 @@ namespace {
 
 using namespace test;
 
-using RenderPt = PtTest;
+using RenderProjected = ProjectedTest;
 
-TEST_F(RenderPt, CellsOneByOneAreLikeRays) {
-    // Six tetrahedra that fill the picture: silhouettes of three and four corners, thick segments over all of the knots.
+TEST_F(RenderProjected, CellsOneByOneAreLikeRays) {
+    // Six tetrahedra that fill the picture: silhouettes with three and four corners, thick segments across all knots.
     HexMesh mesh = test::box(1);
     for (const double height : {1.0, 0.3, 0.01, 1e-4}) {
         for (std::size_t i = 0; i < 4; ++i) mesh.points[4 + i].z = height * (1 + 0.1 * static_cast<double>(i));
@@ -28,15 +28,15 @@ TEST_F(RenderPt, CellsOneByOneAreLikeRays) {
     }
 }
 
-TEST_F(RenderPt, ConstantBoxIsBeerLambert) {
+TEST_F(RenderProjected, ConstantBoxIsBeerLambert) {
     const HexMesh mesh = test::jittered_box(6, 0.3, 11);
     const View view({.eye = {0.5, 0.5, 5}, .target = {0.5, 0.5, 0}, .up = {0, 1, 0}, .ortho_height = 0.99}, 48, 48);
-    const auto result = render_projected_tets(mesh, std::vector<double>(mesh.points.size(), 1.0), view, constant_optics());
+    const auto result = render_projected(valued(mesh, 1.0), {}, view, constant_optics());
     EXPECT_EQ(result.report.tets, 6u * 216);
     for (std::size_t i = 0; i < result.image.rgba.size(); ++i) ASSERT_NEAR(result.image.rgba[i], 0.5f, kFewTol) << i;
 }
 
-TEST_F(RenderPt, LinearFieldIsLikeRays) {
+TEST_F(RenderProjected, LinearFieldIsLikeRays) {
     const Vec3 gradient(0.5, 0.2, 0.3);
     for (const HexMesh& mesh : {test::box(4), test::jittered_box(6, 0.3, 5)}) {
         const auto values = evaluate(mesh, [&](const Vec3& p) { return dot(gradient, p); });
@@ -46,27 +46,27 @@ TEST_F(RenderPt, LinearFieldIsLikeRays) {
     }
 }
 
-TEST_F(RenderPt, BallIsLikeRays) {
+TEST_F(RenderProjected, BallIsLikeRays) {
     const HexMesh mesh = test::ball(8);
     const auto values = evaluate(mesh, waves);
     EXPECT_LT(difference_from_rays(mesh, values, ball_view(80, 64), ramp_optics(0.1)), kGlTol);
 }
 
-TEST_F(RenderPt, FacesSeenEdgeOnAreLikeRays) {
+TEST_F(RenderProjected, FacesSeenEdgeOnAreLikeRays) {
     // Along diagonals of cells three corners of a silhouette lie in a line.
     const HexMesh mesh = make_model("ball", 4);
     const View view(fit_camera(bounds(mesh), {-1, 1, -1}), 96, 96);
     EXPECT_LT(difference_from_rays(mesh, mesh.attributes[0].values, view, ramp_optics(0.1)), kGlTol);
 }
 
-TEST_F(RenderPt, EyeInsideSeesWhatIsBeforeIt) {
+TEST_F(RenderProjected, EyeInsideSeesOnlyWhatIsInFront) {
     const HexMesh mesh = test::jittered_box(4, 0.2, 3);
     const auto values = evaluate(mesh, waves);
     const View view({.eye = {0.43, 0.37, 0.52}, .target = {0.9, 0.8, 0.3}, .up = {0, 0, 1}, .fovy_deg = 80}, 48, 40);
     EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(0.1)), kGlTol);
 }
 
-TEST_F(RenderPt, FarFromTheOriginNothingChanges) {
+TEST_F(RenderProjected, FarFromTheOriginNothingChanges) {
     HexMesh mesh = test::jittered_box(4, 0.2, 3);
     const auto values = evaluate(mesh, waves);
     for (Vec3& p : mesh.points) p = 1e-3 * p + Vec3(1000, -2000, 500);
@@ -75,23 +75,25 @@ TEST_F(RenderPt, FarFromTheOriginNothingChanges) {
     EXPECT_LT(difference_from_rays(mesh, values, view, ramp_optics(1e-4)), kGlTol);
 }
 
-TEST_F(RenderPt, ListsAreLikeRays) {
+TEST_F(RenderProjected, ListsAreLikeRays) {
     const Optics optics = ramp_optics(0.1);
     const HexMesh ball = test::ball(8), corner = test::l_shape(6), cell = test::box(1);
-    EXPECT_LT(difference_from_rays(ball, evaluate(ball, waves), ball_view(80, 64), optics, {.order = PtOrder::Lists}), kGlTol);
-    EXPECT_LT(difference_from_rays(corner, evaluate(corner, waves), slanted_view(64), optics, {.order = PtOrder::Lists}),
+    EXPECT_LT(difference_from_rays(ball, evaluate(ball, waves), ball_view(80, 64), optics, {.order = ProjectedOrder::Lists}),
               kGlTol);
-    EXPECT_LT(difference_from_rays(cell, evaluate(cell, waves), orthographic_view(61, 47), optics, {.order = PtOrder::Lists}),
+    EXPECT_LT(difference_from_rays(corner, evaluate(corner, waves), slanted_view(64), optics, {.order = ProjectedOrder::Lists}),
               kGlTol);
+    EXPECT_LT(
+        difference_from_rays(cell, evaluate(cell, waves), orthographic_view(61, 47), optics, {.order = ProjectedOrder::Lists}),
+        kGlTol);
 }
 
-TEST_F(RenderPt, TopologicalOrderIsThatOfLists) {
-    // Convex meshes without a cycle: the same segments in the same order, but composited from the other end.
+TEST_F(RenderProjected, TopologicalOrderIsThatOfLists) {
+    // Convex meshes without cycles: the same segments in the same order, composited from the other end.
     for (const HexMesh& mesh : {test::jittered_box(6, 0.3, 5), test::ball(6)}) {
         const auto values = evaluate(mesh, waves);
         const View view = ball_view(70, 60);
-        const auto topological = render_projected_tets(mesh, values, view, ramp_optics(0.1), {.count_violations = true});
-        const auto lists = render_projected_tets(mesh, values, view, ramp_optics(0.1), {.order = PtOrder::Lists});
+        const auto topological = render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.count_violations = true});
+        const auto lists = render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.order = ProjectedOrder::Lists});
         EXPECT_EQ(topological.report.cycles, 0u);
         EXPECT_EQ(topological.report.violations, 0u);
         EXPECT_EQ(topological.report.fragments, lists.report.fragments);
@@ -99,17 +101,17 @@ TEST_F(RenderPt, TopologicalOrderIsThatOfLists) {
     }
 }
 
-TEST_F(RenderPt, CentroidsAreWrongWhereTheyAreCounted) {
-    // Flat cells, seen slantwise: centroids are not in the order of the cells.
+TEST_F(RenderProjected, CentroidsAreWrongWhereTheyAreCounted) {
+    // Flat cells, seen from a slant: the order of centroids is not that of the cells.
     HexMesh mesh = test::box(4);
     for (Vec3& p : mesh.points) p.z *= 0.1;
     const auto values = evaluate(mesh, waves);
     const View view({.eye = {2.5, 2.1, 0.9}, .target = {0.5, 0.5, 0}, .up = {0, 0, 1}, .fovy_deg = 30}, 64, 48);
     const Optics optics = ramp_optics(0.05);
-    const auto right = render_projected_tets(mesh, values, view, optics, {.count_violations = true});
+    const auto right = render_projected(valued(mesh, values), {}, view, optics, {.count_violations = true});
     const auto wrong =
-        render_projected_tets(mesh, values, view, optics, {.order = PtOrder::Centroid, .count_violations = true});
-    const auto lists = render_projected_tets(mesh, values, view, optics, {.order = PtOrder::Lists});
+        render_projected(valued(mesh, values), {}, view, optics, {.order = ProjectedOrder::Centroid, .count_violations = true});
+    const auto lists = render_projected(valued(mesh, values), {}, view, optics, {.order = ProjectedOrder::Lists});
     EXPECT_EQ(right.report.violations, 0u);
     ASSERT_GT(wrong.report.violations, 0u);
     EXPECT_EQ(lists.report.violations, wrong.report.violations);
@@ -124,24 +126,25 @@ TEST_F(RenderPt, CentroidsAreWrongWhereTheyAreCounted) {
     EXPECT_LE(changed, *wrong.report.violations);
 }
 
-TEST_F(RenderPt, ListsCountEveryDepthOnceWhereCellsFoldOver) {
-    // What a fold looks like depends on which cell counts; how much there is of it does not.
+TEST_F(RenderProjected, ListsCountEveryDepthOnceWhereCellsFoldOver) {
+    // The colour of a fold depends on which of the cells is drawn, its opacity does not.
     const HexMesh mesh = test::jittered_box(5, 0.9, 4);
     const std::vector<double> ones(mesh.points.size(), 1.0);
-    const auto lists = render_projected_tets(mesh, ones, slanted_view(64), constant_optics(), {.order = PtOrder::Lists});
+    const auto lists =
+        render_projected(valued(mesh, ones), {}, slanted_view(64), constant_optics(), {.order = ProjectedOrder::Lists});
     EXPECT_GT(lists.report.inverted_tets, 0u);
     EXPECT_LT(
-        largest_difference(lists.image,
-                           render_tets(test::box(1), std::vector<double>(8, 1.0), slanted_view(64), constant_optics()).image),
+        largest_difference(lists.image, render_tets(valued(test::box(1), 1.0), {}, slanted_view(64), constant_optics()).image),
         kFewTol);
 }
 
-TEST_F(RenderPt, ListsInPartsAreTheSame) {
+TEST_F(RenderProjected, ListsInPartsAreTheSame) {
     const HexMesh mesh = test::ball(5);
     const auto values = evaluate(mesh, waves);
     const View view = ball_view(50, 40);
     const auto draw = [&](std::size_t bytes) {
-        return render_projected_tets(mesh, values, view, ramp_optics(0.1), {.order = PtOrder::Lists, .list_bytes = bytes});
+        return render_projected(valued(mesh, values), {}, view, ramp_optics(0.1),
+                                {.order = ProjectedOrder::Lists, .list_bytes = bytes});
     };
     const auto whole = draw(1 << 28), rows = draw(20 * 2000), pixels = draw(20 * 150);
     EXPECT_EQ(whole.report.parts, 1u);
@@ -153,29 +156,31 @@ TEST_F(RenderPt, ListsInPartsAreTheSame) {
     EXPECT_THROW((void)draw(20), Error);
 }
 
-TEST_F(RenderPt, IsTheSameEveryTime) {
+TEST_F(RenderProjected, IsTheSameEveryTime) {
     const HexMesh mesh = test::ball(6);
     const auto values = evaluate(mesh, waves);
-    for (const PtOrder order : {PtOrder::Centroid, PtOrder::Topological, PtOrder::Lists, PtOrder::Havs}) {
+    for (const ProjectedOrder order :
+         {ProjectedOrder::Centroid, ProjectedOrder::Topological, ProjectedOrder::Lists, ProjectedOrder::Havs}) {
         const auto draw = [&] {
-            return render_projected_tets(mesh, values, ball_view(50, 50), ramp_optics(0.1), {.order = order}).image.rgba;
+            return render_projected(valued(mesh, values), {}, ball_view(50, 50), ramp_optics(0.1), {.order = order}).image.rgba;
         };
         const auto first = draw();
         for (int i = 0; i < 2; ++i) EXPECT_EQ(draw(), first);
     }
 }
 
-TEST_F(RenderPt, RendererKeepsNothingOfThePictureBefore) {
+TEST_F(RenderProjected, RendererKeepsNothingOfThePictureBefore) {
     const HexMesh mesh = test::ball(6);
     const auto values = evaluate(mesh, waves);
-    PtRenderer renderer(mesh, values);
+    ProjectedRenderer renderer(valued(mesh, values));
     // Another size, projection, number of knots and order each time.
     const std::vector<View> views{ball_view(50, 40), orthographic_view(31, 60), ball_view(64, 64)};
-    for (const PtOrder order : {PtOrder::Havs, PtOrder::Topological, PtOrder::Lists, PtOrder::Centroid, PtOrder::Havs}) {
+    for (const ProjectedOrder order : {ProjectedOrder::Havs, ProjectedOrder::Topological, ProjectedOrder::Lists,
+                                       ProjectedOrder::Centroid, ProjectedOrder::Havs}) {
         for (const View& view : views) {
             for (const Optics& optics : {ramp_optics(0.1), constant_optics()}) {
                 const auto kept = renderer.draw(view, optics, {.order = order});
-                const auto fresh = render_projected_tets(mesh, values, view, optics, {.order = order});
+                const auto fresh = render_projected(valued(mesh, values), {}, view, optics, {.order = order});
                 EXPECT_EQ(kept.image.rgba, fresh.image.rgba);
                 EXPECT_EQ(kept.report.fragments, fresh.report.fragments);
                 EXPECT_EQ(kept.report.violations, fresh.report.violations);
@@ -184,23 +189,23 @@ TEST_F(RenderPt, RendererKeepsNothingOfThePictureBefore) {
     }
 }
 
-TEST_F(RenderPt, SamplesAreThoseOfRays) {
+TEST_F(RenderProjected, SamplesAreThoseOfRays) {
     const HexMesh mesh = test::ball(4);
     const auto values = evaluate(mesh, waves);
     const View view = ball_view(40, 31);
-    const auto rays = render_tets(mesh, values, view, ramp_optics(0.1), {.samples = 3});
-    const auto once = render_tets(mesh, values, view, ramp_optics(0.1));
+    const auto rays = render_tets(valued(mesh, values), {}, view, ramp_optics(0.1), {.samples = 3});
+    const auto once = render_tets(valued(mesh, values), {}, view, ramp_optics(0.1));
     EXPECT_GT(largest_difference(rays.image, once.image), 0.05) << "samples matter";
-    for (const PtOrder order : {PtOrder::Topological, PtOrder::Lists, PtOrder::Havs}) {
-        const auto drawn = render_projected_tets(mesh, values, view, ramp_optics(0.1), {.order = order, .samples = 3});
+    for (const ProjectedOrder order : {ProjectedOrder::Topological, ProjectedOrder::Lists, ProjectedOrder::Havs}) {
+        const auto drawn = render_projected(valued(mesh, values), {}, view, ramp_optics(0.1), {.order = order, .samples = 3});
         EXPECT_LT(largest_difference(drawn.image, rays.image), kGlTol);
     }
 }
 
-TEST_F(RenderPt, RealMeshesAreLikeRays) {
+TEST_F(RenderProjected, RealMeshesAreLikeRays) {
     const auto data = test::data_folder();
     if (!data) GTEST_SKIP() << "SUBVOL_DATA does not name the folder of real meshes";
-    expect_real_meshes_like_rays(*data, {.order = PtOrder::Lists});
+    expect_real_meshes_like_rays(*data, {.order = ProjectedOrder::Lists});
 }
 
 class Stopper : public Progress {
@@ -215,14 +220,14 @@ public:
     bool stop = false;
 };
 
-TEST_F(RenderPt, ReportsProgressAndStops) {
+TEST_F(RenderProjected, ReportsProgressAndStops) {
     const HexMesh mesh = test::box(3);
     const std::vector<double> ones(mesh.points.size(), 1.0);
-    for (const PtOrder order : {PtOrder::Topological, PtOrder::Lists, PtOrder::Havs}) {
+    for (const ProjectedOrder order : {ProjectedOrder::Topological, ProjectedOrder::Lists, ProjectedOrder::Havs}) {
         Stopper progress;
         const auto draw = [&] {
-            return render_projected_tets(mesh, ones, slanted_view(40), constant_optics(),
-                                         {.order = order, .progress = &progress});
+            return render_projected(valued(mesh, ones), {}, slanted_view(40), constant_optics(),
+                                    {.order = order, .progress = &progress});
         };
         (void)draw();
         EXPECT_NEAR(progress.last, 1.0, 1e-9);
@@ -236,12 +241,10 @@ TEST_F(RenderPt, ReportsProgressAndStops) {
     }
 }
 
-TEST_F(RenderPt, RefusesWrongInput) {
+TEST_F(RenderProjected, RefusesWrongInput) {
     const HexMesh mesh = test::box(1);
-    EXPECT_THROW((void)render_projected_tets(mesh, std::vector<double>(7), slanted_view(4), constant_optics()), Error);
-    EXPECT_THROW(
-        (void)render_projected_tets(mesh, std::vector<double>(8, 1.0), slanted_view(4), constant_optics(), {.device = 99}),
-        Error);
+    EXPECT_THROW((void)render_projected(valued(mesh, std::vector<double>(7)), {}, slanted_view(4), constant_optics()), Error);
+    EXPECT_THROW((void)render_projected(valued(mesh, 1.0), {}, slanted_view(4), constant_optics(), {.device = 99}), Error);
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 namespace subvol::detail {
 
-/// What of a picture is the device's, without the order.
+/// The data of a picture for the device, without the order.
 ///
-/// eye_value: whether it is needed
+/// eye_value: whether the value at the eye is needed
 /// throws:    Error(InvalidInput) if extinctions are beyond 32-bit floats
 [[nodiscard]] GlTetFrame make_tet_frame(const TetMesh& mesh, const Box& box, const View& view, const Optics& optics,
                                         bool eye_value);

@@ -9,26 +9,26 @@
 #include "render/constant_optics.h"
 #include "render/hex_meshes.h"
 #include "subvol/mesh_io.h"
-#include "subvol/render_pt.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 
-/// Views, colours and fields that projected tetrahedra are tested with.
+/// Views, colours and fields for tests of projected tetrahedra.
 namespace subvol::test {
 
-// Single precision on the device: places to 3e-8 of the diagonal, which is 1e-5 of the opacity unit below.
+// Single precision on the device: places are right to 3e-8 of the diagonal, which is 1e-5 of the opacity unit below.
 inline constexpr double kGlTol = 1e-4;
-// Where light has one closed form and few segments.
+// For light with one closed form and few segments.
 inline constexpr double kFewTol = 1e-5;
 
 /// Skipped without OpenGL.
-class PtTest : public testing::Test {
+class ProjectedTest : public testing::Test {
 protected:
     void SetUp() override {
         if (gl_devices().empty()) GTEST_SKIP() << "no OpenGL 4.5 through EGL";
     }
 };
 
-// Colour and opacity change with the value in [0,1], with kinks and a part that cannot be seen.
+// Colour and opacity change with the value in [0,1], with kinks and an invisible part.
 inline Optics ramp_optics(double unit = 1) {
     return {{{{0, {1, 0, 0}}, {0.5, {0, 1, 0.2}}, {1, {0.1, 0.3, 1}}},
              {{0, 0}, {0.3, 0.1}, {0.35, 0.6}, {0.6, 0}, {0.65, 0}, {1, 0.8}}},
@@ -61,16 +61,16 @@ inline double waves(const Vec3& p) {
     return 0.5 + 0.3 * std::sin(7 * p.x + 2 * p.y) + 0.2 * std::cos(9 * p.z - 3 * p.y);
 }
 
-/// The mesh drawn both ways.
+/// The largest difference of the mesh drawn with render_projected and with render_tets.
 inline double difference_from_rays(const HexMesh& mesh, std::span<const double> values, const View& view, const Optics& optics,
-                                   const PtOptions& options = {}) {
-    const auto rays = render_tets(mesh, values, view, optics);
-    return largest_difference(render_projected_tets(mesh, values, view, optics, options).image, rays.image);
+                                   const ProjectedOptions& options = {}) {
+    const auto rays = render_tets(valued(mesh, values), {}, view, optics);
+    return largest_difference(render_projected(valued(mesh, values), {}, view, optics, options).image, rays.image);
 }
 
-/// Like rays: three real meshes, none of them convex. Where cells fold over, both count
-/// in pt, which rays do not do: there are no such meshes here.
-inline void expect_real_meshes_like_rays(const std::filesystem::path& data, const PtOptions& options) {
+/// Three real meshes, none of them convex, give the same pictures as with rays. None has cells that fold over, which projected
+/// tetrahedra would count twice.
+inline void expect_real_meshes_like_rays(const std::filesystem::path& data, const ProjectedOptions& options) {
     for (const char* name : {"ansys_td28_fig14.vtk", "vtkdata_post_tet.vtk", "hexdom_igea_improve.vtk"}) {
         const HexMesh mesh = read_mesh(data / name).mesh;
         const Box box = bounds(mesh);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outlines of tetrahedra and faces in the picture. They are drawn a little too large: fragments find out for themselves whether
-// they are inside.
+// Outlines of tetrahedra and faces in the picture. They are drawn a little too large; each fragment tests whether its ray
+// crosses.
 const float kMargin_px = 0.0625;    // rasterisers round places to 1/256 px
-const float kSharp = 0.005;         // 1 + cos between normals: corners that are sharper would reach 20 margins out
-const float kSmall_px = 0.25;       // twice the area: what is smaller need not be cut to shape
-const float kFar_px = 16384.0;      // from the middle: single precision still knows 1/256 px
-const float kNearest = 1e-6;        // depth of what is projected
+const float kSharp = 0.005;         // 1 + cos between normals: sharper corners would reach out by 20 margins
+const float kSmall_px = 0.25;       // twice the area: for smaller outlines a rectangle will do
+const float kFar_px = 16384.0;      // from the middle: up to here single precision resolves 1/256 px
+const float kNearest = 1e-6;        // the least depth that is projected
 
 vec2 to_pixels(vec3 p) {
     float across = perspective ? middle_depth + p.z : 1.0;
@@ -14,7 +14,7 @@ vec2 to_pixels(vec3 p) {
 
 float doubled_area(vec2 a, vec2 b, vec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-// The rectangle about what is in front of the eye.
+// The rectangle around the part in front of the eye.
 void find_rectangle(vec3 p[kCorners], out vec2 low, out vec2 high) {
     low = vec2(1e30);
     high = vec2(-1e30);
@@ -34,12 +34,12 @@ void find_rectangle(vec3 p[kCorners], out vec2 low, out vec2 high) {
             high = max(high, cut_px);
         }
     }
-    if (low.x > high.x) low = high = vec2(-1.0);  // nothing is
+    if (low.x > high.x) low = high = vec2(-1.0);  // nothing is in front
     low = clamp(low - kMargin_px, vec2(-1.0), size_px + 1.0);
     high = clamp(high + kMargin_px, vec2(-1.0), size_px + 1.0);
 }
 
-// False if the places in the picture are of no use.
+// The corners in the picture; false if one is behind the eye or too far out.
 bool find_places(vec3 p[kCorners], out vec2 q[kCorners]) {
     bool use = true;
     for (int i = 0; i < kCorners; ++i) {
@@ -55,10 +55,10 @@ bool move_out(vec2 before, vec2 here, vec2 after, float turn, out vec2 moved) {
     vec2 na = turn * vec2(a.y, -a.x) / length(a), nb = turn * vec2(b.y, -b.x) / length(b);
     float sharp = 1.0 + dot(na, nb);
     moved = here + (na + nb) * (kMargin_px / sharp);
-    return sharp > kSharp;  // NaN is not
+    return sharp > kSharp;  // false for NaN
 }
 
-// One corner of an outline of 3 or 4 that is moved out; false if any of them cannot be.
+// A corner of an outline of 3 or 4, moved outwards; false if one of its corners is too sharp.
 bool outline_corner(vec2 q[kCorners], ivec4 ring, int count, int at, out vec2 result) {
     result = vec2(0.0);
     float area = doubled_area(q[ring.x], q[ring.y], q[ring.z]);

@@ -1,6 +1,7 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Sorts the list of each pixel from front to back, integrates and composites it. Lists come nearly sorted: insertion is quick.
+// Sorts the list of each pixel from front to back, integrates and composites it. The lists are nearly sorted, so insertion sort
+// is fast.
 layout(local_size_x = 64) in;
 layout(std430, binding = 3) writeonly buffer Pictures { vec4 picture[]; };
 layout(std430, binding = 4) readonly buffer Offsets { uint offsets[]; };
@@ -9,11 +10,10 @@ layout(std430, binding = 6) buffer Ranks { uint ranks[]; };
 layout(std430, binding = 11) buffer Violations { uint violations; };
 uniform ivec4 rectangle;
 
-// Of two segments that are thinner nothing can be told.
+// For thinner segments the order is rounding.
 const float kTouch = 1e-5;
-const float kOpaque = 1e-6;
 
-// Neighbours have the same depth on the face between them, to the last bit.
+// Neighbours compute bitwise the same depth on the face between them.
 void sort_list(uint first, uint end) {
     for (uint i = first + 1u; i < end; ++i) {
         vec4 segment = segments[i];
@@ -29,7 +29,7 @@ void sort_list(uint first, uint end) {
     }
 }
 
-// Tetrahedra were given from back to front: what is nearer has the higher rank.
+// Ranks count from back to front: what is nearer has the higher rank.
 bool in_order(uint first, uint end) {
     bool known = false;
     uint last = 0u;
@@ -53,8 +53,8 @@ void main() {
     vec2 slope = (vec2(rectangle.xy) + vec2(id % width, id / width) + 0.5 - middle_px) * vec2(pixel, -pixel);
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     vec4 sum = vec4(0.0);
-    float done = -middle_depth;  // every depth counts once, where cells fold over too
-    for (uint i = first; i < end && 1.0 - sum.a > kOpaque; ++i) {
+    float done = -middle_depth;  // every depth counts once, even where cells fold over
+    for (uint i = first; i < end && 1.0 - sum.a > kRayCutoff; ++i) {
         vec4 segment = segments[i];
         float from = max(done, segment.x);
         if (!(from < segment.y)) continue;

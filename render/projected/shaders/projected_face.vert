@@ -1,19 +1,19 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// A face, one triangle, and what its fragments need to know of it.
+// The triangle that is drawn for a face, and the data that its fragments need.
 layout(std430, binding = 0) readonly buffer Points { vec4 points[]; };  // eye space, value in parts of the knots' range
 layout(std430, binding = 1) readonly buffer Faces { uvec4 faces[]; };  // corners, ascending; 2 + change of cover
 layout(std430, binding = 2) readonly buffer Order { uint order[]; };
 
-flat out vec4 corner0, corner1, corner2;  // by ascending number: what faces share, they compute alike
-flat out uint rank;                       // its place in the order, from front to back
+flat out vec4 corner0, corner1, corner2;  // by ascending number, so that faces compute the same for an edge that they share
+flat out uint rank;                       // position in the order, from front to back
 flat out uint cover;
 
 vec2 place_corner(vec3 p[3], int at) {
     vec2 q[3], result;
     if (find_places(p, q) && outline_corner(q, ivec4(0, 1, 2, 2), 3, at, result)) return result;
     vec2 low, high;
-    find_rectangle(p, low, high);  // and the triangle about that
+    find_rectangle(p, low, high);  // the triangle around that rectangle
     return vec2(at == 1 ? 2.0 * high.x - low.x : low.x, at == 2 ? 2.0 * high.y - low.y : low.y);
 }
 
