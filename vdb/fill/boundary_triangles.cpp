@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "refined_cells.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -115,7 +116,7 @@ void put_side(const DenseCell& cell, std::size_t side, std::ptrdiff_t steps, con
 
 }  // namespace
 
-std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request) {
+std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request) {
     const HexMesh& mesh = *request.mesh;
     const Topology topology = build_topology(mesh);
     const std::vector<std::uint8_t> turned = turned_cells(topology);
@@ -142,7 +143,7 @@ std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request) {
         numbers.push_back(cells[i].cell);
         slots[cells[i].cell] = i;
     }
-    RasterizeCells without_fields = request;
+    CellRequest without_fields = request;
     without_fields.fields.clear();
     // The limit of a vertex has other bits by another level, if it is not the vertex itself.
     const bool as_tables = request.tables || !interpolates(request.refine.scheme.kind);

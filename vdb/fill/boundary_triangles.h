@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "refined_cells.h"
+#include "cell_request.h"
 
 namespace subvol::detail {
 
@@ -14,6 +14,6 @@ using VoxelTriangle = std::array<Vec3, 3>;
 ///
 /// Cells whose corners are in the opposite order of their neighbours' are turned round for this; of a part that hangs together
 /// the whole may be turned inside out.
-[[nodiscard]] std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request);
+[[nodiscard]] std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request);
 
 }  // namespace subvol::detail

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "rasterize_cells.h"
+#include <span>
+
+#include "cell_request.h"
+#include "voxel_bricks.h"
 
 namespace subvol::detail {
 

@@ -30,7 +30,7 @@ std::unique_ptr<VoxelLeaf> make_leaf(const VoxelBrick& samples) {
 
 }  // namespace
 
-RasterizeCells samples_within(RasterizeCells request) {
+CellRequest samples_within(CellRequest request) {
     // Sample s of voxel i stands at i + (s + ½)/4 − ½, which becomes 4i + s.
     const double h = request.to_voxels.voxel_size;
     request.to_voxels.offset += Vec3(0.5 * h - 0.5 * h / kCoverageSamples);

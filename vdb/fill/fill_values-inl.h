@@ -199,9 +199,9 @@ inline std::span<const double> values_of(const CellShape& shape, std::size_t cha
 template <class Map>
 class ValueFiller {
 public:
-    HWY_ATTR ValueFiller(const CellShape& shape, const FillOptions& options)
+    HWY_ATTR ValueFiller(const CellShape& shape, const CellBlock& block)
         : shape_(shape),
-          options_(options),
+          block_(block),
           map_{Map(nodes_of<Map>(shape, 0)), Map(nodes_of<Map>(shape, 1)), Map(nodes_of<Map>(shape, 2))},
           middle_(
               {Trilinear(shape.corners[0].data()), Trilinear(shape.corners[1].data()), Trilinear(shape.corners[2].data())}) {
@@ -225,7 +225,7 @@ private:
         Parameters q;
         const auto good = invert(hn::Load(d, &found.places[0][first]), hn::Load(d, &found.places[1][first]),
                                  hn::Load(d, &found.places[2][first]), q);
-        for (std::size_t c = 0; c < options_.channels; ++c) {
+        for (std::size_t c = 0; c < block_.channels; ++c) {
             const std::span<const double> nodes = values_of<Map>(shape_, c);
             const auto [lowest, highest] = std::ranges::minmax(nodes);
             // The weights reach beyond [0,1] between a bent face and its two triangles; the field's values must not. A parabola
@@ -240,9 +240,9 @@ private:
             }
         }
         if (!hn::AllTrue(d, good)) mend(found, first, count, good);
-        if (!options_.cell_numbers) return;
+        if (!block_.cell_numbers) return;
         for (std::size_t i = 0; i < count; ++i) {
-            found.values[first + i][options_.channels * kLeafVoxels] = bits_of(shape_.cell);
+            found.values[first + i][block_.channels * kLeafVoxels] = bits_of(block_.cell);
         }
     }
 
@@ -310,7 +310,7 @@ private:
             if (bits[0] >> i & 1) continue;
             const std::size_t at = first + i;
             const auto weights = linear_weights(shape_, {found.places[0][at], found.places[1][at], found.places[2][at]});
-            for (std::size_t c = 0; c < options_.channels; ++c) {
+            for (std::size_t c = 0; c < block_.channels; ++c) {
                 double sum = 0;
                 for (std::size_t k = 0; k < 8; ++k) sum += weights[k] * shape_.values[8 * c + k];
                 const auto [lowest, highest] = std::ranges::minmax(std::span(&shape_.values[8 * c], 8));
@@ -320,7 +320,7 @@ private:
     }
 
     const CellShape& shape_;
-    const FillOptions& options_;
+    const CellBlock& block_;
     std::array<Map, 3> map_;
     MiddleOfCell middle_;
     double tolerance_;

@@ -35,16 +35,6 @@ std::vector<double> applied(const RefinementTables& tables, const std::vector<do
 
 }  // namespace
 
-void set_limit(const LimitCells& limit, RasterizeCells& request) {
-    if (request.mesh && !limit.cell_levels.empty() && limit.cell_levels.size() != request.mesh->cells.size()) {
-        throw Error(ErrorCode::InvalidInput, "the cells of the limit belong to another mesh");
-    }
-    request.refine.levels = limit.level;
-    request.curved = !limit.cell_levels.empty();
-    request.on_limit = request.curved || !interpolates(request.refine.scheme.kind);
-    request.cell_levels = request.curved && !request.tables ? &limit.cell_levels : nullptr;
-}
-
 RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, bool on_limit) {
     validate(mesh);
     RefinementTables tables = refinement_tables(build_topology(mesh), refine);
@@ -58,7 +48,7 @@ RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, boo
     return tables;
 }
 
-RefinedCells::RefinedCells(const RasterizeCells& request)
+RefinedCells::RefinedCells(const CellRequest& request)
     : levels_(request.levels()), tables_(request.refines() ? request.tables : nullptr) {
     if (!request.refines()) return;
     const HexMesh& mesh = *request.mesh;

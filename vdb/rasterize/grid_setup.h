@@ -3,7 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
-#include "refined_cells.h"
+#include "cell_request.h"
 #include "subvol/rasterize.h"
 
 namespace subvol::detail {
