@@ -9,10 +9,8 @@
 #include "subvol/error.h"
 #include "subvol/field_places.h"
 #include "subvol/limit.h"
-#include "subvol/limit_level.h"
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
-#include "subvol/rasterize.h"
 #include "subvol/sample.h"
 #include "subvol/vdb_grid.h"
 
@@ -112,22 +110,14 @@ struct TemporaryFile {
 
 CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
-    const Vec3 size = bounds(mesh).size();
-    const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
-    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
-    const std::vector<std::string> names{mesh.attributes.front().name};
-    const auto grids = rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
-    const FieldErrors errors =
-        compare_field({.value = [&](const Vec3& x) { return grids.front().value(x); }}, places_of(of, mesh));
+    const VdbGrid grid = study_grid(of, mesh, result);
+    const FieldErrors errors = compare_field({.value = [&](const Vec3& x) { return grid.value(x); }}, places_of(of, mesh));
     result.metrics["rmse"] = errors.l2;
     result.metrics["max"] = errors.linf;
     result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
     const TemporaryFile file{std::filesystem::temp_directory_path() / ("subvol_study_" + of.id + ".vdb")};
-    write_vdb(file.path, grids);
+    write_vdb(file.path, std::span(&grid, 1));
     result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path));
-    result.metrics["grid_bytes"] = static_cast<double>(grids.front().report().bytes);
-    result.metrics["voxels"] = static_cast<double>(grids.front().report().active_voxels);
-    result.metrics["voxel_size"] = voxel;
     return result;
 }
 

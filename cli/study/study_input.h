@@ -4,7 +4,8 @@
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/optics.h"
-#include "subvol/study.h"
+#include "subvol/study_run.h"
+#include "subvol/vdb_grid.h"
 
 namespace subvol::cli {
 
@@ -13,6 +14,9 @@ namespace subvol::cli {
 /// "density": an expression in x, y, z, or "smooth": ½(sin 3x cos 2y + z) on a box of about [-1,1]³ about the mesh, so that all
 /// meshes are alike in it
 [[nodiscard]] HexMesh study_mesh(const StudyCase& of);
+
+/// The limit of the mesh as voxels, at the resolution of the case; result: gets the voxels' metrics.
+[[nodiscard]] VdbGrid study_grid(const StudyCase& of, const HexMesh& mesh, CaseResult& result);
 
 [[nodiscard]] Optics study_optics(const StudyCase& of, const HexMesh& mesh);
 

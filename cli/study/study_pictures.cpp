@@ -11,14 +11,11 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
-#include "subvol/limit_level.h"
-#include "subvol/rasterize.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
 #include "subvol/render_pt.h"
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
-#include "subvol/vdb_grid.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -134,17 +131,8 @@ Image dense(const Scene& scene) {
 
 Image grid(const Scene& scene) {
     const Stopwatch watch;
-    const Vec3 size = bounds(scene.mesh).size();
-    const double voxel = std::max({size.x, size.y, size.z}) / scene.of.whole("resolution");
-    const LimitCells limit = find_limit_cells(scene.mesh, {}, {.position_world = 0.1 * voxel});
-    const std::vector<std::string> names{scene.mesh.attributes.front().name};
-    const auto grids =
-        rasterize(scene.mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = scene.of.flag("half")});
-    const GridReport& about = grids.front().report();
-    scene.result.metrics["primitives"] = scene.result.metrics["voxels"] = static_cast<double>(about.active_voxels);
-    scene.result.metrics["grid_bytes"] = static_cast<double>(about.bytes);
-    scene.result.metrics["voxel_size"] = voxel;
-    const auto voxels = grids.front().voxels();
+    const auto voxels = study_grid(scene.of, scene.mesh, scene.result).voxels();
+    scene.result.metrics["primitives"] = scene.result.metrics["voxels"];
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(
         scene, [&] { return render_grid(*voxels, scene.view, scene.optics, {.samples = scene.of.whole("samples")}).image; });

@@ -154,7 +154,7 @@ Errors limit_errors(HexMesh mesh, int resolution, const Density& density) {
     mesh.attributes.front().name = "f";
     const Box box = bounds(mesh);
     const double h = std::max({box.size().x, box.size().y, box.size().z}) / resolution;
-    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * h});
+    const LimitCells limit = limit_for_voxels(mesh, {}, h);
     const VdbGrid grid = std::move(rasterize(mesh, kField, {.voxel_size_world = h, .limit = &limit}).front());
     const Errors errors = errors_of(grid, density);
     ::testing::Test::RecordProperty("level", limit.level);

@@ -42,7 +42,7 @@ TEST(LimitCells, AreExactWhereTheLimitIsQuadratic) {
     HexMesh mesh = with_field(box_mesh(4), "f", value);
     for (Vec3& p : mesh.points) p = bent(p);
     const double voxel = 0.03;
-    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
+    const LimitCells limit = limit_for_voxels(mesh, {}, voxel);
     EXPECT_TRUE(limit.converged);
     EXPECT_EQ(std::ranges::max(limit.cell_levels), std::max(limit.level, 1));
     double most = 0;
