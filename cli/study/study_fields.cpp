@@ -7,6 +7,7 @@
 #include "study_work.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
+#include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
 #include "subvol/limit.h"
 #include "subvol/mesh_field.h"

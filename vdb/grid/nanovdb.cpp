@@ -7,8 +7,6 @@
 
 namespace subvol {
 
-using namespace detail;
-
 bool has_nanovdb() {
     return false;
 }
@@ -57,7 +55,7 @@ void write_nanovdb(const std::filesystem::path& path, std::span<const VdbGrid> g
     detail::AtomicFile file(path);
     try {
         std::vector<Handle> handles;
-        for (const VdbGrid& grid : grids) handles.push_back(convert(*grid.data().grid));
+        for (const VdbGrid& grid : grids) handles.push_back(convert(*detail::VdbData::of(grid).grid));
         std::ofstream out;
         out.exceptions(std::ios::failbit | std::ios::badbit);
         out.open(file.path(), std::ios::binary);

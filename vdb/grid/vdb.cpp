@@ -49,6 +49,10 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
 
 }  // namespace
 
+VdbGrid detail::VdbData::wrap(VdbData data) {
+    return VdbGrid(std::make_unique<VdbData>(std::move(data)));
+}
+
 VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
     GridReport report{.name = grid->getName(),
                       .kind = {},
@@ -62,10 +66,10 @@ VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
         report.bounds = {{box.min()[0], box.min()[1], box.min()[2]}, {box.max()[0], box.max()[1], box.max()[2]}};
     }
     auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-    return VdbGrid(std::make_unique<VdbGrid::Data>(VdbGrid::Data{grid, std::move(floats), std::move(report)}));
+    return VdbData::wrap({grid, std::move(floats), std::move(report)});
 }
 
-VdbGrid::VdbGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {
+VdbGrid::VdbGrid(std::unique_ptr<VdbData> data) : data_(std::move(data)) {
 }
 VdbGrid::~VdbGrid() = default;
 VdbGrid::VdbGrid(VdbGrid&&) noexcept = default;

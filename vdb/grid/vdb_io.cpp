@@ -13,7 +13,7 @@ using namespace detail;
 void detail::write_vdb(const AtomicFile& file, const std::filesystem::path& path, std::span<const VdbGrid> grids,
                        VdbCompression compression) {
     openvdb::GridCPtrVec written;
-    for (const auto& grid : grids) written.push_back(grid.data().grid);
+    for (const auto& grid : grids) written.push_back(VdbData::of(grid).grid);
     write_grids(file, path, written, compression);
 }
 

@@ -168,7 +168,7 @@ std::vector<std::size_t> first_points(const std::vector<const Leaf*>& leaves) {
 
 VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOptions& options) {
     const std::string where = "grid \"" + grid.report().name + "\"";
-    const openvdb::FloatGrid::ConstPtr floats = grid.data().floats;
+    const openvdb::FloatGrid::ConstPtr floats = VdbData::of(grid).floats;
     if (!floats) throw Error(ErrorCode::InvalidInput, "its voxels are no floats", where);
     validate(options.kernel);
     if (!is_radial(options.kernel)) throw Error(ErrorCode::InvalidInput, "the kernel is not radial");

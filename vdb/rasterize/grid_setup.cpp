@@ -49,7 +49,7 @@ void check_representable(double voxel_size) {
 }
 
 ToVoxels voxels_asked_for(const Box& box, const RasterizeOptions& options) {
-    if (options.like) return to_voxels_of(*options.like->data().grid);
+    if (options.like) return to_voxels_of(*VdbData::of(*options.like).grid);
     return {.voxel_size = voxel_size_of(box, options)};
 }
 
@@ -58,7 +58,7 @@ void check_level_set(const RasterizeOptions& options) {
     if (!(half_width >= 1 && half_width <= 1000)) {
         throw Error(ErrorCode::InvalidInput, "the half width of the level set's band is not from 1 to 1000 voxels");
     }
-    if (options.like && !options.like->data().grid->hasUniformVoxels()) {
+    if (options.like && !VdbData::of(*options.like).grid->hasUniformVoxels()) {
         throw Error(ErrorCode::InvalidInput, "its voxels are no cubes, which a level set needs",
                     "grid \"" + options.like->report().name + "\"");
     }
@@ -66,7 +66,7 @@ void check_level_set(const RasterizeOptions& options) {
 
 void describe(openvdb::GridBase& grid, const ToVoxels& to_voxels, const RasterizeOptions& options) {
     if (options.like) {
-        grid.setTransform(options.like->data().grid->transform().copy());
+        grid.setTransform(VdbData::of(*options.like).grid->transform().copy());
     } else {
         grid.setTransform(openvdb::math::Transform::createLinearTransform(to_voxels.voxel_size));
     }

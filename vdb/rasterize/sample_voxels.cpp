@@ -15,7 +15,7 @@ using namespace detail;
 namespace {
 
 const openvdb::FloatGrid& floats_of(const VdbGrid& grid) {
-    if (grid.data().floats) return *grid.data().floats;
+    if (const auto& floats = VdbData::of(grid).floats) return *floats;
     throw Error(ErrorCode::InvalidInput, "its voxels are no floats", "grid \"" + grid.report().name + "\"");
 }
 

@@ -64,7 +64,7 @@ void add_layer(Tree& tree) {
 }  // namespace
 
 VdbGrid spread_vectors(const VdbGrid& grid, int layers) {
-    const auto source = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid.data().grid);
+    const auto source = openvdb::gridPtrCast<openvdb::Vec3SGrid>(VdbData::of(grid).grid);
     if (!source) throw Error(ErrorCode::InvalidInput, "the voxels of '" + grid.report().name + "' are no vectors of floats");
     if (layers < 0 || layers > kMostLayers) {
         throw Error(ErrorCode::InvalidInput, std::to_string(layers) + " layers of voxels cannot be added", "spread_vectors",

@@ -9,7 +9,6 @@
 #include <random>
 
 #include "subvol/error.h"
-#include "subvol/field.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "subvol/points_field.h"
@@ -20,8 +19,6 @@
 
 namespace subvol {
 namespace {
-
-static_assert(Field<MeshField> && Field<PointsField>);
 
 const Vec3 kSlope(1.5, -2, .7);
 

@@ -9,13 +9,10 @@
 #include <random>
 
 #include "lib/expect_error.h"
-#include "subvol/field.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol {
 namespace {
-
-static_assert(Field<TwistField> && Field<PawnField> && Field<BallField>);
 
 const std::vector<double>& density(const HexMesh& mesh) {
     return mesh.attributes.at(0).values;

@@ -1,29 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <optional>
 
+#include "subvol/field.h"
 #include "subvol/progress.h"
 #include "subvol/reduce.h"
 #include "subvol/surface.h"
-#include "subvol/vec.h"
 
 namespace subvol {
-
-/// A scalar field as metrics see it: of a mesh, of points, of a grid, of a formula. Both functions are called from many
-/// threads.
-///
-/// value:    nothing outside the domain
-/// gradient: exact where the field has one, world⁻¹; empty: central differences of `value`
-/// box:      the domain lies inside
-/// step:     of those differences, world; 0: 1/1000 of the box's diagonal
-struct FieldView {
-    std::function<std::optional<double>(const Vec3&)> value;
-    std::function<std::optional<Vec3>(const Vec3&)> gradient{};
-    Box box{};
-    double step = 0;
-};
 
 /// The gradient at a place: `gradient` if there is one, else differences: central ones where both neighbours have a value, else
 /// one-sided ones; nothing where an axis has no neighbour.

@@ -5,14 +5,13 @@
 #include <optional>
 #include <string_view>
 
-#include "subvol/field_metrics.h"
+#include "subvol/field.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol {
 
-/// A mesh's attribute as a field: trilinear in the cells as they are, found by the tetrahedra of `split_cell`. Satisfies
-/// `Field`. For the limit give it a refined mesh (`refine`, `on_limit`). Where cells overlap, the one with the smallest number
-/// counts.
+/// A mesh's attribute as a field: trilinear in the cells as they are, found by the tetrahedra of `split_cell`. For
+/// the limit, pass a refined mesh (`refine`, `on_limit`). Where cells overlap, the first one that the search finds counts.
 ///
 /// throws: Error(InvalidInput) as `validate`, or if there is no such attribute of one channel
 /// cost:   a tree of boxes over the cells, about 60 bytes a cell beside the mesh; some µs a value; thread-safe

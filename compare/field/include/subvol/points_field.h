@@ -4,12 +4,12 @@
 #include <memory>
 #include <optional>
 
-#include "subvol/field_metrics.h"
+#include "subvol/field.h"
 #include "subvol/rbf_volume.h"
 
 namespace subvol {
 
-/// The field of points (`RbfField`), and nothing outside their boundary, if they have one. Satisfies `Field`.
+/// The field of points (`RbfField`); nothing outside their boundary, if they have one.
 ///
 /// throws: Error(InvalidInput) as `RbfField`
 /// cost:   as `RbfField`, and of the boundary's triangles those above the place

@@ -13,6 +13,10 @@
 
 namespace subvol {
 
+namespace detail {
+struct VdbData;
+}
+
 /// kind:     float, vector, integer, mask, or another type's name
 /// min, max: of a vector's length
 struct GridReport {
@@ -28,8 +32,6 @@ struct GridReport {
 /// An OpenVDB grid; of floats it is a field that can be sampled. Those that are made here have voxel centres at world = h·ijk.
 class VdbGrid {
 public:
-    struct Data;
-    explicit VdbGrid(std::unique_ptr<Data> data);
     ~VdbGrid();
     VdbGrid(VdbGrid&&) noexcept;
     VdbGrid& operator=(VdbGrid&&) noexcept;
@@ -45,10 +47,11 @@ public:
     /// throws: Error(InvalidInput) if the transform is not linear, or the voxels are no floats
     [[nodiscard]] std::unique_ptr<Voxels> voxels() const;
 
-    [[nodiscard]] const Data& data() const { return *data_; }
-
 private:
-    std::unique_ptr<Data> data_;
+    friend struct detail::VdbData;
+    explicit VdbGrid(std::unique_ptr<detail::VdbData> data);
+
+    std::unique_ptr<detail::VdbData> data_;
 };
 
 /// How far the values of two grids of floats are apart where both are active.
