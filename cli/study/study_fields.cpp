@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "study_input.h"
 #include "study_work.h"
@@ -169,16 +171,18 @@ CaseResult counts_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
+using FieldCase = CaseResult (*)(const StudyCase&, const HexMesh&);
+
+const std::map<std::string, FieldCase> kCases{
+    {"field", field_case}, {"volume", volume_case}, {"voxels", voxels_case}, {"values", values_case}, {"counts", counts_case}};
+
 }  // namespace
 
 CaseResult run_field_case(const StudyCase& of) {
+    const auto found = kCases.find(of.text("method"));
+    assert(found != kCases.end());
     const HexMesh mesh = study_mesh(of);
-    const std::string& method = of.text("method");
-    CaseResult result = method == "field"    ? field_case(of, mesh)
-                        : method == "volume" ? volume_case(of, mesh)
-                        : method == "voxels" ? voxels_case(of, mesh)
-                        : method == "values" ? values_case(of, mesh)
-                                             : counts_case(of, mesh);
+    CaseResult result = found->second(of, mesh);
     result.metrics["points"] = static_cast<double>(mesh.points.size());
     result.metrics["cells"] = static_cast<double>(mesh.cells.size());
     return result;

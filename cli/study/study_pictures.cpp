@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <limits>
+#include <map>
 
 #include "report.h"
 #include "splat_arguments.h"
@@ -75,6 +76,14 @@ Image splat(const Scene& scene, bool by_sheets) {
     });
 }
 
+Image splats(const Scene& scene) {
+    return splat(scene, false);
+}
+
+Image sheets(const Scene& scene) {
+    return splat(scene, true);
+}
+
 HexMesh refined(const Scene& scene) {
     return refine(scene.mesh, {.levels = scene.of.whole("levels")});
 }
@@ -138,15 +147,15 @@ Image grid(const Scene& scene) {
         scene, [&] { return render_grid(*voxels, scene.view, scene.optics, {.samples = scene.of.whole("samples")}).image; });
 }
 
+using Draw = Image (*)(const Scene&);
+
+const std::map<std::string, Draw> kDraw{{"splat", splats},      {"sheets", sheets}, {"tets", tets},
+                                        {"pt", projected_tets}, {"dense", dense},   {"grid", grid}};
+
 Image draw(const Scene& scene) {
-    const std::string& method = scene.of.text("method");
-    if (method == "splat") return splat(scene, false);
-    if (method == "sheets") return splat(scene, true);
-    if (method == "tets") return tets(scene);
-    if (method == "pt") return projected_tets(scene);
-    if (method == "dense") return dense(scene);
-    if (method == "grid") return grid(scene);
-    throw Error(ErrorCode::InvalidInput, "there is no method '" + method + "'", "study");
+    const auto found = kDraw.find(scene.of.text("method"));
+    if (found != kDraw.end()) return found->second(scene);
+    throw Error(ErrorCode::InvalidInput, "the method '" + scene.of.text("method") + "' draws no picture", "study");
 }
 
 /// The picture, its costs and counts. The memory of the mesh is there before, and counted by itself.

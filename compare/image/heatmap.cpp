@@ -48,6 +48,7 @@ constexpr std::array<Glyph, 14> kGlyphs{{{'0', {"###", "# #", "# #", "# #", "###
                                          {'-', {"   ", "   ", "###", "   ", "   "}},
                                          {'+', {"   ", " # ", "###", " # ", "   "}},
                                          {'e', {"   ", "###", "###", "#  ", "###"}}}};
+
 void draw_dot(Image& image, int left, int top) {
     for (int y = top; y < top + kTextScale; ++y) {
         for (int x = left; x < left + kTextScale; ++x) {

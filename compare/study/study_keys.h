@@ -27,12 +27,13 @@ struct Key {
 };
 
 /// A method of a case and its options.
-///
-/// picture: needs a camera, a transfer function and a reference; input: needs a mesh
 struct StudyMethod {
     const char* name;
-    bool picture, input;
+    StudyKind kind;
     std::vector<Key> keys;
+
+    [[nodiscard]] bool needs_mesh() const { return kind != StudyKind::Kernel; }
+    [[nodiscard]] bool needs_view() const { return kind == StudyKind::Picture; }
 };
 
 [[nodiscard]] const std::vector<StudyMethod>& study_methods();

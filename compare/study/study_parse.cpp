@@ -261,12 +261,12 @@ private:
             const std::string path = at(in(root_, "methods"), m);
             if (!items[m].is_object() || !items[m].contains("method")) refuse(path, "names no method");
             const StudyMethod& method = find_method(read_text(items[m]["method"], in(path, "method")), in(path, "method"));
-            if (method.input && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
+            if (method.needs_mesh() && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
             const auto swept = swept_keys(items[m]);
             for (StudyValues& values : combinations(items[m], method, scenes, study.cases.size(), path)) {
                 values["label"] = filled_in(as_text(values["label"]), values, in(path, "label"));
                 values["study"] = study.name;
-                if (method.picture) values.insert(common.begin(), common.end());
+                if (method.needs_view()) values.insert(common.begin(), common.end());
                 study.cases.push_back(named_case(std::move(values), swept));
             }
         }
@@ -287,8 +287,9 @@ private:
         read_given(item, path, head);
         const std::vector<StudyValues> nothing(1), options = read_values(item, method.keys, besides, path);
         std::vector<StudyValues> all{head};
-        for (const auto* factor : {method.input ? &scenes.inputs : &nothing, method.picture ? &scenes.cameras : &nothing,
-                                   method.picture ? &scenes.lights : &nothing, &options}) {
+        for (const auto* factor :
+             {method.needs_mesh() ? &scenes.inputs : &nothing, method.needs_view() ? &scenes.cameras : &nothing,
+              method.needs_view() ? &scenes.lights : &nothing, &options}) {
             check_count(already + all.size() * factor->size(), path);  // each is at most kMaxStudyCases: no overflow
             std::vector<StudyValues> product;
             for (const StudyValues& values : all) {

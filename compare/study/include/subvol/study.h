@@ -88,6 +88,13 @@ struct Study {
     std::vector<StudyDemand> demands;
 };
 
+/// What a method computes: a picture of a mesh, compared with a reference; numbers of a mesh's field; or numbers of a kernel,
+/// without a mesh.
+enum class StudyKind { Picture, Field, Kernel };
+
+/// throws: Error(InvalidInput) if there is no such method; lists the known ones
+[[nodiscard]] StudyKind method_kind(const std::string& method);
+
 inline constexpr std::size_t kMaxStudyCases = 10'000;
 
 /// Reads a study from JSON and expands it: inputs × cameras × transfer functions × methods, and the product of all lists among
