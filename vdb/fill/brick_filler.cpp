@@ -14,8 +14,9 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatchNodes = 1 << 17;         // of a mesh as it is
-constexpr std::size_t kBatchRefinedNodes = 1 << 20;  // fewer pay for their surroundings, more for memory
+constexpr std::size_t kBatchNodes = 1 << 17;  // of an unrefined mesh
+constexpr std::size_t kBatchRefinedNodes =
+    1 << 20;  // smaller batches refine more surrounding cells, larger ones need more memory
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {
     return !common(a, b).empty();

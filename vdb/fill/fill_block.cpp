@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells into voxels, in vectors as wide as the machine has them. This file is compiled once for every instruction set, and the
-// best one is chosen where it runs.
+// Cells into voxels, in the widest vectors of the machine. This file is compiled once for every instruction set; the best one
+// is chosen at run time.
 #include "fill_block.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ public:
     CellFiller(const CellShape& shape, const CellBlock& block, VoxelBrick& brick)
         : shape_(shape), block_(block), brick_(brick) {}
 
-    /// box: where to look, inside the brick. Its rows along z are taken as many at a time as there are lanes.
+    /// box: the voxels to test, inside the brick. One row along z per lane.
     HWY_ATTR void run(const VoxelBox& box) {
         const Lanes d;
         const TetPlanes planes(shape_, Vec3(box.lower[0], box.lower[1], box.lower[2]) + kCentreStep - shape_.origin);
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    /// inside: bit i: the i-th voxel of the row, from the first one on
+    /// inside: bit i is voxel i of the row
     HWY_ATTR void fill_row(const VoxelCoord& first, std::uint64_t inside) {
         const auto [x, y, z] =
             VoxelCoord{first[0] - brick_.origin[0], first[1] - brick_.origin[1], first[2] - brick_.origin[2]};
@@ -108,19 +108,19 @@ HWY_EXPORT(fill_cell);
 
 namespace {
 
-constexpr double kGenerosity = 3e-6;  // voxels; above the shift of centres on a face and the rounding at 2³⁰
+constexpr double kMargin = 3e-6;  // voxels; larger than kCentreStep and the rounding at 2³⁰
 
 VoxelBox voxels_between(const Vec3& lower, const Vec3& upper) {
     VoxelBox box;
     for (int d = 0; d < 3; ++d) {
         const auto i = static_cast<std::size_t>(d);
-        box.lower[i] = static_cast<int>(std::ceil(lower[d] - kGenerosity));
-        box.upper[i] = static_cast<int>(std::floor(upper[d] + kGenerosity));
+        box.lower[i] = static_cast<int>(std::ceil(lower[d] - kMargin));
+        box.upper[i] = static_cast<int>(std::floor(upper[d] + kMargin));
     }
     return box;
 }
 
-/// Corners of the cell at a node of a block, in VTK order.
+/// The corners, in VTK order, of the small cell whose first corner is node `lowest` of a block.
 std::array<std::size_t, 8> corner_nodes(std::size_t lowest, const CellBlock& block) {
     const std::size_t u = block.step, v = u * block.side, w = v * block.side;
     return {lowest, lowest + u, lowest + v + u, lowest + v, lowest + w, lowest + w + u, lowest + w + v + u, lowest + w + v};
@@ -136,7 +136,7 @@ const CornerSplit& split_of(const CellBlock& block, const std::array<std::size_t
     });
 }
 
-/// The 27 nodes of the curved cell that holds the cell at `lowest`.
+/// Finds the 27 nodes of the curved cell that contains the small cell at `lowest`.
 void set_nodes(const CellBlock& block, std::size_t lowest, CellShape& shape) {
     const std::size_t channels = block.channels;
     const std::size_t across = std::max<std::size_t>(2, block.step);

@@ -6,16 +6,15 @@
 
 namespace subvol::detail {
 
-// Cells into voxels. A control cell is a block of nodes; every small cell between 8 of its nodes fills the voxels whose centres
-// it contains:
+// Cells into voxels. A control cell is a block of nodes (+); every small cell between 8 of its nodes fills the voxels whose
+// centres (.) it contains:
 //
-//     +-----+-----+      1. Inside?  The small cell is split into six tetrahedra (`corner_split`). Neighbours split their
-//     shared | .  .|  .  |         faces alike, so each centre belongs to exactly one of them: fill_rows-inl.h, a row of
-//     centres along z |  .  | .  .|         at a time.
-//     +-----+-----+      2. Where?   Newton's method inverts the cell's map x(u, v, w) at the centre: fill_values-inl.h.
-//     |.  . |.  . |      3. Value:   the cell's trilinear or triquadratic interpolant at (u, v, w).
+//     +-----+-----+     1. Inside?  The small cell is split into six tetrahedra (`corner_split`). Neighbours split a shared
+//     | .  .|  .  |                 face alike, so each centre belongs to exactly one cell. See fill_rows-inl.h.
+//     |  .  | .  .|     2. Where?   Newton's method inverts the cell's map x(u, v, w) at the centre: fill_values-inl.h.
+//     +-----+-----+     3. Value:   the cell's trilinear or triquadratic interpolant at (u, v, w).
+//     |.  . |.  . |
 //     +-----+-----+
-//   nodes +, centres .
 
 /// A control cell as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
 ///
@@ -54,9 +53,8 @@ constexpr std::size_t kCurvedNodes = 27;
 /// One of a block's small cells. Positions are relative to `origin`, its first corner; corners are in VTK order.
 ///
 /// values: channels × 8
-/// curved: the cell is a part of a larger one with these nodes and channels × 27 node_values: in that one's parameters it
-/// begins
-///         at `first_part` and is `part` long along each axis
+/// curved: the cell is a part of a larger one with these nodes and channels × 27 node_values: in the parameters of the larger
+///         one it begins at `first_part` and is `part` long along each axis
 /// size:   the longest side of its bounding box
 struct CellShape {
     Vec3 origin;

@@ -10,13 +10,13 @@ namespace subvol::detail {
 
 namespace {
 
-/// A corner's place in its cell, bit d along axis d, and back.
+/// The octant of each corner, bit d along axis d; the table is its own inverse.
 constexpr std::array<std::size_t, 8> kOctantOfCorner{0, 1, 3, 2, 4, 5, 7, 6};
 
 void check_tables(const RefinementTables& tables, const HexMesh& mesh, int levels) {
     const std::size_t children = std::size_t{1} << (3 * levels);
     bool fits = tables.control_points == mesh.points.size() && tables.cells.size() == children * mesh.cells.size();
-    // Child k stays at corner k, and control points keep their numbers, as all of them are used.
+    // Child k keeps corner k of its parent, and control points keep their numbers because all of them are used.
     for (std::size_t c = 0; fits && c < mesh.cells.size(); ++c) {
         for (std::size_t k = 0; k < 8; ++k) {
             const std::size_t child = children * c + (children - 1) / 7 * k;
@@ -83,7 +83,7 @@ void RefinedCells::refine_whole(const RefinementTables& tables) {
     nodes_.resize(side * side * side);
     for (std::size_t child = 0; child < cells * cells * cells; ++child) {
         std::array<std::size_t, 3> at{};
-        for (int level = 0; level < levels_; ++level) {  // the first level's digit is the highest
+        for (int level = 0; level < levels_; ++level) {  // the first level is the most significant digit
             const std::size_t octant = kOctantOfCorner[child >> (3 * (levels_ - 1 - level)) & 7];
             for (std::size_t d = 0; d < 3; ++d) at[d] = 2 * at[d] + (octant >> d & 1);
         }

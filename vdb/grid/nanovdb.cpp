@@ -35,7 +35,7 @@ namespace {
 
 using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
 
-// By type: the conversion of any grid would take minutes to compile.
+// One type at a time: NanoVDB's conversion of any grid takes minutes to compile.
 Handle convert(const openvdb::GridBase& grid) {
     if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&grid)) return nanovdb::openToNanoVDB(*floats);
     if (const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(&grid)) return nanovdb::openToNanoVDB(*vectors);

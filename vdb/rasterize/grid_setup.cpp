@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB takes a transform for singular whose determinant is below 3e-15
+constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB treats a transform as singular if its determinant is below 3e-15
 
 double voxel_size_of(const Box& box, const RasterizeOptions& options) {
     if (!(options.voxel_size_world >= 0) || !std::isfinite(options.voxel_size_world)) {
@@ -44,11 +44,11 @@ ToVoxels to_voxels_of(const openvdb::GridBase& like) {
 void check_representable(double voxel_size) {
     if (voxel_size >= kLeastVoxel_world) return;
     std::ostringstream message;
-    message << "voxel size " << voxel_size << ": OpenVDB takes a grid of such small voxels for flat";
+    message << "voxel size " << voxel_size << ": OpenVDB treats the transform of such small voxels as singular";
     throw Error(ErrorCode::InvalidInput, message.str(), {}, "at least 1.45e-5; a mesh in smaller units has larger voxels");
 }
 
-ToVoxels voxels_asked_for(const Box& box, const RasterizeOptions& options) {
+ToVoxels to_voxels_of(const Box& box, const RasterizeOptions& options) {
     if (options.like) return to_voxels_of(*VdbData::of(*options.like).grid);
     return {.voxel_size = voxel_size_of(box, options)};
 }
@@ -59,7 +59,7 @@ void check_level_set(const RasterizeOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the half width of the level set's band is not from 1 to 1000 voxels");
     }
     if (options.like && !VdbData::of(*options.like).grid->hasUniformVoxels()) {
-        throw Error(ErrorCode::InvalidInput, "its voxels are no cubes, which a level set needs",
+        throw Error(ErrorCode::InvalidInput, "its voxels are not cubes, but a level set needs cubes",
                     "grid \"" + options.like->report().name + "\"");
     }
 }

@@ -28,7 +28,7 @@ constexpr double kMaxHalf = 65504;
 const Attribute& field_of(const HexMesh& mesh, const std::string& name, bool half) {
     const std::string where = "field \"" + name + "\"";
     const Attribute* field = mesh.find_attribute(name);
-    if (!field) throw Error(ErrorCode::InvalidInput, "the mesh does not have it", where);
+    if (!field) throw Error(ErrorCode::InvalidInput, "the mesh has no such field", where);
     if (field->channels != 1 && field->channels != 3) {
         throw Error(ErrorCode::InvalidInput, "has " + std::to_string(field->channels) + " channels", where, "one or three");
     }
@@ -78,7 +78,7 @@ CellRequest make_request(const HexMesh& mesh, std::span<const std::string> field
     if (fields.empty()) throw Error(ErrorCode::InvalidInput, "no field is named to be rasterized");
     std::vector<const Attribute*> attributes;
     for (const auto& name : fields) attributes.push_back(&field_of(mesh, name, options.half));
-    const ToVoxels to_voxels = voxels_asked_for(bounds(mesh), options);
+    const ToVoxels to_voxels = to_voxels_of(bounds(mesh), options);
     CellRequest request = refinement_of(mesh, options);
     request.fields = std::move(attributes);
     request.to_voxels = to_voxels;
@@ -92,7 +92,7 @@ std::size_t bytes_per_voxel(const CellRequest& request, const RasterizeOptions& 
     return bytes + (request.cell_numbers ? sizeof(std::int32_t) : 0);
 }
 
-/// A mesh into grids, for one part of space after the other.
+/// Makes grids from a mesh, for one part of space after the other.
 class MeshRasterizer {
 public:
     MeshRasterizer(const CellRequest& request, const RasterizeOptions& options)

@@ -16,7 +16,7 @@ namespace {
 
 const openvdb::FloatGrid& floats_of(const VdbGrid& grid) {
     if (const auto& floats = VdbData::of(grid).floats) return *floats;
-    throw Error(ErrorCode::InvalidInput, "its voxels are no floats", "grid \"" + grid.report().name + "\"");
+    throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid \"" + grid.report().name + "\"");
 }
 
 constexpr std::size_t kBatch = 512;  // leaves whose points are evaluated at once
