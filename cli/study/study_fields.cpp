@@ -25,7 +25,7 @@ void keep_first(std::vector<T>& values, std::size_t count) {
     if (!values.empty()) values.resize(count);
 }
 
-/// The kernels of every second control point: those that the mesh before its last refinement had, which come first.
+/// The kernels of every second control point: the points before the last refinement, which come first; twice as wide.
 RbfVolume every_second(RbfVolume volume, std::size_t count) {
     keep_first(volume.centers, count);
     keep_first(volume.frames, count);
@@ -77,7 +77,7 @@ CaseResult field_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-/// Kernels against the limit as whole fields: norms, gradients, the integral and an isosurface.
+/// Compares kernels with the limit as fields: norms, gradients, the integral and an isosurface.
 CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const std::string name = mesh.attributes.front().name;
@@ -102,7 +102,7 @@ CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-/// A file that is removed again.
+/// A file that is removed at the end.
 struct TemporaryFile {
     std::filesystem::path path;
     ~TemporaryFile() {
@@ -130,8 +130,8 @@ double rmse_between(std::span<const double> a, std::span<const double> b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// The paper's table 2: what a rule makes of the points that one refinement adds. Most points of a model lie in constant parts
-/// and have no error; models of other shares of solid are comparable per point of the solid.
+/// The paper's table 2: the error of a value rule at the points that one refinement adds. Most points of a model lie in
+/// constant parts and have no error; `solid_rmse` relates the error to the points of the solid, which makes models comparable.
 CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const Attribute& density = mesh.attributes.front();
@@ -145,7 +145,7 @@ CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
         const ValueRule rule = of.text("rule") == "cubic" ? ValueRule::Cubic : ValueRule::Paper;
         ours = values_at_new_points(mesh, density, rule, study_kernel(of.text("kernel")));
     }
-    // Densities are signed; what is not positive is empty, as in the paper.
+    // Densities are signed; where they are not positive the volume is empty, as in the paper.
     const auto positive = [](std::span<const double> values) {
         return std::ranges::count_if(values, [](double v) { return v > 0; });
     };
@@ -158,7 +158,7 @@ CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-/// How many kernels and tetrahedra a mesh becomes at the same number of intervals a cell edge.
+/// The numbers of kernels and of tetrahedra for the same number of intervals per cell edge.
 CaseResult counts_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const int n = of.whole("per_edge");

@@ -16,7 +16,7 @@
 namespace subvol::cli {
 namespace {
 
-/// A unit cube of one cell, with a density that is not trilinear after refinement.
+/// A unit cube of one cell; its density is not trilinear after refinement.
 HexMesh one_cell() {
     HexMesh mesh;
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};

@@ -19,7 +19,7 @@ namespace subvol::cli {
 namespace {
 
 constexpr int kPaperLevel = 5;  // 193³ samples, as in the paper
-constexpr int kSliceLevel = 6;  // 384 intervals across: the default picture has one pixel a sample
+constexpr int kSliceLevel = 6;  // 384 intervals across: the default picture has one pixel per sample
 
 void put(const FitErrors& errors, const std::string& prefix, CaseResult& result) {
     result.metrics[prefix + "mse"] = errors.mse;
@@ -36,7 +36,7 @@ std::string short_number(const Json& value) {
     return "(" + join(parts) + ")";
 }
 
-/// A kernel's numbers, without long tables.
+/// Stores a kernel's parameters, without long tables.
 void put_parameters(const Kernel& kernel, CaseResult& result) {
     std::string words;
     const Json parameters = parameters_of(kernel);

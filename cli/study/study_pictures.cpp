@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the methods have in common.
+/// What all methods draw.
 struct Scene {
     const StudyCase& of;
     const HexMesh& mesh;
@@ -46,7 +46,7 @@ private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Draws as often as the case says; the last picture, and the least time of one.
+/// Draws several times, as the case says; returns the last picture and stores the least time.
 template <class Draw>
 Image repeated(const Scene& scene, const Draw& draw) {
     double least = std::numeric_limits<double>::infinity();
@@ -158,7 +158,7 @@ Image draw(const Scene& scene) {
     throw Error(ErrorCode::InvalidInput, "the method '" + scene.of.text("method") + "' draws no picture", "study");
 }
 
-/// The picture, its costs and counts. The memory of the mesh is there before, and counted by itself.
+/// Draws the picture and stores its costs and counts. own_bytes is the growth of the peak after the mesh was loaded.
 Image measured(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
     const Optics optics = study_optics(of, mesh);
     const View view = study_view(of, mesh, optics);

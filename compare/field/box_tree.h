@@ -18,16 +18,16 @@ namespace subvol::detail {
     return glm::dot(d, d);
 }
 
-/// A tree over boxes, halved at the median. It is complete: node n has the children 2n+1 and 2n+2, leaves hold up to 8 boxes.
-/// It depends on its input alone.
+/// A tree over boxes, split at the median. It is complete: node n has the children 2n+1 and 2n+2, and leaves have up to 8
+/// boxes. It depends on its input only, not on the number of threads.
 class BoxTree {
 public:
     explicit BoxTree(std::vector<Box> boxes);
 
     [[nodiscard]] Box bounds() const { return nodes_.front(); }
 
-    /// Calls visit(item) for every box with enter(box), until one returns true. Whoever holds a box that is entered must be
-    /// too.
+    /// Calls visit(item) for every item whose box satisfies enter(box), until visit returns true. If enter is true for a box,
+    /// it must be true for every box that contains it.
     template <class Enter, class Visit>
     void visit(const Enter& enter, const Visit& visit) const {
         std::array<std::size_t, 64> open;
@@ -64,7 +64,7 @@ private:
     void search(std::size_t node, double bound, const Vec3& x, const Distance& squared_distance_to, double& best) const {
         if (bound >= best) return;
         if (node < first_leaf_) {
-            // The nearer child first: it often makes the other one needless.
+            // The nearer child first: often the other one need not be searched then.
             std::array<std::size_t, 2> child{2 * node + 1, 2 * node + 2};
             std::array<double, 2> distance{squared_distance(nodes_[child[0]], x), squared_distance(nodes_[child[1]], x)};
             const std::size_t nearer = distance[0] <= distance[1] ? 0 : 1;
@@ -81,7 +81,7 @@ private:
     std::vector<Index> order_;
     std::vector<Box> boxes_;  // in that order
     std::vector<Box> nodes_;
-    std::size_t first_leaf_ = 0;  // of 2ᵏ leaves it is 2ᵏ − 1
+    std::size_t first_leaf_ = 0;  // 2ᵏ − 1 for 2ᵏ leaves
 };
 
 }  // namespace subvol::detail

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBatch = 1 << 16;
 constexpr std::size_t kTriesASample = 1000;
-constexpr double kStep = 1e-3;  // of the box's diagonal
+constexpr double kStep = 1e-3;  // relative to the box's diagonal
 
 struct Place {
     Vec3 x{0.0};
@@ -57,7 +57,7 @@ std::vector<Place> random_places_of(const FieldView& test, const FieldView& refe
     return places;
 }
 
-/// Sums in the order in which they come, weighted.
+/// Weighted sums, in the order of the calls.
 struct Errors {
     double weights = 0, absolutes = 0, squares = 0, largest = 0;
 
@@ -65,7 +65,7 @@ struct Errors {
         weights += weight;
         absolutes += weight * std::abs(difference);
         squares += weight * difference * difference;
-        // Not a number stays, as in the sums.
+        // NaN stays, as in the sums.
         if (!(std::abs(difference) <= largest)) largest = std::isnan(largest) ? largest : std::abs(difference);
     }
     void put_into(FieldErrors& errors) const {

@@ -17,7 +17,7 @@ constexpr int kLevels = 6;
 constexpr std::array<std::array<int, 3>, 8> kCorners{
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 
-/// A part of a cell: along each axis all of it, or what is near one end.
+/// A part of a cell: along each axis the whole cell, or the part near one end.
 struct CellPart {
     enum Extent : std::uint8_t { All, NearLow, NearHigh };
     Index cell = 0;
@@ -69,7 +69,7 @@ std::vector<LimitQuery> random_queries(const std::vector<CellPart>& parts, doubl
     return queries;
 }
 
-/// The mesh with this attribute alone.
+/// The mesh with this attribute only.
 HexMesh with_only(const HexMesh& mesh, std::string_view attribute) {
     const Attribute* field = mesh.find_attribute(attribute);
     if (field == nullptr || field->channels != 1) {
@@ -92,7 +92,7 @@ FieldSamples random_places(const HexMesh& mesh, std::string_view attribute, Plac
 
 FieldSamples new_vertices(const HexMesh& mesh, std::string_view attribute, int level, Scheme scheme) {
     HexMesh coarse = refine(with_only(mesh, attribute), {.scheme = {scheme}, .levels = level});
-    const auto old = static_cast<std::ptrdiff_t>(coarse.points.size());  // they keep their numbers
+    const auto old = static_cast<std::ptrdiff_t>(coarse.points.size());  // refinement keeps their numbers
     const HexMesh fine = refine(coarse, {.scheme = {scheme}, .levels = 1});
     const auto& values = fine.attributes.front().values;
     FieldSamples places{{fine.points.begin() + old, fine.points.end()}, {values.begin() + old, values.end()}, {}};

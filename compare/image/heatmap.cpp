@@ -82,7 +82,7 @@ void draw_text(Image& image, std::string_view text, int x, int y) {
     }
 }
 
-// The legend, from the top: the bar, ticks under it, numbers, a rim.
+// The legend, from top to bottom: the bar, ticks, numbers, a margin.
 constexpr int kBarHeight = 12, kTickHeight = 4, kRim = 4;
 constexpr int kLegendHeight = kBarHeight + kTickHeight + kTextHeight + kRim;
 
@@ -128,7 +128,7 @@ void draw_ticks(Image& image, int top, double scale) {
     const int last_start = image.width - text_width(last) - margin;
     const int middle_start = (image.width - text_width(middle)) / 2;
     draw_text(image, first, margin, text_top);
-    // Numbers that would run into others are left out: a narrow image has fewer of them.
+    // Numbers that would overlap are left out, so a narrow image has fewer.
     if (last_start >= first_end) draw_text(image, last, last_start, text_top);
     const bool fits = middle_start >= first_end && middle_start + text_width(middle) + kRim <= last_start;
     if (fits) draw_text(image, middle, middle_start, text_top);

@@ -7,7 +7,7 @@ namespace detail {
 
 namespace {
 
-constexpr double kSeeds = 9007199254740992;  // 2⁵³: whole numbers that a double holds
+constexpr double kSeeds = 9007199254740992;  // 2⁵³: whole numbers up to it are exact in a double
 
 using Keys = std::vector<Key>;
 
@@ -28,7 +28,7 @@ Key number(const char* name, double least, double most, std::optional<StudyValue
     return {name, KeyKind::Number, least, most, std::move(fallback)};
 }
 
-/// One of several; the first is taken where the key is missing.
+/// One of several texts; the first is the default.
 Key choice(const char* name, std::vector<std::string> choices) {
     std::string first = choices.front();
     return {name, KeyKind::Text, 0, 0, std::move(first), std::move(choices)};

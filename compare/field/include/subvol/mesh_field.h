@@ -10,11 +10,11 @@
 
 namespace subvol {
 
-/// A mesh's attribute as a field: trilinear in the cells as they are, found by the tetrahedra of `split_cell`. For
-/// the limit, pass a refined mesh (`refine`, `on_limit`). Where cells overlap, the first one that the search finds counts.
+/// A mesh's attribute as a field: trilinear in the given cells; the tetrahedra of `split_cell` decide which cell contains x.
+/// For the limit, pass a refined mesh (`refine`, `on_limit`). Where cells overlap, the first one that the search finds counts.
 ///
 /// throws: Error(InvalidInput) as `validate`, or if there is no such attribute of one channel
-/// cost:   a tree of boxes over the cells, about 60 bytes a cell beside the mesh; some µs a value; thread-safe
+/// cost:   a tree of boxes over the cells, about 60 bytes per cell beside the mesh; some µs per value; thread-safe
 class MeshField {
 public:
     MeshField(HexMesh mesh, std::string_view attribute);
@@ -23,11 +23,11 @@ public:
     MeshField& operator=(MeshField&&) noexcept;
 
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
-    /// Exact within cells; between them it jumps.
+    /// Exact within cells; discontinuous between them.
     [[nodiscard]] std::optional<Vec3> gradient(const Vec3& x) const;
     [[nodiscard]] Box box() const;
 
-    /// Refers to this field.
+    /// A view that refers to this object.
     [[nodiscard]] FieldView view() const;
 
 private:
