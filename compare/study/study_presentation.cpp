@@ -10,7 +10,7 @@ std::vector<std::string> texts(const Json& json, const char* key, const std::str
     const auto found = json.find(key);
     const std::string place = in(path, key);
     if (found == json.end()) {
-        if (needed) refuse(place, "this is missing");
+        if (needed) refuse(place, "this key is missing");
         return {};
     }
     if (!found->is_array()) return {read_text(*found, place)};
@@ -82,7 +82,7 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
             const Key digits{"digits", KeyKind::Whole, 1, 17};
             table.digits = static_cast<int>(std::get<double>(read_value(tables[i]["digits"], digits, in(path, "digits"))));
         }
-        if (!table.values.empty() && table.across.empty()) refuse(in(path, "across"), "values need a key to go across");
+        if (!table.values.empty() && table.across.empty()) refuse(in(path, "across"), "this key is missing; 'values' needs it");
         study.tables.push_back(std::move(table));
     }
     const Json& plots = list_of(json, "plots", root);

@@ -138,7 +138,7 @@ private:
 
 int voxels_a_side(double spacing_world, double voxel_world) {
     if (!std::isfinite(spacing_world) || spacing_world < 0) {
-        throw Error(ErrorCode::InvalidInput, "the spacing is not a length");
+        throw Error(ErrorCode::InvalidInput, "the spacing is negative or not finite");
     }
     return static_cast<int>(std::clamp(std::round(spacing_world / voxel_world), 1.0, double(kMostVoxelsASide)));
 }

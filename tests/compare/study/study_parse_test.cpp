@@ -146,9 +146,9 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[64, 48]", "64, \"reference\": {\"tolerance\": 0}", "reference.tolerance: 0 is out of range"},
         Mistake{"[64, 48]", "64, \"reference\": {\"tolerance\": [0.1, 0.2]}", "reference: there is only one reference"},
         Mistake{"[64, 48]", "64, \"transfer_functions\": [\"no.json\"]", "transfer_functions[0]: 'no.json' cannot be read"},
-        Mistake{"[64, 48]", "64, \"tables\": [{\"columns\": [\"rmse\"]}]", "tables[0].rows: this is missing"},
+        Mistake{"[64, 48]", "64, \"tables\": [{\"columns\": [\"rmse\"]}]", "tables[0].rows: this key is missing"},
         Mistake{"[64, 48]", "64, \"tables\": [{\"rows\": \"input\", \"values\": \"rmse\"}]", "tables[0].across: "},
-        Mistake{"[64, 48]", "64, \"plots\": [{\"x\": \"a\", \"y\": \"b\"}]", "plots[0].series: this is missing"},
+        Mistake{"[64, 48]", "64, \"plots\": [{\"x\": \"a\", \"y\": \"b\"}]", "plots[0].series: this key is missing"},
         Mistake{"[64, 48]", "64, \"demands\": [{\"metric\": \"psnr\"}]", "demands[0]: a demand needs 'least' or 'most'"}));
 
 TEST(StudyFile, TooManyCasesAreRefusedBeforeTheyAreMade) {
