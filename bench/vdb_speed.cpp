@@ -32,8 +32,7 @@ using namespace subvol;
 
 constexpr std::size_t kThreads = 2;
 constexpr int kAsItIs = -1, kLimit = -2;
-constexpr int kFine = 300;                // voxels from which on a run takes long
-constexpr double kToleranceVoxels = 0.1;  // of the limit, as the command line has it
+constexpr int kFine = 300;  // voxels from which on a run takes long
 
 /// Every voxel of a grid as `visit(centre, value)`.
 template <class Visit>
@@ -90,8 +89,7 @@ LimitCells limit_cells(const HexMesh& mesh, int resolution) {
     const Vec3 size = bounds(mesh).size();
     const double voxel_size = std::max({size.x, size.y, size.z}) / resolution;
     LimitCells limit;
-    const double seconds =
-        bench::seconds_of([&] { limit = find_limit_cells(mesh, {}, {.position_world = kToleranceVoxels * voxel_size}); }, 1);
+    const double seconds = bench::seconds_of([&] { limit = limit_for_voxels(mesh, {}, voxel_size); }, 1);
     std::printf("  limit: level %d%s, found in %.3f s; control cells with nodes of level", limit.level,
                 limit.converged ? "" : " (not converged)", seconds);
     for (int level = 1; level <= 5; ++level) {

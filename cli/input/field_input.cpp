@@ -16,8 +16,7 @@
 namespace subvol::cli {
 namespace {
 
-constexpr double kVoxels = 200;  // along the longest side: what the limit's tolerance is relative to, as of `vdb`
-constexpr double kPositionTolerance_voxels = 0.1;
+constexpr double kVoxels = 200;    // along the longest side: what the limit's tolerance is relative to, as of `vdb`
 constexpr double kMaxCells = 8e6;  // the field keeps them all
 
 std::string extension_of(const std::string& input) {
@@ -32,7 +31,7 @@ HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& repo
     const Vec3 size = bounds(mesh).size();
     const double voxel = std::max({size.x, size.y, size.z}) / kVoxels;
     const LimitLevel limit = report.timed("limit level", [&] {
-        return find_limit_level(mesh, options, {.position_world = kPositionTolerance_voxels * voxel, .max_cells = kMaxCells});
+        return find_limit_level(mesh, options, {.position_world = kLimitTolerance_voxels * voxel, .max_cells = kMaxCells});
     });
     options.levels = limit.level;
     if (!limit.converged) {

@@ -7,7 +7,7 @@
 #include "common_options.h"
 #include "refine_arguments.h"
 #include "report.h"
-#include "subvol/field_metrics.h"
+#include "subvol/field.h"
 
 namespace subvol::cli {
 

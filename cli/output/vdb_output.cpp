@@ -3,10 +3,10 @@
 
 #include <deque>
 #include <filesystem>
-#include <functional>
+#include <fstream>
 
-#include "subvol/detail/atomic_file.h"
 #include "subvol/detail/stopwatch.h"
+#include "subvol/detail/vdb_file.h"
 #include "subvol/error.h"
 #include "subvol/nanovdb.h"
 #include "subvol/study_run.h"
@@ -25,14 +25,12 @@ Json corner(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
-/// name: that people know the file by
-void write_named(const std::string& name, const std::function<void()>& write) {
-    try {
-        write();
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::Io) throw;
-        throw Error(ErrorCode::Io, "cannot be written; the disk may be full", name);
-    }
+/// Writes a text into a file that is committed later. path: its final name, for error messages
+void write_text(const detail::AtomicFile& file, const std::filesystem::path& path, const std::string& text) {
+    std::ofstream out(file.path(), std::ios::binary);
+    out << text;
+    out.close();
+    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", path.string());
 }
 
 void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
@@ -73,8 +71,7 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
         const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
         const GridReport& first = part.grids.front().report();
         const detail::Stopwatch one;
-        const std::filesystem::path& file = files.emplace_back(path.parent_path() / name).path();
-        write_named(name, [&] { write_vdb(file, part.grids, output.compression); });
+        detail::write_vdb(files.emplace_back(path.parent_path() / name), name, part.grids, output.compression);
         writing += one.seconds();
         active += first.active_voxels;
         report["voxel_size"] = first.voxel_size_world;
@@ -91,8 +88,7 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
                     {"voxel_size", report["voxel_size"]},
                     {"active_voxels", active},
                     {"parts", parts}};
-    files.emplace_back(manifest);
-    write_named(manifest.string(), [&] { detail::write_text_file(files.back().path(), json.dump(2) + "\n"); });
+    write_text(files.emplace_back(manifest), manifest, json.dump(2) + "\n");
     for (detail::AtomicFile& file : files) file.commit();
     report["output"] = manifest.string();
     report["active_voxels"] = active;

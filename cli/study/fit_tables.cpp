@@ -11,7 +11,7 @@ namespace subvol::cli {
 
 namespace {
 
-/// A row of Table 1 as it is printed.
+/// A row of the paper's table 1.
 struct PaperRow {
     const char* name;
     Kernel kernel;
@@ -41,7 +41,7 @@ Json fitted(const BasisFunction& basis, KernelShape shape, const FitOptions& opt
     return {{"parameters", parameters_of(fit.kernel)}, {"double", to_json(fit.report.errors)}};
 }
 
-/// What our own fits of the row's family give.
+/// Adds our own fits of the row's kind of kernel.
 void add_fits(const BasisFunction& basis, const PaperRow& row, Json& json) {
     if (const auto* bc = std::get_if<BcSplineKernel>(&row.kernel)) {
         json["fitted"] = fitted(basis, KernelShape::BcSpline, {.extent = bc->extent});
@@ -73,7 +73,7 @@ std::string for_people(const Json& value) {
     return text('(', join(parts), ')');
 }
 
-/// "b .418792, c .146011": what tells kernels of one shape apart.
+/// "b .418792, c .146011": the parameters that differ between kernels of one shape.
 std::string short_parameters(const Json& parameters) {
     std::vector<std::string> parts;
     for (const auto& [key, value] : parameters.items()) {

@@ -9,14 +9,16 @@ namespace subvol::cli {
 /// mse, rmse, mae, max
 [[nodiscard]] Json to_json(const FitErrors& errors);
 
-/// A kernel's fields, without long tables.
+/// A kernel's parameters, without long tables.
 [[nodiscard]] Json parameters_of(const Kernel& kernel);
 
-/// Table 1 of [mnmq2007] under "rows": the paper's kernels with the errors that it prints, ours summed in float as it did and
-/// in double precision, and ours fitted. basis: of MCQ at level 5
+/// Reports table 1 of [mnmq2007] under "rows": the paper's kernels with its printed errors, with ours summed in float (as the
+/// paper did) and in double precision, and the kernels fitted by us.
+///
+/// basis: of MCQ at level 5
 void report_table1(const BasisFunction& basis, Report& report);
 
-/// Every kind of kernel fitted to the basis function, under "kernels".
+/// Reports every kind of kernel, fitted to the basis function, under "kernels".
 void report_kernels(const BasisFunction& basis, Report& report);
 
 }  // namespace subvol::cli

@@ -9,19 +9,19 @@
 
 namespace subvol::cli {
 
-/// terms: of a sum of Gaussians whose name says how many
+/// terms: of a sum of Gaussians, if the name determines them
 struct NamedShape {
     std::string name;
     KernelShape shape;
     std::optional<int> terms{};
 };
 
-/// The names of what can be fitted.
+/// The names of all shapes.
 [[nodiscard]] std::vector<std::string> shape_names();
 
 [[nodiscard]] std::optional<NamedShape> shape_named(const std::string& name);
 
-/// options.terms: where the name does not say
+/// options.terms is used if the shape's name does not determine it.
 [[nodiscard]] KernelFit fit_shape(const BasisFunction& basis, const NamedShape& named, FitOptions options = {});
 
 }  // namespace subvol::cli

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "study_input.h"
 #include "study_work.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
+#include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
 #include "subvol/limit.h"
-#include "subvol/limit_level.h"
 #include "subvol/mesh_field.h"
 #include "subvol/points_field.h"
-#include "subvol/rasterize.h"
 #include "subvol/reduce.h"
 #include "subvol/sample.h"
 #include "subvol/vdb_grid.h"
@@ -25,7 +26,7 @@ void keep_first(std::vector<T>& values, std::size_t count) {
     if (!values.empty()) values.resize(count);
 }
 
-/// The kernels of every second control point: those that the mesh before its last refinement had, which come first.
+/// The kernels of every second control point: the points before the last refinement, which come first; twice as wide.
 RbfVolume every_second(RbfVolume volume, std::size_t count) {
     keep_first(volume.centers, count);
     keep_first(volume.frames, count);
@@ -77,7 +78,7 @@ CaseResult field_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-/// Kernels against the limit as whole fields: norms, gradients, the integral and an isosurface.
+/// Compares kernels with the limit as fields: norms, gradients, the integral and an isosurface.
 CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const std::string name = mesh.attributes.front().name;
@@ -102,7 +103,7 @@ CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-/// A file that is removed again.
+/// A file that is removed at the end.
 struct TemporaryFile {
     std::filesystem::path path;
     ~TemporaryFile() {
@@ -113,22 +114,14 @@ struct TemporaryFile {
 
 CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
-    const Vec3 size = bounds(mesh).size();
-    const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
-    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
-    const std::vector<std::string> names{mesh.attributes.front().name};
-    const auto grids = rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
-    const FieldDifference errors =
-        compare_field({.value = [&](const Vec3& x) { return grids.front().value(x); }}, places_of(of, mesh));
+    const VdbGrid grid = study_grid(of, mesh, result);
+    const FieldDifference errors = compare_field({.value = [&](const Vec3& x) { return grid.value(x); }}, places_of(of, mesh));
     result.metrics["rmse"] = errors.l2;
     result.metrics["max"] = errors.linf;
     result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
     const TemporaryFile file{std::filesystem::temp_directory_path() / ("subvol_study_" + of.id + ".vdb")};
-    write_vdb(file.path, grids);
+    write_vdb(file.path, std::span(&grid, 1));
     result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path));
-    result.metrics["grid_bytes"] = static_cast<double>(grids.front().report().bytes);
-    result.metrics["voxels"] = static_cast<double>(grids.front().report().active_voxels);
-    result.metrics["voxel_size"] = voxel;
     return result;
 }
 
@@ -138,8 +131,8 @@ double rmse_between(std::span<const double> a, std::span<const double> b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// The paper's table 2: what a rule makes of the points that one refinement adds. Most points of a model lie in constant parts
-/// and have no error; models of other shares of solid are comparable per point of the solid.
+/// The paper's table 2: the error of a value rule at the points that one refinement adds. Most points of a model lie in
+/// constant parts and have no error; `solid_rmse` relates the error to the points of the solid, which makes models comparable.
 CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const Attribute& density = mesh.attributes.front();
@@ -153,7 +146,7 @@ CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
         const ValueRule rule = of.text("rule") == "cubic" ? ValueRule::Cubic : ValueRule::Paper;
         ours = values_at_new_points(mesh, density.name, rule, study_kernel(of.text("kernel")));
     }
-    // Densities are signed; what is not positive is empty, as in the paper.
+    // Densities are signed; where they are not positive the volume is empty, as in the paper.
     const auto positive = [](std::span<const double> values) {
         return std::ranges::count_if(values, [](double v) { return v > 0; });
     };
@@ -166,7 +159,7 @@ CaseResult values_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-/// How many kernels and tetrahedra a mesh becomes at the same number of intervals a cell edge.
+/// The numbers of kernels and of tetrahedra for the same number of intervals per cell edge.
 CaseResult counts_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const int n = of.whole("per_edge");
@@ -179,16 +172,18 @@ CaseResult counts_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
+using FieldCase = CaseResult (*)(const StudyCase&, const HexMesh&);
+
+const std::map<std::string, FieldCase> kCases{
+    {"field", field_case}, {"volume", volume_case}, {"voxels", voxels_case}, {"values", values_case}, {"counts", counts_case}};
+
 }  // namespace
 
 CaseResult run_field_case(const StudyCase& of) {
+    const auto found = kCases.find(of.text("method"));
+    assert(found != kCases.end());
     const HexMesh mesh = study_mesh(of);
-    const std::string& method = of.text("method");
-    CaseResult result = method == "field"    ? field_case(of, mesh)
-                        : method == "volume" ? volume_case(of, mesh)
-                        : method == "voxels" ? voxels_case(of, mesh)
-                        : method == "values" ? values_case(of, mesh)
-                                             : counts_case(of, mesh);
+    CaseResult result = found->second(of, mesh);
     result.metrics["points"] = static_cast<double>(mesh.points.size());
     result.metrics["cells"] = static_cast<double>(mesh.cells.size());
     return result;

@@ -8,7 +8,7 @@ namespace subvol::cli {
 /// The machine: processor, cores, memory, system.
 [[nodiscard]] ReportFacts study_host();
 
-/// This program and what it was built with.
+/// The versions of this program and of what it was built with.
 [[nodiscard]] ReportFacts study_versions();
 
 }  // namespace subvol::cli

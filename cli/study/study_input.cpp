@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study_input.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "input.h"
 #include "picture_arguments.h"
 #include "subvol/expression.h"
+#include "subvol/limit_level.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
+#include "subvol/rasterize.h"
 #include "subvol/refine.h"
 
 namespace subvol::cli {
 namespace {
 
-/// A unit cube of one cell, with a density that is not trilinear after refinement.
+/// A unit cube of one cell; its density is not trilinear after refinement.
 HexMesh one_cell() {
     HexMesh mesh;
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
@@ -55,6 +58,19 @@ HexMesh study_mesh(const StudyCase& of) {
     }
     validate(mesh);
     return mesh;
+}
+
+VdbGrid study_grid(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
+    const Vec3 size = bounds(mesh).size();
+    const double voxel = std::max({size.x, size.y, size.z}) / of.whole("resolution");
+    const LimitCells limit = limit_for_voxels(mesh, {}, voxel);
+    const std::vector<std::string> names{mesh.attributes.front().name};
+    auto grids = rasterize(mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = of.flag("half")});
+    const GridReport& about = grids.front().report();
+    result.metrics["voxels"] = static_cast<double>(about.active_voxels);
+    result.metrics["grid_bytes"] = static_cast<double>(about.bytes);
+    result.metrics["voxel_size"] = voxel;
+    return std::move(grids.front());
 }
 
 View study_view(const StudyCase& of, const HexMesh& mesh, const Optics& optics) {

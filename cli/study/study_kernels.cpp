@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iomanip>
+#include <map>
 
 #include "fit_tables.h"
 #include "kernel_shapes.h"
@@ -17,7 +19,7 @@ namespace subvol::cli {
 namespace {
 
 constexpr int kPaperLevel = 5;  // 193³ samples, as in the paper
-constexpr int kSliceLevel = 6;  // 384 intervals across: the default picture has one pixel a sample
+constexpr int kSliceLevel = 6;  // 384 intervals across: the default picture has one pixel per sample
 
 void put(const FitErrors& errors, const std::string& prefix, CaseResult& result) {
     result.metrics[prefix + "mse"] = errors.mse;
@@ -34,7 +36,7 @@ std::string short_number(const Json& value) {
     return "(" + join(parts) + ")";
 }
 
-/// A kernel's numbers, without long tables.
+/// Stores a kernel's parameters, without long tables.
 void put_parameters(const Kernel& kernel, CaseResult& result) {
     std::string words;
     const Json parameters = parameters_of(kernel);
@@ -46,7 +48,7 @@ void put_parameters(const Kernel& kernel, CaseResult& result) {
     result.notes["parameters"] = words;
 }
 
-CaseResult errors_case(const StudyCase& of) {
+CaseResult errors_case(const StudyCase& of, const CasePlace&) {
     const BasisFunction basis = sample_basis_function(Scheme::Mcq, kPaperLevel);
     const Kernel kernel = study_kernel(of.text("kernel"));
     CaseResult result;
@@ -56,7 +58,7 @@ CaseResult errors_case(const StudyCase& of) {
     return result;
 }
 
-CaseResult fit_case(const StudyCase& of) {
+CaseResult fit_case(const StudyCase& of, const CasePlace&) {
     const BasisFunction basis = sample_basis_function(Scheme::Mcq, kPaperLevel);
     const std::string& shape = of.text("shape");
     CaseResult result;
@@ -135,11 +137,16 @@ CaseResult slice_case(const StudyCase& of, const CasePlace& place) {
     return result;
 }
 
+using KernelCase = CaseResult (*)(const StudyCase&, const CasePlace&);
+
+const std::map<std::string, KernelCase> kCases{{"errors", errors_case}, {"fit", fit_case}, {"slice", slice_case}};
+
 }  // namespace
 
 CaseResult run_kernel_case(const StudyCase& of, const CasePlace& place) {
-    if (of.text("method") == "errors") return errors_case(of);
-    return of.text("method") == "fit" ? fit_case(of) : slice_case(of, place);
+    const auto found = kCases.find(of.text("method"));
+    assert(found != kCases.end());
+    return found->second(of, place);
 }
 
 }  // namespace subvol::cli

@@ -29,7 +29,7 @@ std::map<std::string, double> picture_metrics(const Image& image, const Image& r
     };
     std::map<std::string, double> metrics;
     const auto in_region = [&](const std::string& name, const PixelMask& mask) {
-        if (!any(mask)) return;  // nothing to measure: the picture shows no inside, or no edge
+        if (!any(mask)) return;  // the picture has no interior or no edge
         metrics[name] = name.starts_with("psnr") ? compare_images(image, reference, mask).psnr : mean_of(flip_of().map, mask);
     };
     std::istringstream in(names);

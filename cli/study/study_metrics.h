@@ -8,9 +8,9 @@
 
 namespace subvol::cli {
 
-/// Metrics of a picture against its reference, by name.
+/// Metrics of a picture compared with its reference, by name.
 ///
-/// names: separated by commas, as a study has them
+/// names: separated by commas, as in a study
 [[nodiscard]] std::map<std::string, double> picture_metrics(const Image& image, const Image& reference,
                                                             const std::string& names);
 

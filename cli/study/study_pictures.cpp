@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <limits>
+#include <map>
 
 #include "report.h"
 #include "splat_arguments.h"
@@ -10,14 +11,11 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
-#include "subvol/limit_level.h"
-#include "subvol/rasterize.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
 #include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
-#include "subvol/vdb_grid.h"
 #include "subvol/visible_points.h"
 #include "text.h"
 
@@ -26,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the methods have in common.
+/// What all methods draw.
 struct Scene {
     const StudyCase& of;
     const HexMesh& mesh;
@@ -65,6 +63,14 @@ Image splat(const Scene& scene, bool by_sheets) {
         scene.result.notes["device"] = drawn.report.device;
         return std::move(drawn.image);
     });
+}
+
+Image splats(const Scene& scene) {
+    return splat(scene, false);
+}
+
+Image sheets(const Scene& scene) {
+    return splat(scene, true);
 }
 
 HexMesh refined(const Scene& scene) {
@@ -123,34 +129,25 @@ Image dense(const Scene& scene) {
 
 Image grid(const Scene& scene) {
     const detail::Stopwatch watch;
-    const Vec3 size = bounds(scene.mesh).size();
-    const double voxel = std::max({size.x, size.y, size.z}) / scene.of.whole("resolution");
-    const LimitCells limit = find_limit_cells(scene.mesh, {}, {.position_world = 0.1 * voxel});
-    const std::vector<std::string> names{scene.mesh.attributes.front().name};
-    const auto grids =
-        rasterize(scene.mesh, names, {.voxel_size_world = voxel, .limit = &limit, .half = scene.of.flag("half")});
-    const GridReport& about = grids.front().report();
-    scene.result.metrics["primitives"] = scene.result.metrics["voxels"] = static_cast<double>(about.active_voxels);
-    scene.result.metrics["grid_bytes"] = static_cast<double>(about.bytes);
-    scene.result.metrics["voxel_size"] = voxel;
-    const auto voxels = grids.front().voxels();
+    const auto voxels = study_grid(scene.of, scene.mesh, scene.result).voxels();
+    scene.result.metrics["primitives"] = scene.result.metrics["voxels"];
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(
         scene, [&] { return render_grid(*voxels, scene.view, scene.optics, {.samples = scene.of.whole("samples")}).image; });
 }
 
+using Draw = Image (*)(const Scene&);
+
+const std::map<std::string, Draw> kDraw{{"splat", splats},      {"sheets", sheets}, {"tets", tets},
+                                        {"pt", projected_tets}, {"dense", dense},   {"grid", grid}};
+
 Image draw(const Scene& scene) {
-    const std::string& method = scene.of.text("method");
-    if (method == "splat") return splat(scene, false);
-    if (method == "sheets") return splat(scene, true);
-    if (method == "tets") return tets(scene);
-    if (method == "pt") return projected_tets(scene);
-    if (method == "dense") return dense(scene);
-    if (method == "grid") return grid(scene);
-    throw Error(ErrorCode::InvalidInput, "there is no method '" + method + "'", "study");
+    const auto found = kDraw.find(scene.of.text("method"));
+    if (found != kDraw.end()) return found->second(scene);
+    throw Error(ErrorCode::InvalidInput, "the method '" + scene.of.text("method") + "' draws no picture", "study");
 }
 
-/// The picture, its costs and counts. The memory of the mesh is there before, and counted by itself.
+/// Draws the picture and stores its costs and counts. own_bytes is the growth of the peak after the mesh was loaded.
 Image measured(const StudyCase& of, const HexMesh& mesh, CaseResult& result) {
     const Optics optics = study_optics(of, mesh);
     const View view = study_view(of, mesh, optics);

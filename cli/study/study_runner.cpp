@@ -14,19 +14,19 @@ namespace {
 
 constexpr const char* kReferences = "references";
 
-/// It was asked to stop, whether it knew already how to answer that or not.
+/// Whether the child ended because of a signal to stop, either by itself or by its own handler.
 bool interrupted(const ChildResult& ended) {
     constexpr int kBySignal = 128;
     const int signal = ended.signal != 0 ? ended.signal : ended.code - kBySignal;
     return signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
 }
 
-/// The last line of what the program complained about, without its own name.
-std::string complaint(std::string said) {
-    while (!said.empty() && said.back() == '\n') said.pop_back();
-    said = said.substr(said.rfind('\n') + 1);
+/// The last line of the program's error output, without the program's name.
+std::string last_error(std::string text) {
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    text = text.substr(text.rfind('\n') + 1);
     const std::string self = "subvol: ";
-    return said.starts_with(self) ? said.substr(self.size()) : said;
+    return text.starts_with(self) ? text.substr(self.size()) : text;
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ CaseResult StudyRunner::run(const StudyCase& of, const std::string& study) {
 }
 
 void StudyRunner::make_reference(const StudyCase& reference) {
-    const std::lock_guard lock(mutex_);  // one at a time: it takes all threads
+    const std::lock_guard lock(mutex_);  // one at a time, because each uses all threads
     if (const auto known = references_.find(reference.id); known != references_.end()) {
         if (known->second.empty()) return;
         throw Error(ErrorCode::InvalidInput, known->second, "its reference");
@@ -65,7 +65,7 @@ CaseResult StudyRunner::in_child(const StudyCase& of, const std::string& study, 
         throw Error(ErrorCode::MissingCapability,
                     text("the case was ended by signal ", ended.signal, " (", strsignal(ended.signal), ")"));
     }
-    if (ended.code != 0) throw Error(ErrorCode::InvalidInput, complaint(ended.err));
+    if (ended.code != 0) throw Error(ErrorCode::InvalidInput, last_error(ended.err));
     return case_result_from_json(ended.out);
 }
 

@@ -10,17 +10,17 @@
 
 namespace subvol::cli {
 
-/// Runs cases in processes of their own: each has its own peak of memory, and one that breaks down takes no other with it.
+/// Runs each case in a separate process, so that its peak memory can be measured and a crash does not end other cases.
 ///
-/// Finished references are in a folder of their own, for all studies; each is made once.
+/// Finished references are kept in one folder for all studies; each is made once.
 class StudyRunner {
 public:
-    /// folder:  of all studies' output
-    /// threads: of one case; reference_threads: of a reference, while nothing else is measured
+    /// folder:  of the output of all studies
+    /// threads: of one case; reference_threads: of a reference
     StudyRunner(std::filesystem::path folder, int threads, int reference_threads)
         : folder_(std::move(folder)), threads_(threads), reference_threads_(reference_threads) {}
 
-    /// study: its folder's name
+    /// study: the name of its folder
     [[nodiscard]] CaseResult run(const StudyCase& of, const std::string& study);
 
 private:
@@ -30,10 +30,10 @@ private:
     std::filesystem::path folder_;
     int threads_, reference_threads_;
     std::mutex mutex_;
-    std::map<std::string, std::string> references_;  // done in this run, and how they failed
+    std::map<std::string, std::string> references_;  // references tried in this run, with their failures or ""
 };
 
-/// The other side: does the work of a case given as JSON. study: empty: it is a reference
+/// The child process's part: runs a case given as JSON. study: empty for a reference
 [[nodiscard]] CaseResult run_given_case(const std::string& json, const std::filesystem::path& folder, const std::string& study);
 
 }  // namespace subvol::cli

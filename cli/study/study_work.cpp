@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <set>
 
 #include "report.h"
 #include "sample_arguments.h"
@@ -39,12 +38,10 @@ SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
 }
 
 CaseResult run_case(const StudyCase& of, const CasePlace& place) {
-    static const std::set<std::string> kFields{"field", "volume", "voxels", "values", "counts"};
-    static const std::set<std::string> kKernels{"errors", "fit", "slice"};
-    const std::string& method = of.text("method");
-    if (!kFields.contains(method) && !kKernels.contains(method)) return run_picture_case(of, place);
+    const StudyKind kind = method_kind(of.text("method"));
+    if (kind == StudyKind::Picture) return run_picture_case(of, place);
     const detail::Stopwatch watch;
-    CaseResult result = kFields.contains(method) ? run_field_case(of) : run_kernel_case(of, place);
+    CaseResult result = kind == StudyKind::Field ? run_field_case(of) : run_kernel_case(of, place);
     const double seconds = watch.seconds();
     result.costs = {
         {"seconds", seconds}, {"cpu_seconds", cpu_seconds()}, {"peak_bytes", static_cast<double>(peak_memory_bytes())}};

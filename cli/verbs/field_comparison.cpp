@@ -3,6 +3,7 @@
 
 #include "field_input.h"
 #include "subvol/error.h"
+#include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
 #include "text.h"
 

@@ -23,7 +23,6 @@
 namespace subvol::cli {
 namespace {
 
-constexpr double kPositionTolerance_voxels = 0.1;
 constexpr double kBytesOfChannel = 5.5;     // a voxel's float in leaves that are not all full, with their masks
 constexpr double kMostCellsOfTables = 8e6;  // of refined cells, some 200 bytes each
 constexpr const char* kDefaultLevelSet = "sdf";
@@ -347,9 +346,7 @@ private:
     /// levels: the finest whose vertices count; cells: those between them, 27 vertices each, or those of the mesh
     [[nodiscard]] static LimitCells find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
                                                Report& report) {
-        LimitCells limit = report.timed("limit level", [&] {
-            return find_limit_cells(mesh, refinement, {.position_world = kPositionTolerance_voxels * voxel_size});
-        });
+        LimitCells limit = report.timed("limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
         int levels = limit.level;
         std::size_t cells = limit.cell_levels.empty() ? mesh.cells.size() : 0;
         for (const int level : limit.cell_levels) {

@@ -17,15 +17,16 @@ namespace subvol::detail {
     return glm::dot(d, d);
 }
 
-/// Finds boxes that a place is in or near: a tree over them, with their own boxes in its leaves.
+/// A tree over boxes, split at the median. It is complete: node n has the children 2n+1 and 2n+2, and leaves have up to 8
+/// boxes. It depends on its input only, not on the number of threads.
 class BoxTree {
 public:
     explicit BoxTree(const std::vector<Box>& boxes);
 
     [[nodiscard]] Box bounds() const { return tree_.box(0); }
 
-    /// Calls visit(item) for every box with enter(box), until one returns true. If enter is true for a box, it must be true for
-    /// every box that contains it.
+    /// Calls visit(item) for every item whose box satisfies enter(box), until visit returns true. If enter is true for a box,
+    /// it must be true for every box that contains it.
     template <class Enter, class Visit>
     void visit(const Enter& enter, const Visit& visit) const {
         tree_.visit_leaves(enter, [&](std::size_t first, std::size_t last) {

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// Inside and outside of a closed surface: signed crossings of a ray up the z axis.
+//
+//        ^ ray          A ray leaves the surface through triangles that face up (+1) and enters it through those that face down
+//     ___|___ +1        (-1). The sum over the crossings above x is the winding number of the surface about x: positive inside,
+//    |   |   |          for nested and overlapping shells too. The candidates are the triangles whose boxes the ray meets.
+//    |   x   |  sum 1
+//    |_______|          The ray meets a triangle if x is left of all its edges, seen from above, or right of all. An edge is
+//                       always evaluated from its smaller point number to its larger, so both of its triangles get the same
+//                       bits. An area of exactly 0 is decided as if x were moved by (ε, ε², 0) with an infinitesimal ε, as in
+//                       the simulation of simplicity [em1990]: so a ray through an edge or a corner meets one triangle there.
 #include "closed_surface.h"
 
 #include <utility>
@@ -11,8 +21,7 @@ double twice_area(const Vec3& a, const Vec3& b, const Vec3& p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-// Whether p is left of the line from a to b, seen from above. On the line it counts as if it lay a little further along x,
-// and far less along y: never on a line, so that around a corner it is in one triangle alone.
+// Whether a point is left of the line from a to b, seen from above. area: of the three, which may be 0
 bool is_left(double area, const Vec3& a, const Vec3& b) {
     if (area != 0) return area > 0;
     return b.y != a.y ? b.y < a.y : b.x > a.x;
@@ -36,7 +45,6 @@ int ClosedSurface::crossing(Index triangle, const Vec3& x) const {
     int left = 0;
     std::array<double, 3> areas;
     for (std::size_t k = 0; k < 3; ++k) {
-        // The edge from its smaller point number, as its other triangle sees it too: rounding is the same for both.
         const bool turned = corners[k] > corners[(k + 1) % 3];
         const Vec3& from = surface_.points[corners[turned ? (k + 1) % 3 : k]];
         const Vec3& to = surface_.points[corners[turned ? k : (k + 1) % 3]];
@@ -50,7 +58,7 @@ int ClosedSurface::crossing(Index triangle, const Vec3& x) const {
     const auto z = [&](std::size_t k) { return surface_.points[corners[k]].z; };
     const double height = (areas[1] * z(0) + areas[2] * z(1) + areas[0] * z(2)) / sum;
     if (height < x.z) return 0;
-    return left == 3 ? 1 : -1;  // counter-clockwise from above: it faces up, the ray leaves
+    return left == 3 ? 1 : -1;  // counter-clockwise seen from above: the triangle faces up
 }
 
 bool ClosedSurface::holds(const Vec3& x) const {

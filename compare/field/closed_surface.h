@@ -6,8 +6,8 @@
 
 namespace subvol::detail {
 
-/// What a closed surface of outward triangles holds: points from which a ray leaves it more often than it enters. Shells may be
-/// nested or overlap. A ray through a shared edge or corner meets one of its triangles.
+/// The inside of a closed surface of outward triangles: points from which a ray leaves the surface more often than it enters
+/// it. Shells may be nested or overlap.
 class ClosedSurface {
 public:
     explicit ClosedSurface(Surface surface);

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
+#include "sample_grid.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -14,7 +16,7 @@ namespace {
 
 constexpr std::size_t kBatch = 1 << 16;
 constexpr std::size_t kTriesASample = 1000;
-constexpr double kStep = 1e-3;  // of the box's diagonal
+constexpr double kStep = 1e-3;  // relative to the box's diagonal
 
 struct Place {
     Vec3 x{0.0};
@@ -55,7 +57,7 @@ std::vector<Place> random_places_of(const FieldView& test, const FieldView& refe
     return places;
 }
 
-/// Sums in the order in which they come, weighted.
+/// Weighted sums, in the order of the calls.
 struct Errors {
     double weights = 0, absolutes = 0, squares = 0, largest = 0;
 
@@ -63,7 +65,7 @@ struct Errors {
         weights += weight;
         absolutes += weight * std::abs(difference);
         squares += weight * difference * difference;
-        // Not a number stays, as in the sums.
+        // NaN stays, as in the sums.
         if (!(std::abs(difference) <= largest)) largest = std::isnan(largest) ? largest : std::abs(difference);
     }
     void put_into(FieldDifference& errors) const {
@@ -143,6 +145,32 @@ FieldDifference compare_field(const FieldView& test, const FieldSamples& places)
     }
     sums.put_into(errors);
     return errors;
+}
+
+double integrate_field(const FieldView& field, const Box& box, int resolution, Progress* progress) {
+    const detail::SampleGrid grid(box, resolution);
+    double sum = 0;
+    for (int k = 0; k < grid.count[2]; ++k) {
+        report_progress(progress, "integrate", static_cast<double>(k) / grid.count[2]);
+        std::vector<double> rows(static_cast<std::size_t>(grid.count[1]));
+        tbb::parallel_for(0, grid.count[1], [&](int j) {
+            double row = 0;
+            for (int i = 0; i < grid.count[0]; ++i) row += field.value(grid.place(i + .5, j + .5, k + .5)).value_or(0);
+            rows[static_cast<std::size_t>(j)] = row;
+        });
+        double layer = 0;
+        for (const double row : rows) layer += row;
+        sum += layer;
+    }
+    return sum * grid.cell.x * grid.cell.y * grid.cell.z;
+}
+
+MassError mass_error(const FieldView& test, const FieldView& reference, int resolution, Progress* progress) {
+    const Box box = detail::box_about(test.box, reference.box);
+    MassError mass{integrate_field(test, box, resolution, progress), integrate_field(reference, box, resolution, progress)};
+    const double difference = std::abs(mass.test - mass.reference);
+    mass.relative = difference == 0 ? 0 : difference / std::abs(mass.reference);
+    return mass;
 }
 
 }  // namespace subvol

@@ -17,7 +17,7 @@ constexpr int kLevels = 6;
 constexpr std::array<std::array<int, 3>, 8> kCorners{
     {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 
-/// A part of a cell: along each axis all of it, or what is near one end.
+/// A part of a cell: along each axis the whole cell, or the part near one end.
 struct CellPart {
     enum Extent : std::uint8_t { All, NearLow, NearHigh };
     Index cell = 0;

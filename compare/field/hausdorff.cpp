@@ -13,7 +13,7 @@ namespace subvol {
 
 namespace {
 
-/// The square of the distance from x to a triangle: to its plane if x lies over it, else to the nearest edge.
+/// The square of the distance from x to a triangle: to its plane if x projects into the triangle, else to the nearest edge.
 double squared_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto to_edge = [&](const Vec3& p, const Vec3& q) {
         const Vec3 d = q - p;
@@ -59,7 +59,7 @@ IsosurfaceDistance isosurface_distance(const FieldView& test, const FieldView& r
     const Surface a = isosurface(test, iso, box, resolution, progress);
     const Surface b = isosurface(reference, iso, box, resolution, progress);
     if (a.triangles.empty() && b.triangles.empty()) {
-        throw Error(ErrorCode::InvalidInput, "neither field takes the value " + std::to_string(iso) + " inside");
+        throw Error(ErrorCode::InvalidInput, "neither field takes the value " + std::to_string(iso) + " in its domain");
     }
     return {hausdorff_distance(a, b), detail::SampleGrid(box, resolution).spacing(), a.triangles.size(), b.triangles.size()};
 }

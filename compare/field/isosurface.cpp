@@ -18,7 +18,7 @@ namespace {
 using Edge = std::uint64_t;
 using EdgeTriangle = std::array<Edge, 3>;
 
-/// The six tetrahedra of a cube about its diagonal from corner 0 to corner 7 (bits: x, y, z): one for each order of the axes.
+/// The six tetrahedra of a cube about its diagonal from corner 0 to corner 7 (bits: x, y, z), one for each order of the axes.
 constexpr std::array<std::array<unsigned, 4>, 6> kTetrahedra{
     {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
 
@@ -52,7 +52,7 @@ private:
         return (u(k) * u(ny + 1) + u(j)) * u(nx + 1) + u(i);
     }
 
-    /// The values of the grid points of a layer; not a number outside the domain.
+    /// The values at the grid points of a layer; NaN outside the domain.
     [[nodiscard]] std::vector<double> layer(int k) const {
         std::vector<double> values(point_number(0, 0, 1));
         tbb::parallel_for(0, grid_.count[1] + 1, [&](int j) {
@@ -81,7 +81,7 @@ private:
         }
     }
 
-    /// Triangles between corners whose value is at least the wanted one and those where it is less: facing the latter.
+    /// Adds triangles between the corners inside (value at least the isovalue) and those outside, facing the outside.
     void add_tetrahedron(const std::array<unsigned, 4>& corners, unsigned inside, const std::array<int, 3>& cell,
                          std::vector<EdgeTriangle>& triangles) const {
         std::array<unsigned, 4> in{}, out{};
@@ -90,7 +90,7 @@ private:
         const auto add = [&](std::array<std::array<unsigned, 2>, 3> ends) {
             const auto middle = [&](std::size_t n) { return corner(ends[n][0]) + corner(ends[n][1]); };
             const Vec3 normal = glm::cross(middle(1) - middle(0), middle(2) - middle(0));
-            const Vec3 outward = corner(out[0]) - corner(in[0]);  // of any pair: the plane parts all of them
+            const Vec3 outward = corner(out[0]) - corner(in[0]);  // for any pair: the plane separates all of them
             if (glm::dot(normal, outward) < 0) std::swap(ends[1], ends[2]);
             EdgeTriangle triangle;
             for (std::size_t n = 0; n < 3; ++n) triangle[n] = edge(ends[n][0], ends[n][1], cell);
@@ -105,7 +105,7 @@ private:
     }
 
     [[nodiscard]] Edge edge(unsigned a, unsigned b, const std::array<int, 3>& cell) const {
-        const unsigned lower = a & b;  // the ends of an edge of these tetrahedra: one has all bits of the other
+        const unsigned lower = a & b;  // of the two ends of an edge, one has all bits of the other
         const auto shift = [&](int axis) { return static_cast<int>(lower >> axis & 1); };
         return point_number(cell[0] + shift(0), cell[1] + shift(1), cell[2] + shift(2)) * 8 + (a ^ b);
     }
@@ -127,7 +127,7 @@ private:
         return surface;
     }
 
-    /// Where the field takes the value on an edge: by the regula falsi (Illinois), to 1e-9 of the edge as a rule.
+    /// Where the field takes the isovalue on an edge: by regula falsi (Illinois), usually to 1e-9 of the edge.
     [[nodiscard]] Vec3 crossing(Edge edge) const {
         const auto [nx, ny, nz] = grid_.count;
         const auto columns = static_cast<std::uint64_t>(nx + 1), rows = static_cast<std::uint64_t>(ny + 1);

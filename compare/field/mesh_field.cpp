@@ -35,7 +35,7 @@ struct MeshField::Cells {
 
     Cells(HexMesh all, std::string_view field) : mesh(with_only(std::move(all), field)), tree(cell_boxes(mesh)) {}
 
-    /// Calls use(locator, tetrahedron, values at the corners) for the first cell found to hold x.
+    /// Calls use(locator, tetrahedron, values at the corners) for the first cell found that contains x.
     template <class Use>
     void find(const Vec3& x, const Use& use) const {
         const auto holds = [&](const Box& box) {

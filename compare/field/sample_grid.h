@@ -11,12 +11,12 @@
 
 namespace subvol::detail {
 
-/// The box about both; an empty one counts for nothing.
+/// The box that contains both; an empty box adds nothing.
 [[nodiscard]] inline Box box_about(const Box& a, const Box& b) {
     return {glm::min(a.lower, b.lower), glm::max(a.upper, b.upper)};
 }
 
-/// A box cut into equal cells, as close to cubes as whole numbers of them allow.
+/// A box cut into equal cells, as close to cubes as whole numbers of cells allow.
 struct SampleGrid {
     Vec3 lower{0.0};
     Vec3 cell{0.0};  // sides, world
@@ -30,7 +30,8 @@ struct SampleGrid {
         const double longest = std::max({size.x, size.y, size.z});
         if (!(longest > 0) || !std::isfinite(longest)) throw Error(ErrorCode::InvalidInput, "the fields' box is empty");
         if (resolution < 2 || resolution > 2000) {
-            throw Error(ErrorCode::InvalidInput, "a resolution of " + std::to_string(resolution), {}, "2 to 2000");
+            throw Error(ErrorCode::InvalidInput, "a resolution of " + std::to_string(resolution) + " is out of range", {},
+                        "2 to 2000");
         }
         for (int k = 0; k < 3; ++k) {
             const auto n = static_cast<int>(std::lround(size[k] / longest * resolution));

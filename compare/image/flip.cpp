@@ -23,8 +23,8 @@ using detail::Taps;
 
 namespace {
 
-// [Andersson 2020]: exponents of the colour and the feature difference; the part of the largest colour difference that is
-// mapped to kTarget; the width of the edge detector in degrees.
+// [flip2020]: exponents of the colour and the feature difference; the part of the largest colour difference that is mapped to
+// kTarget; the width of the edge detector in degrees.
 constexpr double kColorExponent = .7, kFeatureExponent = .5;
 constexpr double kBend = .4, kTarget = .95;
 constexpr double kDetectorWidth = .082;
@@ -36,13 +36,13 @@ struct Sensitivity {
 };
 constexpr Sensitivity kAchromatic{1, .0047}, kRedGreen{1, .0053};
 constexpr std::array<Sensitivity, 2> kBlueYellow{{{34.1, .04}, {13.5, .025}}};
-constexpr double kWidest = .04;  // the largest b: all these filters reach as far
+constexpr double kWidest = .04;  // the largest b: all filters get the reach of the widest one
 
-/// The filters for a number of pixels a degree. Each is a product of one along x and one along y; that of blue and yellow the
-/// sum of two products.
+/// The filters for a number of pixels per degree. Each is a product of one along x and one along y; that of blue and yellow is
+/// the sum of two such products.
 struct Filters {
     Taps achromatic, red_green;
-    std::array<Taps, 2> blue_yellow;  // × their shares: the sum of both products is 1
+    std::array<Taps, 2> blue_yellow;  // times their shares, the weights of both products add up to 1
     std::array<double, 2> blue_yellow_share{};
     Taps smooth, edge, point;  // of the detectors: Gaussian, its first and its second derivative
     int halo = 0;
@@ -56,7 +56,7 @@ struct Filters {
         for (std::size_t k = 0; k < 2; ++k) {
             const auto [a, b] = kBlueYellow[k];
             blue_yellow[k] = taps(b);
-            // The sum of the term over the square: the middle weight is a √(π/b), and `taps` divided by one over its middle.
+            // The sum of the term over the square: its middle weight is a √(π/b); `taps` are normalised by 1/row_sum.
             const double row_sum = 1 / blue_yellow[k][static_cast<std::size_t>(reach)];
             blue_yellow_share[k] = a * std::sqrt(kPi / b) * row_sum * row_sum;
             total += blue_yellow_share[k];
@@ -83,7 +83,7 @@ private:
     }
 };
 
-/// What is compared of a picture, for the rows of a band: colours as the eye filters them, and the strength of features.
+/// What is compared, for the rows of a band: colours after the eye's filters, and the strength of features.
 struct Seen {
     std::vector<Vec3> colors;
     std::vector<double> edges, points;
@@ -108,7 +108,7 @@ std::array<Plane, 3> opponent_rows(const Image& image, const Band& band) {
 std::vector<double> feature_strength(const Plane& y, const Taps& detector, const Taps& smooth, int halo) {
     const Plane along_x = convolved(y, detector, smooth, halo), along_y = convolved(y, smooth, detector, halo);
     std::vector<double> strength(along_x.values.size());
-    // Y is 116 times the luminance and moved by 16, which the detectors do not see: their weights sum to 0.
+    // Y is 116 times the luminance minus 16; the offset has no effect because the detectors' weights add up to 0.
     for (std::size_t i = 0; i < strength.size(); ++i) strength[i] = std::hypot(along_x.values[i], along_y.values[i]) / 116;
     return strength;
 }
@@ -132,7 +132,7 @@ Seen see(const Image& image, const Band& band, const Filters& filters) {
     return seen;
 }
 
-/// The colour difference mapped to [0,1]: most of that range for the smaller ones, which are what pictures have.
+/// The colour difference mapped to [0,1]; small differences, which are most frequent, get most of that range.
 double color_error(const Vec3& a, const Vec3& b) {
     static const double kLargest =
         std::pow(detail::hyab(detail::hunt_lab({0, 1, 0}), detail::hunt_lab({0, 0, 1})), kColorExponent);
@@ -151,7 +151,7 @@ double feature_error(const Seen& a, const Seen& b, std::size_t i) {
 FlipResult flip(const Image& test, const Image& reference, double pixels_per_degree) {
     check_finite(test, reference);
     if (!(pixels_per_degree >= 1 && pixels_per_degree <= 1000)) {
-        throw Error(ErrorCode::InvalidInput, std::to_string(pixels_per_degree) + " pixels a degree are out of range", {},
+        throw Error(ErrorCode::InvalidInput, std::to_string(pixels_per_degree) + " pixels per degree are out of range", {},
                     "1 to 1000");
     }
     const Filters filters(pixels_per_degree);

@@ -34,7 +34,7 @@ inline Vec3 rgb_of_ycxcz(const Vec3& c) {
     return rgb_of_xyz_over_white({y + c.y / 500, y, y - c.z / 200});
 }
 
-/// L*, a*, b* with a* and b* times L*/100: a colour that is dark is less colourful (Hunt).
+/// L*, a*, b* with a* and b* times L*/100, as dark colours are less colourful (the Hunt effect).
 inline Vec3 hunt_lab(const Vec3& rgb) {
     constexpr double kDelta = 6. / 29;
     const auto f = [](double t) { return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3 * kDelta * kDelta) + 4. / 29; };
@@ -43,7 +43,7 @@ inline Vec3 hunt_lab(const Vec3& rgb) {
     return {lightness, .01 * lightness * 500 * (x - y), .01 * lightness * 200 * (y - z)};
 }
 
-/// HyAB: the difference of lightness and the distance of hues, added.
+/// HyAB: the sum of the difference in lightness and the distance in a*, b*.
 inline double hyab(const Vec3& a, const Vec3& b) {
     return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z);
 }

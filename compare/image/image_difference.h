@@ -5,10 +5,10 @@
 
 namespace subvol::detail {
 
-/// throws: Error(InvalidInput) if the sizes differ or there are no pixels; names both
+/// throws: Error(InvalidInput) if the sizes differ or there are no pixels; the message names both sizes
 void check_comparable(const Image& a, const Image& b);
 
-/// throws: Error(InvalidInput) as `check_comparable`, or if pixels are not finite; says how many
+/// throws: Error(InvalidInput) as `check_comparable`, or if pixels are not finite; the message says how many
 void check_finite(const Image& a, const Image& b);
 
 }  // namespace subvol::detail

@@ -46,7 +46,7 @@ void check_image(const Image& image) {
 }
 
 std::uint8_t encoded_byte(double linear) {
-    if (!(linear > 0)) return 0;  // not a number too
+    if (!(linear > 0)) return 0;  // NaN too
     return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::min(linear, 1.0))));
 }
 
@@ -58,7 +58,7 @@ std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-/// Where memory is short OpenImageIO may leave a picture unfinished without a word.
+/// When memory is short, OpenImageIO may leave a picture unfinished without reporting an error.
 bool is_whole(const fs::path& path, const OIIO::ImageSpec& spec) {
     const auto input = OIIO::ImageInput::open(path.string());
     std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
@@ -67,7 +67,7 @@ bool is_whole(const fs::path& path, const OIIO::ImageSpec& spec) {
 
 void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void* pixels) {
     AtomicFile file(path);
-    // OpenImageIO does not tell of a disk that is full when it writes .png: the stream does.
+    // OpenImageIO does not report a full disk when it writes .png; the stream does.
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.path().c_str(), "wb"), &std::fclose);
     if (!stream) fail(path, std::generic_category().message(errno));
     OIIO::Filesystem::IOFile proxy(stream.get(), OIIO::Filesystem::IOProxy::Write);
@@ -84,16 +84,16 @@ void write_pixels(const fs::path& path, const OIIO::ImageSpec& spec, const void*
     if (!written)
         throw Error(ErrorCode::MissingCapability, "cannot be written: " + first_line(output->geterror()), path.string());
     if (std::fclose(stream.release()) != 0) fail(path, std::generic_category().message(errno));
-    if (failed) fail(path, "the disk is full, or the file too large");
+    if (failed) fail(path, "the disk is full, or the file is too large");
     if (!is_whole(file.path(), spec)) {
-        throw Error(ErrorCode::MissingCapability, "was not written whole; memory may be short", path.string());
+        throw Error(ErrorCode::MissingCapability, "was not written completely; memory may be short", path.string());
     }
     file.commit();
 }
 
 void write_exr(const fs::path& path, const Image& image, std::span<const float> depth) {
     OIIO::ImageSpec spec(image.width, image.height, depth.empty() ? 4 : 5, OIIO::TypeDesc::FLOAT);
-    spec.attribute("DateTime", "");  // else the time of writing: the same picture shall be the same file
+    spec.attribute("DateTime", "");  // otherwise the time of writing: the same picture must give the same file
     if (depth.empty()) return write_pixels(path, spec, image.rgba.data());
     spec.channelnames = {"R", "G", "B", "A", "Z"};
     spec.z_channel = 4;
@@ -109,7 +109,7 @@ void write_exr(const fs::path& path, const Image& image, std::span<const float> 
 std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) throw Error(ErrorCode::Io, "cannot be read: no such file", path.string());
-    // OpenImageIO would premultiply encoded values: alpha belongs to linear light and comes after decoding.
+    // Otherwise OpenImageIO premultiplies encoded values; alpha applies to linear light, after decoding.
     OIIO::ImageSpec wish;
     wish.attribute("oiio:UnassociatedAlpha", 1);
     auto input = OIIO::ImageInput::open(path.string(), &wish);
@@ -121,7 +121,7 @@ std::unique_ptr<OIIO::ImageInput> open_image(const fs::path& path) {
     return input;
 }
 
-// Which of a file's first four channels are red, green, blue and alpha (-1: opaque); one or two colours are grey.
+// Which of a file's first four channels are red, green, blue and alpha (-1: opaque); a file with one or two colours is grey.
 std::array<int, 4> channels_of(const OIIO::ImageSpec& spec, int count) {
     const int alpha = spec.alpha_channel < count ? spec.alpha_channel : -1;
     std::vector<int> colors;
@@ -170,7 +170,7 @@ std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background)
 void write_image(const fs::path& path, const Image& image, const Vec3& background, std::span<const float> depth) {
     check_image(image);
     if (!depth.empty() && 4 * depth.size() != image.rgba.size()) {
-        throw Error(ErrorCode::InvalidInput, "there is not one depth a pixel", path.string());
+        throw Error(ErrorCode::InvalidInput, "the number of depths is not the number of pixels", path.string());
     }
     const std::string extension = extension_of(path);
     if (extension == ".exr") {
@@ -180,7 +180,7 @@ void write_image(const fs::path& path, const Image& image, const Vec3& backgroun
         spec.attribute("oiio:ColorSpace", "sRGB");
         write_pixels(path, spec, srgb_bytes(image, background).data());
     } else {
-        throw Error(ErrorCode::InvalidInput, "\"" + extension + "\" is not a kind of image that is written", path.string(),
+        throw Error(ErrorCode::InvalidInput, "images are not written as \"" + extension + "\" files", path.string(),
                     ".exr or .png");
     }
 }
@@ -192,7 +192,7 @@ Image read_image(const fs::path& path) {
     std::vector<float> pixels(static_cast<std::size_t>(count) * static_cast<std::size_t>(spec.width) *
                               static_cast<std::size_t>(spec.height));
     if (!input->read_image(0, 0, 0, count, OIIO::TypeDesc::FLOAT, pixels.data())) {
-        throw Error(ErrorCode::InvalidInput, "is not a whole image: " + input->geterror(), path.string());
+        throw Error(ErrorCode::InvalidInput, "is not a complete image: " + input->geterror(), path.string());
     }
     return linear_image(spec, pixels, count);
 }

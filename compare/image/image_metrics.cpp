@@ -59,7 +59,7 @@ void check_mask(std::span<const std::uint8_t> mask, int width, int height) {
 }
 
 [[noreturn]] void no_pixel_counts() {
-    throw Error(ErrorCode::InvalidInput, "no pixel counts: the region is empty");
+    throw Error(ErrorCode::InvalidInput, "the region has no pixels");
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ void detail::check_finite(const Image& a, const Image& b) {
 ImageMetrics compare_images(const Image& a, const Image& b, std::span<const std::uint8_t> mask) {
     check_comparable(a, b);
     check_mask(mask, a.width, a.height);
-    // Row by row, then the rows: always in the same order, and sums of like size.
+    // First each row, then the rows: always in the same order, with summands of similar size.
     Sums total;
     for (int y = 0; y < a.height; ++y) {
         Sums row;

@@ -36,11 +36,11 @@ PixelMask coverage(const Image& image, const Vec3& background) {
     return mask;
 }
 
-/// Sets, of `count` places that lie `stride` apart, what is within `reach` of one that is set.
+/// Dilates a line of `count` numbers that lie `stride` apart by `reach`.
 void widen_line(std::uint8_t* line, std::size_t count, std::size_t stride, std::size_t reach) {
     std::vector<std::uint8_t> before(count);
     for (std::size_t i = 0; i < count; ++i) before[i] = line[i * stride];
-    std::size_t next = 0;  // places before it are done
+    std::size_t next = 0;  // all before it are set
     for (std::size_t i = 0; i < count; ++i) {
         if (before[i] == 0) continue;
         next = std::max(next, i - std::min(i, reach));
@@ -64,10 +64,11 @@ PixelMask inverse(PixelMask mask) {
 
 ImageRegions silhouette_regions(const Image& reference, int band_px, const Vec3& background) {
     check_comparable(reference, reference);
-    if (band_px < 1) throw Error(ErrorCode::InvalidInput, "a band of " + std::to_string(band_px) + " pixels", {}, "1 or more");
+    if (band_px < 1)
+        throw Error(ErrorCode::InvalidInput, "a band of " + std::to_string(band_px) + " pixels is too narrow", {}, "1 or more");
     const PixelMask covered = coverage(reference, background);
     const PixelMask around = widened(covered, reference.width, reference.height, band_px);
-    // What is covered and farther than the band from all that is not.
+    // Covered pixels that are farther than the band from all uncovered ones.
     ImageRegions regions{inverse(widened(inverse(covered), reference.width, reference.height, band_px)), around};
     for (std::size_t i = 0; i < around.size(); ++i) {
         if (regions.interior[i] != 0) regions.edge[i] = 0;

@@ -24,7 +24,7 @@ OiioMetrics compare_oiio(const Image& a, const Image& b, const OiioOptions& opti
     check_comparable(a, b);
     const auto result = OIIO::ImageBufAlgo::compare(as_buffer(a), as_buffer(b), options.fail, options.warn,
                                                     options.fail_relative, options.warn_relative);
-    // Its `error` is set by failures too: of pictures of one size and kind nothing else can be wrong.
+    // `error` is also set by failures; for pictures of one size and format there are no other errors.
     return {result.meanerror, result.rms_error, result.PSNR, result.maxerror, result.nwarn, result.nfail};
 }
 

@@ -16,7 +16,7 @@ int radius_of(const Taps& taps) {
     return static_cast<int>(taps.size() / 2);
 }
 
-// sums[x] += weight · values[x]: one tap for a whole row, which compilers turn into vectors.
+// sums[x] += weight · values[x]: one tap for a whole row, which compilers vectorise.
 void add_row(double* sums, const double* values, double weight, int count) {
     for (int x = 0; x < count; ++x) sums[x] += weight * values[x];
 }

@@ -7,7 +7,7 @@
 
 namespace subvol::detail {
 
-/// Text as it stands in HTML and SVG, within quotes too.
+/// Text with the special characters of HTML and SVG escaped, also for use in quotes.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 /// A PNG as a data URI.

@@ -15,12 +15,12 @@ using namespace detail;
 
 namespace {
 
-// Everything in units of the view box, which is scaled to the page.
+// All lengths are in units of the view box, which is scaled to the page.
 constexpr double kWidth = 480, kPlotHeight = 300;
 constexpr double kLeft = 62, kRight = 14, kTop = 12, kBottom = 46;
 constexpr double kLegendLine = 18, kFont = 12;
 
-/// Okabe and Ito's colours, that people who see fewer of them can tell apart; the yellow is too pale on white.
+/// Okabe and Ito's colours, which colour-blind people can distinguish; without the yellow, which is too pale on white.
 constexpr std::array<const char*, 7> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#56b4e9", "#e69f00"};
 
 std::string number(double value) {
@@ -48,7 +48,7 @@ std::string tick_text(double value) {
     return (std::abs(mantissa - 1) < 1e-6 ? "" : std::string(text.data())) + "10" + superscript(decade);
 }
 
-/// An axis: values to places.
+/// An axis, which maps values to positions.
 struct Axis {
     double min = 0, max = 1;
     bool log = false;
@@ -64,7 +64,7 @@ bool shown(double value, bool log) {
     return std::isfinite(value) && (!log || value > 0);
 }
 
-/// The range of all points with some room about it; nothing: none is shown.
+/// The range of all points with a margin; nothing if no point can be shown.
 std::optional<Axis> axis_of(const Plot& plot, bool x, double begin, double end) {
     Axis axis{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), x ? plot.log_x : plot.log_y,
               begin, end};
@@ -197,7 +197,7 @@ std::vector<double> ticks(double min, double max, bool log) {
             }
         }
         if (all.size() >= 2) return all;
-        all.clear();  // too narrow for powers of ten: equal steps
+        all.clear();  // too narrow for powers of ten: use equal steps
     }
     const double rough = (max - min) / 5, power = std::pow(10, std::floor(std::log10(rough)));
     const double step = power * (rough / power < 1.5 ? 1 : rough / power < 3.5 ? 2 : rough / power < 7.5 ? 5 : 10);
@@ -214,7 +214,7 @@ std::string plot_svg(const Plot& plot) {
     const double height = kPlotHeight + kLegendLine * rows + 4;
     std::string svg = "<svg class=\"plot\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
                       "\" role=\"img\" font-size=\"" + number(kFont) + "\"><title>" + escaped(plot.title) + "</title>\n";
-    if (!x || !y) return svg + text_at(kWidth / 2, kPlotHeight / 2, "middle", "no figures") + "</svg>\n";
+    if (!x || !y) return svg + text_at(kWidth / 2, kPlotHeight / 2, "middle", "no data") + "</svg>\n";
     svg += frame(plot, *x, *y);
     for (std::size_t i = 0; i < plot.lines.size(); ++i) svg += line_svg(plot, i, *x, *y);
     return svg + legend(plot, columns) + "</svg>\n";

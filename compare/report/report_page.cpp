@@ -51,8 +51,8 @@ Judgement judged(const StudyResults& results, const StudyDemand& demand) {
     if (demand.most) judgement.words += (demand.least ? " and at most " : " at most ") + as_text(*demand.most);
     for (const auto& [key, value] : demand.where) judgement.words += ", " + value;
     judgement.words += ": " + std::to_string(judgement.met) + " of " + std::to_string(judgement.cases);
-    if (worst && judgement.cases > 1) judgement.words += "; worst is " + worst_case + " with " + readable(*worst);
-    if (worst && judgement.cases == 1) judgement.words += "; it is " + readable(*worst);
+    if (worst && judgement.cases > 1) judgement.words += "; the worst is " + worst_case + " with " + readable(*worst);
+    if (worst && judgement.cases == 1) judgement.words += "; the value is " + readable(*worst);
     return judgement;
 }
 
@@ -90,7 +90,7 @@ std::string summary_html(std::span<const StudyResults> studies) {
                 (own == 0 ? "–" : std::to_string(own_met) + " of " + std::to_string(own)) + "</td></tr>\n";
     }
     std::string verdict = count(studies.size(), "study", "studies") + ", " + count(cases, "case", "cases") + ": ";
-    verdict += failed == 0 ? "all done" : count(failed, "case", "cases") + " failed";
+    verdict += failed == 0 ? "all finished" : count(failed, "case", "cases") + " failed";
     if (demands > 0) verdict += "; " + std::to_string(met) + " of " + count(demands, "demand", "demands") + " met";
     std::string html = "<p class=\"verdict\">" + escaped(verdict) + ".</p>\n";
     return html +
@@ -107,7 +107,7 @@ std::string study_html(const StudyResults& results, const std::filesystem::path&
     for (const StudyTable& table : make_tables(results)) html += table_html(table);
     for (const StudyPlotSpec& plot : study.plots) html += plots_html(results, plot);
     if (study.pictures) html += pictures_html(results, folder);
-    return html + "<p class=\"soft\">All figures: <code>" + escaped(study.name) + "/results.csv</code>, <code>" +
+    return html + "<p class=\"soft\">All numbers: <code>" + escaped(study.name) + "/results.csv</code>, <code>" +
            escaped(study.name) + "/costs.csv</code>.</p>\n</section>\n";
 }
 
@@ -135,11 +135,11 @@ std::string report_html(std::span<const StudyResults> studies, const std::filesy
         std::string(embedded("style")) + "</style>\n</head>\n<body>\n<header>\n<h1>Error studies of subdivision volumes</h1>\n";
     html += summary_html(studies) + "</header>\n<main>\n";
     for (const StudyResults& results : studies) html += study_html(results, folder);
-    html += "<section id=\"machine\">\n<h2>Machine, versions, and how to run this again</h2>\n<h3>Machine</h3>\n";
+    html += "<section id=\"machine\">\n<h2>Machine, versions, and how to reproduce this report</h2>\n<h3>Machine</h3>\n";
     html += facts_html(options.host) + "<h3>Versions</h3>\n" + facts_html(options.versions);
-    html +=
-        "<h3>Run it again</h3>\n<pre>" + escaped(options.command) +
-        "</pre>\n<p class=\"soft\">In the same folder only what is not finished is run; <code>--fresh</code> runs all.</p>\n";
+    html += "<h3>Command</h3>\n<pre>" + escaped(options.command) +
+            "</pre>\n<p class=\"soft\">In the same folder, only unfinished cases are run; <code>--fresh</code> runs all "
+            "cases.</p>\n";
     return html + "</section>\n</main>\n<script>\n" + std::string(embedded("slider")) + "</script>\n</body>\n</html>\n";
 }
 

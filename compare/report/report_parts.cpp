@@ -26,7 +26,7 @@ std::optional<double> number_of(const StudyCase& of, const CaseResult& result, c
     return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
 }
 
-/// The place of a name, at the end if it is new.
+/// The element of a name, appended if it is new.
 template <class T>
 T& named(std::vector<std::pair<std::string, T>>& all, const std::string& name) {
     for (auto& [known, value] : all) {
@@ -61,7 +61,7 @@ Plot plot_of(const StudyPlotSpec& spec, const std::string& panel, const Series& 
     return plot;
 }
 
-/// An image, or what to say where there is none.
+/// An image, or a sentence if it is missing.
 std::string image_html(const fs::path& file, const std::string& alternative) {
     try {
         return "<img alt=\"" + escaped(alternative) + "\" src=\"" + png_uri(file) + "\">";
@@ -70,7 +70,8 @@ std::string image_html(const fs::path& file, const std::string& alternative) {
     }
 }
 
-/// A case without a label of its own is told from others of its method by the options that come in lists; its name has them.
+/// A title for a case. If the case has no label, the options that are lists in the study distinguish it from others of its
+/// method; the case's name contains them.
 std::string case_title(const StudyCase& of) {
     const std::string input = spaced(of.text("input")), label = of.text("label");
     std::string title = input.empty() ? label : input + ", " + label;
@@ -99,8 +100,8 @@ std::string triple_html(const fs::path& ours, const fs::path& reference, const f
            "<figcaption>ours</figcaption></figure>\n" + "<figure class=\"both reference\">" +
            image_html(reference, title + ", reference") + "<figcaption>reference</figcaption></figure>\n" +
            "<div class=\"slide\"><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" "
-           "aria-label=\"How much of ours is shown, from the "
-           "left\"><label><span>ours</span><span>reference</span></label></div>\n" +
+           "aria-label=\"Part of the picture, from the left, that shows "
+           "ours\"><label><span>ours</span><span>reference</span></label></div>\n" +
            "<figure class=\"difference\">" + image_html(difference, title + ", difference") +
            "<figcaption>difference (largest channel)</figcaption></figure>\n</div>\n";
 }

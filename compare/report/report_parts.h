@@ -16,10 +16,10 @@ namespace subvol::detail {
 /// All panels of a plot.
 [[nodiscard]] std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec);
 
-/// The pictures of all cases that have some, each beside its reference and their difference.
+/// The pictures of all cases that have one, each beside its reference and their difference.
 [[nodiscard]] std::string pictures_html(const StudyResults& results, const std::filesystem::path& folder);
 
-/// What failed, with its message.
+/// The cases that failed, with their messages.
 [[nodiscard]] std::string failures_html(const StudyResults& results);
 
 }  // namespace subvol::detail

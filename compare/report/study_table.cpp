@@ -10,7 +10,7 @@ namespace subvol {
 
 namespace {
 
-/// Columns of UTF-8 text are counted in characters.
+/// The number of characters of UTF-8 text.
 std::size_t width_of(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
@@ -28,7 +28,7 @@ StudyTable::Cell cell_of(const StudyCase& of, const CaseResult& result, const st
     return key == "input" ? spaced(as_text(*value)) : as_text(*value);
 }
 
-/// One of several, in the order of their first appearance.
+/// The index of a text among those found so far; new ones are appended.
 std::size_t place_in(std::vector<std::string>& all, const std::string& one) {
     const auto found = std::ranges::find(all, one);
     if (found != all.end()) return static_cast<std::size_t>(found - all.begin());
@@ -47,7 +47,7 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
         if (!matches(results.study.cases[i], results.results[i], spec.where)) continue;
         chosen.push_back(i);
         if (spec.across.empty()) continue;
-        // A case that failed may have no such value.
+        // A failed case may have no such value.
         if (const auto which = value_text(results.study.cases[i], results.results[i], spec.across); !which.empty()) {
             place_in(across, which);
         }
@@ -73,7 +73,7 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
             for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(of, result, spec.rows[k]);
         }
         auto& row = table.rows[r];
-        for (std::size_t k = 0; k < spec.columns.size(); ++k) {  // of the first case that has it
+        for (std::size_t k = 0; k < spec.columns.size(); ++k) {  // from the first case that has the value
             auto& cell = row[spec.rows.size() + k];
             const auto* number = std::get_if<double>(&cell);
             if (number != nullptr && std::isnan(*number)) cell = cell_of(of, result, spec.columns[k]);

@@ -17,10 +17,10 @@ const T& value_of(const StudyCase& of, const std::string& key, const T& otherwis
     const auto found = of.values.find(key);
     if (found == of.values.end()) return otherwise;
     if (const T* value = std::get_if<T>(&found->second)) return *value;
-    throw Error(ErrorCode::InvalidInput, "the value is of another type", key);
+    throw Error(ErrorCode::InvalidInput, "the value has another type", key);
 }
 
-/// Names that people gave, and what is known from elsewhere: they change nothing that is computed.
+/// Names chosen by people and numbers known from elsewhere: they do not influence the result.
 bool only_shown(const std::string& key) {
     return key == "study" || key == "input" || key == "view" || key == "tf" || key == "label" || key.starts_with("given.");
 }
@@ -106,7 +106,7 @@ StudyCase study_case_from_json(std::string_view text) {
         for (const auto& [key, value] : json.at("values").items()) made.values[key] = value_from(value);
         return made;
     } catch (const nlohmann::json::exception& error) {
-        throw Error(ErrorCode::InvalidInput, std::string("is no case: ") + error.what(), "study");
+        throw Error(ErrorCode::InvalidInput, std::string("is not a case: ") + error.what(), "study");
     }
 }
 

@@ -21,7 +21,7 @@ using detail::Json;
 
 constexpr std::uintmax_t kMaxCaseBytes = 1 << 20;
 
-/// JSON has no infinite numbers: they are texts, as in the table.
+/// JSON has no infinite numbers; they are written as strings, as in the table.
 Json number_json(double value) {
     return std::isfinite(value) ? Json(value) : Json(as_text(StudyValue(value)));
 }
@@ -96,7 +96,7 @@ CaseResult case_result_from_json(std::string_view text) {
     try {
         return result_from(Json::parse(text));
     } catch (const nlohmann::json::exception& error) {
-        throw Error(ErrorCode::InvalidInput, std::string("is no result: ") + error.what(), "study");
+        throw Error(ErrorCode::InvalidInput, std::string("is not a result: ") + error.what(), "study");
     }
 }
 

@@ -18,9 +18,9 @@ std::string joined(std::span<const std::string> names) {
 }
 
 const char* type_of(const Json& json) {
-    if (json.is_string()) return "a text";
+    if (json.is_string()) return "a string";
     if (json.is_number()) return "a number";
-    if (json.is_boolean()) return "a switch";
+    if (json.is_boolean()) return "a boolean";
     if (json.is_array()) return "a list";
     return json.is_object() ? "an object" : "nothing";
 }
@@ -29,15 +29,15 @@ double read_number(const Json& json, const Key& key, const std::string& path) {
     const bool whole = key.kind == KeyKind::Whole;
     const std::string allowed = whole ? as_text(key.least) + " to " + as_text(key.most)
                                       : "more than " + as_text(key.least) + ", at most " + as_text(key.most);
-    if (!json.is_number()) refuse(path, std::string(type_of(json)) + " is no number", allowed);
+    if (!json.is_number()) refuse(path, must_be("a number", json), allowed);
     const double value = json.get<double>();
-    if (whole && value != std::floor(value)) refuse(path, json.dump() + " is no whole number", allowed);
+    if (whole && value != std::floor(value)) refuse(path, json.dump() + " is not a whole number", allowed);
     const bool in_range = value <= key.most && (whole ? value >= key.least : value > key.least);
     if (!in_range) refuse(path, json.dump() + " is out of range", allowed);
     return value;
 }
 
-/// A kernel is kept as its JSON would be written, so that a name and its definition are one case.
+/// A kernel given as JSON is normalised, so that equal definitions give one case.
 std::string read_kernel(const Json& json, const std::string& path) {
     try {
         if (json.is_object()) return to_json(kernel_from_json(json.dump()));
@@ -53,6 +53,10 @@ std::string read_kernel(const Json& json, const std::string& path) {
 
 }  // namespace
 
+std::string must_be(const std::string& type, const Json& json) {
+    return "must be " + type + ", not " + type_of(json);
+}
+
 void refuse(const std::string& path, const std::string& message, const std::string& allowed) {
     throw Error(ErrorCode::InvalidInput, message, path, allowed);
 }
@@ -66,23 +70,23 @@ std::string at(const std::string& path, std::size_t index) {
 }
 
 void check_object(const Json& json, const std::string& path, std::span<const std::string> known) {
-    if (!json.is_object()) refuse(path, std::string(type_of(json)) + " is no object");
+    if (!json.is_object()) refuse(path, must_be("an object", json));
     for (const auto& [key, value] : json.items()) {
         if (std::ranges::find(known, key) == known.end()) refuse(in(path, key), "this key is unknown", joined(known));
     }
 }
 
 std::string read_text(const Json& json, const std::string& path) {
-    if (!json.is_string()) refuse(path, std::string(type_of(json)) + " is no text");
+    if (!json.is_string()) refuse(path, must_be("a string", json));
     auto text = json.get<std::string>();
-    if (text.empty()) refuse(path, "the text is empty");
+    if (text.empty()) refuse(path, "the string is empty");
     return text;
 }
 
 StudyValue read_value(const Json& json, const Key& key, const std::string& path) {
     switch (key.kind) {
         case KeyKind::Switch:
-            if (!json.is_boolean()) refuse(path, std::string(type_of(json)) + " is no switch", "true or false");
+            if (!json.is_boolean()) refuse(path, must_be("a boolean", json), "true or false");
             return json.get<bool>();
         case KeyKind::Whole:
         case KeyKind::Number:

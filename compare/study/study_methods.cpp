@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study_keys.h"
 
-namespace subvol::detail {
+namespace subvol {
+
+namespace detail {
 
 namespace {
 
-constexpr double kSeeds = 9007199254740992;  // 2⁵³: whole numbers that a double holds
+constexpr double kSeeds = 9007199254740992;  // 2⁵³: whole numbers up to it are exact in a double
 
 using Keys = std::vector<Key>;
 
@@ -26,7 +28,7 @@ Key number(const char* name, double least, double most, std::optional<StudyValue
     return {name, KeyKind::Number, least, most, std::move(fallback)};
 }
 
-/// One of several; the first is taken where the key is missing.
+/// One of several texts; the first is the default.
 Key choice(const char* name, std::vector<std::string> choices) {
     std::string first = choices.front();
     return {name, KeyKind::Text, 0, 0, std::move(first), std::move(choices)};
@@ -51,20 +53,21 @@ std::vector<StudyMethod> make_methods() {
     const Keys fit{choice("shape", {"gaussian", "scaled_gaussian", "bc", "cardinal", "wendland_c2", "wendland_c4", "gaussians",
                                     "separable_gaussian", "separable_table", "tucker", "radial_bound"}),
                    number("extent", 0, 3), flag("sign_slip"), whole("terms", 1, 6), whole("rank", 1, 16)};
-    return {{"splat", true, true, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
-            {"sheets", true, true, splats},
-            {"tets", true, true, {level, samples, repeat}},
-            {"pt", true, true, {level, choice("order", {"topological", "centroid", "lists", "havs"}), repeat}},
-            {"dense", true, true, dense},
-            {"grid", true, true, {resolution, half, samples, repeat}},
-            {"field", false, true, kernels + places + Keys{flag("every_second")}},
-            {"volume", false, true, kernels + volume},
-            {"voxels", false, true, Keys{resolution, half} + places},
-            {"values", false, true, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
-            {"counts", false, true, {whole("per_edge", 1, 64, 1.0)}},
-            {"errors", false, false, {kernel("gaussian")}},
-            {"fit", false, false, fit},
-            {"slice", false, false, {kernel(), whole("pixels", 8, 2048, 385.0)}}};
+    using enum StudyKind;
+    return {{"splat", Picture, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
+            {"sheets", Picture, splats},
+            {"tets", Picture, {level, samples, repeat}},
+            {"pt", Picture, {level, choice("order", {"topological", "centroid", "lists", "havs"}), repeat}},
+            {"dense", Picture, dense},
+            {"grid", Picture, {resolution, half, samples, repeat}},
+            {"field", Field, kernels + places + Keys{flag("every_second")}},
+            {"volume", Field, kernels + volume},
+            {"voxels", Field, Keys{resolution, half} + places},
+            {"values", Field, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
+            {"counts", Field, {whole("per_edge", 1, 64, 1.0)}},
+            {"errors", Kernel, {kernel("gaussian")}},
+            {"fit", Kernel, fit},
+            {"slice", Kernel, {kernel(), whole("pixels", 8, 2048, 385.0)}}};
 }
 
 }  // namespace
@@ -83,4 +86,10 @@ const StudyMethod& find_method(const std::string& name, const std::string& path)
     refuse(path, "there is no method '" + name + "'", known);
 }
 
-}  // namespace subvol::detail
+}  // namespace detail
+
+StudyKind method_kind(const std::string& method) {
+    return detail::find_method(method, "study").kind;
+}
+
+}  // namespace subvol

@@ -47,7 +47,7 @@ const std::vector<Key>& reference_keys() {
     return kKeys;
 }
 
-/// The bytes of a file that a case depends on, as a part of its description: a changed file is another case.
+/// A hash of a file that a case depends on, as a part of the case's values: a changed file is another case.
 std::string content_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     std::ostringstream bytes;
@@ -77,13 +77,13 @@ private:
         return json_.contains(key) && std::get<bool>(read_value(json_[key], {key, KeyKind::Switch}, in(root_, key)));
     }
 
-    /// A name becomes part of files' names.
+    /// Names become parts of file names.
     [[nodiscard]] static std::string name_of(const Json& json, const std::string& path) {
         if (!json.contains("name")) refuse(in(path, "name"), "the name is missing");
         return checked_name(read_text(json["name"], in(path, "name")), in(path, "name"));
     }
 
-    /// Of a file without a name of its own: the file's, as far as that is a name.
+    /// The name of an input file that has none: the file's, with other characters replaced.
     static std::string name_of_file(const fs::path& file) {
         std::string name = file.stem().string().substr(0, 64);
         for (char& c : name) {
@@ -96,7 +96,7 @@ private:
 
     static std::string checked_name(std::string name, const std::string& path) {
         if (name.empty() || name.size() > 64 || !std::ranges::all_of(name, is_plain)) {
-            refuse(path, "'" + name + "' is no name", "1 to 64 letters, digits, _ and -");
+            refuse(path, "'" + name + "' is not a valid name", "1 to 64 letters, digits, _ and -");
         }
         return name;
     }
@@ -105,7 +105,7 @@ private:
         static const Json kNone = Json::array();
         const auto found = json_.find(key);
         if (found == json_.end()) return kNone;
-        if (!found->is_array()) refuse(in(root_, key), "this is no list");
+        if (!found->is_array()) refuse(in(root_, key), must_be("a list", *found));
         if (found->empty()) refuse(in(root_, key), "the list is empty");
         if (found->size() > kMaxStudyCases) refuse(in(root_, key), "the list is too long");
         return *found;
@@ -116,14 +116,14 @@ private:
         return path.is_absolute() ? name : (file_.parent_path() / path).lexically_normal().string();
     }
 
-    /// Numbers and texts that are known from elsewhere and shown beside ours.
+    /// Numbers and texts that are known from elsewhere and shown beside the results.
     static void read_given(const Json& json, const std::string& path, StudyValues& values) {
         const auto found = json.find("given");
         if (found == json.end()) return;
-        if (!found->is_object()) refuse(in(path, "given"), "this is no object");
+        if (!found->is_object()) refuse(in(path, "given"), must_be("an object", *found));
         for (const auto& [key, value] : found->items()) {
             const std::string place = in(in(path, "given"), key);
-            if (!value.is_number() && !value.is_string()) refuse(place, "this is neither a number nor a text");
+            if (!value.is_number() && !value.is_string()) refuse(place, must_be("a number or a string", value));
             values["given." + key] = value.is_number() ? StudyValue(value.get<double>()) : value.get<std::string>();
         }
     }
@@ -138,7 +138,8 @@ private:
             for (const StudyValues& read : read_values(items[i], keys, besides, path)) {
                 if (read.contains("model") == read.contains("file")) refuse(path, "an input has either a model or a file");
                 if (read.contains("file") && read.contains("resolution")) refuse(path, "a file has no resolution");
-                if (read.contains("field") && read.contains("density")) refuse(path, "a density takes the place of a field");
+                if (read.contains("field") && read.contains("density"))
+                    refuse(path, "an input has either a field or a density");
                 StudyValues values;
                 for (const auto& [key, value] : read) values["input." + key] = value;
                 const std::string name =
@@ -223,14 +224,14 @@ private:
         values[key + ".content"] = content;
     }
 
-    /// What all pictures have: their size, metrics and reference.
+    /// The values that all pictures share: their size, metrics and reference.
     StudyValues picture_values() const {
         StudyValues values;
         const auto size = json_.find("size");
         const Key edge{"size", KeyKind::Whole, 8, 8192};
         if (size != json_.end() && size->is_array()) {
             const std::string path = in(root_, "size");
-            if (size->size() != 2) refuse(path, "a size has a width and a height");
+            if (size->size() != 2) refuse(path, "a size is a width and a height");
             values["width"] = read_value((*size)[0], edge, at(path, 0));
             values["height"] = read_value((*size)[1], edge, at(path, 1));
         } else {
@@ -247,7 +248,7 @@ private:
         const auto reference = json_.find("reference");
         const std::string path = in(root_, "reference");
         const auto read = read_values(reference == json_.end() ? none : *reference, reference_keys(), {}, path);
-        if (read.size() != 1) refuse(path, "there is one reference: no lists");
+        if (read.size() != 1) refuse(path, "there is only one reference: lists are not allowed");
         for (const auto& [key, value] : read.front()) values["reference." + key] = value;
         return values;
     }
@@ -259,26 +260,26 @@ private:
         if (items.empty()) refuse(in(root_, "methods"), "the list is missing");
         for (std::size_t m = 0; m < items.size(); ++m) {
             const std::string path = at(in(root_, "methods"), m);
-            if (!items[m].is_object() || !items[m].contains("method")) refuse(path, "names no method");
+            if (!items[m].is_object() || !items[m].contains("method")) refuse(path, "the method is missing");
             const StudyMethod& method = find_method(read_text(items[m]["method"], in(path, "method")), in(path, "method"));
-            if (method.input && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
+            if (method.needs_mesh() && scenes.inputs.empty()) refuse(in(root_, "inputs"), "the list is missing");
             const auto swept = swept_keys(items[m]);
             for (StudyValues& values : combinations(items[m], method, scenes, study.cases.size(), path)) {
                 values["label"] = filled_in(as_text(values["label"]), values, in(path, "label"));
                 values["study"] = study.name;
-                if (method.picture) values.insert(common.begin(), common.end());
+                if (method.needs_view()) values.insert(common.begin(), common.end());
                 study.cases.push_back(named_case(std::move(values), swept));
             }
         }
         check_different(study);
     }
 
-    /// What a method is applied to.
+    /// What methods are applied to.
     struct Scenes {
         std::vector<StudyValues> inputs, cameras, lights;
     };
 
-    /// The cases of one method. already: how many there are before
+    /// The cases of one method. already: how many cases there are before
     static std::vector<StudyValues> combinations(const Json& item, const StudyMethod& method, const Scenes& scenes,
                                                  std::size_t already, const std::string& path) {
         const std::vector<std::string> besides{"method", "label", "given"};
@@ -287,8 +288,9 @@ private:
         read_given(item, path, head);
         const std::vector<StudyValues> nothing(1), options = read_values(item, method.keys, besides, path);
         std::vector<StudyValues> all{head};
-        for (const auto* factor : {method.input ? &scenes.inputs : &nothing, method.picture ? &scenes.cameras : &nothing,
-                                   method.picture ? &scenes.lights : &nothing, &options}) {
+        for (const auto* factor :
+             {method.needs_mesh() ? &scenes.inputs : &nothing, method.needs_view() ? &scenes.cameras : &nothing,
+              method.needs_view() ? &scenes.lights : &nothing, &options}) {
             check_count(already + all.size() * factor->size(), path);  // each is at most kMaxStudyCases: no overflow
             std::vector<StudyValues> product;
             for (const StudyValues& values : all) {
@@ -299,7 +301,7 @@ private:
         return all;
     }
 
-    /// A label with each {key} replaced by the case's value under that key.
+    /// A label with each {key} replaced by the case's value of that key.
     static std::string filled_in(const std::string& label, const StudyValues& values, const std::string& path) {
         std::string done;
         std::size_t from = 0;
@@ -307,7 +309,8 @@ private:
             const std::size_t close = label.find('}', open);
             const std::string key = close == std::string::npos ? "" : label.substr(open + 1, close - open - 1);
             const auto value = values.find(key);
-            if (value == values.end()) refuse(path, "no value has the name '" + key + "'", "{KEY} of an option of the method");
+            if (value == values.end())
+                refuse(path, "there is no value named '" + key + "'", "{KEY} of an option of the method");
             done += label.substr(from, open - from) + as_text(value->second);
             from = close + 1;
         }
@@ -342,7 +345,7 @@ private:
         return made;
     }
 
-    /// Refuses cases that are the same; gives those that only share their name another one.
+    /// Refuses equal cases; makes the names of different cases unique.
     void check_different(Study& study) const {
         std::map<std::string, std::size_t> ids, names;
         for (std::size_t i = 0; i < study.cases.size(); ++i) {
@@ -378,7 +381,7 @@ Study read_study(const fs::path& file) {
     const auto bytes = fs::file_size(file, error);
     if (error) throw Error(ErrorCode::Io, "cannot be read: " + error.message(), file.string());
     if (bytes > detail::kMaxFileBytes)
-        throw Error(ErrorCode::InvalidInput, "is larger than a study can be (1 MiB)", file.string());
+        throw Error(ErrorCode::InvalidInput, "is larger than a study may be (1 MiB)", file.string());
     std::ifstream in(file, std::ios::binary);
     std::ostringstream text;
     text << in.rdbuf();

@@ -10,7 +10,7 @@ std::vector<std::string> texts(const Json& json, const char* key, const std::str
     const auto found = json.find(key);
     const std::string place = in(path, key);
     if (found == json.end()) {
-        if (needed) refuse(place, "this is missing");
+        if (needed) refuse(place, "this key is missing");
         return {};
     }
     if (!found->is_array()) return {read_text(*found, place)};
@@ -33,7 +33,7 @@ std::map<std::string, std::string> words(const Json& json, const char* key, cons
     const auto found = json.find(key);
     if (found == json.end()) return all;
     const std::string place = in(path, key);
-    if (!found->is_object()) refuse(place, "this is no object");
+    if (!found->is_object()) refuse(place, must_be("an object", *found));
     for (const auto& [name, value] : found->items()) {
         all[name] = value.is_number()    ? as_text(value.get<double>())
                     : value.is_boolean() ? as_text(value.get<bool>())
@@ -45,7 +45,8 @@ std::map<std::string, std::string> words(const Json& json, const char* key, cons
 const Json& list_of(const Json& json, const char* key, const std::string& path) {
     static const Json kNone = Json::array();
     if (!json.contains(key)) return kNone;
-    if (!json[key].is_array() || json[key].empty()) refuse(in(path, key), "this is no list with something in it");
+    if (!json[key].is_array()) refuse(in(path, key), must_be("a list", json[key]));
+    if (json[key].empty()) refuse(in(path, key), "the list is empty");
     return json[key];
 }
 
@@ -81,7 +82,7 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
             const Key digits{"digits", KeyKind::Whole, 1, 17};
             table.digits = static_cast<int>(std::get<double>(read_value(tables[i]["digits"], digits, in(path, "digits"))));
         }
-        if (!table.values.empty() && table.across.empty()) refuse(in(path, "across"), "values need something to go across");
+        if (!table.values.empty() && table.across.empty()) refuse(in(path, "across"), "this key is missing; 'values' needs it");
         study.tables.push_back(std::move(table));
     }
     const Json& plots = list_of(json, "plots", root);
@@ -111,10 +112,10 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
                            .where = words(demands[i], "where", path)};
         for (auto [key, value] : {std::pair{"least", &demand.least}, {"most", &demand.most}}) {
             if (!demands[i].contains(key)) continue;
-            if (!demands[i][key].is_number()) refuse(in(path, key), "this is no number");
+            if (!demands[i][key].is_number()) refuse(in(path, key), must_be("a number", demands[i][key]));
             *value = demands[i][key].get<double>();
         }
-        if (!demand.least && !demand.most) refuse(path, "a demand has a least or a most");
+        if (!demand.least && !demand.most) refuse(path, "a demand needs 'least' or 'most'");
         study.demands.push_back(std::move(demand));
     }
 }

@@ -21,7 +21,7 @@ namespace {
 void make_folder(const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder)) throw Error(ErrorCode::Io, "the folder cannot be made", folder.string());
+    if (error || !fs::is_directory(folder)) throw Error(ErrorCode::Io, "the folder cannot be created", folder.string());
 }
 
 /// The state that threads share.
@@ -58,12 +58,12 @@ private:
         }
     }
 
-    /// This thread is one of them.
+    /// Runs open cases in several threads, one of which is this one.
     void run_with(std::size_t threads) {
         std::vector<std::jthread> others;
         try {
             while (others.size() + 1 < threads) others.emplace_back([this] { run_open(); });
-        } catch (const std::system_error&) {  // the system gives no more: fewer will do
+        } catch (const std::system_error&) {  // the system has no more threads: continue with fewer
         }
         run_open();
     }
@@ -72,11 +72,11 @@ private:
         for (std::size_t next = next_++; next < open_.size(); next = next_++) {
             const StudyCase& of = all_.study.cases[open_[next]];
             try {
-                tell();
+                report_done();
                 const CaseResult result = outcome(of);
                 write_case(file_of(of), of, result);
                 done(open_[next], result);
-            } catch (...) {  // cancelled, or the folder cannot be written to: no case's own failure
+            } catch (...) {  // cancelled, or the folder cannot be written to: not the failure of a case
                 const std::lock_guard lock(mutex_);
                 if (!stopped_) stopped_ = std::current_exception();
                 next_ = open_.size();
@@ -96,7 +96,7 @@ private:
         }
     }
 
-    void tell() {
+    void report_done() {
         const std::lock_guard lock(mutex_);
         const std::size_t done = all_.results.size() - open_.size() + all_.ran;
         report_progress(options_.progress, all_.study.name,

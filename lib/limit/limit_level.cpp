@@ -181,4 +181,8 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
     return result;
 }
 
+LimitCells limit_for_voxels(const HexMesh& mesh, const RefineOptions& refinement, double voxel_world) {
+    return find_limit_cells(mesh, refinement, {.position_world = kLimitTolerance_voxels * voxel_world});
+}
+
 }  // namespace subvol

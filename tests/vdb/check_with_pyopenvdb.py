@@ -16,7 +16,7 @@ except ImportError:
     print("skipped: the module pyopenvdb (package python3-openvdb) is missing")
     sys.exit(77)
 
-# Of the largest number of the grid, which holds 32-bit floats: each is rounded a few times on its way.
+# Relative to the largest number of the grid of 32-bit floats; each value is rounded a few times.
 TOLERANCE = 1e-6
 
 

@@ -11,11 +11,11 @@
 
 namespace subvol::test {
 
-/// What is inside a mesh, found from its boundary alone: along every column of voxel centres the boundary's triangles are
-/// crossed, and where more were entered than left is inside. Knows nothing of cells.
+/// The inside of a mesh, from its boundary alone: a centre is inside if the column below it enters the boundary more often than
+/// it leaves it. The cells are not used.
 class SolidColumns {
 public:
-    /// shift: of the centres, in voxels, as the rasterizer's rule for centres on the boundary has it
+    /// shift: of the centres, in voxels, as in the rasterizer's rule for centres on the boundary
     SolidColumns(const HexMesh& mesh, double voxel_size, const Vec3& shift = 1e-6 * Vec3(1.0, 0.83, 0.71)) : shift_(shift) {
         const Topology topology = build_topology(mesh);
         for (std::size_t f = 0; f < topology.faces.size(); ++f) {
@@ -40,7 +40,7 @@ public:
 private:
     using Quad = std::array<Index, 4>;
 
-    /// A face's corners counter-clockwise from outside, starting at the smallest.
+    /// A face's corners counter-clockwise seen from outside, starting at the smallest.
     static Quad outward(const HexMesh& mesh, const Quad& face, Index cell) {
         for (const auto& corners : kCellFaces) {
             Quad quad, sorted, wanted = face;
@@ -82,7 +82,8 @@ private:
     static double cross(const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; }
 
     Vec3 shift_;
-    std::map<std::pair<int, int>, std::vector<std::pair<double, int>>> columns_;  // heights; +1 where it is entered upwards
+    std::map<std::pair<int, int>, std::vector<std::pair<double, int>>>
+        columns_;  // heights; +1 where the boundary is entered upwards
 };
 
 }  // namespace subvol::test

@@ -35,7 +35,7 @@ inline HexMesh box_mesh(Index n, const Vec3& lower = Vec3(0.0), const Vec3& uppe
     return mesh;
 }
 
-/// The unit box whose inner points are moved at random by up to 30 % of a cell: bent faces everywhere within.
+/// The unit box with inner points moved at random by up to 30 % of a cell, so that all inner faces are bent.
 inline HexMesh jittered_box_mesh(Index n, unsigned seed = 1) {
     HexMesh mesh = box_mesh(n);
     std::mt19937 random(seed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes grids of a mesh with irregular edges, and what they hold at 1,000 voxel centres, to be checked by another reader of
+// Writes grids of a mesh with irregular edges, and their values at 1,000 voxel centres, to be checked by another reader of
 // .vdb files:
 //   write_reference_grid FILE.vdb FILE.json
 #include <fstream>
@@ -19,7 +19,7 @@ using namespace subvol;
 constexpr double kVoxel = 0.03;
 constexpr int kPoints = 1000;
 
-/// Linear, so that cells of any form keep it.
+/// Linear, so that cells of any shape reproduce it.
 Vec3 flow(const Vec3& p) {
     return {1 + p.x - 2 * p.y, 0.5 * p.z - 3, p.x + p.y + p.z};
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "refined_cells.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -12,20 +13,20 @@ namespace {
 
 using Quad = std::array<Vec3, 4>;
 
-/// Corner numbers of the side of a cell, as `kCellFaces` has them.
+/// The corners of a side of a cell, in the order of `kCellFaces`.
 std::array<Index, 4> corners_of_side(const Topology& topology, Index cell, std::size_t side) {
     std::array<Index, 4> quad;
     for (std::size_t k = 0; k < 4; ++k) quad[k] = topology.cells[cell][static_cast<std::size_t>(kCellFaces[side][k])];
     return quad;
 }
 
-/// Whether two cells go round a face that they share in the same direction: one of them is turned then.
+/// Whether two cells go round their shared face in the same direction; then one of them is turned.
 bool same_direction(const std::array<Index, 4>& a, const std::array<Index, 4>& b) {
     const auto first = static_cast<std::size_t>(std::ranges::find(b, a[0]) - b.begin());
     return b[(first + 1) % 4] == a[1];
 }
 
-/// A flag a cell: its corners are in the opposite order of those of the first cell that it hangs together with.
+/// One flag per cell: its corners have the opposite order to those of the first cell of its connected part.
 std::vector<std::uint8_t> turned_cells(const Topology& topology) {
     std::vector<std::uint8_t> turned(topology.cells.size()), seen(topology.cells.size());
     std::vector<Index> open;
@@ -54,7 +55,7 @@ std::vector<std::uint8_t> turned_cells(const Topology& topology) {
     return turned;
 }
 
-/// The sides on the boundary of one cell. first: its first triangle's place among all, counted by the quads of sides
+/// A cell with sides on the boundary. first: how many sides on the boundary the cells before it have
 struct BoundaryCell {
     Index cell;
     std::size_t first;
@@ -75,7 +76,7 @@ std::vector<BoundaryCell> boundary_cells(const Topology& topology) {
     return cells;
 }
 
-/// Two triangles of a quad whose corner `start` both have.
+/// Cuts a quad into two triangles that share its corner `start`.
 void put(Quad quad, std::size_t start, bool turned, VoxelTriangle* out) {
     std::rotate(quad.begin(), quad.begin() + static_cast<std::ptrdiff_t>(start), quad.end());
     out[0] = {quad[0], quad[1], quad[2]};
@@ -96,7 +97,7 @@ std::size_t lowest_corner(const Quad& quad) {
 void put_side(const DenseCell& cell, std::size_t side, std::ptrdiff_t steps, const ToVoxels& to_voxels, bool turned,
               VoxelTriangle* out) {
     const std::size_t last = cell.side - 1;
-    const auto node = [&](int corner) {  // of the grid, in VTK's order of corners
+    const auto node = [&](int corner) {  // of the grid of nodes; corners in VTK order
         const std::size_t u = corner % 4 == 1 || corner % 4 == 2, v = corner % 4 >= 2, w = corner >= 4;
         return static_cast<std::ptrdiff_t>(last * (u + cell.side * (v + cell.side * w)));
     };
@@ -115,7 +116,7 @@ void put_side(const DenseCell& cell, std::size_t side, std::ptrdiff_t steps, con
 
 }  // namespace
 
-std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request) {
+std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request) {
     const HexMesh& mesh = *request.mesh;
     const Topology topology = build_topology(mesh);
     const std::vector<std::uint8_t> turned = turned_cells(topology);
@@ -142,9 +143,9 @@ std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request) {
         numbers.push_back(cells[i].cell);
         slots[cells[i].cell] = i;
     }
-    RasterizeCells without_fields = request;
+    CellRequest without_fields = request;
     without_fields.fields.clear();
-    // The limit of a vertex has other bits by another level, if it is not the vertex itself.
+    // Unless the scheme interpolates, the limit of one vertex, computed at two levels, differs in its last bits.
     const bool as_tables = request.tables || !interpolates(request.refine.scheme.kind);
     const int levels = as_tables ? request.levels() : request.refine.levels;
     RefinedCells(without_fields).for_each(numbers, levels, [&](const DenseCell& dense) {

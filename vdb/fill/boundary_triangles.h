@@ -3,17 +3,18 @@
 
 #include <vector>
 
-#include "refined_cells.h"
+#include "cell_request.h"
 
 namespace subvol::detail {
 
-/// In voxels, counter-clockwise from outside.
+/// In voxels, counter-clockwise seen from outside.
 using VoxelTriangle = std::array<Vec3, 3>;
 
-/// The boundary of what a request rasterizes, each quad cut as the rasterizer cuts it: it bounds the tetrahedra exactly.
+/// The boundary of the cells of a request. Quads are cut into triangles as the rasterizer cuts them, so the triangles bound its
+/// tetrahedra exactly.
 ///
-/// Cells whose corners are in the opposite order of their neighbours' are turned round for this; of a part that hangs together
-/// the whole may be turned inside out.
-[[nodiscard]] std::vector<VoxelTriangle> boundary_triangles(const RasterizeCells& request);
+/// Triangles of a connected part are oriented consistently, even if some of its cells have the opposite corner order; but a
+/// whole part may be inside out.
+[[nodiscard]] std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request);
 
 }  // namespace subvol::detail

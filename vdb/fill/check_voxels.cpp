@@ -14,7 +14,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kMaxIndex = 1 << 30;     // leaves room for the sides of bricks and neighbours in 32 bits
+constexpr double kMaxIndex = 1 << 30;     // leaves room in 32 bits for the sides of bricks and for neighbours
 constexpr double kMaxActiveVoxels = 2e9;  // 8 GB a field
 constexpr double kMaxBrickEntries = 5e7;  // a few GB
 
@@ -25,12 +25,12 @@ constexpr double kMaxBrickEntries = 5e7;  // a few GB
     throw Error(ErrorCode::InvalidInput, why, where.str(), allowed.str());
 }
 
-/// all: of the cells; oriented: those of negative orientation count against it
+/// all: the sum of absolute volumes; oriented: the sum of signed volumes
 struct Volume {
     double all = 0, oriented = 0;
 };
 
-/// Of the six tetrahedra about the long diagonal, two with a face in common at a time.
+/// The sum over the six tetrahedra about the long diagonal, taken in pairs that share a face.
 Volume volume_of(const HexMesh& mesh, std::size_t cell) {
     const auto& corners = mesh.cells[cell];
     const auto p = [&](std::size_t k) -> const Vec3& { return mesh.points[corners[k]]; };

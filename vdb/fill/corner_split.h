@@ -9,19 +9,19 @@
 
 namespace subvol::detail {
 
-/// The six tetrahedra of a cell by its own corner numbers: corner k of tetrahedron t is corners[k][t]. Two more repeat the
-/// last, for vectors of eight.
+/// The six tetrahedra of a cell, by corner numbers of the cell: corner k of tetrahedron t is corners[k][t]. Two copies of the
+/// last one fill vectors of eight.
 struct CornerSplit {
     std::array<std::array<std::int64_t, 8>, 4> corners;
 };
 
-/// diagonals: bit f: the f-th face away from the apex takes its diagonal from corner 1 to 3, not 0 to 2
+/// diagonals: bit f is set if face f of those away from the apex is cut from its corner 1 to 3, else it is cut from 0 to 2
 [[nodiscard]] const CornerSplit& corner_split(std::size_t apex, std::size_t diagonals);
 
-/// The faces away from each corner, in the order of `kCellFaces`.
+/// The three faces that do not touch a corner, in the order of `kCellFaces`.
 [[nodiscard]] const std::array<std::array<int, 4>, 3>& faces_away_from(std::size_t corner);
 
-/// The tetrahedra of `split_cell`, for any order of the corners: it need only be the same in the cells that share them.
+/// The tetrahedra of `split_cell`. less: any order of the corners that is the same in all cells that share them
 template <class Less>
 const CornerSplit& corner_split(const Less& less) {
     std::size_t apex = 0;

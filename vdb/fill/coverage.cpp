@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+// The part of each voxel that the volume fills, estimated with 4³ samples.
+//
+//     +---------+     Samples are the voxels of a finer grid: sample s = 0 … 3 of voxel i lies at i + (s + ½)/4 − ½ along
+//     | . . . . |     each axis, and `samples_within` maps that position to the whole number 4i + s. So the rasterizer that
+//     | . . . . |     decides which centres lie inside decides it for samples too.
+//     | . . . . |
+//     | . . . . |     coverage = (active samples of the voxel) / 64
+//     +---------+
+//
+// A brick of samples (32³) is a leaf of voxels (8³): each brick is counted by itself, with bit masks.
 #include "coverage.h"
 
 #include <bit>
@@ -7,7 +17,7 @@ namespace subvol::detail {
 
 namespace {
 
-/// The 4³ samples of voxel (x, y, z) of the leaf that a brick of samples is: half a leaf of samples along each axis.
+/// How many of the 4³ samples of voxel (x, y, z) are active; the voxel takes half a leaf of samples along each axis.
 int samples_in(const VoxelBrick& brick, std::size_t x, std::size_t y, std::size_t z) {
     const auto& leaf = brick.leaves[(x / 2 * kBrickLeaves + y / 2) * kBrickLeaves + z / 2];
     if (!leaf) return 0;
@@ -30,8 +40,7 @@ std::unique_ptr<VoxelLeaf> make_leaf(const VoxelBrick& samples) {
 
 }  // namespace
 
-RasterizeCells samples_within(RasterizeCells request) {
-    // Sample s of voxel i stands at i + (s + ½)/4 − ½, which becomes 4i + s.
+CellRequest samples_within(CellRequest request) {
     const double h = request.to_voxels.voxel_size;
     request.to_voxels.offset += Vec3(0.5 * h - 0.5 * h / kCoverageSamples);
     request.to_voxels.voxel_size = h / kCoverageSamples;

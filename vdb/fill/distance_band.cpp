@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Distances from a surface in a narrow band of half width w about it, by brute force on small sets of triangles:
+//
+//     . . . . . . . .      1. `enter`: each triangle is listed in the bricks (32³ voxels) that it is near to.
+//     . . .____. . . .     2. `fill_leaf`: each leaf (8³) of a brick takes those triangles of the list that are near to it.
+//     . __/ . .\__ . .        Each lowers d²(p) = min d²(p, triangle) at the centres p of its own box, grown by w.
+//     ./. . . . . \_ .     3. Centres with d < w become active.
+//     . . . . . . . .
+//
+// A triangle may be nearer than w to a cube of side³ centres with middle m only if d(m, triangle) ≤ w + √3 (side − 1)/2. The
+// minimum does not depend on the order of triangles, and each task writes its own leaf: the result is the same for any number
+// of threads. d²(p, triangle) by the Voronoi regions of corners, edges and face: [ericson2005], section 5.1.5.
 #include "distance_band.h"
 
 #include <tbb/parallel_for.h>
@@ -15,8 +26,8 @@ namespace {
 constexpr double kMaxVoxels = 2e9;
 constexpr double kMaxBricks = 5e7;
 
-/// The squared distance from p to a triangle: to its face, or to the edge or corner that p lies before. NaN if it has no area
-/// and p lies before none of them; its neighbours have its edges too. Source: Ericson, Real-Time Collision Detection, 5.1.5
+/// The squared distance from p to a triangle: to its face, or to the edge or corner whose Voronoi region contains p. NaN if the
+/// triangle has no area and p lies in no region of an edge or corner; neighbouring triangles have the same edges.
 double squared_distance(const Vec3& p, const VoxelTriangle& triangle) {
     const auto& [a, b, c] = triangle;
     const auto squared = [](const Vec3& v) { return glm::dot(v, v); };
@@ -57,7 +68,7 @@ bool is_near(const VoxelTriangle& triangle, const VoxelCoord& origin, int side, 
     return !(squared_distance(middle, triangle) > reach * reach);
 }
 
-/// The bricks that triangles are near to, with the numbers of these triangles.
+/// Lists each triangle in the bricks that it is near to.
 void enter(std::span<const VoxelTriangle> triangles, double half_width, const std::optional<VoxelBox>& part,
            VoxelBricks& bricks) {
     constexpr int kInBrick = ~(kBrickSide - 1);

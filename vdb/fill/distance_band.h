@@ -9,12 +9,12 @@
 
 namespace subvol::detail {
 
-/// Distances of voxel centres from the nearest of some triangles, in voxels: one channel, active where they are below
-/// `half_width`. Exact to the rounding of a float.
+/// Distances of voxel centres from the nearest triangle, in voxels: one channel, active where they are below `half_width`.
+/// Exact up to the rounding of a float.
 ///
-/// part: only these voxels; whole bricks. none: all
-/// cost: some 10 ns of one core for each voxel of a triangle's box, grown by the half width; parallel over bricks, the same
-///       for any number of threads
+/// part: only these voxels, whole bricks; none: all voxels
+/// cost: some 10 ns of one core for each voxel of each triangle's box, grown by the half width; parallel over bricks, the same
+///       result for any number of threads
 [[nodiscard]] VoxelBricks distance_band(std::span<const VoxelTriangle> triangles, double half_width,
                                         const std::optional<VoxelBox>& part);
 

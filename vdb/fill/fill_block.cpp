@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells into voxels, in vectors as wide as the machine has them. This file is compiled once for every instruction set, and the
-// best one is chosen where it runs.
+// Cells into voxels, in the widest vectors of the machine. This file is compiled once for every instruction set; the best one
+// is chosen at run time.
 #include "fill_block.h"
 
 #include <algorithm>
@@ -24,14 +24,14 @@ namespace subvol::detail::HWY_NAMESPACE {
 /// Fills the voxels of a brick whose centres lie in a cell.
 class CellFiller {
 public:
-    CellFiller(const CellShape& shape, const FillOptions& options, VoxelBrick& brick)
-        : shape_(shape), options_(options), brick_(brick) {}
+    CellFiller(const CellShape& shape, const CellBlock& block, VoxelBrick& brick)
+        : shape_(shape), block_(block), brick_(brick) {}
 
-    /// box: where to look, inside the brick. Its rows along z are taken as many at a time as there are lanes.
+    /// box: the voxels to test, inside the brick. One row along z per lane.
     HWY_ATTR void run(const VoxelBox& box) {
         const Lanes d;
         const TetPlanes planes(shape_, Vec3(box.lower[0], box.lower[1], box.lower[2]) + kCentreStep - shape_.origin);
-        if (planes.has_turned(options_.orientation)) brick_.doubtful.push_back(box);
+        if (planes.has_turned(block_.orientation)) brick_.doubtful.push_back(box);
         const int along_y = box.upper[1] - box.lower[1] + 1, along_z = box.upper[2] - box.lower[2] + 1;
         const int rows = (box.upper[0] - box.lower[0] + 1) * along_y;
         for (int row = 0; row < rows; row += static_cast<int>(kLanes)) {
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    /// inside: bit i: the i-th voxel of the row, from the first one on
+    /// inside: bit i is voxel i of the row
     HWY_ATTR void fill_row(const VoxelCoord& first, std::uint64_t inside) {
         const auto [x, y, z] =
             VoxelCoord{first[0] - brick_.origin[0], first[1] - brick_.origin[1], first[2] - brick_.origin[2]};
@@ -61,10 +61,10 @@ private:
             std::uint64_t bits = inside & 0xff;
             if (bits == 0) continue;
             auto& leaf = brick_.leaves[l];
-            if (!leaf) leaf = std::make_unique<VoxelLeaf>(options_.leaf_channels());
+            if (!leaf) leaf = std::make_unique<VoxelLeaf>(block_.leaf_channels());
             bits &= ~(leaf->active[word] >> shift);
             leaf->active[word] |= bits << shift;
-            if (options_.leaf_channels() == 0) continue;
+            if (block_.leaf_channels() == 0) continue;
             if (found_.count + kLeafSide > FoundVoxels::kMost) fill_values();
             float* values = leaf->values.get() + kLeafVoxels / kLeafSide * word + shift;
             const double z0 = brick_.origin[2] + static_cast<int>(l - leaf_column) * kLeafSide;
@@ -81,21 +81,21 @@ private:
     HWY_ATTR void fill_values() {
         if (found_.count == 0) return;
         if (shape_.curved) {
-            ValueFiller<Triquadratic>(shape_, options_).fill(found_);
+            ValueFiller<Triquadratic>(shape_, block_).fill(found_);
         } else {
-            ValueFiller<Trilinear>(shape_, options_).fill(found_);
+            ValueFiller<Trilinear>(shape_, block_).fill(found_);
         }
     }
 
     const CellShape& shape_;
-    const FillOptions& options_;
+    const CellBlock& block_;
     VoxelBrick& brick_;
     FoundVoxels found_;
 };
 
 /// Fills the voxels of `box`, which lies in the brick, whose centres lie in a cell.
-HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const FillOptions& options, VoxelBrick& brick) {
-    CellFiller(shape, options, brick).run(box);
+HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const CellBlock& block, VoxelBrick& brick) {
+    CellFiller(shape, block, brick).run(box);
 }
 
 }  // namespace subvol::detail::HWY_NAMESPACE
@@ -108,19 +108,19 @@ HWY_EXPORT(fill_cell);
 
 namespace {
 
-constexpr double kGenerosity = 3e-6;  // voxels; above the shift of centres on a face and the rounding at 2³⁰
+constexpr double kMargin = 3e-6;  // voxels; larger than kCentreStep and the rounding at 2³⁰
 
 VoxelBox voxels_between(const Vec3& lower, const Vec3& upper) {
     VoxelBox box;
     for (int d = 0; d < 3; ++d) {
         const auto i = static_cast<std::size_t>(d);
-        box.lower[i] = static_cast<int>(std::ceil(lower[d] - kGenerosity));
-        box.upper[i] = static_cast<int>(std::floor(upper[d] + kGenerosity));
+        box.lower[i] = static_cast<int>(std::ceil(lower[d] - kMargin));
+        box.upper[i] = static_cast<int>(std::floor(upper[d] + kMargin));
     }
     return box;
 }
 
-/// Corners of the cell at a node of a block, in VTK order.
+/// The corners, in VTK order, of the small cell whose first corner is node `lowest` of a block.
 std::array<std::size_t, 8> corner_nodes(std::size_t lowest, const CellBlock& block) {
     const std::size_t u = block.step, v = u * block.side, w = v * block.side;
     return {lowest, lowest + u, lowest + v + u, lowest + v, lowest + w, lowest + w + u, lowest + w + v + u, lowest + w + v};
@@ -136,8 +136,9 @@ const CornerSplit& split_of(const CellBlock& block, const std::array<std::size_t
     });
 }
 
-/// The 27 nodes of the curved cell that holds the cell at `lowest`.
-void set_nodes(const CellBlock& block, std::size_t lowest, std::size_t channels, CellShape& shape) {
+/// Finds the 27 nodes of the curved cell that contains the small cell at `lowest`.
+void set_nodes(const CellBlock& block, std::size_t lowest, CellShape& shape) {
+    const std::size_t channels = block.channels;
     const std::size_t across = std::max<std::size_t>(2, block.step);
     shape.part = static_cast<double>(block.step) / static_cast<double>(across);
     std::size_t first = lowest, stride = 1;
@@ -158,8 +159,8 @@ void set_nodes(const CellBlock& block, std::size_t lowest, std::size_t channels,
     }
 }
 
-void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, std::size_t channels, CellShape& shape) {
-    shape.cell = block.cell;
+void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, CellShape& shape) {
+    const std::size_t channels = block.channels;
     shape.origin = block.points[nodes[0]];
     shape.split = &split_of(block, nodes);
     shape.values.resize(8 * channels);
@@ -170,7 +171,7 @@ void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, 
     }
     shape.curved = block.curved;
     if (!block.curved) return;
-    set_nodes(block, nodes[0], channels, shape);
+    set_nodes(block, nodes[0], shape);
 }
 
 }  // namespace
@@ -181,7 +182,7 @@ VoxelBox voxels_of(const CellBlock& block) {
     return voxels_between(box.lower, box.upper);
 }
 
-void fill_block(const CellBlock& block, const FillOptions& options, CellShape& shape, VoxelBrick& brick) {
+void fill_block(const CellBlock& block, CellShape& shape, VoxelBrick& brick) {
     const auto fill_cell_here = HWY_DYNAMIC_DISPATCH(fill_cell);
     const VoxelBox within = brick.box();
     for (std::size_t w = 0; w + 1 < block.side; w += block.step) {
@@ -192,9 +193,9 @@ void fill_block(const CellBlock& block, const FillOptions& options, CellShape& s
                 for (const std::size_t n : nodes) box.add(block.points[n]);
                 const VoxelBox voxels = common(voxels_between(box.lower, box.upper), within);
                 if (voxels.empty()) continue;
-                set_shape(block, nodes, options.channels, shape);
+                set_shape(block, nodes, shape);
                 shape.size = std::max({box.size().x, box.size().y, box.size().z});
-                fill_cell_here(shape, voxels, options, brick);
+                fill_cell_here(shape, voxels, block, brick);
             }
         }
     }

@@ -6,49 +6,56 @@
 
 namespace subvol::detail {
 
-/// A cell of the control mesh as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
+// Cells into voxels. A control cell is a block of nodes (+); every small cell between 8 of its nodes fills the voxels whose
+// centres (.) it contains:
+//
+//     +-----+-----+     1. Inside?  The small cell is split into six tetrahedra (`corner_split`). Neighbours split a shared
+//     | .  .|  .  |                 face alike, so each centre belongs to exactly one cell. See fill_rows-inl.h.
+//     |  .  | .  .|     2. Where?   Newton's method inverts the cell's map x(u, v, w) at the centre: fill_values-inl.h.
+//     +-----+-----+     3. Value:   the cell's trilinear or triquadratic interpolant at (u, v, w).
+//     |.  . |.  . |
+//     +-----+-----+
+
+/// A control cell as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
 ///
-/// step:   nodes from one corner of a smaller cell to the next: 1 or even
-/// curved: what is inside is triquadratic through 27 nodes: those half way between the corners, or of two cells along each axis
-///         if the step is 1
-/// points: in voxels: their centres have whole numbers
-/// values: node-major, so many a node as there are channels
-/// ids:    of the nodes of a grid of 8, by which the cell is split into tetrahedra; null: by the places of the nodes
+/// step:         nodes from one corner of a smaller cell to the next: 1 or even
+/// curved:       positions and values are triquadratic through 27 nodes: the corners of a smaller cell and the nodes half way
+///               between them, or if the step is 1 the nodes of two cells along each axis
+/// channels:     numbers per node; cell_numbers: leaves have one more channel, the number of the control cell
+/// orientation:  1, or -1 for a mesh of left-handed cells
+/// points:       in voxels: centres have whole coordinates
+/// values:       node-major, `channels` numbers per node
+/// ids:          of the nodes of a block of 8: they decide how the cell is split into tetrahedra; null: the positions decide
 struct CellBlock {
     Index cell = 0;
     std::size_t side = 2;
     std::size_t step = 1;
     bool curved = false;
-    const Vec3* points = nullptr;
-    const double* values = nullptr;
-    const Index* ids = nullptr;
-};
-
-/// channels:     of the blocks
-/// cell_numbers: one more channel of the leaves, whole numbers: the control cell
-/// orientation:  1, or -1 of a mesh of left-handed cells
-struct FillOptions {
     std::size_t channels = 1;
     bool cell_numbers = false;
     double orientation = 1;
+    const Vec3* points = nullptr;
+    const double* values = nullptr;
+    const Index* ids = nullptr;
 
     [[nodiscard]] std::size_t leaf_channels() const { return channels + (cell_numbers ? 1 : 0); }
 };
 
-/// Centres on a surface go to the side of a small step along all axes, in voxels (half-open: a box of n³ voxels fills n³ of
-/// them, and two boxes that touch share none). The step is far above the rounding and in no plane that meshes like to have; as
-/// a multiple of 2⁻³² it keeps the distance of two centres a whole number.
+/// Centres are moved by this small step, in voxels, before they are tested; so a centre on a surface belongs to exactly one
+/// side (half-open: a box of n³ voxels fills n³ of them, and two boxes that touch share none). The step is far above the
+/// rounding and parallel to no plane that meshes are likely to contain; as a multiple of 2⁻³² it keeps differences of centres
+/// whole numbers.
 inline const Vec3 kCentreStep = Vec3(4295, 3565, 3049) / 4294967296.0;  // about 1e-6 voxels
 
 /// The nodes of a curved cell: three along each axis, u fastest, then v, then w.
 constexpr std::size_t kCurvedNodes = 27;
 
-/// One of a block's cells, corners in VTK order, relative to the first.
+/// One of a block's small cells. Positions are relative to `origin`, its first corner; corners are in VTK order.
 ///
-/// values: channels × 8; size: the longest side of its bounding box
-/// curved: with these nodes, relative to the first corner, and their channels × 27 values; in the parameters of these nodes it
-/// is
-///         as long as `part`, from `first_part` on
+/// values: channels × 8
+/// curved: the cell is a part of a larger one with these nodes and channels × 27 node_values: in the parameters of the larger
+///         one it begins at `first_part` and is `part` long along each axis
+/// size:   the longest side of its bounding box
 struct CellShape {
     Vec3 origin;
     std::array<std::array<double, 8>, 3> corners;
@@ -60,24 +67,25 @@ struct CellShape {
     std::vector<double> node_values;
     double size = 0;
     const CornerSplit* split = nullptr;
-    Index cell = 0;
 };
 
-/// The voxels whose centres may lie in a block; a little generous. Empty where there is none.
+/// The voxels whose centres may lie in a block, slightly enlarged for rounding. Empty where there is none.
 [[nodiscard]] VoxelBox voxels_of(const CellBlock& block);
 
-/// Activates the voxels of a brick whose centres lie in the block and gives them its values; those that are active stay as they
-/// are.
+/// Activates the voxels of a brick whose centres lie in the block and sets their values; voxels that are already active are
+/// left unchanged.
 ///
-/// A cell's six tetrahedra decide what is inside, so neighbours agree; the values are trilinear or triquadratic, at the inverse
-/// of the cell's map, or linear in the tetrahedron where the map has no clear inverse. Left-handed, folded and flat cells are
-/// allowed; tetrahedra without volume hold nothing. Where a tetrahedron is oriented against `orientation`, what it holds may
-/// lie outside the mesh: its voxels become `doubtful`. shape: memory, from one call to the next
-void fill_block(const CellBlock& block, const FillOptions& options, CellShape& shape, VoxelBrick& brick);
+/// The six tetrahedra of each small cell decide what is inside, so neighbours agree. Values are trilinear or triquadratic at
+/// the inverse of the cell's map; where the map has no clear inverse they are linear in the tetrahedron. Left-handed, folded
+/// and flat cells are allowed; tetrahedra without volume contain nothing. A tetrahedron that is oriented against `orientation`
+/// may contain centres that lie outside the mesh: the voxels of its cell are added to the brick's `doubtful` boxes.
+///
+/// shape: scratch memory, reused from one call to the next
+void fill_block(const CellBlock& block, CellShape& shape, VoxelBrick& brick);
 
-// What is below is for fill_block.cpp and its vector code.
+// The rest is for fill_block.cpp and its vector code only.
 
-/// Centres in a cell: their places relative to its first corner and where their first values go.
+/// Centres found in a cell: their positions relative to its first corner, and where their first values are stored.
 struct FoundVoxels {
     static constexpr std::size_t kMost = 64;
     alignas(64) std::array<std::array<double, kMost>, 3> places;
@@ -85,7 +93,8 @@ struct FoundVoxels {
     std::size_t count = 0;
 };
 
-/// The weights of the corners at x: linear in the first tetrahedron that holds it, or else in that which does so best.
+/// The weights of the corners at x, linear in the tetrahedron whose least barycentric coordinate there is largest: the one that
+/// contains x, if any does.
 [[nodiscard]] std::array<double, 8> linear_weights(const CellShape& shape, const Vec3& x);
 
 }  // namespace subvol::detail

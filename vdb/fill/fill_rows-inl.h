@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which centres of a row of a leaf lie in a cell. Included once for every instruction set: see fill_block.cpp.
+// Which centres of a row lie in a cell. Included once for every instruction set: see fill_block.cpp.
+//
+// A tetrahedron is where four linear functions are not negative. Along a row of centres, which is parallel to z, each function
+// cuts off one side, so what remains is an interval; the union of a cell's six intervals is kept as the bits of a word.
 #if defined(SUBVOL_FILL_ROWS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_FILL_ROWS_INL_H
 #undef SUBVOL_FILL_ROWS_INL_H
@@ -22,16 +25,16 @@ using BitLanes = hn::RebindToUnsigned<Lanes>;
 using Doubles = hn::Vec<Lanes>;
 constexpr std::size_t kLanes = hn::MaxLanes(Lanes());
 
-// Rounding of a determinant of three edges, in units of the product of their lengths: some 50 roundings of 1.1e-16.
+// Rounding error of a determinant of three edges, relative to the product of their lengths: some 50 roundings of 1.1e-16.
 constexpr double kRounding = 1e-14;
 // Below this a tetrahedron is flat; above it the tolerance of the barycentric coordinates stays under 1 %.
 constexpr double kFlat = 1e-12;
 
-// A plane this steep is taken for vertical: all of a row of centres is above it, or none.
+// A plane this steep counts as vertical: either all centres of a row are above it, or none.
 constexpr double kVertical = 1e-200;
 
-/// The tetrahedra of a cell: each is where four functions n·x + offset are not negative, but for their rounding. Along a row of
-/// centres, which is parallel to z, each function bounds the centres from below or from above.
+/// The tetrahedra of a cell, by the functions n·x + offset that are not negative inside, up to rounding. Each function bounds
+/// the centres of a row from below or from above.
 class TetPlanes {
 public:
     /// lowest: the first centre of the first row, relative to the first corner
@@ -39,8 +42,9 @@ public:
         for (std::size_t i = 0; i < 8; i += kLanes) set(shape, lowest, i);
     }
 
-    /// Bits of a lane: which centres of a row are inside. x, y: of the rows, from the first one; count: of centres in a row,
-    /// below 64
+    /// x, y:    positions of the rows relative to the first one, one row per lane
+    /// count:   centres in a row, below 64
+    /// returns: for each lane, the bits of the centres inside
     HWY_ATTR hn::Vec<BitLanes> inside(Doubles x, Doubles y, int count) const {
         const Lanes d;
         const BitLanes bits;
@@ -62,7 +66,7 @@ public:
         return found;
     }
 
-    /// Whether a tetrahedron with volume is not as the sign says: positively oriented, or negatively.
+    /// Whether a tetrahedron with volume is oriented against the sign (1 or -1).
     bool has_turned(double sign) const {
         for (std::size_t t = 0; t < 6; ++t) {
             if (signs_[t] == -sign) return true;

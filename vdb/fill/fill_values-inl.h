@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values at the centres found in a cell. Included once for every instruction set: see fill_block.cpp.
+//
+// A cell maps parameters u = (u, v, w) to space, x(u) = Σ Nᵢ(u) xᵢ, and its field is f(u) = Σ Nᵢ(u) fᵢ; the Nᵢ are trilinear
+// over 8 corners or triquadratic over 27 nodes. The value at a centre p is f(u) where x(u) = p. Newton's method finds that u,
+// for a vector of centres at once:
+//
+//     u₀   = ½ + J(½)⁻¹ (p − x(½))      one matrix per cell: MiddleOfCell
+//     uₖ₊₁ = uₖ + J(uₖ)⁻¹ (p − x(uₖ))   Cramer's rule, until |p − x(uₖ)| ≤ 1e-8 of the cell's size or the step was short enough
+//
+// A Newton step of at most m parameters misses p by at most bend·m², where `bend` bounds the mixed derivatives of x: in a
+// nearly parallelepipedal cell u₀ is exact enough, and its residual is never computed. Where Newton's method does not converge
+// near the cell, because that is folded or flat, the value is linear in the tetrahedron that contains the centre (`mend`).
 #if defined(SUBVOL_FILL_VALUES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SUBVOL_FILL_VALUES_INL_H
 #undef SUBVOL_FILL_VALUES_INL_H
@@ -22,10 +33,10 @@ HWY_BEFORE_NAMESPACE();
 namespace subvol::detail::HWY_NAMESPACE {
 
 constexpr int kNewtonSteps = 10;
-constexpr double kNewtonTolerance = 1e-8;  // of the cell's size: below the rounding of a float
+constexpr double kNewtonTolerance = 1e-8;  // relative to the cell's size: below the rounding of a float
 constexpr double kOutside = 0.25;          // how far a bent face may lie beyond its two triangles, in parameters
 
-/// The coefficients of 1, u, v, w, uv, vw, wu, uvw of what is trilinear between 8 corners.
+/// A trilinear function by its values at 8 corners: the coefficients of 1, u, v, w, uv, vw, wu, uvw.
 struct Trilinear {
     double c[8];
 
@@ -40,7 +51,7 @@ struct Trilinear {
             v[1] - v[0] + v[3] - v[2] + v[4] - v[5] + v[6] - v[7]} {}
 };
 
-/// Places of a vector of centres in the parameters of a cell.
+/// The parameters of a vector of centres in a cell.
 struct Parameters {
     Doubles u, v, w;
 };
@@ -53,7 +64,7 @@ HWY_ATTR inline Doubles value_at(const Trilinear& p, const Parameters& q) {
     return hn::MulAdd(high, q.w, low);
 }
 
-/// What one coordinate misses, and its derivatives by u, v, w.
+/// How much is missing in one coordinate, and the derivatives of that coordinate with respect to u, v, w.
 struct Residual {
     Doubles left, du, dv, dw;
 };
@@ -68,7 +79,7 @@ HWY_ATTR inline Residual residual(const Trilinear& p, const Parameters& q, Doubl
     return {hn::Sub(wanted, value), du, dv, dw};
 }
 
-/// What is triquadratic through 27 nodes: the coefficient of uⁱ vʲ wᵏ at i + 3j + 9k.
+/// A triquadratic function by its values at 27 nodes: the coefficient of uⁱ vʲ wᵏ is at i + 3j + 9k.
 struct Triquadratic {
     double c[kCurvedNodes];
 
@@ -122,12 +133,12 @@ HWY_ATTR inline Residual residual(const Triquadratic& p, const Parameters& q, Do
     return {hn::Sub(wanted, value), du, dv, dw};
 }
 
-/// At least the length.
+/// An upper bound of the length.
 inline double sum_of_sides(const std::array<double, 3>& v) {
     return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
 }
 
-/// The map of a cell near its middle: the first of Newton's steps, which is the same for all centres.
+/// The linear map at the middle of a cell: the first Newton step, whose matrix is the same for all centres.
 class MiddleOfCell {
 public:
     explicit MiddleOfCell(const std::array<Trilinear, 3>& map) {
@@ -165,8 +176,8 @@ public:
         return {along(inverse_[0]), along(inverse_[1]), along(inverse_[2])};
     }
 
-    /// What one of Newton's steps of at most m parameters, m up to 1, that ends near the cell leaves is at most bend·m².
-    /// Infinite where the map is so bent or so flat that rounding might count.
+    /// A Newton step of at most m ≤ 1 parameters that ends near the cell leaves a residual of at most bend·m². Infinite where
+    /// the map is so bent or so flat that rounding might matter.
     [[nodiscard]] double bend() const { return bend_; }
 
 private:
@@ -174,7 +185,7 @@ private:
         const auto term = [&](std::size_t k) { return sum_of_sides({map[0].c[k], map[1].c[k], map[2].c[k]}); };
         const double bend = term(4) + term(5) + term(6) + 8 * term(7);
         const double length = std::max({sum_of_sides(d[0]), sum_of_sides(d[1]), sum_of_sides(d[2])});
-        // The least stretch is at least volume/length²; then it is so all over the cell.
+        // The map stretches no direction by less than volume/length² at the middle, and if `tame` by about that everywhere.
         const bool tame = 4 * bend * length * length < volume && 1e4 * volume > length * length * length;
         bend_ = tame ? bend : std::numeric_limits<double>::infinity();
     }
@@ -184,7 +195,7 @@ private:
     double bend_ = 0;
 };
 
-/// The nodes that a map goes through, and their values.
+/// The nodes that a map interpolates, and the values there.
 template <class Map>
 inline const double* nodes_of(const CellShape& shape, std::size_t axis) {
     return std::is_same_v<Map, Trilinear> ? shape.corners[axis].data() : shape.nodes[axis].data();
@@ -195,13 +206,13 @@ inline std::span<const double> values_of(const CellShape& shape, std::size_t cha
     return std::span(shape.node_values).subspan(kCurvedNodes * channel, kCurvedNodes);
 }
 
-/// Gives centres in a cell the values of its channels.
+/// Computes the values of a cell's channels at centres.
 template <class Map>
 class ValueFiller {
 public:
-    HWY_ATTR ValueFiller(const CellShape& shape, const FillOptions& options)
+    HWY_ATTR ValueFiller(const CellShape& shape, const CellBlock& block)
         : shape_(shape),
-          options_(options),
+          block_(block),
           map_{Map(nodes_of<Map>(shape, 0)), Map(nodes_of<Map>(shape, 1)), Map(nodes_of<Map>(shape, 2))},
           middle_(
               {Trilinear(shape.corners[0].data()), Trilinear(shape.corners[1].data()), Trilinear(shape.corners[2].data())}) {
@@ -210,7 +221,7 @@ public:
         if (!shape.curved) most_ = std::min(1.0, std::sqrt(tolerance / middle_.bend()));
     }
 
-    /// The list is empty afterwards.
+    /// Empties the list.
     HWY_ATTR void fill(FoundVoxels& found) {
         for (std::size_t i = found.count; i % kLanes != 0; ++i) {
             for (auto& along : found.places) along[i] = found.count > 0 ? along[found.count - 1] : 0;
@@ -225,11 +236,11 @@ private:
         Parameters q;
         const auto good = invert(hn::Load(d, &found.places[0][first]), hn::Load(d, &found.places[1][first]),
                                  hn::Load(d, &found.places[2][first]), q);
-        for (std::size_t c = 0; c < options_.channels; ++c) {
+        for (std::size_t c = 0; c < block_.channels; ++c) {
             const std::span<const double> nodes = values_of<Map>(shape_, c);
             const auto [lowest, highest] = std::ranges::minmax(nodes);
-            // The weights reach beyond [0,1] between a bent face and its two triangles; the field's values must not. A parabola
-            // goes beyond its nodes by an eighth at most.
+            // Between a bent face and its two triangles the weights leave [0,1], but values must stay in the cell's range. A
+            // parabola exceeds the range of its nodes by an eighth at most.
             const double beyond = shape_.curved ? (highest - lowest) / 8 : 0;
             const auto value =
                 hn::Clamp(value_at(Map(nodes.data()), q), hn::Set(d, lowest - beyond), hn::Set(d, highest + beyond));
@@ -240,9 +251,9 @@ private:
             }
         }
         if (!hn::AllTrue(d, good)) mend(found, first, count, good);
-        if (!options_.cell_numbers) return;
+        if (!block_.cell_numbers) return;
         for (std::size_t i = 0; i < count; ++i) {
-            found.values[first + i][options_.channels * kLeafVoxels] = bits_of(shape_.cell);
+            found.values[first + i][block_.channels * kLeafVoxels] = bits_of(block_.cell);
         }
     }
 
@@ -263,18 +274,20 @@ private:
         return hn::Le(longest, hn::Set(Lanes(), most_));
     }
 
-    /// Newton's steps for all of them at once. returns: which have arrived, and near the cell
+    /// Newton's method for all lanes at once.
+    ///
+    /// returns: the lanes that have converged to parameters near the cell
     HWY_ATTR hn::Mask<Lanes> invert(Doubles px, Doubles py, Doubles pz, Parameters& q) const {
         const Lanes d;
         const auto half = hn::Set(d, 0.5);
         q = start(px, py, pz);
-        auto arrived = is_short(hn::Sub(q.u, half), hn::Sub(q.v, half), hn::Sub(q.w, half));  // of a curved cell none
+        auto arrived = is_short(hn::Sub(q.u, half), hn::Sub(q.v, half), hn::Sub(q.w, half));  // never in a curved cell
         for (int step = 1; !hn::AllTrue(d, arrived); ++step) {
             const Residual x = residual(map_[0], q, px), y = residual(map_[1], q, py), z = residual(map_[2], q, pz);
             const auto square = hn::MulAdd(x.left, x.left, hn::MulAdd(y.left, y.left, hn::Mul(z.left, z.left)));
             arrived = hn::Or(arrived, hn::Le(square, hn::Set(d, tolerance_)));
             if (step == kNewtonSteps || hn::AllTrue(d, arrived)) break;
-            // Cramer's rule. Those that have arrived stay; what is not finite never arrives.
+            // Cramer's rule. Lanes that have converged do not move; lanes that are not finite never converge.
             const auto ax = hn::MulSub(y.dv, z.dw, hn::Mul(y.dw, z.dv)), ay = hn::MulSub(z.dv, x.dw, hn::Mul(z.dw, x.dv));
             const auto az = hn::MulSub(x.dv, y.dw, hn::Mul(x.dw, y.dv));
             const auto determinant = hn::MulAdd(x.du, ax, hn::MulAdd(y.du, ay, hn::Mul(z.du, az)));
@@ -302,7 +315,7 @@ private:
         return hn::Le(beyond, hn::Set(d, 0.5 + kOutside));
     }
 
-    /// Those that Newton's steps did not find a place for are linear in their tetrahedron.
+    /// Where Newton's method failed, the value is linear in the tetrahedron.
     HWY_ATTR void mend(const FoundVoxels& found, std::size_t first, std::size_t count, hn::Mask<Lanes> good) const {
         std::uint8_t bits[8] = {};
         hn::StoreMaskBits(Lanes(), good, bits);
@@ -310,7 +323,7 @@ private:
             if (bits[0] >> i & 1) continue;
             const std::size_t at = first + i;
             const auto weights = linear_weights(shape_, {found.places[0][at], found.places[1][at], found.places[2][at]});
-            for (std::size_t c = 0; c < options_.channels; ++c) {
+            for (std::size_t c = 0; c < block_.channels; ++c) {
                 double sum = 0;
                 for (std::size_t k = 0; k < 8; ++k) sum += weights[k] * shape_.values[8 * c + k];
                 const auto [lowest, highest] = std::ranges::minmax(std::span(&shape_.values[8 * c], 8));
@@ -320,11 +333,11 @@ private:
     }
 
     const CellShape& shape_;
-    const FillOptions& options_;
+    const CellBlock& block_;
     std::array<Map, 3> map_;
     MiddleOfCell middle_;
     double tolerance_;
-    double most_ = -1;  // of a step, in parameters, that arrives without a further look
+    double most_ = -1;  // the largest step, in parameters, whose residual needs no check
 };
 
 }  // namespace subvol::detail::HWY_NAMESPACE

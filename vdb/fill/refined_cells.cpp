@@ -10,13 +10,13 @@ namespace subvol::detail {
 
 namespace {
 
-/// A corner's place in its cell, bit d along axis d, and back.
+/// The octant of each corner, bit d along axis d; the table is its own inverse.
 constexpr std::array<std::size_t, 8> kOctantOfCorner{0, 1, 3, 2, 4, 5, 7, 6};
 
 void check_tables(const RefinementTables& tables, const HexMesh& mesh, int levels) {
     const std::size_t children = std::size_t{1} << (3 * levels);
     bool fits = tables.control_points == mesh.points.size() && tables.cells.size() == children * mesh.cells.size();
-    // Child k stays at corner k, and control points keep their numbers, as all of them are used.
+    // Child k keeps corner k of its parent, and control points keep their numbers because all of them are used.
     for (std::size_t c = 0; fits && c < mesh.cells.size(); ++c) {
         for (std::size_t k = 0; k < 8; ++k) {
             const std::size_t child = children * c + (children - 1) / 7 * k;
@@ -35,16 +35,6 @@ std::vector<double> applied(const RefinementTables& tables, const std::vector<do
 
 }  // namespace
 
-void set_limit(const LimitCells& limit, RasterizeCells& request) {
-    if (request.mesh && !limit.cell_levels.empty() && limit.cell_levels.size() != request.mesh->cells.size()) {
-        throw Error(ErrorCode::InvalidInput, "the cells of the limit belong to another mesh");
-    }
-    request.refine.levels = limit.level;
-    request.curved = !limit.cell_levels.empty();
-    request.on_limit = request.curved || !interpolates(request.refine.scheme.kind);
-    request.cell_levels = request.curved && !request.tables ? &limit.cell_levels : nullptr;
-}
-
 RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, bool on_limit) {
     validate(mesh);
     RefinementTables tables = refinement_tables(build_topology(mesh), refine);
@@ -58,7 +48,7 @@ RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, boo
     return tables;
 }
 
-RefinedCells::RefinedCells(const RasterizeCells& request)
+RefinedCells::RefinedCells(const CellRequest& request)
     : levels_(request.levels()), tables_(request.refines() ? request.tables : nullptr) {
     if (!request.refines()) return;
     const HexMesh& mesh = *request.mesh;
@@ -93,7 +83,7 @@ void RefinedCells::refine_whole(const RefinementTables& tables) {
     nodes_.resize(side * side * side);
     for (std::size_t child = 0; child < cells * cells * cells; ++child) {
         std::array<std::size_t, 3> at{};
-        for (int level = 0; level < levels_; ++level) {  // the first level's digit is the highest
+        for (int level = 0; level < levels_; ++level) {  // the first level is the most significant digit
             const std::size_t octant = kOctantOfCorner[child >> (3 * (levels_ - 1 - level)) & 7];
             for (std::size_t d = 0; d < 3; ++d) at[d] = 2 * at[d] + (octant >> d & 1);
         }

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+// Inside and outside of a closed surface, one column of centres at a time.
+//
+//   z ^      .   0        A column is the line of centres (i, j, ·). Each triangle that it meets gives one crossing: a
+//     |  ----x---- -1     height, and a step of +1 where the column enters the surface upwards, or -1 where it leaves. The
+//     |      .   1        winding number of a centre is the sum of the steps below it; 0 is outside. A region that the
+//     |      .   1        surface encloses twice has 2, and inside-out parts have negative numbers.
+//     |  ----x---- +1
+//     |      .   0        A crossing counts exactly once, also where the column passes through an edge or a corner.
+//
+// The side on which the column passes an edge is the sign of an area. The two triangles of an edge compute this area from the
+// same operands in the same order and get the same bits, up to the sign; an area of exactly 0 is decided by the direction of
+// the edge, as if the column were moved by an infinitesimal step.
 #include "surface_columns.h"
 
 #include <algorithm>
@@ -12,8 +24,8 @@ namespace subvol::detail {
 
 namespace {
 
-/// Twice the area of the triangle of an edge and the column at q, seen from above; an edge that two triangles share gives both
-/// the same number with the other sign.
+/// Twice the signed area, seen from above, of the triangle between an edge and the column at (x, y). The two triangles that
+/// share an edge get the same number with opposite signs.
 double side_of(const Vec3& a, const Vec3& b, double x, double y) {
     const bool turned = std::tie(b.x, b.y, b.z) < std::tie(a.x, a.y, a.z);
     const Vec3 &from = turned ? b : a, &to = turned ? a : b;
@@ -21,7 +33,7 @@ double side_of(const Vec3& a, const Vec3& b, double x, double y) {
     return turned ? -area : area;
 }
 
-/// Whether an edge is passed on its left; where the column goes right through it, by its direction.
+/// Whether the column lies left of an edge; exactly on the edge, its direction decides.
 bool left_of(const Vec3& a, const Vec3& b, double side) {
     return side > 0 || (side == 0 && std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z));
 }

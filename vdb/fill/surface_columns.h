@@ -10,20 +10,22 @@
 
 namespace subvol::detail {
 
-/// What a closed surface holds, along the columns of voxel centres in z: crossings upwards and downwards are counted. Centres
-/// on the surface go to the side that the rasterizer puts them on. Two triangles that share an edge, to the bit, leave no gap.
+/// The winding numbers of a closed surface about voxel centres, from its crossings with the columns of centres along z.
+///
+/// A centre on the surface belongs to the same side as in the rasterizer. Two triangles whose shared edge has the same bits
+/// leave no gap.
 class SurfaceColumns {
 public:
     explicit SurfaceColumns(std::span<const VoxelTriangle> triangles);
 
-    /// How often the surface goes round a centre; 0: it is outside.
+    /// The winding number of the surface about a centre; 0 is outside.
     [[nodiscard]] int winding(const VoxelCoord& voxel) const;
 
-    /// Calls visit(lowest, upper z) for every run of centres whose winding is not 0; both ends are in it.
+    /// Calls visit(lowest, upper z) for every run of centres whose winding number is not 0; the run includes both ends.
     void for_each_run(const std::function<void(const VoxelCoord&, int)>& visit) const;
 
 private:
-    /// step: 1 where the surface is entered upwards, else -1
+    /// step: 1 where the column enters the surface upwards, else -1
     struct Crossing {
         int x, y;
         double z;

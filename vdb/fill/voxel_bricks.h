@@ -11,7 +11,7 @@
 
 namespace subvol::detail {
 
-/// Integer voxel coordinates, and a box of them with both ends in it.
+/// Integer voxel coordinates, and a box of them that includes both ends.
 using VoxelCoord = std::array<int, 3>;
 struct VoxelBox {
     VoxelCoord lower, upper;
@@ -21,12 +21,12 @@ struct VoxelBox {
 
 [[nodiscard]] VoxelBox common(const VoxelBox& a, const VoxelBox& b);
 
-inline constexpr int kLeafSide = 8;  // voxels; OpenVDB's leaf
+inline constexpr int kLeafSide = 8;  // voxels, as in OpenVDB
 inline constexpr std::size_t kLeafVoxels = 512;
-inline constexpr int kBrickLeaves = 4;  // a side
+inline constexpr int kBrickLeaves = 4;  // along each axis
 inline constexpr int kBrickSide = kBrickLeaves * kLeafSide;
 
-/// The layer of bricks that a voxel lies in, along an axis.
+/// The layer of bricks that contains a voxel, along one axis.
 [[nodiscard]] constexpr int brick_layer(int voxel) {
     static_assert(kBrickSide == 32);
     return voxel >> 5;  // rounds down for negative voxels too
@@ -35,7 +35,7 @@ inline constexpr int kBrickSide = kBrickLeaves * kLeafSide;
 /// 8³ voxels, numbered x·64 + y·8 + z.
 ///
 /// active: bit z + 8 y of word x
-/// values: 512 of every channel, one channel after the other; 0 where inactive. Whole numbers are kept as their bits
+/// values: 512 per channel, one channel after the other; 0 where inactive; whole numbers are stored as their bits
 struct VoxelLeaf {
     explicit VoxelLeaf(std::size_t channels) : values(std::make_unique<float[]>(channels * kLeafVoxels)) {}
 
@@ -46,10 +46,10 @@ struct VoxelLeaf {
     [[nodiscard]] std::size_t active_count() const;
 };
 
-/// 4³ leaves that one thread fills at a time; a leaf is there once a voxel of it is active.
+/// 4³ leaves, filled by one thread at a time. A leaf exists once one of its voxels is active.
 ///
-/// cells:    of the batch that is being rasterized, those that may fill voxels of it
-/// doubtful: where folded cells lie, which may have filled voxels outside the mesh
+/// cells:    those of the current batch that may fill voxels of the brick
+/// doubtful: boxes of folded cells, which may have filled voxels outside the mesh
 struct VoxelBrick {
     VoxelCoord origin{};
     std::array<std::unique_ptr<VoxelLeaf>, std::size_t{kBrickLeaves} * kBrickLeaves * kBrickLeaves> leaves;
@@ -61,25 +61,25 @@ struct VoxelBrick {
     [[nodiscard]] VoxelCoord leaf_origin(std::size_t leaf) const;
 };
 
-/// The bricks that something was found in.
+/// The bricks that are not empty.
 class VoxelBricks {
 public:
     explicit VoxelBricks(std::size_t channels) : channels_(channels) {}
 
     [[nodiscard]] std::size_t channels() const { return channels_; }
 
-    /// Enters a cell into all bricks that a box of voxels touches.
+    /// Lists a cell in all bricks that a box of voxels touches.
     void enter(Index cell, const VoxelBox& box);
-    /// The bricks entered since the last call, in the order of their first cells.
+    /// The bricks in which cells were listed since the last call, in the order of their first cells.
     [[nodiscard]] std::vector<VoxelBrick*> take_entered();
 
-    /// The leaf that holds a voxel; it is made if it is not there.
+    /// The leaf that contains a voxel; created if it does not exist.
     [[nodiscard]] VoxelLeaf& leaf_at(const VoxelCoord& voxel);
 
-    /// Enters a leaf of its own making. origin: its lowest voxel
+    /// Stores a leaf. origin: its lowest voxel
     void put_leaf(const VoxelCoord& origin, std::unique_ptr<VoxelLeaf> leaf);
 
-    /// All bricks in the order of their origins; none is left here.
+    /// Moves all bricks out, in the order of their origins.
     [[nodiscard]] std::vector<std::unique_ptr<VoxelBrick>> release();
 
 private:
@@ -92,7 +92,7 @@ private:
 
     std::size_t channels_;
     std::unordered_map<VoxelCoord, std::unique_ptr<VoxelBrick>, Hash> bricks_;
-    std::array<VoxelBrick*, 64> recent_{};  // of 4³ bricks next to each other: cells that follow each other lie close
+    std::array<VoxelBrick*, 64> recent_{};  // a cache of 4³ neighbouring bricks: consecutive cells lie close to each other
     std::vector<VoxelBrick*> entered_;
 };
 

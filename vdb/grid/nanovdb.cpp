@@ -7,8 +7,6 @@
 
 namespace subvol {
 
-using namespace detail;
-
 bool has_nanovdb() {
     return false;
 }
@@ -37,7 +35,7 @@ namespace {
 
 using Handle = nanovdb::GridHandle<nanovdb::HostBuffer>;
 
-// By type: the conversion of any grid would take minutes to compile.
+// One type at a time: NanoVDB's conversion of any grid takes minutes to compile.
 Handle convert(const openvdb::GridBase& grid) {
     if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&grid)) return nanovdb::openToNanoVDB(*floats);
     if (const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(&grid)) return nanovdb::openToNanoVDB(*vectors);
@@ -57,7 +55,7 @@ void write_nanovdb(const std::filesystem::path& path, std::span<const VdbGrid> g
     detail::AtomicFile file(path);
     try {
         std::vector<Handle> handles;
-        for (const VdbGrid& grid : grids) handles.push_back(convert(*grid.data().grid));
+        for (const VdbGrid& grid : grids) handles.push_back(convert(*detail::VdbData::of(grid).grid));
         std::ofstream out;
         out.exceptions(std::ios::failbit | std::ios::badbit);
         out.open(file.path(), std::ios::binary);

@@ -14,7 +14,7 @@ using namespace detail;
 
 namespace {
 
-/// The range of what a function makes of the active values.
+/// The range of a function of the active values.
 template <class Grid, class Measure>
 void set_range(const Grid& grid, const Measure& measure, GridReport& report) {
     auto at = grid.cbeginValueOn();
@@ -49,6 +49,10 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
 
 }  // namespace
 
+VdbGrid detail::VdbData::wrap(VdbData data) {
+    return VdbGrid(std::make_unique<VdbData>(std::move(data)));
+}
+
 VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
     GridReport report{.name = grid->getName(),
                       .kind = {},
@@ -62,10 +66,10 @@ VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
         report.bounds = {{box.min()[0], box.min()[1], box.min()[2]}, {box.max()[0], box.max()[1], box.max()[2]}};
     }
     auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid);
-    return VdbGrid(std::make_unique<VdbGrid::Data>(VdbGrid::Data{grid, std::move(floats), std::move(report)}));
+    return VdbData::wrap({grid, std::move(floats), std::move(report)});
 }
 
-VdbGrid::VdbGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {
+VdbGrid::VdbGrid(std::unique_ptr<VdbData> data) : data_(std::move(data)) {
 }
 VdbGrid::~VdbGrid() = default;
 VdbGrid::VdbGrid(VdbGrid&&) noexcept = default;
@@ -81,7 +85,7 @@ std::optional<double> VdbGrid::value(const Vec3& x) const {
     constexpr double kReach = 1 << 30;
     if (!(std::max({std::abs(index[0]), std::abs(index[1]), std::abs(index[2])}) < kReach)) return std::nullopt;
 
-    // Not registered with the tree, hence cheap to make and safe in many threads, while nobody changes the tree.
+    // Not registered with the tree, hence cheap to make; safe in many threads as long as the tree does not change.
     const openvdb::FloatGrid::ConstUnsafeAccessor accessor(data_->floats->constTree());
     if (!accessor.isValueOn(openvdb::Coord::round(index))) return std::nullopt;
     const auto lower = openvdb::Coord::floor(index);
@@ -96,7 +100,7 @@ std::optional<double> VdbGrid::value(const Vec3& x) const {
         sum += weight * static_cast<double>(voxel);
         weights += weight;
     }
-    return sum / weights;  // the voxel that holds x counts at least 1/8
+    return sum / weights;  // the voxel that contains x has a weight of at least 1/8
 }
 
 }  // namespace subvol

@@ -5,20 +5,19 @@
 
 #include "subvol/vdb_grid.h"
 
-namespace subvol {
+namespace subvol::detail {
 
-/// floats: the same grid if it is one of floats
-struct VdbGrid::Data {
+/// What a VdbGrid holds. floats: the same grid if it is one of floats, else null
+struct VdbData {
     openvdb::GridBase::Ptr grid;
     openvdb::FloatGrid::Ptr floats;
     GridReport report;
+
+    [[nodiscard]] static const VdbData& of(const VdbGrid& grid) { return *grid.data_; }
+    [[nodiscard]] static VdbGrid wrap(VdbData data);
 };
 
-namespace detail {
-
-/// Wraps a grid and counts what its report says.
+/// Wraps a grid and fills its report.
 [[nodiscard]] VdbGrid make_vdb_grid(const openvdb::GridBase::Ptr& grid);
 
-}  // namespace detail
-
-}  // namespace subvol
+}  // namespace subvol::detail

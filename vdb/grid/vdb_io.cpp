@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/openvdb.h>
 
-#include "subvol/detail/atomic_file.h"
+#include "subvol/detail/vdb_file.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
 #include "vdb_stream.h"
@@ -10,11 +10,16 @@ namespace subvol {
 
 using namespace detail;
 
+void detail::write_vdb(const AtomicFile& file, const std::filesystem::path& path, std::span<const VdbGrid> grids,
+                       VdbCompression compression) {
+    openvdb::GridCPtrVec written;
+    for (const auto& grid : grids) written.push_back(VdbData::of(grid).grid);
+    write_grids(file, path, written, compression);
+}
+
 void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids, VdbCompression compression) {
     AtomicFile file(path);
-    openvdb::GridCPtrVec written;
-    for (const auto& grid : grids) written.push_back(grid.data().grid);
-    write_grids(file, path, written, compression);
+    detail::write_vdb(file, path, grids, compression);
     file.commit();
 }
 

@@ -15,8 +15,7 @@ namespace subvol::detail {
 
 namespace {
 
-// OpenVDB's own opening of files goes on after a short read and then trusts what it has not read; a stream that throws does
-// not.
+// OpenVDB's own File continues after a short read with memory that was never filled; a stream that throws stops it.
 template <class Read>
 auto read_throwing(const std::filesystem::path& path, const Read& read) {
     std::ifstream file(path, std::ios::binary);
@@ -32,7 +31,7 @@ auto read_throwing(const std::filesystem::path& path, const Read& read) {
     }
 }
 
-/// Goes from one grid's description to the next; nothing for a file that does not say where that is.
+/// Reads the descriptions of a file's grids only; nothing if the file does not store their positions.
 class DescriptionReader : public openvdb::io::Archive {
 public:
     std::optional<std::vector<std::string>> types(std::istream& file) {
@@ -53,7 +52,7 @@ public:
     }
 };
 
-// io::File, which would be the usual way, does not notice a full disk: the stream has to be ours here too.
+// io::File, the usual way, does not notice a full disk; a stream that throws does.
 class ThrowingWriter : public openvdb::io::Archive {
 public:
     void write_grids(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids, std::uint32_t compression) {

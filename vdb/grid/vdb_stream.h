@@ -17,11 +17,14 @@ namespace subvol::detail {
 /// throws: Error(Io), Error(InvalidInput) if it is not a whole OpenVDB file
 [[nodiscard]] openvdb::GridPtrVecPtr read_grids(const std::filesystem::path& path);
 
-/// The types of a file's grids; the grids themselves are not read. throws: as `read_grids`
+/// The types of a file's grids; the grids themselves are not read.
+///
+/// throws: as `read_grids`
 [[nodiscard]] std::vector<std::string> grid_types(const std::filesystem::path& path);
 
-/// Writes grids to the temporary file of `file`. path: its name in the end, for messages
+/// Writes grids to the temporary file of `file`.
 ///
+/// path:   its final name, for error messages
 /// throws: Error(Io); Error(MissingCapability) if OpenVDB was built without that compression
 void write_grids(const AtomicFile& file, const std::filesystem::path& path, const openvdb::GridCPtrVec& grids,
                  VdbCompression compression = VdbCompression::Blosc);

@@ -51,7 +51,7 @@ public:
     }
 
 private:
-    /// depth: 2: the parents of leaves; 1: their parents; 0: the root; -1: not even there
+    /// depth: of the node with the tile: 2: lower inner node, 1: upper inner node, 0: root; -1: background
     static std::int32_t tile_size(int depth) {
         using Upper = Tree::RootNodeType::ChildNodeType;
         using Lower = Upper::ChildNodeType;
@@ -59,7 +59,7 @@ private:
         return depth == 2 ? kLeaf : depth == 1 ? kLower : kUpper;
     }
 
-    // Not registered with the tree, hence cheap to make and safe in many threads, while nobody changes the tree.
+    // Not registered with the tree, hence cheap to make; safe in many threads as long as the tree does not change.
     openvdb::FloatGrid::ConstUnsafeAccessor accessor_;
 };
 
@@ -76,7 +76,7 @@ public:
 
 private:
     Vec3 column(const openvdb::Vec3d& axis) const {
-        return vec_of(grid_->transform().baseMap()->applyJacobian(axis));  // of a map that is linear: without its translation
+        return vec_of(grid_->transform().baseMap()->applyJacobian(axis));  // the linear part of an affine map
     }
 
     openvdb::FloatGrid::ConstPtr grid_;
@@ -91,7 +91,7 @@ std::unique_ptr<Voxels> VdbGrid::voxels() const {
                     "a linear transform, not a frustum");
     }
     if (!data_->floats) {
-        throw Error(ErrorCode::InvalidInput, "its voxels are no floats", "grid \"" + data_->grid->getName() + "\"");
+        throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid \"" + data_->grid->getName() + "\"");
     }
     return std::make_unique<GridVoxels>(data_->floats);
 }

@@ -40,7 +40,7 @@ Tree::ConstPtr without_tiles(const Tree::ConstPtr& tree) {
     return dense;
 }
 
-/// Sums of the voxels that share a coarse leaf, in the order that they are added in.
+/// Sums over the blocks of one coarse leaf, in the order of the added leaves.
 class BlockSums {
 public:
     void add(const Leaf& leaf, std::int32_t n) {
@@ -51,7 +51,7 @@ public:
         }
     }
 
-    /// Null if no block is half full.
+    /// Null if no block is at least half active.
     std::unique_ptr<Leaf> leaf(const openvdb::Coord& origin, std::int32_t n, std::size_t& left_out) const {
         auto made = std::make_unique<Leaf>(origin, 0.0f, false);
         const std::int64_t whole = static_cast<std::int64_t>(n) * n * n;
@@ -70,7 +70,7 @@ private:
     std::vector<std::int64_t> counts_ = std::vector<std::int64_t>(Leaf::SIZE);
 };
 
-/// Leaves begin at multiples of eight: none of them lies in two leaves of the coarse tree.
+/// A leaf of the fine tree. Leaves begin at multiples of eight, so each lies in one leaf of the coarse tree.
 struct Part {
     openvdb::Coord origin;  // of the coarse leaf
     const Leaf* leaf;

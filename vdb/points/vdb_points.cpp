@@ -35,10 +35,10 @@ constexpr const char* kChannel = "channel_";
 constexpr const char* kGradient = "_gradient";
 constexpr const char* kMoment = "_moment";
 constexpr const char* kHessian = "_hessian";
-constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB takes a transform for singular whose determinant is below 3e-15
-constexpr double kMostVoxels = 1 << 30;        // from the origin, along an axis: voxels are numbered with 32 bits
+constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB treats a transform as singular if its determinant is below 3e-15
+constexpr double kMostVoxels = 1 << 30;        // from the origin along an axis, as indices have 32 bits
 
-/// Names of channels as OpenVDB and Houdini take them for attributes, none twice.
+/// Unique attribute names for channels that OpenVDB and Houdini accept.
 std::vector<std::string> attribute_names(const std::vector<std::string>& channels) {
     std::set<std::string> used{"P", "id", "frame", "orient", "scale", "pscale"};
     std::vector<std::string> names;
@@ -55,7 +55,7 @@ std::vector<std::string> attribute_names(const std::vector<std::string>& channel
     return names;
 }
 
-/// The voxel that holds so many points where they are spaced as on average: det J is what a point has for itself.
+/// The voxel size that gives this many points per voxel on average; det J is the volume per point.
 double voxel_size(const RbfVolume& volume, double points_per_voxel) {
     const double radius = support_radius(volume.kernel);
     double room = 0, farthest = 0;
@@ -82,7 +82,7 @@ Symmetric3 from_vdb(const openvdb::Mat3s& s) {
     return {s(0, 0), s(0, 1), s(0, 2), s(1, 1), s(1, 2), s(2, 2)};
 }
 
-/// A point grid to which attributes are added one after the other.
+/// A point grid, to which attributes are added one by one.
 class PointsWriter {
 public:
     explicit PointsWriter(const RbfVolume& volume, double points_per_voxel) : volume_(volume) {
@@ -95,7 +95,7 @@ public:
         grid_->setName(kGridName);
     }
 
-    /// value(i): of point i
+    /// value(i): the attribute of point i
     template <class T, class Value>
     void add(const std::string& name, const Value& value) {
         std::vector<T> values;
@@ -166,7 +166,7 @@ Grid::Ptr make_grid(const RbfVolume& volume, const VdbPointsOptions& options) {
 template <class T>
 using Handle = points::AttributeHandle<T, points::UnknownCodec>;
 
-/// What one leaf holds of a channel.
+/// The attributes of a channel in one leaf.
 struct ChannelHandles {
     Handle<float> values;
     Handle<openvdb::Vec3f> gradients;
@@ -180,7 +180,7 @@ struct ChannelHandles {
         if (leaf.hasAttribute(name + kHessian)) hessians.emplace(leaf.constAttributeArray(name + kHessian));
     }
 
-    /// Puts the numbers of a point behind those that the channel has.
+    /// Appends the values of a point to a channel.
     void append_to(RbfChannel& channel, openvdb::Index point) const {
         const openvdb::Vec3f g = gradients.get(point);
         channel.values.push_back(values.get(point));
@@ -190,7 +190,7 @@ struct ChannelHandles {
     }
 };
 
-/// Takes the points out of a grid, leaf by leaf.
+/// Reads the points of a grid, leaf by leaf.
 class PointsReader {
 public:
     explicit PointsReader(const Grid& grid) : grid_(grid) {
@@ -214,7 +214,7 @@ private:
     void take(const Leaf& leaf) {
         leaf.validateOffsets();
         const auto& ids = leaf.constAttributeArray("id");
-        // Arrays of one value may be of any size; ids that differ bear out that the points are there.
+        // An array of one value may claim any size; ids that differ prove that the file really has the points.
         if (ids.size() > 1 && ids.isUniform()) throw Error(ErrorCode::InvalidInput, "points have the same id");
         const Handle<std::int32_t> id(ids);
         const Handle<openvdb::Vec3f> position(leaf.constAttributeArray("P"));
@@ -231,7 +231,7 @@ private:
         }
     }
 
-    /// Ids may have gaps, where somebody has deleted points.
+    /// Sorts by id; ids may have gaps if points were deleted.
     RbfVolume in_order() {
         std::vector<std::size_t> order(ids_.size());
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -247,7 +247,8 @@ private:
             permute(channel.values);
             permute(channel.gradients);
             permute(channel.moments);
-            if (channel.hessians.size() == order.size()) permute(channel.hessians);  // else there are none, or it is refused
+            if (channel.hessians.size() == order.size())
+                permute(channel.hessians);  // otherwise there are none, or `validate` refuses them
         }
         return std::move(volume_);
     }
@@ -276,7 +277,7 @@ void write_vdb_points(const std::filesystem::path& path, const RbfVolume& volume
         throw Error(ErrorCode::InvalidInput, std::to_string(volume.size()) + " points are too many for a .vdb file", {},
                     "at most 2³¹");
     }
-    if (!(options.points_per_voxel > 0)) throw Error(ErrorCode::InvalidInput, "points a voxel: a positive number is needed");
+    if (!(options.points_per_voxel > 0)) throw Error(ErrorCode::InvalidInput, "the number of points per voxel is not positive");
     AtomicFile file(path);
     write_grids(file, path, {make_grid(volume, options)});
     BoundaryFile(path, volume.boundary).commit();
@@ -296,7 +297,7 @@ RbfVolume read_vdb_points(const std::filesystem::path& path) {
         if (std::string_view(error.what()).starts_with(boundary_path(path).string())) throw;
         throw Error(error.code(), error.what(), path.string());
     } catch (const std::exception& error) {
-        throw Error(ErrorCode::InvalidInput, std::string("holds no points as they are written here: ") + error.what(),
+        throw Error(ErrorCode::InvalidInput, std::string("has no points in this library's layout: ") + error.what(),
                     path.string());
     }
 }

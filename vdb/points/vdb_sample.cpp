@@ -27,7 +27,7 @@ constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 31;
 
 const std::array<Coord, 3> kAxes{Coord(1, 0, 0), Coord(0, 1, 0), Coord(0, 0, 1)};
 
-/// Derivatives by differences, a voxel the unit of length.
+/// Derivatives by differences; the unit of length is a voxel.
 class Differences {
 public:
     explicit Differences(const Tree& tree) : voxels_(tree) {}
@@ -53,7 +53,7 @@ public:
         return g;
     }
 
-    /// with_mixed: as well as those along the axes
+    /// with_mixed: mixed derivatives too, not only those along the axes
     [[nodiscard]] Mat3 hessian(bool with_mixed) {
         Mat3 h(0.0);
         for (int a = 0; a < 3; ++a) {
@@ -80,7 +80,7 @@ private:
         return all ? (pp - pm - mp + mm) / 4 : 0;
     }
 
-    // Not registered with the tree, hence cheap to make and safe in many threads, while nobody changes the tree.
+    // Not registered with the tree, hence cheap to make; safe in many threads as long as the tree does not change.
     openvdb::FloatGrid::ConstUnsafeAccessor voxels_;
     Coord voxel_;
     double value_ = 0;
@@ -88,7 +88,7 @@ private:
     std::array<bool, 3> has_after_{}, has_before_{};
 };
 
-/// Where the kernels lie and which form they have: world = to_world · ijk + origin.
+/// The positions and the shape of the kernels: world = to_world · ijk + origin.
 struct Lattice {
     Mat3 to_world;
     Vec3 origin;
@@ -133,7 +133,7 @@ private:
 
 int voxels_a_side(double spacing_world, double voxel_world) {
     if (!std::isfinite(spacing_world) || spacing_world < 0) {
-        throw Error(ErrorCode::InvalidInput, "the spacing is not a length");
+        throw Error(ErrorCode::InvalidInput, "the spacing is negative or not finite");
     }
     return static_cast<int>(std::clamp(std::round(spacing_world / voxel_world), 1.0, double(kMostVoxelsASide)));
 }
@@ -152,7 +152,7 @@ RbfVolume empty_volume(const std::string& name, std::size_t count, const VoxelSa
     return volume;
 }
 
-/// The point that each leaf's first active voxel becomes, and at last their number.
+/// For each leaf the number of the point that its first active voxel becomes; last, the number of all points.
 std::vector<std::size_t> first_points(const std::vector<const Leaf*>& leaves) {
     std::vector<std::size_t> first{0};
     for (const Leaf* leaf : leaves) first.push_back(first.back() + leaf->onVoxelCount());
@@ -163,8 +163,8 @@ std::vector<std::size_t> first_points(const std::vector<const Leaf*>& leaves) {
 
 VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOptions& options) {
     const std::string where = "grid \"" + grid.report().name + "\"";
-    const openvdb::FloatGrid::ConstPtr floats = grid.data().floats;
-    if (!floats) throw Error(ErrorCode::InvalidInput, "its voxels are no floats", where);
+    const openvdb::FloatGrid::ConstPtr floats = VdbData::of(grid).floats;
+    if (!floats) throw Error(ErrorCode::InvalidInput, "its voxels are not floats", where);
     validate(options.kernel);
     if (!is_radial(options.kernel)) throw Error(ErrorCode::InvalidInput, "the kernel is not radial");
     const auto voxels = grid.voxels();
@@ -178,7 +178,9 @@ VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOption
     coarse.tree->getNodes(leaves);
     const std::vector<std::size_t> first = first_points(leaves);
     const std::size_t count = first.back();
-    if (count == 0) throw Error(ErrorCode::InvalidInput, n == 1 ? "has no active voxels" : "no block is half full", where);
+    if (count == 0)
+        throw Error(ErrorCode::InvalidInput, n == 1 ? "has no active voxels" : "no block of voxels is at least half active",
+                    where);
     if (count > kMostPoints) throw Error(ErrorCode::InvalidInput, std::to_string(count) + " points are too many", where, "2³¹");
     report_progress(options.progress, "sample voxels", 0.5);
 

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bricks of voxels become OpenVDB trees, sixteen bricks (1024 leaves) at a time:
+//
+//     VoxelBricks   sorted by origin; a brick has up to 4³ leaves of 8³ voxels with all channels
+//          |
+//          |  convert: in parallel, for every grid: a VoxelLeaf becomes an OpenVDB leaf, or an active tile where all 512
+//          v           voxels are active and have the same bits
+//     Made[]        then the bricks of the batch are freed: only 16 bricks are ever in memory twice
+//          |
+//          |  add_to_tree: one thread per batch, because the inner nodes of a tree are not thread-safe
+//          v
+//     tree          root - 32³ nodes - 16³ nodes - 8³ leaves [museth2013]; finally tiles of one value are merged (prune)
 #include "brick_grids.h"
 
 #include <openvdb/tools/Prune.h>
@@ -12,13 +23,13 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatch = 16;  // bricks whose leaves exist twice
+constexpr std::size_t kBatch = 16;  // bricks
 
 openvdb::Coord coord_of(const VoxelCoord& c) {
     return {c[0], c[1], c[2]};
 }
 
-/// Values of one type out of a leaf's channels.
+/// A voxel's value of one type, from the channels of a leaf.
 template <class Value>
 Value value_of(const float* values, std::size_t i) {
     if constexpr (std::is_same_v<Value, float>) {
@@ -47,10 +58,9 @@ bool is_constant(const VoxelLeaf& leaf, const float* values, std::size_t channel
 class GridMaker {
 public:
     virtual ~GridMaker() = default;
-    /// Makes the leaves of a batch of bricks, in parallel.
+    /// Makes the leaves and tiles of a batch of bricks, in parallel.
     virtual void convert(std::span<const std::unique_ptr<VoxelBrick>> bricks) = 0;
-    /// Hangs them into the tree, whose inner nodes are not thread-safe.
-    virtual void hang() = 0;
+    virtual void add_to_tree() = 0;
     virtual openvdb::GridBase::Ptr finish() = 0;
 };
 
@@ -71,7 +81,7 @@ public:
         });
     }
 
-    void hang() override {
+    void add_to_tree() override {
         for (Made& made : made_) {
             if (made.leaf) {
                 grid_->tree().addLeaf(made.leaf.release());
@@ -98,7 +108,7 @@ private:
 
     Made make(const VoxelLeaf& voxels, const openvdb::Coord& origin) const {
         const float* values = voxels.values.get() + channel_ * kLeafVoxels;
-        // NOLINTNEXTLINE(bugprone-sizeof-expression): how many numbers a value is, one or three
+        // NOLINTNEXTLINE(bugprone-sizeof-expression): the number of channels, one or three
         if (is_constant(voxels, values, sizeof(Value) / sizeof(float)))
             return {nullptr, true, origin, value_of<Value>(values, 0)};
         auto leaf = std::make_unique<Leaf>(origin, Value(0), false);
@@ -139,7 +149,7 @@ std::vector<openvdb::GridBase::Ptr> make_grids(VoxelBricks voxels, const std::ve
         const auto batch = std::span(bricks).subspan(first, std::min(kBatch, bricks.size() - first));
         for (const auto& maker : makers) maker->convert(batch);
         for (auto& brick : batch) brick.reset();
-        for (const auto& maker : makers) maker->hang();
+        for (const auto& maker : makers) maker->add_to_tree();
     }
     std::vector<openvdb::GridBase::Ptr> grids;
     for (std::size_t g = 0; g < wanted.size(); ++g) {

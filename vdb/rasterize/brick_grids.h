@@ -11,15 +11,15 @@ namespace subvol::detail {
 
 enum class GridKind { Float, Vector, Integer };
 
-/// A grid to be made of the channels `channel`, and for vectors the two behind it.
+/// A grid to be made from `channel`; vectors take the next two channels too.
 struct GridOfChannels {
     std::string name;
     GridKind kind = GridKind::Float;
     std::size_t channel = 0;
 };
 
-/// Hangs the leaves of bricks into the trees of new grids, one for each of `wanted`, and frees them on the way. Leaves that are
-/// full of one value become tiles, tiles of one value larger ones.
+/// Makes one grid for each of `wanted` from the leaves of bricks; bricks are freed on the way. Leaves that are full of one
+/// value become tiles, and tiles of one value become larger tiles.
 [[nodiscard]] std::vector<openvdb::GridBase::Ptr> make_grids(VoxelBricks bricks, const std::vector<GridOfChannels>& wanted);
 
 }  // namespace subvol::detail

@@ -12,7 +12,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB takes a transform for singular whose determinant is below 3e-15
+constexpr double kLeastVoxel_world = 1.45e-5;  // OpenVDB treats a transform as singular if its determinant is below 3e-15
 
 double voxel_size_of(const Box& box, const RasterizeOptions& options) {
     if (!(options.voxel_size_world >= 0) || !std::isfinite(options.voxel_size_world)) {
@@ -44,12 +44,12 @@ ToVoxels to_voxels_of(const openvdb::GridBase& like) {
 void check_representable(double voxel_size) {
     if (voxel_size >= kLeastVoxel_world) return;
     std::ostringstream message;
-    message << "voxel size " << voxel_size << ": OpenVDB takes a grid of such small voxels for flat";
+    message << "voxel size " << voxel_size << ": OpenVDB treats the transform of such small voxels as singular";
     throw Error(ErrorCode::InvalidInput, message.str(), {}, "at least 1.45e-5; a mesh in smaller units has larger voxels");
 }
 
-ToVoxels voxels_asked_for(const Box& box, const RasterizeOptions& options) {
-    if (options.like) return to_voxels_of(*options.like->data().grid);
+ToVoxels to_voxels_of(const Box& box, const RasterizeOptions& options) {
+    if (options.like) return to_voxels_of(*VdbData::of(*options.like).grid);
     return {.voxel_size = voxel_size_of(box, options)};
 }
 
@@ -58,15 +58,15 @@ void check_level_set(const RasterizeOptions& options) {
     if (!(half_width >= 1 && half_width <= 1000)) {
         throw Error(ErrorCode::InvalidInput, "the half width of the level set's band is not from 1 to 1000 voxels");
     }
-    if (options.like && !options.like->data().grid->hasUniformVoxels()) {
-        throw Error(ErrorCode::InvalidInput, "its voxels are no cubes, which a level set needs",
+    if (options.like && !VdbData::of(*options.like).grid->hasUniformVoxels()) {
+        throw Error(ErrorCode::InvalidInput, "its voxels are not cubes, but a level set needs cubes",
                     "grid \"" + options.like->report().name + "\"");
     }
 }
 
 void describe(openvdb::GridBase& grid, const ToVoxels& to_voxels, const RasterizeOptions& options) {
     if (options.like) {
-        grid.setTransform(options.like->data().grid->transform().copy());
+        grid.setTransform(VdbData::of(*options.like).grid->transform().copy());
     } else {
         grid.setTransform(openvdb::math::Transform::createLinearTransform(to_voxels.voxel_size));
     }

@@ -21,8 +21,8 @@ openvdb::FloatGrid::Ptr level_set(VoxelBricks band, const openvdb::MaskGrid& ins
             voxel.setValue(mask.isValueOn(voxel.getCoord()) ? -distance : distance);
         }
     });
-    // Two neighbours of which one is inside lie both in the band; so the sign of every other voxel is that of the next one in
-    // the band along an axis.
+    // Where one of two neighbours is inside and the other is not, both lie in the band. So every voxel outside the band has the
+    // sign of the nearest band voxel along an axis.
     grid->tree().root().setBackground(static_cast<float>(voxel_size * half_width_voxels), /*updateChildNodes=*/false);
     openvdb::tools::signedFloodFill(grid->tree());
     openvdb::tools::pruneLevelSet(grid->tree());

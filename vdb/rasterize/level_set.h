@@ -7,7 +7,7 @@
 
 namespace subvol::detail {
 
-/// Distances become a level set: world units, negative where the mask is active, ± its half width beyond the band.
+/// Turns distances into a level set: in world units, negative where the mask is active, ± the half width beyond the band.
 ///
 /// band: distances in voxels, as `distance_band` makes them
 [[nodiscard]] openvdb::FloatGrid::Ptr level_set(VoxelBricks band, const openvdb::MaskGrid& inside, double voxel_size,

@@ -6,12 +6,13 @@
 #include <limits>
 #include <optional>
 
+#include "boundary_triangles.h"
+#include "brick_filler.h"
 #include "brick_grids.h"
 #include "coverage.h"
 #include "distance_band.h"
 #include "grid_setup.h"
 #include "level_set.h"
-#include "rasterize_cells.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "vdb_data.h"
@@ -22,14 +23,12 @@ using namespace detail;
 
 namespace {
 
-using detail::GridKind;
-using detail::GridOfChannels;
-
 constexpr double kMaxHalf = 65504;
+
 const Attribute& field_of(const HexMesh& mesh, const std::string& name, bool half) {
     const std::string where = "field \"" + name + "\"";
     const Attribute* field = mesh.find_attribute(name);
-    if (!field) throw Error(ErrorCode::InvalidInput, "the mesh does not have it", where);
+    if (!field) throw Error(ErrorCode::InvalidInput, "the mesh has no such field", where);
     if (field->channels != 1 && field->channels != 3) {
         throw Error(ErrorCode::InvalidInput, "has " + std::to_string(field->channels) + " channels", where, "one or three");
     }
@@ -52,111 +51,121 @@ std::vector<GridOfChannels> grids_of(std::span<const Attribute* const> fields, b
     return grids;
 }
 
-/// Everything that is checked and set up once, for one part of space after the other.
-class Rasterizer {
+/// How a mesh is refined.
+CellRequest refinement_of(const HexMesh& mesh, const RasterizeOptions& options) {
+    CellRequest request{.mesh = &mesh,
+                        .fields = {},
+                        .to_voxels = {},
+                        .refine = options.refine,
+                        .on_limit = options.on_limit,
+                        .tables = options.tables,
+                        .progress = options.progress};
+    if (!options.limit) return request;
+    const LimitCells& limit = *options.limit;
+    if (!limit.cell_levels.empty() && limit.cell_levels.size() != mesh.cells.size()) {
+        throw Error(ErrorCode::InvalidInput, "the cells of the limit belong to another mesh");
+    }
+    request.refine.levels = limit.level;
+    request.curved = !limit.cell_levels.empty();
+    request.on_limit = request.curved || !interpolates(request.refine.scheme.kind);
+    if (request.curved && !options.tables) request.cell_levels = &limit.cell_levels;  // tables have nodes of one level
+    return request;
+}
+
+/// Checks the arguments, and collects what is to be rasterized.
+CellRequest make_request(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
+    validate(mesh);
+    if (fields.empty()) throw Error(ErrorCode::InvalidInput, "no field is named to be rasterized");
+    std::vector<const Attribute*> attributes;
+    for (const auto& name : fields) attributes.push_back(&field_of(mesh, name, options.half));
+    const ToVoxels to_voxels = to_voxels_of(bounds(mesh), options);
+    CellRequest request = refinement_of(mesh, options);
+    request.fields = std::move(attributes);
+    request.to_voxels = to_voxels;
+    request.cell_numbers = options.cell_numbers;
+    return request;
+}
+
+std::size_t bytes_per_voxel(const CellRequest& request, const RasterizeOptions& options) {
+    std::size_t bytes = options.coverage ? 16 : 0;
+    for (const Attribute* field : request.fields) bytes += sizeof(float) * static_cast<std::size_t>(field->channels);
+    return bytes + (request.cell_numbers ? sizeof(std::int32_t) : 0);
+}
+
+/// Makes grids from a mesh, for one part of space after the other.
+class MeshRasterizer {
 public:
-    Rasterizer(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options)
-        : options_(options), rasterizer_(request(mesh, fields, options)) {
-        detail::check_representable(to_voxels_.voxel_size);
-        const detail::RasterizeCells shape = request(mesh, options);
-        if (options.coverage) samples_.emplace(detail::samples_within(shape));
+    MeshRasterizer(const CellRequest& request, const RasterizeOptions& options)
+        : request_(request), options_(options), filler_(request) {
+        check_representable(request.to_voxels.voxel_size);
+        if (options.coverage) samples_.emplace(samples_within(request));
         if (options.level_set) {
-            detail::check_level_set(options);
-            boundary_ = detail::boundary_triangles(shape);
-            detail::check_band(boundary_, options.level_set->half_width_voxels);
+            check_level_set(options);
+            boundary_ = boundary_triangles(request);
+            check_band(boundary_, options.level_set->half_width_voxels);
         }
         openvdb::initialize();
     }
 
-    [[nodiscard]] const detail::ToVoxels& to_voxels() const { return to_voxels_; }
-    [[nodiscard]] std::size_t bytes_per_voxel() const {
-        std::size_t bytes = options_.coverage ? 16 : 0;
-        for (const Attribute* field : attributes_) bytes += sizeof(float) * static_cast<std::size_t>(field->channels);
-        return bytes + (options_.cell_numbers ? sizeof(std::int32_t) : 0);
-    }
-
     /// part: whole bricks; none: all
-    [[nodiscard]] std::vector<VdbGrid> run(const std::optional<detail::VoxelBox>& part = {}) {
-        detail::VoxelBricks bricks = rasterizer_.run(part);
+    [[nodiscard]] std::vector<VdbGrid> run(const std::optional<VoxelBox>& part = {}) {
+        VoxelBricks bricks = filler_.run(part);
         report_progress(options_.progress, "make grids", 0);
-        auto grids = detail::make_grids(std::move(bricks), grids_of(attributes_, options_.cell_numbers));
-        if (attributes_.front()->channels == 1) grids.front()->setGridClass(openvdb::GRID_FOG_VOLUME);
-        const auto mask = options_.mask || options_.level_set ? detail::mask_of(*grids.front()) : nullptr;
+        auto grids = make_grids(std::move(bricks), grids_of(request_.fields, request_.cell_numbers));
+        if (request_.fields.front()->channels == 1) grids.front()->setGridClass(openvdb::GRID_FOG_VOLUME);
+        const auto mask = options_.mask || options_.level_set ? mask_of(*grids.front()) : nullptr;
         if (options_.mask) grids.push_back(mask);
         if (samples_) grids.push_back(coverage(part));
-        if (options_.level_set) grids.push_back(level_set(*mask, part));
+        if (options_.level_set) grids.push_back(distances(*mask, part));
         std::vector<VdbGrid> result;
         for (const auto& grid : grids) {
-            detail::describe(*grid, to_voxels_, options_);
+            describe(*grid, request_.to_voxels, options_);
             result.push_back(make_vdb_grid(grid));
         }
         return result;
     }
 
 private:
-    detail::RasterizeCells request(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
-        validate(mesh);
-        if (fields.empty()) throw Error(ErrorCode::InvalidInput, "no field is named to be rasterized");
-        for (const auto& name : fields) attributes_.push_back(&field_of(mesh, name, options.half));
-        to_voxels_ = detail::voxels_asked_for(bounds(mesh), options);
-        detail::RasterizeCells all = request(mesh, options);
-        all.fields = attributes_;
-        all.cell_numbers = options.cell_numbers;
-        return all;
-    }
-
-    /// Without values.
-    [[nodiscard]] detail::RasterizeCells request(const HexMesh& mesh, const RasterizeOptions& options) const {
-        detail::RasterizeCells request{.mesh = &mesh,
-                                       .fields = {},
-                                       .to_voxels = to_voxels_,
-                                       .refine = options.refine,
-                                       .on_limit = options.on_limit,
-                                       .tables = options.tables,
-                                       .progress = options.progress};
-        if (options.limit) detail::set_limit(*options.limit, request);
-        return request;
-    }
-
-    [[nodiscard]] openvdb::GridBase::Ptr level_set(const openvdb::MaskGrid& inside,
-                                                   const std::optional<detail::VoxelBox>& part) const {
+    [[nodiscard]] openvdb::GridBase::Ptr distances(const openvdb::MaskGrid& inside, const std::optional<VoxelBox>& part) const {
         report_progress(options_.progress, "level set", 0);
         const auto& [name, half_width] = *options_.level_set;
         const auto grid =
-            detail::level_set(detail::distance_band(boundary_, half_width, part), inside, to_voxels_.voxel_size, half_width);
+            level_set(distance_band(boundary_, half_width, part), inside, request_.to_voxels.voxel_size, half_width);
         grid->setName(name);
         return grid;
     }
 
-    [[nodiscard]] openvdb::GridBase::Ptr coverage(const std::optional<detail::VoxelBox>& part) {
-        std::optional<detail::VoxelBox> of_samples = part;
+    [[nodiscard]] openvdb::GridBase::Ptr coverage(const std::optional<VoxelBox>& part) {
+        std::optional<VoxelBox> of_samples = part;
         if (part) {
             for (std::size_t d = 0; d < 3; ++d) {
-                of_samples->lower[d] = std::max(part->lower[d], -kFarthest) * detail::kCoverageSamples;
-                of_samples->upper[d] = (std::min(part->upper[d], kFarthest - 1) + 1) * detail::kCoverageSamples - 1;
+                of_samples->lower[d] = std::max(part->lower[d], -kFarthest) * kCoverageSamples;
+                of_samples->upper[d] = (std::min(part->upper[d], kFarthest - 1) + 1) * kCoverageSamples - 1;
             }
         }
         const std::vector<GridOfChannels> wanted{{"coverage", GridKind::Float, 0}};
-        return detail::make_grids(detail::coverage_of(samples_->run(of_samples)), wanted).front();
+        return make_grids(coverage_of(samples_->run(of_samples)), wanted).front();
     }
 
-    static constexpr int kFarthest = 1 << 28;  // of voxels whose samples have numbers
+    static constexpr int kFarthest = 1 << 28;  // voxels: beyond, the indices of their samples would overflow
 
+    CellRequest request_;
     const RasterizeOptions& options_;
-    std::vector<const Attribute*> attributes_;
-    detail::ToVoxels to_voxels_;
-    detail::CellRasterizer rasterizer_;
-    std::optional<detail::CellRasterizer> samples_;
-    std::vector<detail::VoxelTriangle> boundary_;  // of the level set
+    BrickFiller filler_;
+    std::optional<BrickFiller> samples_;   // of coverage
+    std::vector<VoxelTriangle> boundary_;  // of the level set
 };
 
 constexpr int kFar = 1 << 30;
-constexpr double kOverhead = 2;  // leaves that are not full, the trees above them, what lies beyond the control cells
+constexpr double kOverhead = 2;  // for partly filled leaves, inner nodes, and what lies beyond the control cells
 
-/// The bytes of the grids in each layer of bricks across x, by the volumes of the control cells. first: the lowest layer
-std::vector<double> bytes_of_layers(const HexMesh& mesh, const Rasterizer& rasterizer, int& first) {
-    const detail::ToVoxels& to_voxels = rasterizer.to_voxels();
-    const auto layer = [](double x) { return static_cast<int>(std::floor(x / detail::kBrickSide)); };
+/// Estimates the bytes of the grids in each layer of bricks across x from the volumes of the control cells.
+///
+/// first: set to the lowest layer
+std::vector<double> bytes_of_layers(const CellRequest& request, std::size_t bytes_per_voxel, int& first) {
+    const HexMesh& mesh = *request.mesh;
+    const ToVoxels& to_voxels = request.to_voxels;
+    const auto layer = [](double x) { return static_cast<int>(std::floor(x / kBrickSide)); };
     Box box;
     for (const auto& cell : mesh.cells) {
         for (const Index p : cell) box.add(to_voxels(mesh.points[p]));
@@ -168,22 +177,22 @@ std::vector<double> bytes_of_layers(const HexMesh& mesh, const Rasterizer& raste
         Box of_cell;
         for (std::size_t k = 0; k < 8; ++k) of_cell.add(corners[k] = to_voxels(mesh.points[cell[k]]));
         const int lower = layer(of_cell.lower.x), upper = layer(of_cell.upper.x);
-        const double share =
-            std::abs(cell_volume(corners)) * static_cast<double>(rasterizer.bytes_per_voxel()) / (upper - lower + 1);
+        const double share = std::abs(cell_volume(corners)) * static_cast<double>(bytes_per_voxel) / (upper - lower + 1);
         for (int l = lower; l <= upper; ++l) bytes[static_cast<std::size_t>(l - first)] += kOverhead * share;
     }
     return bytes;
 }
 
-/// Slabs of whole bricks across x; the outermost reach as far as voxels do, for what lies beyond the control cells.
-std::vector<detail::VoxelBox> slabs_of(const HexMesh& mesh, const Rasterizer& rasterizer, std::size_t memory_bytes) {
+/// Slabs of whole bricks across x. The outermost two extend to the largest voxel index, as refined cells may lie beyond the
+/// control cells.
+std::vector<VoxelBox> slabs_of(const CellRequest& request, std::size_t bytes_per_voxel, std::size_t memory_bytes) {
     int first = 0;
-    const std::vector<double> bytes = bytes_of_layers(mesh, rasterizer, first);
-    std::vector<detail::VoxelBox> slabs{{{-kFar, -kFar, -kFar}, {kFar - 1, kFar - 1, kFar - 1}}};
+    const std::vector<double> bytes = bytes_of_layers(request, bytes_per_voxel, first);
+    std::vector<VoxelBox> slabs{{{-kFar, -kFar, -kFar}, {kFar - 1, kFar - 1, kFar - 1}}};
     double held = 0;
     for (std::size_t l = 0; l < bytes.size(); ++l) {
         if (held > 0 && held + bytes[l] > static_cast<double>(memory_bytes)) {
-            const int next = (first + static_cast<int>(l)) * detail::kBrickSide;
+            const int next = (first + static_cast<int>(l)) * kBrickSide;
             slabs.push_back(slabs.back());
             slabs[slabs.size() - 2].upper[0] = next - 1;
             slabs.back().lower[0] = next;
@@ -197,22 +206,20 @@ std::vector<detail::VoxelBox> slabs_of(const HexMesh& mesh, const Rasterizer& ra
 }  // namespace
 
 std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
-    return Rasterizer(mesh, fields, options).run();
+    return MeshRasterizer(make_request(mesh, fields, options), options).run();
 }
 
 RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {
-    detail::RasterizeCells request;
-    request.refine = options.refine;
-    request.on_limit = options.on_limit;
-    if (options.limit) detail::set_limit(*options.limit, request);
+    CellRequest request = refinement_of(mesh, options);
     request.refine.levels = request.levels();
-    return detail::tables_of(mesh, request.refine, request.on_limit);
+    return tables_of(mesh, request.refine, request.on_limit);
 }
 
 void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
                      std::size_t memory_bytes, const std::function<void(GridPart)>& take) {
-    Rasterizer rasterizer(mesh, fields, options);
-    const auto slabs = slabs_of(mesh, rasterizer, memory_bytes);
+    const CellRequest request = make_request(mesh, fields, options);
+    MeshRasterizer rasterizer(request, options);
+    const auto slabs = slabs_of(request, bytes_per_voxel(request, options), memory_bytes);
     for (std::size_t s = 0; s < slabs.size(); ++s) {
         take({static_cast<int>(s), static_cast<int>(slabs.size()), rasterizer.run(slabs[s])});
     }

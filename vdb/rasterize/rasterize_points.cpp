@@ -21,21 +21,18 @@ using namespace detail;
 
 namespace {
 
-using detail::kLeafSide;
-using detail::ToVoxels;
-using detail::VoxelBricks;
-using detail::VoxelCoord;
-
 constexpr double kMostVoxels = 2e9;
 constexpr double kMostCrossings = 1e8;  // 2.4 GB
 constexpr double kMaxIndex = 1 << 30;
 
 [[noreturn]] void throw_too_fine(const ToVoxels& to_voxels) {
-    throw Error(ErrorCode::InvalidInput, "the points would fill more than 2e9 voxels, or reach further than their numbers do",
+    throw Error(ErrorCode::InvalidInput, "the points would fill more than 2e9 voxels, or voxel indices would not fit 32 bits",
                 "voxel size " + std::to_string(to_voxels.voxel_size), "larger voxels");
 }
 
-/// The box of voxels about a box in the world. throws: Error(InvalidInput) if their numbers do not fit 32 bits
+/// A box in voxel space.
+///
+/// throws: Error(InvalidInput) if voxel indices do not fit 32 bits
 Box in_voxels(const Box& world, const ToVoxels& to_voxels) {
     Box box;
     for (int k = 0; k < 8; ++k) {
@@ -49,16 +46,16 @@ Box in_voxels(const Box& world, const ToVoxels& to_voxels) {
     return box;
 }
 
-std::vector<detail::VoxelTriangle> triangles_of(const Surface& surface, const ToVoxels& to_voxels) {
-    std::vector<detail::VoxelTriangle> triangles;
+std::vector<VoxelTriangle> triangles_of(const Surface& surface, const ToVoxels& to_voxels) {
+    std::vector<VoxelTriangle> triangles;
     for (const auto& [a, b, c] : surface.triangles) {
         triangles.push_back({to_voxels(surface.points[a]), to_voxels(surface.points[b]), to_voxels(surface.points[c])});
     }
     return triangles;
 }
 
-/// throws: Error(InvalidInput) if a boundary holds more voxels than there may be, or is crossed by too many of their columns
-void check_size(std::span<const detail::VoxelTriangle> boundary, const ToVoxels& to_voxels) {
+/// throws: Error(InvalidInput) if a boundary encloses too many voxels, or too many columns of voxels cross it
+void check_size(std::span<const VoxelTriangle> boundary, const ToVoxels& to_voxels) {
     double volume = 0, crossings = 0;
     for (const auto& [a, b, c] : boundary) {
         volume += glm::dot(a, glm::cross(b, c)) / 6;
@@ -67,12 +64,12 @@ void check_size(std::span<const detail::VoxelTriangle> boundary, const ToVoxels&
     if (!(std::abs(volume) <= kMostVoxels && crossings <= kMostCrossings)) throw_too_fine(to_voxels);
 }
 
-/// The voxels that a boundary holds.
-VoxelBricks voxels_within(std::span<const detail::VoxelTriangle> boundary, const ToVoxels& to_voxels, std::size_t channels) {
+/// The voxels whose centres lie inside a boundary.
+VoxelBricks voxels_within(std::span<const VoxelTriangle> boundary, const ToVoxels& to_voxels, std::size_t channels) {
     check_size(boundary, to_voxels);
     VoxelBricks bricks(channels);
     double count = 0;
-    detail::SurfaceColumns(boundary).for_each_run([&](const VoxelCoord& lowest, int upper) {
+    SurfaceColumns(boundary).for_each_run([&](const VoxelCoord& lowest, int upper) {
         count += double{1} * upper - lowest[2] + 1;
         if (count > kMostVoxels) throw_too_fine(to_voxels);
         for (VoxelCoord voxel = lowest; voxel[2] <= upper; ++voxel[2]) {
@@ -83,21 +80,21 @@ VoxelBricks voxels_within(std::span<const detail::VoxelTriangle> boundary, const
     return bricks;
 }
 
-/// All voxels of the leaves that the support of a kernel may touch.
+/// All voxels of the leaves that the support of any kernel may touch.
 VoxelBricks voxels_near(const RbfVolume& volume, const ToVoxels& to_voxels, std::size_t channels) {
     VoxelBricks bricks(channels);
     double leaves = 0;
     for (std::size_t i = 0; i < volume.size(); ++i) {
         const auto& [xx, xy, xz, yy, yz, zz] = volume.frames[i];
-        const Vec3 reach(std::sqrt(xx), std::sqrt(yy), std::sqrt(zz));  // of the ellipsoid of the frame, along the axes
+        const Vec3 reach(std::sqrt(xx), std::sqrt(yy), std::sqrt(zz));  // of the support ellipsoid, along the axes
         const Box box = in_voxels({volume.centers[i] - reach, volume.centers[i] + reach}, to_voxels);
         const auto leaf = [](double voxel) { return static_cast<int>(std::floor(voxel)) & ~(kLeafSide - 1); };
         for (int x = leaf(box.lower.x); x <= box.upper.x; x += kLeafSide) {
             for (int y = leaf(box.lower.y); y <= box.upper.y; y += kLeafSide) {
                 for (int z = leaf(box.lower.z); z <= box.upper.z; z += kLeafSide) {
-                    detail::VoxelLeaf& made = bricks.leaf_at({x, y, z});
+                    VoxelLeaf& made = bricks.leaf_at({x, y, z});
                     if (made.active[0] == 0) leaves += 1;
-                    if (leaves * detail::kLeafVoxels > kMostVoxels) throw_too_fine(to_voxels);
+                    if (leaves * kLeafVoxels > kMostVoxels) throw_too_fine(to_voxels);
                     made.active.fill(~std::uint64_t{0});
                 }
             }
@@ -106,10 +103,10 @@ VoxelBricks voxels_near(const RbfVolume& volume, const ToVoxels& to_voxels, std:
     return bricks;
 }
 
-/// Gives the active voxels of a leaf their values; those where a field has none are 0, or with `drop` no longer active.
+/// Sets the values of the active voxels of a leaf. Where a field has no value the voxel is 0, or with `drop` inactive.
 void evaluate(std::span<const RbfField> fields, const ToVoxels& to_voxels, const Mat3& to_world, bool drop,
-              const VoxelCoord& origin, detail::VoxelLeaf& leaf) {
-    for (std::size_t i = 0; i < detail::kLeafVoxels; ++i) {
+              const VoxelCoord& origin, VoxelLeaf& leaf) {
+    for (std::size_t i = 0; i < kLeafVoxels; ++i) {
         const std::uint64_t bit = std::uint64_t{1} << i % 64;
         if ((leaf.active[i / 64] & bit) == 0) continue;
         const int n = static_cast<int>(i);
@@ -118,12 +115,12 @@ void evaluate(std::span<const RbfField> fields, const ToVoxels& to_voxels, const
         for (std::size_t f = 0; f < fields.size(); ++f) {
             const std::optional<double> value = fields[f].value(x);
             if (!value && drop) leaf.active[i / 64] &= ~bit;
-            leaf.values[f * detail::kLeafVoxels + i] = static_cast<float>(value.value_or(0));
+            leaf.values[f * kLeafVoxels + i] = static_cast<float>(value.value_or(0));
         }
     }
 }
 
-/// The bricks with their values; leaves without active voxels are left out.
+/// The bricks with their values, without leaves that have no active voxel.
 VoxelBricks evaluated(VoxelBricks bricks, std::span<const RbfField> fields, const ToVoxels& to_voxels, bool drop,
                       Progress* progress) {
     const Mat3 to_world = glm::inverse(to_voxels.linear);
@@ -154,39 +151,38 @@ VoxelBricks evaluated(VoxelBricks bricks, std::span<const RbfField> fields, cons
 std::vector<VdbGrid> rasterize_points(const RbfVolume& volume, std::span<const std::size_t> channels,
                                       const RasterizeOptions& options) {
     if (channels.empty()) throw Error(ErrorCode::InvalidInput, "no field is named to be rasterized");
-    const ToVoxels to_voxels = detail::voxels_asked_for(box_of(volume), options);
-    detail::check_representable(to_voxels.voxel_size);
+    const ToVoxels to_voxels = to_voxels_of(box_of(volume), options);
+    check_representable(to_voxels.voxel_size);
     static_cast<void>(in_voxels(box_of(volume), to_voxels));
     const bool bounded = !volume.boundary.triangles.empty();
     if (options.level_set) {
-        detail::check_level_set(options);
-        if (!bounded) throw Error(ErrorCode::InvalidInput, "a level set needs a boundary, which these points have not");
+        check_level_set(options);
+        if (!bounded) throw Error(ErrorCode::InvalidInput, "a level set needs a boundary, but these points have none");
     }
     std::vector<RbfField> fields;
-    std::vector<detail::GridOfChannels> wanted;
+    std::vector<GridOfChannels> wanted;
     for (const std::size_t channel : channels) {
         fields.emplace_back(
             volume, bounded ? RbfFieldOptions{.channel = channel, .least_weight = 0} : RbfFieldOptions{.channel = channel});
-        wanted.push_back({volume.channels[channel].name, detail::GridKind::Float, wanted.size()});
+        wanted.push_back({volume.channels[channel].name, GridKind::Float, wanted.size()});
     }
     openvdb::initialize();
     const auto boundary = triangles_of(volume.boundary, to_voxels);
     VoxelBricks voxels =
         bounded ? voxels_within(boundary, to_voxels, fields.size()) : voxels_near(volume, to_voxels, fields.size());
-    auto grids = detail::make_grids(evaluated(std::move(voxels), fields, to_voxels, !bounded, options.progress), wanted);
+    auto grids = make_grids(evaluated(std::move(voxels), fields, to_voxels, !bounded, options.progress), wanted);
     grids.front()->setGridClass(openvdb::GRID_FOG_VOLUME);
-    const auto mask = detail::mask_of(*grids.front());
+    const auto mask = mask_of(*grids.front());
     if (options.mask) grids.push_back(mask);
     if (options.level_set) {
         const double half_width = options.level_set->half_width_voxels;
-        detail::check_band(boundary, half_width);
-        grids.push_back(
-            detail::level_set(detail::distance_band(boundary, half_width, {}), *mask, to_voxels.voxel_size, half_width));
+        check_band(boundary, half_width);
+        grids.push_back(level_set(distance_band(boundary, half_width, {}), *mask, to_voxels.voxel_size, half_width));
         grids.back()->setName(options.level_set->name);
     }
     std::vector<VdbGrid> result;
     for (const auto& grid : grids) {
-        detail::describe(*grid, to_voxels, options);
+        describe(*grid, to_voxels, options);
         result.push_back(make_vdb_grid(grid));
     }
     return result;

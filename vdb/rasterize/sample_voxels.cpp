@@ -15,8 +15,8 @@ using namespace detail;
 namespace {
 
 const openvdb::FloatGrid& floats_of(const VdbGrid& grid) {
-    if (grid.data().floats) return *grid.data().floats;
-    throw Error(ErrorCode::InvalidInput, "its voxels are no floats", "grid \"" + grid.report().name + "\"");
+    if (const auto& floats = VdbData::of(grid).floats) return *floats;
+    throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid \"" + grid.report().name + "\"");
 }
 
 constexpr std::size_t kBatch = 512;  // leaves whose points are evaluated at once

@@ -21,7 +21,7 @@ using openvdb::Coord;
 
 constexpr int kMostLayers = 1000;
 
-/// The 26 voxels about one.
+/// The steps to the 26 neighbours of a voxel.
 std::array<Coord, 26> neighbours() {
     std::array<Coord, 26> all;
     std::size_t count = 0;
@@ -35,7 +35,7 @@ std::array<Coord, 26> neighbours() {
     return all;
 }
 
-/// One voxel further. Only new voxels are written and only old ones are read, so that no order matters.
+/// Adds one layer of voxels. Only new voxels are written and only old ones are read, so the order does not matter.
 void add_layer(Tree& tree) {
     const openvdb::MaskTree before(tree, false, true, openvdb::TopologyCopy());
     openvdb::tools::dilateActiveValues(tree, 1, openvdb::tools::NN_FACE_EDGE_VERTEX, openvdb::tools::IGNORE_TILES);
@@ -64,8 +64,8 @@ void add_layer(Tree& tree) {
 }  // namespace
 
 VdbGrid spread_vectors(const VdbGrid& grid, int layers) {
-    const auto source = openvdb::gridPtrCast<openvdb::Vec3SGrid>(grid.data().grid);
-    if (!source) throw Error(ErrorCode::InvalidInput, "the voxels of '" + grid.report().name + "' are no vectors of floats");
+    const auto source = openvdb::gridPtrCast<openvdb::Vec3SGrid>(VdbData::of(grid).grid);
+    if (!source) throw Error(ErrorCode::InvalidInput, "the voxels of '" + grid.report().name + "' are not vectors of floats");
     if (layers < 0 || layers > kMostLayers) {
         throw Error(ErrorCode::InvalidInput, std::to_string(layers) + " layers of voxels cannot be added", "spread_vectors",
                     "0 to 1000");

@@ -78,7 +78,7 @@ TEST(CompareFields, NotANumberShows) {
 }
 
 TEST(CompareFields, TrilinearCellsHaveTheErrorOfLinearInterpolation) {
-    // Of x² between points h apart it is h² t (1−t): h²/4 at most, h²/√30 in the mean square, and its slope h (1−2t) is h/√3.
+    // The error of x² between points h apart is h² t (1−t): h²/4 at most, root mean square h²/√30; that of the slope is h/√3.
     const double h = 1.0 / 8;
     const HexMesh mesh = test::with_field(test::box_mesh(8), "f", [](const Vec3& x) { return x.x * x.x; });
     const MeshField field(mesh, "f");
@@ -87,7 +87,7 @@ TEST(CompareFields, TrilinearCellsHaveTheErrorOfLinearInterpolation) {
     const FieldDifference errors = compare_fields(field.view(), exact);
     EXPECT_NEAR(errors.l1, h * h / 6, 4 * .075 * h * h / std::sqrt(1e5));  // .075: the deviation of t (1−t)
     EXPECT_NEAR(errors.l2, h * h / std::sqrt(30), 2e-3 * h * h);           // 1 % at 100000 places
-    EXPECT_NEAR(errors.linf, h * h / 4, 1e-4 * h * h);                     // a place within .01 h of a cell's middle
+    EXPECT_NEAR(errors.linf, h * h / 4, 1e-4 * h * h);                     // some place lies within .01 h of a cell's middle
     EXPECT_LE(errors.linf, h * h / 4 * (1 + 1e-12));
     EXPECT_NEAR(errors.gradient_rmse, h / std::sqrt(3), 5e-3 * h);
 }
@@ -139,8 +139,8 @@ TEST(NewVertices, AreThoseThatOneRefinementAdds) {
     const HexMesh fine = refine(mesh);
     EXPECT_EQ(places.size(), fine.points.size() - mesh.points.size());
     EXPECT_EQ(new_vertices(mesh, "f", 1).size(), refine(fine).points.size() - fine.points.size());
-    // The scheme's own mesh has its values: the paper's error of the exact thing is none.
-    EXPECT_LT(compare_field(MeshField(fine, "f").view(), places).l2, 1e-7);  // a cell finds a place to 1e-8 of its size
+    // The refined mesh has the scheme's values, so the paper's error measure is 0 for it.
+    EXPECT_LT(compare_field(MeshField(fine, "f").view(), places).l2, 1e-7);  // places are found to 1e-8 of a cell's size
     EXPECT_THROW((void)new_vertices(mesh, "g"), Error);
 }
 
@@ -165,8 +165,8 @@ TEST(IntegrateField, SmoothFieldsToSecondOrder) {
 TEST(IntegrateField, VolumeOfABall) {
     const FieldView ball{.value = [](const Vec3& x) { return glm::length(x) <= 1 ? std::optional(1.0) : std::nullopt; },
                          .box = {Vec3(-1.0), Vec3(1.0)}};
-    // Some 1.5 times the surface over h², 19000 cubes, are cut, and each errs by about .29 of itself, at random: together by
-    // √19000 · .29 h³ = 1.2e-3; four of these.
+    // Some 19000 cubes are cut (1.5 times the surface over h²); each has a random error of about .29 of its volume, together
+    // √19000 · .29 h³ = 1.2e-3. The tolerance is four of these.
     EXPECT_NEAR(integrate_field(ball, ball.box, 64), 4. / 3 * std::acos(-1.0), 5e-3);
 }
 
@@ -179,7 +179,7 @@ TEST(MassError, IsRelative) {
     const auto zero = in_box([](const Vec3&) { return 0.0; });
     EXPECT_EQ(mass_error(zero, zero, 4).relative, 0);
     EXPECT_EQ(mass_error(in_box(f), zero, 4).relative, std::numeric_limits<double>::infinity());
-    // A field that reaches further counts there too.
+    // A field with a larger domain counts there too.
     EXPECT_NEAR(mass_error(in_box([](const Vec3&) { return 1.0; }, {Vec3(0.0), Vec3(2, 1, 1)}),
                            in_box([](const Vec3&) { return 1.0; }), 32)
                     .relative,

@@ -42,14 +42,14 @@ TEST(Isosurface, OfADistanceIsASphere) {
     const Surface sphere = isosurface(distance_from(Vec3(0.0)), .7, kBox, 40);
     for (const Vec3& p : sphere.points) ASSERT_NEAR(glm::length(p), .7, 1e-9);
     const double h = 2. / 40, exact = 4 * std::numbers::pi * .49;
-    // Flat triangles in a sphere lose of the area about the square of their size over the radius.
+    // Flat triangles in a sphere lose a part of the area of about the square of their size over the radius.
     EXPECT_NEAR(area_of(sphere), exact, exact * h * h / .49);
     EXPECT_LT(area_of(sphere), exact);
     double volume = 0;
     for (const auto& t : sphere.triangles) {
         volume += glm::dot(sphere.points[t[0]], glm::cross(sphere.points[t[1]], sphere.points[t[2]])) / 6;
     }
-    // Towards the smaller values: inward here. Closed: its signed volume is that of the ball.
+    // The normals point to the smaller values, inward here. The surface is closed: its signed volume is that of the ball.
     EXPECT_NEAR(-volume, 4. / 3 * std::numbers::pi * .343, .01);
 }
 
@@ -91,11 +91,11 @@ TEST(IsosurfaceDistance, OfTiltedPlanes) {
 
 TEST(IsosurfaceDistance, OfSpheres) {
     const double h = 2. / 48, flat = h * h / .5;  // a triangle of up to √3 h lies up to 3h²/(8·.5) below its sphere
-    // Around one centre: of radii .5 and .5 + .06 (the value .5 of a distance less .06).
+    // About the same centre: radii .5 and .5 + .06 (the value .5 of a distance less .06).
     FieldView larger = distance_from(Vec3(0.0));
     larger.value = [](const Vec3& x) { return std::optional(glm::length(x) - .06); };
     EXPECT_NEAR(isosurface_distance(larger, distance_from(Vec3(0.0)), .5, 48).distance, .06, flat);
-    // Moved: as far as they are moved.
+    // Moved spheres: the distance is that of the move.
     const Vec3 moved(.03, -.05, .02);
     EXPECT_NEAR(isosurface_distance(distance_from(moved), distance_from(Vec3(0.0)), .5, 48).distance, glm::length(moved), flat);
     EXPECT_LT(isosurface_distance(distance_from(moved), distance_from(moved), .5, 48).distance, 1e-15);  // rounding
@@ -112,7 +112,7 @@ TEST(IsosurfaceDistance, WhereOneOrBothAreMissing) {
 
 TEST(HausdorffDistance, OfTrianglesByHand) {
     const Surface a{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}, {{0, 1, 2}}};
-    // One corner over the inside, one beside an edge, one beyond a corner.
+    // One corner above the inside of the other triangle, one beside an edge, one beyond a corner.
     const Surface b{{Vec3(.2, .2, .7), Vec3(.5, -.3, .4), Vec3(2, 0, 0)}, {{0, 1, 2}}};
     // From b: .7 over the inside, √(.3² + .4²) = .5 to an edge, 1 to a corner. From a: its third corner is √(.04 + .64 + .49)
     // from the first of b, and no nearer to its edges there.

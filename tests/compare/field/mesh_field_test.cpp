@@ -9,7 +9,6 @@
 #include <random>
 
 #include "subvol/error.h"
-#include "subvol/field.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "subvol/points_field.h"
@@ -20,8 +19,6 @@
 
 namespace subvol {
 namespace {
-
-static_assert(Field<MeshField> && Field<PointsField>);
 
 const Vec3 kSlope(1.5, -2, .7);
 
@@ -39,7 +36,7 @@ std::vector<Vec3> random_points(const Box& box, std::size_t count, unsigned seed
     return points;
 }
 
-/// A linear field comes back wherever there is a cell; and the cells hold as much of the box as their volumes say.
+/// A linear field is reproduced in every cell; and the cells contain as many random places of the box as their volumes predict.
 void expect_linear(const HexMesh& mesh, double tolerance) {
     const MeshField field(mesh, "f");
     const std::size_t count = 20000;
@@ -87,7 +84,7 @@ TEST(MeshField, GradientIsThatOfTheTrilinearCell) {
             const auto before = field.value(x - d), after = field.value(x + d);
             if (!before || !after) continue;
             const double difference = (*after - *before) / (2 * kStep);
-            // Across a face the slope jumps by up to the cell's size times the curvature.
+            // Across a face the slope jumps by at most the cell's size times the curvature.
             if (std::abs((*gradient)[k] - difference) < 1e-3) ++compared;
         }
     }
@@ -128,7 +125,7 @@ TEST(PointsField, IsThatOfThePointsInsideTheBoundary) {
 TEST(PointsField, RaysThroughEdgesAndCornersCountOnce) {
     RbfVolume volume = sample_rbf_points(test::with_field(test::box_mesh(4), "f", linear), {.boundary_levels = 0}).volume;
     const PointsField field(volume);
-    // All lines up the z axis through these places meet corners or edges of the boundary's triangles.
+    // All rays up the z axis from these places meet corners or edges of the boundary's triangles.
     for (int i = 1; i < 16; ++i) {
         for (int j = 1; j < 16; ++j) {
             const double x = i / 16.0, y = j / 16.0;
@@ -141,7 +138,7 @@ TEST(PointsField, RaysThroughEdgesAndCornersCountOnce) {
 
 TEST(PointsField, ACavityIsOutside) {
     RbfVolume volume = sample_rbf_points(test::with_field(test::box_mesh(6), "f", linear), {.boundary_levels = 0}).volume;
-    // The box once more, turned inside out and smaller about its middle.
+    // The box once more, inside out and scaled down about its middle.
     const Surface outer = volume.boundary;
     const auto first = static_cast<Index>(outer.points.size());
     for (const Vec3& p : outer.points) volume.boundary.points.push_back(Vec3(.5) + .4 * (p - Vec3(.5)));

@@ -14,15 +14,15 @@
 namespace subvol {
 namespace {
 
-constexpr double kFloat = 1e-6;  // maps are floats in [0,1], and their colour exponents double an error at most
+constexpr double kFloat = 1e-6;  // maps are floats in [0,1], and the colour exponents at most double an error
 
-// FLIP once more, straight from the papers: in double, with full square filters, one pixel at a time.
+// A second implementation of FLIP, directly from the papers: in double, with full square filters, one pixel at a time.
 namespace naive {
 
 using Pixels = std::vector<Vec3>;
 const double kPi = std::acos(-1.0);
 
-/// From the chromaticities of sRGB's primaries and its white.
+/// Computed from the chromaticities of sRGB's primaries and its white.
 Mat3 primaries() {
     const auto xyz = [](double x, double y) { return Vec3(x / y, 1, (1 - x - y) / y); };
     const Mat3 unscaled(xyz(.64, .33), xyz(.30, .60), xyz(.15, .06));
@@ -54,7 +54,7 @@ double color_distance(const Vec3& a, const Vec3& b) {
     return std::pow(std::abs(p.x - q.x) + std::sqrt((p.y - q.y) * (p.y - q.y) + (p.z - q.z) * (p.z - q.z)), .7);
 }
 
-/// Sums a filter's weights over a square times the picture, whose last pixels repeat.
+/// Sums a filter's weights times the picture over a square; the picture's last pixels repeat beyond its border.
 template <class Weight>
 Vec3 filtered(const Pixels& pixels, int width, int height, int x, int y, int reach, const Weight& weight) {
     Vec3 sum(0.0);
@@ -154,10 +154,11 @@ TEST(Flip, GreenAgainstBlueIsTheMost) {
 }
 
 TEST(Flip, PlainColorsByHand) {
-    // Black and white differ by ΔL = 100 and in no hue: 100^.7 = 25.1189. Green and blue differ by 203.302 in all (HyAB after
-    // Hunt), 41.2760 after the exponent: beyond the bend at .4 of it, .95 + .05 (25.1189 − 16.5104) / (41.2760 − 16.5104).
+    // Black and white differ by ΔL = 100 only: 100^.7 = 25.1189. Green and blue have the largest difference, 203.302 (HyAB
+    // after Hunt), 41.2760 after the exponent. Beyond the bend at .4 of it: .95 + .05 (25.1189 − 16.5104) / (41.2760
+    // − 16.5104).
     EXPECT_NEAR(flip_of_colors({0, 0, 0}, {1, 1, 1}), .96738, 1e-5);
-    // L of a grey with Y = .18 is 49.496: |100 − 49.496|^.7 = 15.5714 lies before the bend: .95 · 15.5714 / 16.5104.
+    // L of a grey with Y = .18 is 49.496: |100 − 49.496|^.7 = 15.5714 lies below the bend: .95 · 15.5714 / 16.5104.
     EXPECT_NEAR(flip_of_colors({.18, .18, .18}, {1, 1, 1}), .89597, 1e-5);
     EXPECT_EQ(flip_of_colors({.3, .2, .7}, {.3, .2, .7}), 0);
 }
@@ -257,7 +258,7 @@ TEST(HdrFlip, ABlackBackgroundDoesNotMakeTheMedian) {
     const HdrFlipResult result = hdr_flip(Image(20, 20), reference);
     EXPECT_NEAR(result.stop - result.start, 2, 1e-9);
     EXPECT_GT(result.mean, 0);
-    EXPECT_EQ(hdr_flip(reference, Image(20, 20)).stop, 0);  // a black reference has no exposure of its own
+    EXPECT_EQ(hdr_flip(reference, Image(20, 20)).stop, 0);  // a black reference determines no exposure
 }
 
 TEST(HdrFlip, RefusesExposuresThatAreNone) {

@@ -74,7 +74,7 @@ std::vector<unsigned char> bytes_of(const fs::path& path) {
     return bytes;
 }
 
-// The formula once more, written from the standard: the library's own must not be its witness.
+// The formula again, written from the standard, so that the library is not tested with its own code.
 double srgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
@@ -139,7 +139,7 @@ TEST_F(ImageIo, PngIsRoundedSrgb) {
     const Image read = read_image(folder_ / "a.png");
     ASSERT_EQ(read.rgba.size(), image.rgba.size());
     for (std::size_t i = 0; i < image.rgba.size(); ++i) {
-        // Half a step of 1/255, and a little for the way through floats.
+        // Half a step of 1/255, and a little for rounding to floats.
         ASSERT_NEAR(srgb(static_cast<double>(read.rgba[i])), srgb(static_cast<double>(image.rgba[i])), 0.501 / 255);
     }
 }
@@ -158,7 +158,7 @@ TEST_F(ImageIo, MiddleGreyAndTheEnds) {
 }
 
 TEST_F(ImageIo, PngLiesOverTheBackground) {
-    // Premultiplied: .25 of its own light, and half of the background's shows through.
+    // Premultiplied: .25 of its own light, plus half of the background's.
     write_image(folder_ / "a.PNG", uniform_image(Vec3(0.25, 0.0, 0.25), 0.5f), Vec3(0.5, 1.0, 0.0));
     const auto bytes = bytes_of(folder_ / "a.PNG");
     EXPECT_EQ(bytes[0], 188);                            // .25 + .5 · .5
@@ -180,7 +180,7 @@ TEST_F(ImageIo, ForeignPngIsPremultipliedInLinearLight) {
     ASSERT_TRUE(output->open((folder_ / "a.png").string(), spec) && output->write_image(OIIO::TypeDesc::UINT8, pixel.data()) &&
                 output->close());
     const Image read = read_image(folder_ / "a.png");
-    // 188 stands for .5, to half a step: .002 in linear light there, a fifth of it after alpha.
+    // 188 is .5 up to half a step, which is .002 in linear light there, and a fifth of that after alpha.
     EXPECT_NEAR(read.rgba[0], 0.5 * 0.2, 0.001);
     EXPECT_NEAR(read.rgba[1], 0.2, 1e-6);
     EXPECT_EQ(read.rgba[2], 0.0f);
@@ -211,7 +211,7 @@ TEST_F(ImageIo, RefusesWithoutLeavingAFile) {
     EXPECT_TRUE(folder_is_empty());
 }
 
-/// While there is one, files end after so many bytes, as they do on a disk that is full.
+/// During its lifetime, files cannot grow beyond this many bytes, as on a full disk.
 class SmallDisk {
 public:
     explicit SmallDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {

@@ -88,7 +88,7 @@ TEST(DifferenceHeatmap, BrighterWhereTheDifferenceIsLarger) {
     EXPECT_LT(luminance(heat.pixel(100, 0)), 1e-3);       // no difference: the first colour
     EXPECT_GT(luminance(heat.pixel(width - 1, 3)), 0.9);  // the largest: the last colour
     for (std::size_t i = 3; i < heat.rgba.size(); i += 4) ASSERT_EQ(heat.rgba[i], 1.0f);
-    // The bar of the legend runs over the same colours as this ramp does.
+    // The bar of the legend has the same colours as this ramp.
     for (int x = 0; x < width; ++x) {
         for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(heat.pixel(x, 10)[c], heat.pixel(x, 3)[c], 1e-5);  // float ramp
     }
@@ -109,7 +109,7 @@ TEST(DifferenceHeatmap, NumbersTellTheScale) {
     EXPECT_NE(legend_of(0.5), legend_of(0.25));
     EXPECT_EQ(legend_of(0.5), legend_of(0.5));
     const auto legend = legend_of(0.5);
-    EXPECT_GT(std::count(legend.begin(), legend.end(), 1.0f), 120 * 18);  // more than the alphas alone
+    EXPECT_GT(std::count(legend.begin(), legend.end(), 1.0f), 120 * 18);  // more than the alpha values alone
 }
 
 TEST(DifferenceHeatmap, EqualAndTinyImages) {

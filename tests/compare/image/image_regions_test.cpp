@@ -28,7 +28,7 @@ Image disc(int width, int height) {
     return image;
 }
 
-/// Whether a place of the picture within the reach of x, y, corners included, is of the disc, or is not.
+/// Whether some pixel of the picture within `reach` of (x, y), corners included, is in the disc (or, if not covered, outside).
 bool near(bool covered, int x, int y, int reach, const Image& image) {
     for (int v = std::max(0, y - reach); v <= std::min(image.height - 1, y + reach); ++v) {
         for (int u = std::max(0, x - reach); u <= std::min(image.width - 1, x + reach); ++u) {
@@ -65,7 +65,7 @@ TEST(ImageRegions, AnOpaquePictureIsTakenByItsBackground) {
     const Vec3 background(.2, .3, .4);
     Image image = disc(40, 33);
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
-        // As a file of 8 bits has it: not quite the background.
+        // As in an 8-bit file: not exactly the background.
         for (int c = 0; c < 3; ++c)
             image.rgba[i + static_cast<std::size_t>(c)] += image.rgba[i + 3] > 0 ? 0 : static_cast<float>(background[c] + .001);
         image.rgba[i + 3] = 1;
@@ -85,7 +85,7 @@ TEST(ImageRegions, ErrorsShowWhereTheyAre) {
     const auto count = static_cast<double>(std::count(regions.edge.begin(), regions.edge.end(), 1));
     EXPECT_DOUBLE_EQ(compare_images(a, b, regions.edge).mse, .25 / (3 * count));
     EXPECT_DOUBLE_EQ(mean_of(difference_map(a, b), regions.edge), .5 / count);
-    EXPECT_THROW((void)compare_images(a, b, PixelMask(40 * 33)), Error);  // none counts
+    EXPECT_THROW((void)compare_images(a, b, PixelMask(40 * 33)), Error);  // no pixel counts
     EXPECT_THROW((void)compare_images(a, b, PixelMask(7, 1)), Error);
     EXPECT_THROW((void)silhouette_regions(a, 0), Error);
 }

@@ -30,7 +30,7 @@ std::string output_of(const std::string& command) {
     return all;
 }
 
-/// The number after the words; NaN if they are not there.
+/// The number after the given words; NaN if the words are missing.
 double number_after(const std::string& text, const std::string& words) {
     const std::size_t at = text.find(words);
     return at == std::string::npos ? NAN : std::stod(text.substr(at + words.size()));
@@ -65,7 +65,7 @@ protected:
 TEST_F(AsIdiff, Numbers) {
     const std::string said = idiff("-fail .01 -warn .00001");
     const OiioMetrics metrics = compare_oiio(a_, b_, {.fail = .01f, .warn = .00001f});
-    // The program prints six digits, and dB to hundredths or so.
+    // The program prints six digits, and dB to about hundredths.
     const double mean = number_after(said, "Mean error = "), rms = number_after(said, "RMS error = ");
     EXPECT_NEAR(metrics.mean_error, mean, 1e-5 * mean) << said;
     EXPECT_NEAR(metrics.rms_error, rms, 1e-5 * rms) << said;
@@ -87,7 +87,7 @@ TEST(CompareOiio, AgreesWithOurMetrics) {
     Image a = random_image(33, 21, 2), b = random_image(33, 21, 3);
     const OiioMetrics oiio = compare_oiio(a, b);
     const ImageMetrics ours = compare_images(a, b);
-    // OpenImageIO counts alpha as a fourth channel, which is equal here; it adds up floats and doubles in turns.
+    // OpenImageIO counts alpha as a fourth channel, which is equal here; it adds up partly in floats and partly in doubles.
     EXPECT_NEAR(oiio.mean_error, .75 * ours.mae, 1e-6);
     EXPECT_NEAR(oiio.rms_error, std::sqrt(.75) * ours.rmse, 1e-6);
     EXPECT_NEAR(oiio.max_error, ours.max, 1e-6);

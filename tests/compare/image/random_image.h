@@ -7,7 +7,7 @@
 
 namespace subvol {
 
-/// Opaque, every colour anywhere in [0, largest].
+/// Opaque, with random colours in [0, largest].
 inline Image random_image(int width, int height, unsigned seed, double largest = 1) {
     std::mt19937 random(seed);
     Image image(width, height);
@@ -17,7 +17,7 @@ inline Image random_image(int width, int height, unsigned seed, double largest =
     return image;
 }
 
-/// One colour, alpha 1.
+/// One colour everywhere, alpha 1.
 inline Image plain_image(int width, int height, float red, float green, float blue) {
     Image image(width, height);
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {

@@ -13,9 +13,9 @@
 namespace subvol {
 namespace {
 
-constexpr double kFloat = 1e-6;  // the map is of floats in [-1,1]
+constexpr double kFloat = 1e-6;  // the map has floats in [-1,1]
 
-/// One window of one channel, straight from the definition.
+/// One window of one channel, directly from the definition.
 double similarity(const Image& a, const Image& b, int x, int y, std::size_t channel) {
     double weights = 0, mean_a = 0, mean_b = 0, var_a = 0, var_b = 0, cov = 0;
     const auto each = [&](const auto& visit) {
@@ -71,7 +71,7 @@ TEST(Ssim, PlainPicturesByHand) {
     const double expected = (2 * .2 * .6 + 1e-4) / (.2 * .2 + .6 * .6 + 1e-4);
     const SsimResult result = ssim(plain_image(16, 16, .2f, .2f, .2f), plain_image(16, 16, .6f, .6f, .6f));
     EXPECT_NEAR(result.mean, expected, kFloat);
-    // In one channel alone: a third of the loss.
+    // In one channel only: a third of the loss.
     EXPECT_NEAR(ssim(plain_image(16, 16, .2f, .2f, .2f), plain_image(16, 16, .2f, .2f, .6f)).mean, (2 + expected) / 3, kFloat);
 }
 

@@ -59,7 +59,7 @@ TEST(Plot, IsOneElementWithAllThatIsShown) {
 }
 
 TEST(Plot, PlacesFollowTheAxes) {
-    // Equal ratios are equal distances: the middle point of three decades' ends lies midway.
+    // Equal ratios are equal distances: the middle one of three points a decade apart lies midway.
     const std::string svg = plot_svg(
         {.title = "t", .x_label = "x", .y_label = "y", .lines = {{.name = "l", .x = {1, 10, 100}, .y = {1, 10, 100}}}});
     const std::size_t path = svg.rfind("<path", svg.find("d=\"M", svg.find("frame")));
@@ -67,13 +67,13 @@ TEST(Plot, PlacesFollowTheAxes) {
     ASSERT_EQ(
         std::sscanf(svg.c_str() + svg.find("d=\"M", path), "d=\"M%lf %lfL%lf %lfL%lf %lf", x, y, x + 1, y + 1, x + 2, y + 2),
         6);
-    EXPECT_NEAR(x[1], (x[0] + x[2]) / 2, .02);  // places have two decimals
+    EXPECT_NEAR(x[1], (x[0] + x[2]) / 2, .02);  // positions have two decimals
     EXPECT_NEAR(y[1], (y[0] + y[2]) / 2, .02);
     EXPECT_GT(y[0], y[2]);  // up is more
 }
 
 TEST(Plot, WithoutFiguresSaysSo) {
-    EXPECT_NE(plot_svg({.title = "t", .x_label = "", .y_label = "", .lines = {}}).find("no figures"), std::string::npos);
+    EXPECT_NE(plot_svg({.title = "t", .x_label = "", .y_label = "", .lines = {}}).find("no data"), std::string::npos);
     EXPECT_EQ(
         plot_svg({.title = "t", .x_label = "", .y_label = "", .lines = {{.name = "one", .x = {2}, .y = {3}}}}).find("nan"),
         std::string::npos);

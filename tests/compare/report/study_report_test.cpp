@@ -29,11 +29,11 @@ StudyResults results() {
 TEST(Report, JudgesDemands) {
     auto judged = judge(results());
     ASSERT_EQ(judged.size(), 1U);
-    EXPECT_EQ(judged[0].words, "PSNR <dB> at least 40: 1 of 2; worst is pawn with 31");
+    EXPECT_EQ(judged[0].words, "PSNR <dB> at least 40: 1 of 2; the worst is pawn with 31");
     EXPECT_FALSE(judged[0].all_met());
     StudyResults failed = results();
     failed.results[1] = {.failure = "broke down"};
-    EXPECT_EQ(judge(failed)[0].met, 1U);  // what failed meets no demand
+    EXPECT_EQ(judge(failed)[0].met, 1U);  // a failed case meets no demand
     EXPECT_EQ(judge(failed)[0].cases, 2U);
     StudyResults equal = results();
     equal.results[1].metrics["psnr"] = INFINITY;

@@ -12,7 +12,7 @@ namespace {
 
 using test::error_of;
 
-/// A study with a part put in place of another.
+/// A study with one part replaced by another.
 std::string study_with(const std::string& part, const std::string& instead) {
     std::string text = R"({"name": "s", "inputs": [{"model": "ball", "resolution": 4}],
         "methods": [{"method": "splat", "sheets": [50, 100], "per_edge": [1, 2]}, {"method": "tets"}],
@@ -37,7 +37,7 @@ TEST(StudyFile, IsExpandedIntoTheProductOfItsLists) {
     EXPECT_EQ(first.text("view"), "iso");
     EXPECT_EQ(first.whole("width"), 64);
     EXPECT_EQ(first.whole("height"), 48);
-    EXPECT_EQ(first.text("kernel"), "compact");  // what is not said takes its default
+    EXPECT_EQ(first.text("kernel"), "compact");  // missing options have their defaults
     std::set<std::string> ids, names;
     for (const StudyCase& of : study.cases) {
         ids.insert(of.id);
@@ -62,14 +62,14 @@ TEST(StudyFile, IdsAreOfWhatIsComputed) {
         return all;
     };
     const auto plain = ids(study_with(kTets, kTets));
-    // Said or left to its default, named or not, in any order: the same cases.
+    // Explicit or by default, named or not, in any order: the same cases.
     EXPECT_EQ(plain, ids(study_with(kTets, R"({"levels": 1, "label": "rays", "given": {"known": 3}, "method": "tets"})")));
     EXPECT_EQ(plain, ids(study_with(R"("name": "s")", R"("name": "other")")));
     EXPECT_EQ(plain, ids(study_with(R"("model": "ball")", R"("name": "b", "model": "ball")")));
     EXPECT_NE(plain, ids(study_with(kTets, R"({"method": "tets", "levels": 2})")));
     EXPECT_NE(plain, ids(study_with("[64, 48]", "[64, 49]")));
-    // Written down, made by another program (FNV-1a of "subvol case 1\nkernel\t2\tbc\nmethod\t2\terrors\n"): ids are the same
-    // on every machine, so that folders can be carried about.
+    // A constant from another program (FNV-1a of "subvol case 1\nkernel\t2\tbc\nmethod\t2\terrors\n"): ids are the same on
+    // every machine, so folders can be moved between machines.
     EXPECT_EQ(parse(R"({"name": "s", "methods": [{"method": "errors", "kernel": "bc"}]})").cases.front().id,
               "3e79ae9a4e9cb9f9");
 }
@@ -85,7 +85,7 @@ TEST(StudyFile, CasesReadBack) {
 TEST(StudyFile, OneReferenceForAllMethods) {
     std::set<std::string> references;
     for (const StudyCase& of : parse(study_with(kTets, kTets)).cases) references.insert(reference_of(of)->id);
-    EXPECT_EQ(references.size(), 2U);  // one a camera
+    EXPECT_EQ(references.size(), 2U);  // one per camera
 }
 
 struct Mistake {
@@ -110,46 +110,46 @@ INSTANTIATE_TEST_SUITE_P(
     Study, StudyMistake,
     testing::Values(
         Mistake{R"({"name")", R"({"nam")", "s.json: nam: this key is unknown (name, title"},
-        Mistake{R"("name": "s")", R"("name": 7)", "s.json: name: a number is no text"},
-        Mistake{R"("name": "s")", R"("name": "a/b")", "name: 'a/b' is no name"},
+        Mistake{R"("name": "s")", R"("name": 7)", "s.json: name: must be a string, not a number"},
+        Mistake{R"("name": "s")", R"("name": "a/b")", "name: 'a/b' is not a valid name"},
         Mistake{R"({"name": "s", )", "{", "s.json: name: the name is missing"},
         Mistake{R"({"name": "s", )", R"({"name": "s")", "is not JSON"},
         Mistake{R"([{"model": "ball", "resolution": 4}])", "[]", "inputs: the list is empty"},
-        Mistake{R"([{"model": "ball", "resolution": 4}])", R"("ball")", "inputs: this is no list"},
-        Mistake{R"({"model": "ball", "resolution": 4})", R"("ball")", "inputs[0]: a text is no object"},
+        Mistake{R"([{"model": "ball", "resolution": 4}])", R"("ball")", "inputs: must be a list, not a string"},
+        Mistake{R"({"model": "ball", "resolution": 4})", R"("ball")", "inputs[0]: must be an object, not a string"},
         Mistake{R"("model": "ball")", R"("model": "cat")", "inputs[0].model: 'cat' is unknown (cell, pawn"},
         Mistake{R"("model": "ball")", R"("file": "no.vtk")", "inputs[0]: a file has no resolution"},
         Mistake{R"("model": "ball", "resolution": 4)", R"("file": "no.vtk")", "inputs[0].file: 'no.vtk' cannot be read"},
         Mistake{R"("model": "ball", )", "", "inputs[0]: an input has either a model or a file"},
         Mistake{R"("model": "ball")", R"("model": "ball", "field": "f", "density": "x")",
-                "inputs[0]: a density takes the place"},
+                "inputs[0]: an input has either a field or a density"},
         Mistake{R"("resolution": 4)", R"("resolution": 1)", "inputs[0].resolution: 1 is out of range (2 to 512)"},
-        Mistake{R"("resolution": 4)", R"("resolution": [4, 2.5])", "inputs[0].resolution[1]: 2.5 is no whole number"},
+        Mistake{R"("resolution": 4)", R"("resolution": [4, 2.5])", "inputs[0].resolution[1]: 2.5 is not a whole number"},
         Mistake{R"("resolution": 4)", R"("resolution": 1e300)", "inputs[0].resolution: 1e+300 is out of range"},
-        Mistake{R"("resolution": 4)", R"("resolution": "4")", "inputs[0].resolution: a text is no number"},
+        Mistake{R"("resolution": 4)", R"("resolution": "4")", "inputs[0].resolution: must be a number, not a string"},
         Mistake{R"("method": "tets")", R"("method": "magic")", "methods[1].method: there is no method 'magic' (splat, sheets"},
-        Mistake{R"("method": "tets")", R"("level": 1)", "methods[1]: names no method"},
+        Mistake{R"("method": "tets")", R"("level": 1)", "methods[1]: the method is missing"},
         Mistake{R"("method": "tets")", R"("method": "tets", "level": 1)", "methods[1].level: this key is unknown"},
         Mistake{"[50, 100]", "[]", "methods[0].sheets: the list is empty"},
-        Mistake{"[50, 100]", "[50, [100]]", "methods[0].sheets[1]: a list is no number"},
+        Mistake{"[50, 100]", "[50, [100]]", "methods[0].sheets[1]: must be a number, not a list"},
         Mistake{"[50, 100]", "[50, 50]", "are the same"},
         Mistake{"[50, 100]", "50, \"correction\": \"third\"", "methods[0].correction: 'third' is unknown (second, none"},
-        Mistake{"[50, 100]", "50, \"visible_only\": 1", "methods[0].visible_only: a number is no switch"},
+        Mistake{"[50, 100]", "50, \"visible_only\": 1", "methods[0].visible_only: must be a boolean, not a number"},
         Mistake{"[50, 100]", "50, \"kernel\": \"square\"", "methods[0].kernel: "},
         Mistake{"[50, 100]", "50, \"kernel\": {\"type\": \"gaussian\", \"sigma\": -1}", "methods[0].kernel: "},
-        Mistake{"[50, 100]", "50, \"given\": {\"x\": []}", "methods[0].given.x: this is neither"},
+        Mistake{"[50, 100]", "50, \"given\": {\"x\": []}", "methods[0].given.x: must be a number or a string, not a list"},
         Mistake{R"({"name": "front", "camera": "-y"})", R"({"name": "front"})", "cameras[1].camera: the camera is missing"},
-        Mistake{R"({"name": "front", "camera": "-y"})", "3", "cameras[1]: a number is no text"},
-        Mistake{"[64, 48]", "[64]", "size: a size has a width and a height"},
+        Mistake{R"({"name": "front", "camera": "-y"})", "3", "cameras[1]: must be a string, not a number"},
+        Mistake{"[64, 48]", "[64]", "size: a size is a width and a height"},
         Mistake{"[64, 48]", "[64, 1e9]", "size[1]: 1000000000.0 is out of range"},
         Mistake{"[64, 48]", "64, \"metrics\": [\"beauty\"]", "metrics[0]: 'beauty' is unknown"},
         Mistake{"[64, 48]", "64, \"reference\": {\"tolerance\": 0}", "reference.tolerance: 0 is out of range"},
-        Mistake{"[64, 48]", "64, \"reference\": {\"tolerance\": [0.1, 0.2]}", "reference: there is one reference"},
+        Mistake{"[64, 48]", "64, \"reference\": {\"tolerance\": [0.1, 0.2]}", "reference: there is only one reference"},
         Mistake{"[64, 48]", "64, \"transfer_functions\": [\"no.json\"]", "transfer_functions[0]: 'no.json' cannot be read"},
-        Mistake{"[64, 48]", "64, \"tables\": [{\"columns\": [\"rmse\"]}]", "tables[0].rows: this is missing"},
+        Mistake{"[64, 48]", "64, \"tables\": [{\"columns\": [\"rmse\"]}]", "tables[0].rows: this key is missing"},
         Mistake{"[64, 48]", "64, \"tables\": [{\"rows\": \"input\", \"values\": \"rmse\"}]", "tables[0].across: "},
-        Mistake{"[64, 48]", "64, \"plots\": [{\"x\": \"a\", \"y\": \"b\"}]", "plots[0].series: this is missing"},
-        Mistake{"[64, 48]", "64, \"demands\": [{\"metric\": \"psnr\"}]", "demands[0]: a demand has a least or a most"}));
+        Mistake{"[64, 48]", "64, \"plots\": [{\"x\": \"a\", \"y\": \"b\"}]", "plots[0].series: this key is missing"},
+        Mistake{"[64, 48]", "64, \"demands\": [{\"metric\": \"psnr\"}]", "demands[0]: a demand needs 'least' or 'most'"}));
 
 TEST(StudyFile, TooManyCasesAreRefusedBeforeTheyAreMade) {
     std::string numbers = "1";
@@ -157,7 +157,7 @@ TEST(StudyFile, TooManyCasesAreRefusedBeforeTheyAreMade) {
     const std::string seeds = R"({"method": "field", "seed": [)" + numbers + R"(], "places": [)" + numbers + "]}";
     EXPECT_NE(error_of([&] { (void)parse(study_with(kTets, seeds)); }).find("methods[1].seed: there are too many combinations"),
               std::string::npos);
-    // Lists that are short enough by themselves, times inputs.
+    // Lists that are short enough alone, but not times the inputs.
     const std::string many = R"("resolution": [)" + numbers.substr(2) + "]";
     std::string text = study_with(R"("resolution": 4)", many);
     text.replace(text.find("[1, 2]"), 6, "[" + numbers.substr(0, numbers.find(",65")) + "]");
@@ -169,7 +169,7 @@ TEST(StudyFile, DeepNestingIsNoCrash) {
     const std::string deep(200000, '[');
     EXPECT_NE(error_of([&] { (void)parse(deep); }).find("is not JSON"), std::string::npos);
     const std::string closed = deep + std::string(deep.size(), ']');
-    EXPECT_NE(error_of([&] { (void)parse(closed); }).find("a list is no object"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)parse(closed); }).find("must be an object, not a list"), std::string::npos);
 }
 
 class StudyFolder : public test::TempFolder {};

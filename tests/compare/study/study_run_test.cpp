@@ -16,7 +16,7 @@ namespace {
 using test::error_of;
 using test::read_bytes;
 
-/// Eight cases; what they compute is their seed's root.
+/// Eight cases, which compute the square root of their seed.
 Study seeds() {
     return parse_study(R"({"name": "seeds", "inputs": [{"model": "ball"}],
         "methods": [{"method": "field", "seed": [0, 1, 2, 3, 4, 5, 6, 7]}],
@@ -28,13 +28,13 @@ CaseResult root_of(const StudyCase& of) {
     static std::atomic<int> calls = 0;
     CaseResult result;
     result.metrics["root"] = std::sqrt(of.number("seed"));
-    result.costs["seconds"] = ++calls;  // other ones every time
+    result.costs["seconds"] = ++calls;  // different in every run
     return result;
 }
 
 class StudyRun : public test::TempFolder {
 protected:
-    /// Runs the study; which seeds were run.
+    /// Runs the study and returns the seeds of the cases that were run.
     std::vector<double> run(const std::string& folder, const CaseWork& work, int jobs = 1, bool fresh = false) {
         std::vector<double> ran;
         std::mutex mutex;
@@ -55,7 +55,7 @@ protected:
     StudyResults last_;
 };
 
-/// Ends the run as a signal would: not a case's own failure.
+/// Ends the run like a signal, not as a failure of the case.
 CaseResult cancelled_at_five(const StudyCase& of) {
     if (of.number("seed") == 5) throw Error(ErrorCode::Cancelled, "interrupted");
     return root_of(of);
@@ -95,7 +95,7 @@ TEST_F(StudyRun, AFailureIsKeptAndLosesNoOther) {
     EXPECT_EQ(last_.failed, 1U);
     EXPECT_EQ(last_.results[3].failure, "three, \"is\"\nodd");
     EXPECT_NE(results("a").find("\"three, \"\"is\"\" odd\""), std::string::npos) << results("a");
-    EXPECT_EQ(run("a", root_of), std::vector<double>{3});  // tried again, and no other
+    EXPECT_EQ(run("a", root_of), std::vector<double>{3});  // tried again, and no other case
     EXPECT_EQ(last_.failed, 0U);
     (void)run("whole", root_of);
     EXPECT_EQ(results("a"), results("whole"));

@@ -10,7 +10,6 @@
 
 #include "lib/expect_error.h"
 #include "subvol/detail/solid_field.h"
-#include "subvol/field.h"
 #include "subvol/mesh_report.h"
 
 namespace subvol {
@@ -18,8 +17,6 @@ namespace subvol {
 using detail::PawnField;
 
 namespace {
-
-static_assert(Field<TwistField> && Field<PawnField> && Field<BallField>);
 
 const std::vector<double>& density(const HexMesh& mesh) {
     return mesh.attributes.at(0).values;

@@ -9,14 +9,11 @@
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
-#include "subvol/field.h"
 #include "subvol/model.h"
 #include "subvol/sample.h"
 
 namespace subvol {
 namespace {
-
-static_assert(Field<RbfField>);
 
 class Random {
 public:

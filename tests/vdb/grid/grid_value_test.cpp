@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "subvol/field.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
 #include "vdb/test_meshes.h"
@@ -12,8 +11,6 @@ namespace subvol {
 namespace {
 
 using namespace test;
-
-static_assert(subvol::Field<VdbGrid>);
 
 VdbGrid raster_unit_box(double voxel_size, const test::Field& field) {
     const std::vector<std::string> fields{"f"};

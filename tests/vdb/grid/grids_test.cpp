@@ -26,8 +26,8 @@ std::vector<std::pair<Voxel, double>> list(const VdbGrid& grid) {
     return all;
 }
 
-// A refined mesh and the same one streamed differ in how bent cells are cut, by a bend of some 1e-3 of a cell here; the box
-// around them is flat.
+// A refined mesh and its streamed refinement cut bent cells differently, by some 1e-3 of a cell here; the box around them is
+// flat.
 TEST(VdbRefined, StreamedFitsTheWholeMesh) {
     const auto mesh = with_field(jittered_box_mesh(4), "f", kWave);
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
@@ -113,7 +113,7 @@ TEST(VdbGrids, CellNumbersAndMask) {
     ASSERT_TRUE(cells);
     EXPECT_EQ(file.readGrid("mask")->activeVoxelCount(), 32u * 32 * 32);
     EXPECT_EQ(cells->activeVoxelCount(), 32u * 32 * 32);
-    EXPECT_EQ(cells->constTree().leafCount(), 0u);  // a cell is a leaf, which is a tile
+    EXPECT_EQ(cells->constTree().leafCount(), 0u);  // each cell fills a leaf, which becomes a tile
     for (int i = 0; i < 32; ++i) {
         for (int j = 0; j < 32; ++j) {
             for (int k = 0; k < 32; ++k) ASSERT_EQ(cells->tree().getValue({i, j, k}), i / 8 + 4 * (j / 8) + 16 * (k / 8));
@@ -122,8 +122,8 @@ TEST(VdbGrids, CellNumbersAndMask) {
     std::filesystem::remove(path);
 }
 
-// A box whose faces lie on quarters of voxels is covered exactly; a ball's coverage adds up to its volume with the error of
-// voxels a quarter as large.
+// The coverage of a box whose faces lie on quarters of voxels is exact; a ball's coverage adds up to its volume with the error
+// of voxels a quarter as large.
 TEST(VdbGrids, CoverageIsThePartThatIsFilled) {
     const auto box = with_field(box_mesh(2, Vec3(0.0), Vec3(1.0, 1.0, 1.025)), "f", kWave);
     const auto grids = rasterize(box, kField, {.voxel_size_world = 0.1, .coverage = true});
@@ -172,7 +172,7 @@ TEST(VdbGrids, ConstantFieldsBecomeTiles) {
     const auto constant = std::move(rasterize(mesh, kField, {.voxel_size_world = 1.0 / 64}).front());
     const auto varied = rasterize(with_field(box_mesh(3), "f", kWave), kField, {.voxel_size_world = 1.0 / 64});
     EXPECT_EQ(constant.report().active_voxels, 64u * 64 * 64);
-    EXPECT_LT(constant.report().bytes, varied.front().report().bytes / 4);  // what is left are the inner nodes
+    EXPECT_LT(constant.report().bytes, varied.front().report().bytes / 4);  // mostly inner nodes
     EXPECT_EQ(constant.value(Vec3(0.4)), 0.5);
 }
 

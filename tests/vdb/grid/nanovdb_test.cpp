@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other programs do: NanoVDB's own reader.
+// Reads with NanoVDB's own reader, as other programs do.
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 

@@ -140,7 +140,7 @@ TEST_F(VdbFile, MissingFolder) {
 }
 
 TEST_F(VdbFile, FullDisk) {
-    // A limit on the size of files stands in for a disk that is full.
+    // A limit on the size of files simulates a full disk.
     const auto grids = two_grids();
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);

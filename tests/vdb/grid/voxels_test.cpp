@@ -14,7 +14,7 @@
 namespace subvol {
 namespace {
 
-/// What the cursor says of random voxels against the field at their centres.
+/// Compares what the cursor returns for random voxels with the field at their centres.
 void expect_cursor_fits_field(const VdbGrid& grid) {
     const auto voxels = grid.voxels();
     const auto [lower, upper] = voxels->range();

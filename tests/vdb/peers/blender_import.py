@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Imports a grid of a .vdb file into Blender, checks where it lies, and renders one frame.
+"""Imports a grid of a .vdb file into Blender, checks its position, and renders one frame.
 
   blender -b --factory-startup --python blender_import.py -- FILE.vdb -o PICTURE.exr --grid NAME \\
       --camera ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy --range MIN,MAX --opacity-unit D [--bounds x,y,z,x,y,z] [--size WxH] \\
@@ -47,7 +47,7 @@ def arguments():
 
 
 def import_volume(path):
-    """The operator of the menu Add > Volume > Import OpenVDB."""
+    """Calls the operator of the menu Add > Volume > Import OpenVDB."""
     bpy.ops.object.select_all(action="SELECT")
     bpy.ops.object.delete()
     bpy.ops.object.volume_import(filepath=path, align="WORLD", location=(0, 0, 0))
@@ -68,14 +68,14 @@ def described(volume):
 
 
 def check(about, name, bounds):
-    """The grid is there, its voxels are cubes, and the object's box is that of the leaves (8 voxels) of the active ones."""
+    """Checks that the grid exists, its voxels are cubes, and the object's box is that of its leaves of 8³ voxels."""
     found = [grid for grid in about["grids"] if grid["name"] == name]
     if not found:
         raise SystemExit(f"no grid {name}: {[grid['name'] for grid in about['grids']]}")
     matrix = found[0]["matrix"]
     sides = [math.hypot(*(matrix[row][column] for row in range(3))) for column in range(3)]
     if max(sides) - min(sides) > 1e-6 * max(sides):
-        raise SystemExit(f"voxels are no cubes: {sides}")
+        raise SystemExit(f"voxels are not cubes: {sides}")
     if bounds is None:
         return
     inverse = Matrix(matrix).inverted()
@@ -145,7 +145,7 @@ def add_material(volume, name, value_range, opacity_unit):
 
 
 def blur(volume, asked):
-    """As the panels Volume > Render > Velocity and Render > Motion Blur do."""
+    """Sets what the panels Volume > Render > Velocity and Render > Motion Blur set."""
     if asked.velocity not in [grid.name for grid in volume.data.grids]:
         raise SystemExit(f"no grid {asked.velocity}: {[grid.name for grid in volume.data.grids]}")
     volume.data.velocity_grid = asked.velocity

@@ -40,7 +40,7 @@ void expect_round_trip(const RbfVolume& volume, const std::filesystem::path& pat
     write_vdb_points(path, volume);
     const RbfVolume read = read_vdb_points(path);
     expect_same_but_centers(read, volume);
-    // P is a float within ±.5 of its voxel, hence right to 2⁻²⁶ of it; the transform rounds doubles.
+    // P is a float in ±.5 voxels, hence exact to 2⁻²⁶ voxels; the transform rounds doubles.
     const double tolerance = 0x1p-26 * voxel + 1e-15 * glm::length(volume.bounds.center());
     for (std::size_t i = 0; i < volume.size(); ++i) {
         for (int k = 0; k < 3; ++k) ASSERT_NEAR(read.centers[i][k], volume.centers[i][k], tolerance) << i;
@@ -76,7 +76,7 @@ TEST_F(VdbPoints, EveryKernelComesBack) {
     for (const auto& [name, kernel] : every_kernel()) expect_kernel(kernel);
 }
 
-// Names that would fall together get underscores, and the channels keep their own Hessians, or none.
+// Names that would become equal get underscores, and each channel keeps its own Hessians, or none.
 TEST_F(VdbPoints, NamesOfHessiansDoNotClash) {
     RbfVolume volume = random_points(50, 4);
     volume.channels[1].name = "density.hessian";
@@ -118,7 +118,7 @@ TEST_F(VdbPoints, SmallAndFarOnesToo) {
     expect_round_trip(random_points(0, 2), path("none.vdb"), 1);
 }
 
-// What Houdini sees: points, a few a voxel, whose instances of a unit sphere are the support ellipsoids.
+// What Houdini reads: a few points per voxel; their instances of a unit sphere are the support ellipsoids.
 TEST_F(VdbPoints, AttributesMeanWhatHoudiniTakesThemFor) {
     const RbfVolume volume = random_points(5000, 2);
     write_vdb_points(path("a.vdb"), volume, {.points_per_voxel = 4, .creator = "a test"});
@@ -166,7 +166,7 @@ TEST_F(VdbPoints, DeletedPointsLeaveTheOthersInOrder) {
     const auto grid = open_grid(path("a.vdb"));
     const auto leaf = grid->tree().beginLeaf();
     const auto gone = static_cast<std::size_t>(leaf->pointCount());
-    grid->tree().addTile(1, leaf->origin(), 0, /*active=*/false);  // in the place of the leaf
+    grid->tree().addTile(1, leaf->origin(), 0, /*active=*/false);  // replaces the leaf
     openvdb::io::File(path("a.vdb").string()).write({grid});
     const RbfVolume read = read_vdb_points(path("a.vdb"));
     ASSERT_EQ(read.size(), volume.size() - gone);
@@ -208,7 +208,7 @@ TEST_F(VdbPoints, OtherFilesAreRefused) {
     openvdb::io::File(path("bare.vdb").string()).write(openvdb::GridCPtrVec{floats, bare});
     EXPECT_TRUE(holds_vdb_points(path("bare.vdb")));
     EXPECT_EQ(read_vdb(path("bare.vdb")).size(), 1u);
-    EXPECT_THAT(error_of_reading("bare.vdb"), HasSubstr("bare.vdb: holds no points as they are written here"));
+    EXPECT_THAT(error_of_reading("bare.vdb"), HasSubstr("bare.vdb: has no points in this library's layout"));
 
     write("garbage.vdb", "not a grid");
     EXPECT_THAT(error_of_reading("garbage.vdb"), HasSubstr("is not a whole OpenVDB file"));
@@ -241,7 +241,7 @@ TEST_F(VdbPoints, WhatCannotBeWrittenLeavesNothing) {
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{20000, before.rlim_max};  // stands in for a disk that is full
+    const rlimit small{20000, before.rlim_max};  // simulates a full disk
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
     EXPECT_THAT(error_of([&] { write_vdb_points(path("a.vdb"), volume); }, ErrorCode::Io),
                 HasSubstr("a.vdb: cannot be written"));

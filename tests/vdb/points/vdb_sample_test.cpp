@@ -23,10 +23,10 @@ using Function = std::function<double(const Vec3&)>;
 // Values are 32-bit floats below 8 and so are the terms of about ten kernels that overlap: 1e-6 each.
 constexpr double kFloatTolerance = 1e-5;
 
-/// A sheared lattice away from the origin: what other programs may write.
+/// A sheared lattice away from the origin, as other programs may write it.
 const openvdb::Mat4d kSheared(0.2, 0., 0., 0., 0.03, 0.15, 0., 0., 0., -0.02, 0.25, 0., 3., -1., 0.5, 1.);
 
-/// A grid through a file, as others' come.
+/// A grid written to a file and read again, like grids of other programs.
 class VdbSample : public test::TempFolder {
 protected:
     VdbSample() { openvdb::initialize(); }
@@ -51,7 +51,7 @@ protected:
     }
 };
 
-/// Places at random in the lattice, `margin` voxels from the box's outer centres; their world positions.
+/// World positions of random places in the lattice, at least `margin` voxels inside the box's outermost centres.
 std::vector<Vec3> places(const VdbGrid& grid, double margin, int count) {
     const auto voxels = grid.voxels();
     const auto [lower, upper] = voxels->range();
@@ -186,7 +186,7 @@ TEST_F(VdbSample, RefusesWhatItCannotSample) {
     const auto grid = make(linear, kBox);
     const auto sample = [&](const VoxelSampleOptions& options) { (void)sample_rbf_points(through_file(grid), options); };
     test::expect_error(ErrorCode::InvalidInput, "spacing", [&] { sample({.spacing_world = std::nan("")}); });
-    test::expect_error(ErrorCode::InvalidInput, "half full", [&] { sample({.spacing_world = 1e9}); });
+    test::expect_error(ErrorCode::InvalidInput, "half active", [&] { sample({.spacing_world = 1e9}); });
     test::expect_error(ErrorCode::InvalidInput, "radial", [&] { sample({.kernel = named_kernel("cubic")}); });
     grid->tree().setValueOn(Coord(1), std::numeric_limits<float>::infinity());
     test::expect_error(ErrorCode::InvalidInput, "finite", [&] { sample({}); });

@@ -28,7 +28,7 @@ struct Errors {
     std::size_t voxels = 0;
 };
 
-/// The values of a grid against those that a field has at the voxel centres, where it has any.
+/// Compares a grid with a field at the voxel centres, where the field has a value.
 template <class Exact>
 Errors errors_of(const VdbGrid& grid, const Exact& exact) {
     Errors errors;
@@ -45,7 +45,7 @@ Errors errors_of(const VdbGrid& grid, const Exact& exact) {
     return errors;
 }
 
-/// Voxels in the solid that are not active, and active ones outside it.
+/// Counts voxels inside the solid that are not active, and active ones outside it.
 struct Mismatch {
     std::size_t inside = 0, missing = 0, leaked = 0;
 };
@@ -73,8 +73,9 @@ HexMesh with_linear_field(HexMesh mesh) {
                       [=](const Vec3& p) { return glm::dot(Vec3(1.0, 2.0, -1.5), (p - box.center()) * scale); });
 }
 
-/// Inside is what the boundary says, without a voxel missing or doubled; and as every trilinear map reproduces linear fields,
-/// the values are exact to the rounding of a float at 1.2 and Newton's tolerance, if each centre was found in its cell.
+/// The active voxels are those inside the boundary, none missing and none twice. As every trilinear map reproduces linear
+/// fields, the values are exact up to the rounding of a float at 1.2 and Newton's tolerance, if each centre was found in its
+/// cell.
 void expect_exact(const HexMesh& given, int resolution) {
     const HexMesh mesh = with_linear_field(without_unused_points(given));
     const VdbGrid grid = std::move(rasterize(mesh, kField, {.resolution = resolution}).front());
@@ -114,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Files, VdbAccuracyOfFile,
                              return name;
                          });
 
-/// Cells of a crash: 51 are inverted. Their tetrahedra reach beyond the boundary, the voxels do not.
+/// A crash simulation with 51 inverted cells. Their tetrahedra reach beyond the boundary, but the voxels do not.
 TEST(VdbAccuracyOfFiles, InvertedCellsLeakNothing) {
     const char* folder = std::getenv("SUBVOL_DATA");
     if (!folder) GTEST_SKIP() << "SUBVOL_DATA does not name the folder of meshes";
@@ -142,20 +143,20 @@ TEST(VdbAccuracy, FoldedCellsLeakNothing) {
         EXPECT_EQ(off.leaked, 0u);
         const VdbGrid streamed = std::move(
             rasterize(mesh, kField, {.resolution = 120, .refine = {.scheme = {Scheme::Linear}, .levels = levels}}).front());
-        // Bent faces are cut in another way: that moves no more than a layer of half a voxel here.
+        // Bent faces are cut differently; this changes at most a layer of half a voxel here.
         EXPECT_NEAR(static_cast<double>(streamed.report().active_voxels), static_cast<double>(off.inside),
                     0.005 * static_cast<double>(off.inside));
     }
 }
 
-/// The limit of a mesh with analytic densities at its points against these densities.
+/// Compares the limit of a mesh whose points have analytic densities with these densities.
 template <class Density>
 Errors limit_errors(HexMesh mesh, int resolution, const Density& density) {
     mesh.attributes.resize(1);
     mesh.attributes.front().name = "f";
     const Box box = bounds(mesh);
     const double h = std::max({box.size().x, box.size().y, box.size().z}) / resolution;
-    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * h});
+    const LimitCells limit = limit_for_voxels(mesh, {}, h);
     const VdbGrid grid = std::move(rasterize(mesh, kField, {.voxel_size_world = h, .limit = &limit}).front());
     const Errors errors = errors_of(grid, density);
     ::testing::Test::RecordProperty("level", limit.level);
@@ -175,7 +176,7 @@ TEST(VdbAccuracy, LimitOfTheTwistedBlock) {
     EXPECT_LT(fine.max, 0.1);
 }
 
-// Away from both, it keeps cubics: more than third order.
+// Away from both it reproduces cubics: the order is above three.
 TEST(VdbAccuracy, LimitWithinTheTwistedBlock) {
     const auto density = [](const Vec3& x) -> std::optional<double> {
         const Vec3 p = TwistField::parameter(x);

@@ -28,7 +28,7 @@ std::vector<VdbGrid> volume_and_level_set(const HexMesh& mesh, RasterizeOptions 
     return rasterize(mesh, first, options);
 }
 
-/// The distance from a triangle: to its plane, where the foot of the perpendicular lies in it, or to the nearest of its edges.
+/// The distance from a triangle: from its plane if the perpendicular meets the triangle, else from the nearest of its edges.
 double distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto to_edge = [&](const Vec3& from, const Vec3& to) {
         const Vec3 along = to - from;
@@ -46,7 +46,7 @@ double distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return least;
 }
 
-/// At every voxel of the level set's box: the sign is that of the volume; beyond the band the value is that of the background.
+/// Checks every voxel of the level set's box: the sign is that of the volume; beyond the band the value is the background.
 void expect_signs_of_the_volume(const std::vector<VdbGrid>& grids, double half_width) {
     const auto volume = grids.front().voxels(), level_set = grids.back().voxels();
     const auto inside = volume->cursor(), distances = level_set->cursor();
@@ -75,8 +75,8 @@ void expect_signs_of_the_volume(const std::vector<VdbGrid>& grids, double half_w
     ::testing::Test::RecordProperty("within", static_cast<int>(within));
 }
 
-// The mesh's boundary lies between the unit sphere and the sphere that its nearest triangle touches: distances from two
-// surfaces differ by no more than these do.
+// The mesh's boundary lies between the unit sphere and the sphere that its nearest triangle touches: the distances from two
+// surfaces differ at most by the distance of the surfaces.
 TEST(LevelSet, OfABallIsTheDistanceFromItsSphere) {
     const HexMesh mesh = with_field(ball_mesh(16), "f", kOne);
     const Surface surface = boundary_surface(mesh);
@@ -99,7 +99,7 @@ TEST(LevelSet, OfABallIsTheDistanceFromItsSphere) {
     expect_signs_of_the_volume(grids, 5);
 }
 
-// Every triangle is asked, for every centre near the boundary.
+// Compared with a loop over all triangles, at every centre near the boundary.
 TEST(LevelSet, IsTheDistanceFromTheNearestTriangle) {
     const HexMesh mesh = with_field(jittered_box_mesh(3), "f", kOne);
     HexMesh bent = mesh;
@@ -128,7 +128,7 @@ TEST(LevelSet, IsTheDistanceFromTheNearestTriangle) {
     expect_signs_of_the_volume(grids, 2.5);
 }
 
-// A third of a voxel thick and at an angle: few centres lie in it, each by itself.
+// A third of a voxel thick and oblique: few centres lie inside, and none of their neighbours do.
 TEST(LevelSet, SignsAreRightOnAPlateThinnerThanAVoxel) {
     HexMesh plate = with_field(box_mesh(5, Vec3(-1.0), Vec3(1.0)), "f", kOne);
     constexpr double kSize = 0.05;

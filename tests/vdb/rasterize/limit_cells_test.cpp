@@ -32,8 +32,8 @@ VdbGrid rasterized(const HexMesh& mesh, double voxel, const LimitCells& limit) {
     return std::move(rasterize(mesh, kField, {.voxel_size_world = voxel, .limit = &limit}).front());
 }
 
-// MCQ keeps quadratics, up to the boundary and at its edges: cells of 27 nodes are its limit itself. What is left is a float's
-// rounding and Newton's tolerance.
+// MCQ reproduces quadratics, up to the boundary and at its edges: cells of 27 nodes are its limit itself. The tolerance is a
+// float's rounding and Newton's tolerance.
 TEST(LimitCells, AreExactWhereTheLimitIsQuadratic) {
     const auto bent = [](const Vec3& q) {
         return Vec3(q.x + 0.2 * q.y * q.y - 0.1 * q.x * q.z, q.y + 0.15 * q.x * q.x, q.z + 0.1 * q.x * q.y + 0.2 * q.y * q.y);
@@ -42,7 +42,7 @@ TEST(LimitCells, AreExactWhereTheLimitIsQuadratic) {
     HexMesh mesh = with_field(box_mesh(4), "f", value);
     for (Vec3& p : mesh.points) p = bent(p);
     const double voxel = 0.03;
-    const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 0.1 * voxel});
+    const LimitCells limit = limit_for_voxels(mesh, {}, voxel);
     EXPECT_TRUE(limit.converged);
     EXPECT_EQ(std::ranges::max(limit.cell_levels), std::max(limit.level, 1));
     double most = 0;
@@ -59,8 +59,8 @@ TEST(LimitCells, AreExactWhereTheLimitIsQuadratic) {
     EXPECT_LT(most, 5e-7);
 }
 
-// Against the trilinear cells of a level that is deep enough: they are the reference that curved cells replace.
-TEST(LimitCells, StandForADeepLevel) {
+// Compared with the trilinear cells of a deep level, which curved cells replace.
+TEST(LimitCells, ApproximateADeepLevel) {
     for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw}) {
         SCOPED_TRACE(static_cast<int>(scheme));
         const HexMesh mesh =
@@ -85,10 +85,10 @@ TEST(LimitCells, StandForADeepLevel) {
             squares += error * error;
             ++both;
         }
-        // Only centres within the tolerance of the boundary change sides: of a ball's, 3·(voxel/radius)·0.1 are.
+        // Only centres within the tolerance of the boundary change sides: in a ball, a part of 3·(voxel/radius)·0.1.
         EXPECT_LT(static_cast<double>(wanted.size() - both), 0.02 * static_cast<double>(both));
         EXPECT_LT(static_cast<double>(got.size() - both), 0.02 * static_cast<double>(both));
-        // A centre off by the tolerance of positions has another value by the gradient, which is up to 4.
+        // Moved by the tolerance of positions, a centre changes its value by the gradient, which is up to 4.
         EXPECT_LT(most, 4 * tolerance.position_world + 2 * kRange * tolerance.value_of_range);
         EXPECT_LT(std::sqrt(squares / static_cast<double>(both)), 0.5 * kRange * tolerance.value_of_range);
     }
@@ -107,7 +107,7 @@ TEST(LimitCells, AreFinerWhereTheFieldIsRough) {
     EXPECT_GT(std::ranges::max(limit.cell_levels), 1);
 }
 
-// Cells of several levels side by side: no centre is lost between them, none is outside of a box.
+// Cells of several levels side by side: no centre is lost between them, and none outside the box is active.
 TEST(LimitCells, OfSeveralLevelsFitTogether) {
     const HexMesh mesh = with_field(jittered_box_mesh(4), "f", [](const Vec3& p) { return p.x; });
     LimitCells limit{.level = 1, .cell_levels = std::vector<std::uint8_t>(mesh.cells.size())};
@@ -117,7 +117,7 @@ TEST(LimitCells, OfSeveralLevelsFitTogether) {
     for_each_voxel(grid, [&](const Voxel& v, double value) { ASSERT_NEAR(value, v[0] / 50.0, 1e-6); });
 }
 
-// Too many cells for a level more: they are taken as they are.
+// Too many cells for one more level: the cells are used as they are.
 TEST(LimitCells, OfAMeshThatIsFineAlready) {
     const HexMesh mesh = with_field(jittered_box_mesh(4), "f", [](const Vec3& p) { return p.y * p.y; });
     const LimitCells limit = find_limit_cells(mesh, {}, {.max_cells = 100});

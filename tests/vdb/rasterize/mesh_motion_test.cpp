@@ -25,7 +25,7 @@ HexMesh turned(HexMesh mesh, double angle) {
     return mesh;
 }
 
-/// The components of the velocity as fields of their own, to be read without OpenVDB.
+/// The components of the velocity as separate fields, which can be read without OpenVDB.
 std::array<VdbGrid, 3> velocity_grids(HexMesh mesh, const Attribute& velocity, const RasterizeOptions& options) {
     const std::vector<std::string> names{"x", "y", "z"};
     mesh.attributes.clear();
@@ -37,8 +37,8 @@ std::array<VdbGrid, 3> velocity_grids(HexMesh mesh, const Attribute& velocity, c
     return {std::move(grids[0]), std::move(grids[1]), std::move(grids[2])};
 }
 
-// A central difference of a turn by ±a is sin(a)/a times the velocity ω × r, and linear in r: the scheme and the cells' maps
-// reproduce it. What is left is the rounding of a float at 1.
+// A central difference of a rotation by ±a is sin(a)/a times the velocity ω × r, and linear in r: the scheme and the cells'
+// maps reproduce it. The tolerance is the rounding of a float at 1.
 TEST(MeshMotion, VelocityOfATurningBallIsOfSecondOrder) {
     const HexMesh ball = ball_mesh(4);
     double last = 0;
@@ -64,7 +64,7 @@ TEST(MeshMotion, VelocityOfATurningBallIsOfSecondOrder) {
     }
 }
 
-// The velocity of a turn about the box's corner: every layer takes means of what is there, so that nothing becomes faster.
+// The velocity of a rotation about the box's corner: each layer has means of the layers before, so no velocity grows.
 TEST(MeshMotion, VelocitiesReachBeyondTheVolume) {
     HexMesh box = box_mesh(2);
     box.attributes.push_back(velocity_between(turned(box, -0.1), turned(box, 0.1), 2));
@@ -82,7 +82,7 @@ TEST(MeshMotion, VelocitiesReachBeyondTheVolume) {
         EXPECT_EQ(outside.active_voxels, side * side * side);
         EXPECT_NEAR(glm::distance(outside.bounds.lower, inside.bounds.lower - layers * h), 0, 1e-6 * h);
         EXPECT_NEAR(glm::distance(outside.bounds.upper, inside.bounds.upper + layers * h), 0, 1e-6 * h);
-        EXPECT_EQ(outside.max, inside.max);  // the far edge's; a mean of different vectors is shorter
+        EXPECT_EQ(outside.max, inside.max);  // at the far edge; a mean of different vectors is shorter
     }
 }
 
@@ -118,7 +118,7 @@ std::vector<std::pair<Voxel, double>> list(const VdbGrid& grid) {
     return all;
 }
 
-/// Grids of a frame by itself and by the tables of the first one, first and last of them to the bit.
+/// Compares a frame's grids without tables and with those of the first frame; the first and the last grid bit by bit.
 void expect_same_by_tables(const HexMesh& first, const HexMesh& later, RasterizeOptions options) {
     const std::vector<std::string> field{"f"};
     const auto alone = rasterize(later, field, options);
@@ -132,7 +132,7 @@ void expect_same_by_tables(const HexMesh& first, const HexMesh& later, Rasterize
     EXPECT_TRUE(list(alone.back()) == list(shared.back()));
 }
 
-// Frames of a sequence share the tables of the first one; the grids are those that each mesh gives by itself, to the bit.
+// Frames of a sequence share the tables of the first one; the grids have the same bits as without tables.
 TEST(MeshMotion, SharedTablesGiveTheSameGrids) {
     const HexMesh first = jittered_box_mesh(4);
     const HexMesh later =
@@ -150,7 +150,7 @@ TEST(MeshMotion, SharedTablesGiveTheSameGrids) {
     }
 }
 
-// So are the curved cells of the limit, whose nodes are of one level then.
+// The same for curved cells of the limit, whose nodes have one level with tables.
 TEST(MeshMotion, SharedTablesOfTheLimit) {
     const HexMesh first = jittered_box_mesh(4);
     const HexMesh later = with_field(turned(first, 0.3), "f", [](const Vec3& p) { return std::sin(5 * p.x) + p.z; });

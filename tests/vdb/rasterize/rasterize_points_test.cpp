@@ -30,8 +30,7 @@ std::vector<std::pair<Voxel, double>> list(const VdbGrid& grid) {
     return all;
 }
 
-// The boundary is that of a box, whichever level it is of: it holds the voxels of the mesh, and the sums there are the same to
-// the bit.
+// The boundary is a box at every level: it contains the voxels of the mesh, and the sums there have the same bits.
 TEST(RasterizePoints, FitsTheSumsAtTheVoxelsOfTheMesh) {
     const HexMesh mesh = box();
     const RbfVolume volume = sample_rbf_points(mesh).volume;
@@ -47,7 +46,7 @@ TEST(RasterizePoints, FitsTheSumsAtTheVoxelsOfTheMesh) {
     EXPECT_TRUE(list(grids[0]) == list(sums));
 }
 
-// The surface of a ball: centres are inside where they are nearer than the sphere, but for the depth of the chords.
+// The surface of a ball: centres within the radius are inside, up to the depth of the chords.
 TEST(RasterizePoints, TheBoundaryDecides) {
     const HexMesh mesh = with_field(ball_mesh(8), "f", [](const Vec3& p) { return p.x; });
     const RbfVolume volume = sample_rbf_points(mesh).volume;

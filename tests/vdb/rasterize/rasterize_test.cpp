@@ -56,7 +56,7 @@ ErrorCode code_of(const std::function<void()>& call, const std::string& part_of_
     return ErrorCode::Io;
 }
 
-// Centres on a face go to one side only (lower in, upper out), so boxes that fit the voxels are filled exactly, whether the
+// Centres on a face belong to one side only (lower in, upper out), so boxes that fit the voxels are filled exactly, whether the
 // centres lie on the faces, edges and corners of the cells (first two) or between them.
 TEST(Rasterize, BoxHasItsVolume) {
     const auto mesh = with_field(box_mesh(4), "f", kOne);
@@ -82,7 +82,7 @@ TEST(Rasterize, ResolutionCountsTheLongestSide) {
 }
 
 TEST(Rasterize, BallHasItsVolume) {
-    // Flat faces of 1/16 of a quarter turn cut 0.4 % off the ball; voxels of 1/100 of it change far less.
+    // Flat faces of 1/16 of a quarter circle cut 0.4 % off the ball; voxels of 1/100 of it change far less.
     const auto grid = raster(with_field(ball_mesh(16), "f", kOne), 0.02);
     const double ball = 4.0 / 3.0 * std::numbers::pi;
     EXPECT_NEAR(volume(grid), ball, 0.01 * ball);
@@ -227,7 +227,7 @@ TEST(Rasterize, RefusesWhatCannotBe) {
     mesh.attributes[0].values[3] = 1e5;
     invalid(f, {.resolution = 4, .half = true}, "16-bit");
     for (auto& p : mesh.points) p *= 1e-6;
-    invalid(f, {.resolution = 4}, "at least 1.45e-5");  // OpenVDB itself would throw what nobody catches
+    invalid(f, {.resolution = 4}, "at least 1.45e-5");  // OpenVDB itself would throw a foreign exception
 }
 
 class Impatient : public Progress {

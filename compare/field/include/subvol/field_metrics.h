@@ -1,40 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "subvol/field_samples.h"
+#include "subvol/field.h"
 #include "subvol/progress.h"
 #include "subvol/surface.h"
-#include "subvol/vec.h"
 
 namespace subvol {
 
-/// A scalar field as metrics see it: of a mesh, of points, of a grid, of a formula. Both functions are called from many
-/// threads.
-///
-/// value:    nothing outside the domain
-/// gradient: exact where the field has one, world⁻¹; empty: central differences of `value`
-/// box:      the domain lies inside
-/// step:     of those differences, world; 0: 1/1000 of the box's diagonal
-struct FieldView {
-    std::function<std::optional<double>(const Vec3&)> value;
-    std::function<std::optional<Vec3>(const Vec3&)> gradient{};
-    Box box{};
-    double step = 0;
-};
-
-/// The gradient at a place: `gradient` if there is one, else differences: central ones where both neighbours have a value, else
-/// one-sided ones; nothing where an axis has no neighbour.
+/// The gradient at a place: by `gradient` if the field has one, else by differences, central where both neighbours have a
+/// value, else one-sided; nothing where neither neighbour along an axis has one.
 [[nodiscard]] std::optional<Vec3> gradient_at(const FieldView& field, const Vec3& x);
 
-/// l1:            mean of the absolute difference
-/// l2:            root of the mean of its square: the L² norm over the volume, divided by the root of the volume
-/// linf:          the largest at a place
-/// gradient_rmse: root of the mean of the squared length of the gradients' difference (world⁻¹), over `gradients` places
+/// l1:            mean absolute difference
+/// l2:            root mean square difference: the L² norm over the volume, divided by the root of the volume
+/// linf:          largest absolute difference at a place
+/// gradient_rmse: root mean square of the length of the gradients' difference (world⁻¹), over `gradients` places
 /// samples:       places where both fields have a value
-/// uncovered:     places where the reference has one and the other has none; they count for nothing else
+/// uncovered:     places where only the reference has a value; they do not enter the other numbers
 struct FieldDifference {
     double l1 = 0, l2 = 0, linf = 0;
     double gradient_rmse = 0;
@@ -50,28 +35,28 @@ struct FieldDifferenceOptions {
     Progress* progress = nullptr;
 };
 
-/// Two fields at random places, spread evenly over the volume of the reference's domain.
+/// Compares two fields at random places, uniform over the volume of the reference's domain.
 ///
-/// throws: Error(InvalidInput) if no place of the reference's domain is found: 1000 tries a sample at most
+/// throws: Error(InvalidInput) if no place of the reference's domain is found in 1000 tries per sample
 /// cost:   parallel; bitwise the same for any number of threads
 [[nodiscard]] FieldDifference compare_fields(const FieldView& test, const FieldView& reference,
                                              const FieldDifferenceOptions& options = {});
 
-/// A field at given places with known values, weighted by the places' weights (`random_places`, `new_vertices`). No gradients.
+/// Compares a field with known values at given places (`random_places`, `new_vertices`), with their weights. No gradients.
 ///
 /// throws: Error(InvalidInput) if there is no place
 [[nodiscard]] FieldDifference compare_field(const FieldView& test, const FieldSamples& places);
 
 /// The integral of a field over its domain: the midpoint rule on cubes.
 ///
-/// box:        the cubes' region; what is outside does not count
-/// resolution: cubes along the longest side, 2 to 2000. Linear fields are exact but for the cubes that the boundary cuts: of
-///             those the ones count whole whose middle is inside
+/// box:        the region of the cubes; the field outside is ignored
+/// resolution: cubes along the longest side, 2 to 2000. Linear fields are exact except in cubes that the boundary cuts: those
+///             count as whole if their middle is inside, else not at all
 /// cost:       resolution³ evaluations at most; parallel, bitwise the same for any number of threads
 [[nodiscard]] double integrate_field(const FieldView& field, const Box& box, int resolution = 128,
                                      Progress* progress = nullptr);
 
-/// |∫ test − ∫ reference| / |∫ reference|, both on the same cubes; infinite where only the reference's is 0.
+/// relative: |∫ test − ∫ reference| / |∫ reference|, both on the same cubes; infinite if only the reference's integral is 0
 struct MassError {
     double test = 0, reference = 0, relative = 0;
 };
@@ -79,31 +64,31 @@ struct MassError {
 [[nodiscard]] MassError mass_error(const FieldView& test, const FieldView& reference, int resolution = 128,
                                    Progress* progress = nullptr);
 
-/// Where a field takes a value, by marching tetrahedra: cubes of a grid over `box`, six tetrahedra each. Vertices lie on grid
-/// lines, where bisection finds the value; triangles between them are flat, hence off the surface by up to h²/8 times its
-/// curvature. Cubes with a corner outside the domain have none: the surface ends up to a cube before the boundary. What
-/// is smaller than a cube may be missed.
+/// The surface on which a field takes a value, by marching tetrahedra: cubes of a grid over `box`, six tetrahedra each.
+/// Vertices lie on edges of the tetrahedra, where regula falsi finds the value; triangles between them are flat, hence off the
+/// surface by up to h²/8 times its curvature. Cubes with a corner outside the domain are left out, so the surface ends up to a
+/// cube before the boundary. Features smaller than a cube may be missed.
 ///
 /// resolution: cubes along the longest side, 2 to 2000
 /// throws:     Error(InvalidInput) for a resolution out of range or an empty box
 [[nodiscard]] Surface isosurface(const FieldView& field, double iso, const Box& box, int resolution = 128,
                                  Progress* progress = nullptr);
 
-/// The larger of the two one-sided distances: from all vertices of the one to the nearest points of the other's triangles. It
-/// is the Hausdorff distance of the surfaces but for places inside triangles, which may be further away by a triangle's size at
-/// most. Infinite if one of them has no triangle; 0 if none has.
+/// The larger of the two one-sided distances: from all vertices of one surface to the nearest points of the other's triangles.
+/// This is the Hausdorff distance of the surfaces up to the size of a triangle, because places inside triangles may be further
+/// away than vertices. Infinite if one surface has no triangle; 0 if neither has.
 [[nodiscard]] double hausdorff_distance(const Surface& a, const Surface& b);
 
-/// distance:     the Hausdorff distance of both isosurfaces on the same grid; infinite if only one of them is there
-/// spacing:      side of the grid's cubes, world: the distance is known to about that, much better where surfaces are smooth
-/// test_triangles, reference_triangles: 0: the field does not take the value there
+/// distance:     the Hausdorff distance of both isosurfaces on the same grid; infinite if only one of them exists
+/// spacing:      side of the grid's cubes, world: the uncertainty of the distance, which is much less for smooth surfaces
+/// test_triangles, reference_triangles: 0 if the field does not take the value
 struct IsosurfaceDistance {
     double distance = 0;
     double spacing = 0;
     std::size_t test_triangles = 0, reference_triangles = 0;
 };
 
-/// throws: as `isosurface`; Error(InvalidInput) too if neither field takes the value
+/// throws: as `isosurface`, or Error(InvalidInput) if neither field takes the value
 [[nodiscard]] IsosurfaceDistance isosurface_distance(const FieldView& test, const FieldView& reference, double iso,
                                                      int resolution = 128, Progress* progress = nullptr);
 

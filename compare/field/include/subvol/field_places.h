@@ -8,19 +8,19 @@
 
 namespace subvol {
 
-/// Where in a mesh: anywhere; at interior edges of other than four cells; at the boundary.
+/// Where in a mesh: anywhere; at interior edges that do not have four cells; at the boundary.
 enum class PlaceKind { Anywhere, Extraordinary, Boundary };
 
-/// Random places in the cells of a mesh and the limit of a field (`scalar_field`) there, to level 6; all of weight 1.
+/// Random places in the cells of a mesh, and the limit of a field (`scalar_field`) there (to level 6); all have weight 1.
 ///
-/// within:  for the last two kinds, how far from the edge or face a place may be, in cells: (0,1]
-/// returns: nothing if the mesh has no such edge
+/// within:  for the last two kinds, how far from the edge or face a place may lie, in cells: (0,1]
+/// returns: no places if the mesh has no such edge or face
 /// throws:  Error(InvalidInput) as `evaluate_limit` and `scalar_field`
 [[nodiscard]] FieldSamples random_places(const HexMesh& mesh, std::string_view field, PlaceKind kind, double within,
                                          std::size_t count, std::uint64_t seed, Scheme scheme = Scheme::Mcq);
 
-/// The vertices that are new at level `level` + 1 of a refinement, with the scheme's values there, all of weight 1: where
-/// [mnmq2007] measures (table 2). As always the mesh as it came is level 0.
+/// The vertices that are new at level `level` + 1 of a refinement, with the scheme's values there; all have weight 1. These are
+/// the places where [mnmq2007] measures (table 2). The given mesh is level 0.
 ///
 /// throws: Error(InvalidInput) as `refine` and `scalar_field`
 [[nodiscard]] FieldSamples new_vertices(const HexMesh& mesh, std::string_view field, int level = 0,

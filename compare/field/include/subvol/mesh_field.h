@@ -5,17 +5,16 @@
 #include <optional>
 #include <string_view>
 
-#include "subvol/field_metrics.h"
+#include "subvol/field.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol {
 
-/// A scalar field of a mesh (`scalar_field`): trilinear in the cells as they are, found by the tetrahedra of `split_cell`.
-/// Satisfies `Field`. For the limit give it a refined mesh (`refine`, `on_limit`). Where cells overlap, the one with the
-/// smallest number counts.
+/// A scalar field of a mesh (`scalar_field`): trilinear in the given cells; the tetrahedra of `split_cell` decide which cell contains x.
+/// For the limit, pass a refined mesh (`refine`, `on_limit`). Where cells overlap, the first one that the search finds counts.
 ///
 /// throws: Error(InvalidInput) as `validate` and `scalar_field`
-/// cost:   a tree of boxes over the cells, about 60 bytes a cell beside the mesh; some µs a value; thread-safe
+/// cost:   a tree of boxes over the cells, about 60 bytes per cell beside the mesh; some µs per value; thread-safe
 class MeshField {
 public:
     MeshField(HexMesh mesh, std::string_view field);
@@ -24,11 +23,11 @@ public:
     MeshField& operator=(MeshField&&) noexcept;
 
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
-    /// Exact within cells; between them it jumps.
+    /// Exact within cells; discontinuous between them.
     [[nodiscard]] std::optional<Vec3> gradient(const Vec3& x) const;
     [[nodiscard]] Box box() const;
 
-    /// Refers to this field.
+    /// A view that refers to this object.
     [[nodiscard]] FieldView view() const;
 
 private:

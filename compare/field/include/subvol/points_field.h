@@ -4,15 +4,15 @@
 #include <memory>
 #include <optional>
 
-#include "subvol/field_metrics.h"
+#include "subvol/field.h"
 #include "subvol/rbf_volume.h"
 
 namespace subvol {
 
-/// The field of points (`RbfField`), and nothing outside their boundary, if they have one. Satisfies `Field`.
+/// The field of points (`RbfField`); nothing outside their boundary, if they have one.
 ///
 /// throws: Error(InvalidInput) as `RbfField`
-/// cost:   as `RbfField`, and of the boundary's triangles those above the place
+/// cost:   as `RbfField`, and a visit of the boundary's triangles above the place
 class PointsField {
 public:
     explicit PointsField(const RbfVolume& volume, std::size_t channel = 0);
@@ -24,7 +24,7 @@ public:
     [[nodiscard]] std::optional<Vec3> gradient(const Vec3& x) const;
     [[nodiscard]] Box box() const;
 
-    /// Refers to this field.
+    /// A view that refers to this object.
     [[nodiscard]] FieldView view() const;
 
 private:

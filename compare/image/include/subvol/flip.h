@@ -7,10 +7,10 @@
 
 namespace subvol {
 
-/// Pixels a degree of a 3840-pixel screen .7 m wide, seen from .7 m.
+/// Pixels per degree of a 3840-pixel screen .7 m wide, seen from .7 m.
 inline constexpr double kFlipPixelsPerDegree = 67.020643276582255;
 
-/// mean: over all pixels; map: 0 to 1 a pixel
+/// mean: over all pixels; map: 0 to 1 at each pixel
 struct FlipResult {
     double mean = 0;
     MetricMap map;
@@ -18,16 +18,17 @@ struct FlipResult {
 
 /// LDR-FLIP: how strongly a viewer notices a difference when the two pictures alternate on a screen, 0 to 1.
 ///
-/// Colours are linear RGB over black, cut to [0,1]; beyond the border the picture's last pixels repeat. Both pictures count
-/// alike. throws: Error(InvalidInput) if the sizes differ, there are no pixels, some are not finite, or the pixels a degree are
-/// not in
+/// Colours are linear RGB over black, clamped to [0,1]; beyond the border the picture's last pixels repeat. The result is
+/// symmetric in the two pictures.
+///
+/// throws: Error(InvalidInput) if the sizes differ, there are no pixels, some are not finite, or pixels_per_degree is not in
 ///         [1,1000]
-/// cost:   linear in pixels and in pixels a degree; parallel, bitwise the same for any number of threads
-/// source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild 2020
+/// cost:   linear in the number of pixels and in pixels_per_degree; parallel, bitwise the same for any number of threads
+/// source: [flip2020]
 [[nodiscard]] FlipResult flip(const Image& test, const Image& reference, double pixels_per_degree = kFlipPixelsPerDegree);
 
-/// start, stop: exposures in stops; none: from the reference's luminance: its maximum, its median comes to .85 on the screen.
-///              The median is over all pixels; if that is black, over those that are not
+/// start, stop: exposures in stops; none: those at which the reference's largest and its median luminance become .85 on the
+///              screen. If the median pixel is black, the median is over the pixels that are not
 struct HdrFlipOptions {
     double pixels_per_degree = kFlipPixelsPerDegree;
     std::optional<double> start{};
@@ -42,12 +43,12 @@ struct HdrFlipResult {
     int exposures = 0;
 };
 
-/// HDR-FLIP: per pixel the largest LDR-FLIP over a row of exposures, each after the ACES tone curve. Colours are cut to
+/// HDR-FLIP: per pixel the largest LDR-FLIP over a series of exposures, each after the ACES tone curve. Colours are clamped to
 /// [0,65536].
 ///
-/// throws: as `flip`; Error(InvalidInput) too for a start beyond the stop, or more than 100 stops between
-/// cost:   as many times `flip` as there are exposures
-/// source: Andersson, Nilsson, Shirley and Akenine-Möller 2021
+/// throws: as `flip`, or Error(InvalidInput) if the start is beyond the stop, or more than 100 stops before it
+/// cost:   that of `flip` for each exposure
+/// source: [hdrflip2021]
 [[nodiscard]] HdrFlipResult hdr_flip(const Image& test, const Image& reference, const HdrFlipOptions& options = {});
 
 }  // namespace subvol

@@ -12,23 +12,23 @@
 namespace subvol {
 
 /// Writes `.exr` (linear float RGBA, premultiplied; with depths a fifth channel Z) or `.png` (8-bit sRGB RGB over the
-/// background, no depth). Written beside and renamed.
+/// background, no depth). The file appears whole under its name or not at all.
 ///
 /// background: linear RGB
-/// depth:      one a pixel, +infinity where nothing is; empty: no channel Z
-/// throws: Error(InvalidInput) for another extension or another number of depths, Error(Io)
+/// depth:      one per pixel, +infinity where nothing is; empty: no channel Z
+/// throws:     Error(InvalidInput) for another extension or another number of depths, Error(Io)
 void write_image(const std::filesystem::path& path, const Image& image, const Vec3& background = Vec3(0.0),
                  std::span<const float> depth = {});
 
-/// 8-bit sRGB over a background of linear RGB: three bytes a pixel, rows from the top.
+/// 8-bit sRGB over a background of linear RGB: three bytes per pixel, rows from the top.
 ///
-/// throws: Error(InvalidInput) if the image has no pixels or not as many values as its size says
+/// throws: Error(InvalidInput) if the image has no pixels, or its number of values does not match its size
 [[nodiscard]] std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background = Vec3(0.0));
 
-/// Reads an image that OpenImageIO knows into linear premultiplied RGBA; integer samples are taken as sRGB. A channel
-/// Z is ignored.
+/// Reads an image of any format that OpenImageIO reads as linear premultiplied RGBA; integer samples are decoded from sRGB. A
+/// channel Z is ignored.
 ///
-/// throws: Error(Io) if there is no such file, Error(InvalidInput) if it is no whole image or has more than 2²⁸ pixels
+/// throws: Error(Io) if there is no such file, Error(InvalidInput) if it is not a complete image or has more than 2²⁸ pixels
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
 
 }  // namespace subvol

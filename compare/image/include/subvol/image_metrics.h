@@ -10,26 +10,26 @@
 
 namespace subvol {
 
-/// Differences over red, green and blue of all pixels, peak 1. psnr is infinite for equal images.
+/// Differences over red, green and blue of all pixels, for a peak of 1. psnr is infinite for equal images.
 struct ImageMetrics {
     double mse = 0, rmse = 0, mae = 0, max = 0, psnr = 0;
 };
 
-/// Which pixels count: one a pixel, rows from the top; 0: does not. An empty one where all count.
+/// Which pixels count: one number per pixel, rows from the top, 0 for those that do not. An empty mask means all pixels.
 using PixelMask = std::vector<std::uint8_t>;
 
-/// A number for each pixel, rows from the top: where a metric is how large.
+/// The values of a metric: one number per pixel, rows from the top.
 struct MetricMap {
     int width = 0;
     int height = 0;
     std::vector<float> values;
 };
 
-/// throws: Error(InvalidInput) if the sizes differ, there are no pixels, or none that counts
+/// throws: Error(InvalidInput) if the sizes differ, there are no pixels, or none of them counts
 [[nodiscard]] ImageMetrics compare_images(const Image& a, const Image& b, std::span<const std::uint8_t> mask = {});
 
-/// The picture as `write_image` puts it into a .png: red, green and blue are the encoded 8-bit values / 255, no longer linear,
-/// alpha is 1. What is measured between two of them is measured on 8-bit sRGB.
+/// The picture as `write_image` stores it in a .png: red, green and blue are the encoded 8-bit values / 255, not linear, and
+/// alpha is 1. Metrics of two such pictures are metrics on 8-bit sRGB.
 ///
 /// background: linear RGB
 [[nodiscard]] Image srgb8_image(const Image& image, const Vec3& background = Vec3(0.0));
@@ -47,10 +47,10 @@ struct MetricMap {
 /// throws: Error(InvalidInput) if the sizes differ or there are no pixels
 [[nodiscard]] MetricMap difference_map(const Image& a, const Image& b);
 
-/// A map as a picture: colours of the map inferno (black over red to pale yellow), 30 rows of legend below: a bar and the
-/// numbers at its ends and middle, as far as there is room.
+/// A map as a picture in the colours of inferno (black over red to pale yellow), with 30 rows of legend below: a bar, and the
+/// numbers at its ends and middle as far as there is room.
 ///
-/// scale:  the value that takes the last colour; 0: the largest value
+/// scale:  the value that gets the last colour; 0: the largest value of the map
 /// throws: Error(InvalidInput) if there are no pixels or the scale is negative
 [[nodiscard]] Image heatmap(const MetricMap& map, double scale = 0);
 

@@ -7,14 +7,14 @@
 
 namespace subvol {
 
-/// A difference warns or fails if it is larger than the threshold, absolute, and larger than the relative one of the mean of
-/// the two values; those of the program idiff.
+/// Thresholds as in the program idiff: a difference is a warning or failure if it is larger than the absolute threshold and
+/// larger than the relative threshold times the mean of the two values.
 struct OiioOptions {
     float fail = 1e-6f, warn = 1e-6f;
     float fail_relative = 0, warn_relative = 0;
 };
 
-/// warnings, failures: pixels
+/// warnings, failures: numbers of pixels
 struct OiioMetrics {
     double mean_error = 0, rms_error = 0, psnr = 0, max_error = 0;
     std::size_t warnings = 0, failures = 0;
@@ -25,7 +25,7 @@ struct OiioMetrics {
 /// throws: Error(InvalidInput) if the sizes differ or there are no pixels
 [[nodiscard]] OiioMetrics compare_oiio(const Image& a, const Image& b, const OiioOptions& options = {});
 
-/// Yee's perceptual comparison as OpenImageIO has it: the number of pixels whose difference can be seen.
+/// OpenImageIO's version of Yee's perceptual comparison: the number of pixels whose difference is visible.
 ///
 /// luminance: of white on the screen, cd/m²; field_of_view_deg: of the picture, horizontally
 /// throws:    as `compare_oiio`, or if pixels are not finite

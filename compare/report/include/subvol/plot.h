@@ -12,8 +12,8 @@ struct PlotLine {
     std::vector<double> x, y;
 };
 
-/// log_x, log_y: decades instead of equal steps; what is not positive is left out there. fit: the slope of each line in decades
-/// is told behind its name
+/// log_x, log_y: logarithmic axes; values that are not positive are left out
+/// fit:          show the slope of each line in a log-log plot after its name
 struct Plot {
     std::string title;
     std::string x_label, y_label;
@@ -22,16 +22,16 @@ struct Plot {
     std::vector<PlotLine> lines;
 };
 
-/// The plot as one SVG element, as wide as what it stands in, without fonts, scripts or links of its own. Points that are not
+/// The plot as one SVG element that fills the width of its container, without fonts, scripts or links. Points that are not
 /// finite are left out; lines differ in colour and in the shape of their points.
 [[nodiscard]] std::string plot_svg(const Plot& plot);
 
-/// The slope of log y over log x by least squares: the order of convergence. None with less than two positive points at
+/// The slope of log y over log x by least squares: the order of convergence. Nothing with fewer than two positive points at
 /// different x.
 [[nodiscard]] std::optional<double> fitted_order(const PlotLine& line);
 
-/// Where ticks stand on an axis from min to max, ascending, at least two: 1, 2, 5 times powers of ten; decades on a logarithmic
-/// axis that spans several.
+/// The positions of ticks on an axis from min to max, ascending, at least two: 1, 2, 5 times powers of ten; decades on a
+/// logarithmic axis that spans several.
 [[nodiscard]] std::vector<double> ticks(double min, double max, bool log);
 
 }  // namespace subvol

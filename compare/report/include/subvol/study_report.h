@@ -14,15 +14,15 @@ namespace subvol {
 /// Facts under their names, in the order in which they are shown.
 using ReportFacts = std::vector<std::pair<std::string, std::string>>;
 
-/// host, versions: where and with what the studies ran; command: what runs them again
+/// host, versions: the machine and the programs that the studies ran with; command: runs them again
 struct ReportOptions {
     ReportFacts host, versions;
     std::string command;
 };
 
-/// A demand of a study, judged.
+/// A demand of a study, and whether it is met.
 ///
-/// words: what was asked for and what came of it; cases: that it is about; met: how many of them meet it
+/// words: the demand and the result, for people; cases: how many it applies to; met: how many of them meet it
 struct Judgement {
     std::string words;
     std::size_t cases = 0;
@@ -33,9 +33,9 @@ struct Judgement {
 [[nodiscard]] std::vector<Judgement> judge(const StudyResults& results);
 
 /// The report on studies as one HTML page that needs no other file and no network: summary, tables, plots, pictures beside
-/// their references with a slider, hardware and versions. All but the slider works without scripts.
+/// their references with a slider, hardware and versions. Only the slider needs scripts.
 ///
-/// folder: the studies' pictures are in folder/NAME, references in folder/references; a picture that is missing is said to be
+/// folder: the studies' pictures are in folder/NAME, references in folder/references; the page names pictures that are missing
 [[nodiscard]] std::string report_html(std::span<const StudyResults> studies, const std::filesystem::path& folder,
                                       const ReportOptions& options);
 

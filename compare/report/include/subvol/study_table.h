@@ -9,7 +9,7 @@
 
 namespace subvol {
 
-/// A table: a name and an explanation, and rows of words and numbers under headings. A number that is not known is NaN.
+/// A table: rows of texts and numbers under headings. An unknown number is NaN.
 struct StudyTable {
     using Cell = std::variant<std::string, double>;
 
@@ -21,21 +21,22 @@ struct StudyTable {
     int digits = 4;
 };
 
-/// A value, metric, cost or note of a case by its key; "done" is "yes", or the failure.
+/// A value, metric, cost or note of a case by its key; the key "done" gives "yes" or the failure.
 [[nodiscard]] std::optional<StudyValue> find_value(const StudyCase& of, const CaseResult& result, const std::string& key);
 
-/// The same as text; "" if there is none.
+/// The same as text; "" if there is no such value.
 [[nodiscard]] std::string value_text(const StudyCase& of, const CaseResult& result, const std::string& key);
 
-/// A name for people: with spaces for its underscores.
+/// A name with spaces instead of underscores, for people.
 [[nodiscard]] std::string spaced(std::string name);
 
 [[nodiscard]] bool matches(const StudyCase& of, const CaseResult& result, const StudyFilter& where);
 
-/// The tables of a study, each of the cases that its specification chooses; named as the study, with _2 and so on.
+/// The tables of a study, each with the cases that its specification selects. Their names are the study's, then NAME_2 and so
+/// on.
 [[nodiscard]] std::vector<StudyTable> make_tables(const StudyResults& results);
 
-/// A number as people read it: in so many digits, counts in full; NaN is "–".
+/// A cell as text: numbers in so many digits, counts in full, NaN as "–".
 [[nodiscard]] std::string readable(const StudyTable::Cell& cell, int digits = 4);
 
 /// The table as text with aligned columns, for people; as comma-separated values, for programs.

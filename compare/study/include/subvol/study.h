@@ -11,14 +11,14 @@
 
 namespace subvol {
 
-/// What a case of a study is described by: switches, numbers and texts under names.
+/// The description of a case of a study: switches, numbers and texts under names.
 using StudyValue = std::variant<bool, double, std::string>;
 using StudyValues = std::map<std::string, StudyValue>;
 
-/// One thing to be computed and measured.
+/// One computation to run and measure.
 ///
-/// id:     of the values, but for names that are only shown: 16 hexadecimal digits, the same on every machine
-/// name:   for people: unique in its study, fit for a file
+/// id:     a hash of the values, without names that are only shown: 16 hexadecimal digits, the same on every machine
+/// name:   for people: unique in its study, and valid as part of a file name
 /// values: "input", "input.model", "view", "tf", "method", "label", a method's own options, "given.NAME" …
 struct StudyCase {
     std::string id;
@@ -26,20 +26,23 @@ struct StudyCase {
     StudyValues values;
 
     [[nodiscard]] bool has(const std::string& key) const { return values.contains(key); }
-    /// The value; for one that is not there "", 0, false. Of another type: Error(InvalidInput).
+    /// The value; "", 0 or false if there is none.
+    ///
+    /// throws: Error(InvalidInput) if the value has another type
     [[nodiscard]] const std::string& text(const std::string& key) const;
     [[nodiscard]] double number(const std::string& key) const;
     [[nodiscard]] int whole(const std::string& key) const { return static_cast<int>(number(key)); }
     [[nodiscard]] bool flag(const std::string& key) const;
 };
 
-/// Which cases: those that have all these values, as text.
+/// Selects the cases that have all these values, as text.
 using StudyFilter = std::map<std::string, std::string>;
 
-/// A table of the report: a row for each combination of the values under `rows`, first `columns`, then one column for each
-/// value under `across`, with each of `values` in it. Keys are names of values, metrics and costs; headings say them to people.
+/// A table of the report: a row for each combination of the values of `rows`; after these come `columns`, then, for each value
+/// of `across`, a column for each of `values`. Keys are names of values, metrics and costs.
 ///
-/// digits: of numbers that are no counts
+/// headings: the names of keys in the report
+/// digits:   of numbers that are not counts
 struct StudyTableSpec {
     std::string title;
     std::string caption;
@@ -52,8 +55,10 @@ struct StudyTableSpec {
     int digits = 4;
 };
 
-/// A plot of the report: metric `y` over `x`, a line for each combination of the values under `series`, a plot for each of
-/// `panels`. fit: the slope of each line is told
+/// A plot of the report: metric `y` over `x`, with a line for each combination of the values of `series`, and a plot for each
+/// value of `panels`.
+///
+/// fit: show the slope of each line
 struct StudyPlotSpec {
     std::string title;
     std::string caption;
@@ -66,15 +71,15 @@ struct StudyPlotSpec {
     StudyFilter where;
 };
 
-/// What the report judges: a metric that shall be at least or at most so much.
+/// A bound on a metric, which the report checks.
 struct StudyDemand {
     std::string metric;
     std::optional<double> least{}, most{};
     StudyFilter where;
 };
 
-/// timed:    costs are measured: cases run one after the other, alone
-/// pictures: the report shows pictures beside their reference, of the cases of `pictures_where`
+/// timed:    costs are measured, so cases run one after the other
+/// pictures: the report shows pictures beside their reference, for the cases of `pictures_where`
 struct Study {
     std::string name;
     std::string title;
@@ -88,15 +93,21 @@ struct Study {
     std::vector<StudyDemand> demands;
 };
 
+/// What a method computes: a picture of a mesh, compared with a reference; numbers of a mesh's field; or numbers of a kernel,
+/// without a mesh.
+enum class StudyKind { Picture, Field, Kernel };
+
+/// throws: Error(InvalidInput) if there is no such method; lists the known ones
+[[nodiscard]] StudyKind method_kind(const std::string& method);
+
 inline constexpr std::size_t kMaxStudyCases = 10'000;
 
-/// Reads a study from JSON and expands it: inputs × cameras × transfer functions × methods, and the product of all lists among
+/// Reads a study from JSON and expands it: inputs × cameras × transfer functions × methods × the product of all lists among
 /// their options; methods that make no picture need no camera. docs/studies.md has the keys.
 ///
-/// file:   for messages, and the folder that relative paths start from
+/// file:   for error messages, and as the folder that relative paths start from
 /// throws: Error(InvalidInput), with the path of the place in the JSON, for an unknown key, a wrong type, an empty list, a
-/// value
-///         out of range, more than kMaxStudyCases cases, or two cases that are the same; Error(Io)
+///         value out of range, more than kMaxStudyCases cases, or two equal cases; Error(Io)
 [[nodiscard]] Study parse_study(std::string_view json, const std::filesystem::path& file);
 [[nodiscard]] Study read_study(const std::filesystem::path& file);
 
@@ -105,23 +116,23 @@ struct StudyInfo {
     std::string title;
 };
 
-/// The studies that come with the library, and their files' text.
+/// The built-in studies, and the text of their files.
 ///
 /// throws: Error(InvalidInput) for an unknown name; lists the known ones
 [[nodiscard]] std::vector<StudyInfo> list_studies();
 [[nodiscard]] Study built_in_study(const std::string& name);
 [[nodiscard]] std::string_view built_in_study_json(const std::string& name);
 
-/// The case that makes the reference of a case's picture; none if it has none.
+/// The case that makes the reference of a case's picture; nothing if the case has no reference.
 [[nodiscard]] std::optional<StudyCase> reference_of(const StudyCase& of);
 
 /// A case as a JSON object and back.
 ///
-/// throws: Error(InvalidInput) if the text is no case
+/// throws: Error(InvalidInput) if the text is not a case
 [[nodiscard]] std::string to_json(const StudyCase& of);
 [[nodiscard]] StudyCase study_case_from_json(std::string_view json);
 
-/// The values, the numbers in the fewest digits that read back the same.
+/// A value as text; a number in the fewest digits that give the same number when read again.
 [[nodiscard]] std::string as_text(const StudyValue& value);
 
 }  // namespace subvol

@@ -13,13 +13,13 @@
 
 namespace subvol {
 
-/// What came of a case.
+/// The result of a case.
 ///
-/// metrics: the same every time
-/// costs:   seconds, cpu_seconds, peak_bytes: other ones every time
+/// metrics: reproducible: the same in every run
+/// costs:   seconds, cpu_seconds, peak_bytes: different in every run
 /// files:   names relative to the study's folder
-/// notes:   a device, warnings
-/// failure: a sentence; empty: the case is done
+/// notes:   such as a device, or warnings
+/// failure: a sentence; empty if the case succeeded
 struct CaseResult {
     std::map<std::string, double> metrics{};
     std::map<std::string, double> costs{};
@@ -28,14 +28,14 @@ struct CaseResult {
     std::string failure{};
 };
 
-/// Does the work of a case. What it throws, but for Error(Cancelled), is the case's failure. Called from several threads at
-/// once if there are several jobs.
+/// Computes a case. Any exception except Error(Cancelled) becomes the case's failure. Called from several threads at once if
+/// there are several jobs.
 using CaseWork = std::function<CaseResult(const StudyCase&)>;
 
-/// folder:   made if need be; cases/ID.json for each case, results.csv, costs.csv
-/// jobs:     cases that run at the same time; a timed study has one
-/// fresh:    nothing is taken over from an earlier run
-/// finished: told of each case as it ends, one at a time; ran: it was not taken over
+/// folder:   created if necessary; gets cases/ID.json for each case, results.csv, costs.csv
+/// jobs:     cases that run at the same time; 1 for a timed study
+/// fresh:    run all cases, even those that an earlier run finished
+/// finished: called for each case as it ends, one at a time; ran: false if an earlier run finished it
 struct StudyRunOptions {
     std::filesystem::path folder;
     int jobs = 1;
@@ -44,8 +44,8 @@ struct StudyRunOptions {
     Progress* progress = nullptr;
 };
 
-/// results: one a case, in their order
-/// ran:     cases that were run now; failed: of all of them
+/// results: one per case, in the order of the cases
+/// ran:     number of cases run by this call; failed: number of failures among all cases
 struct StudyResults {
     Study study;
     std::vector<CaseResult> results;
@@ -53,27 +53,29 @@ struct StudyResults {
     std::size_t failed = 0;
 };
 
-/// Runs the cases of a study that an earlier run has not finished. Each case is written as soon as it is done, beside and
-/// renamed: a run that is killed loses what was running. A failed case is kept with its message, and tried again by the next
-/// run.
+/// Runs the cases of a study that an earlier run has not finished. Each case's file is written as soon as it is done, and
+/// appears whole or not at all: a run that is killed loses only the cases that were running. A failed case is kept with its
+/// message, and tried again by the next run.
 ///
 /// throws: Error(Io) if the folder cannot be written to, Error(Cancelled)
 [[nodiscard]] StudyResults run_study(const Study& study, const CaseWork& work, const StudyRunOptions& options);
 
-/// One file of a case, and back; none if there is no such file, or not of this case, or it failed or is damaged, or files of
-/// its result in `folder` are gone.
+/// Writes the file of a case, and reads it again.
+///
+/// returns: nothing if there is no such file, it is damaged or belongs to another case, the case failed, or files of its
+///          result are missing in `folder`
 void write_case(const std::filesystem::path& file, const StudyCase& of, const CaseResult& result);
 [[nodiscard]] std::optional<CaseResult> read_finished_case(const std::filesystem::path& file, const StudyCase& of,
                                                            const std::filesystem::path& folder);
 
 /// A result as a JSON object and back.
 ///
-/// throws: Error(InvalidInput) if the text is no result
+/// throws: Error(InvalidInput) if the text is not a result
 [[nodiscard]] std::string to_json(const CaseResult& result);
 [[nodiscard]] CaseResult case_result_from_json(std::string_view json);
 
-/// Comma-separated values: a line a case, in the study's order. Results have the values, the metrics and the failure, and are
-/// the same bytes for every run, interrupted or not; costs have what is measured.
+/// Comma-separated values: a line per case, in the study's order. Results are the values, the metrics and the failure, the same
+/// bytes in every run, interrupted or not; costs are what was measured.
 [[nodiscard]] std::string results_csv(const StudyResults& results);
 [[nodiscard]] std::string costs_csv(const StudyResults& results);
 

@@ -64,4 +64,11 @@ struct LimitCells {
 /// throws: Error(InvalidInput) as `for_each_dense_cell`
 [[nodiscard]] LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options);
 
+/// The tolerance of positions where the limit is sampled at voxels.
+inline constexpr double kLimitTolerance_voxels = 0.1;
+
+/// `find_limit_cells` for a grid with voxels of this size: positions within kLimitTolerance_voxels, values within the default
+/// tolerance.
+[[nodiscard]] LimitCells limit_for_voxels(const HexMesh& mesh, const RefineOptions& refinement, double voxel_world);
+
 }  // namespace subvol

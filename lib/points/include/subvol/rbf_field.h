@@ -24,7 +24,7 @@ struct FieldJet {
 };
 
 /// The field of an RBF volume at points: Σ wᵢ (vᵢ + gᵢ·d + mᵢ eᵢ + ½ dᵀHᵢd) / Σ wᵢ with d = x−μᵢ, eᵢ = dᵀ Sᵢ⁻¹ d, wᵢ the kernel
-/// at R√eᵢ inside eᵢ < 1. Satisfies `Field`. The boundary is not tested.
+/// at R√eᵢ inside eᵢ < 1. The boundary is not tested.
 ///
 /// It holds a copy of the kernels in a tree of boxes and does not refer to the volume. Kernels may differ in size and shape.
 ///

@@ -13,8 +13,12 @@
 
 namespace subvol {
 
-/// kind:     float, vector, integer, mask, or another type's name
-/// min, max: of a vector's length
+namespace detail {
+struct VdbData;
+}
+
+/// kind:     float, vector, integer, mask, or the name of another type
+/// min, max: of the active values; of a vector its length
 struct GridReport {
     std::string name;
     std::string kind;
@@ -25,33 +29,33 @@ struct GridReport {
     Box bounds{};  // of the active voxels' centres, world; empty if there are none
 };
 
-/// An OpenVDB grid; of floats it is a field that can be sampled. Those that are made here have voxel centres at world = h·ijk.
+/// An OpenVDB grid; a grid of floats is a field that can be sampled. Grids made by this library have voxel centres at
+/// world = h·ijk, unless they copy the transform of another grid.
 class VdbGrid {
 public:
-    struct Data;
-    explicit VdbGrid(std::unique_ptr<Data> data);
     ~VdbGrid();
     VdbGrid(VdbGrid&&) noexcept;
     VdbGrid& operator=(VdbGrid&&) noexcept;
 
     [[nodiscard]] const GridReport& report() const;
 
-    /// Trilinear between the eight voxels about x; nothing where the voxel that holds x is inactive. Inactive neighbours do not
-    /// count: the weights of the active ones are normalised. Floats only; of vectors and whole numbers there is nothing.
+    /// Trilinear between the eight voxels about x; nothing where the voxel that contains x is inactive. Inactive neighbours are
+    /// ignored: the weights of the active ones are normalised. Nothing if the voxels are not floats.
     [[nodiscard]] std::optional<double> value(const Vec3& x) const;
 
-    /// The voxels, for a renderer; shares the grid's memory, may outlive it.
+    /// The voxels, for a renderer; they share the grid's memory and may outlive it.
     ///
-    /// throws: Error(InvalidInput) if the transform is not linear, or the voxels are no floats
+    /// throws: Error(InvalidInput) if the transform is not linear, or the voxels are not floats
     [[nodiscard]] std::unique_ptr<Voxels> voxels() const;
 
-    [[nodiscard]] const Data& data() const { return *data_; }
-
 private:
-    std::unique_ptr<Data> data_;
+    friend struct detail::VdbData;
+    explicit VdbGrid(std::unique_ptr<detail::VdbData> data);
+
+    std::unique_ptr<detail::VdbData> data_;
 };
 
-/// How far the values of two grids of floats are apart where both are active.
+/// The differences of two grids of floats at the voxels that are active in both.
 struct GridDifference {
     std::size_t voxels = 0;
     double rms = 0, max = 0;
@@ -60,7 +64,7 @@ struct GridDifference {
 
 enum class VdbCompression { None, Zip, Blosc };
 
-/// Writes grids into one `.vdb` file, beside and then renamed.
+/// Writes grids into one `.vdb` file, which appears whole under its name or not at all.
 ///
 /// throws: Error(Io); Error(MissingCapability) if OpenVDB was built without that compression
 void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids,
@@ -68,7 +72,7 @@ void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids
 
 /// Reads the float grids of a `.vdb` file.
 ///
-/// throws: Error(Io), Error(InvalidInput) if it is no VDB file or holds no float grid
+/// throws: Error(Io), Error(InvalidInput) if it is not a VDB file or has no grid of floats
 [[nodiscard]] std::vector<VdbGrid> read_vdb(const std::filesystem::path& path);
 
 }  // namespace subvol

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rasterize_cells.h"
+#include "brick_filler.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <map>
 
+#include "boundary_triangles.h"
 #include "check_voxels.h"
 #include "subvol/detail/flat_array.h"
 
@@ -13,14 +14,15 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatchNodes = 1 << 17;         // of a mesh as it is
-constexpr std::size_t kBatchRefinedNodes = 1 << 20;  // fewer pay for their surroundings, more for memory
+constexpr std::size_t kBatchNodes = 1 << 17;  // of an unrefined mesh
+constexpr std::size_t kBatchRefinedNodes =
+    1 << 20;  // smaller batches refine more surrounding cells, larger ones need more memory
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {
     return !common(a, b).empty();
 }
 
-/// Takes those voxels of a box in a brick out that lie outside a surface.
+/// Removes those voxels of a box in a brick that lie outside a surface.
 void drop_outside(const SurfaceColumns& surface, const VoxelBox& box, std::size_t channels, VoxelBrick& brick) {
     for (std::size_t l = 0; l < brick.leaves.size(); ++l) {
         auto& leaf = brick.leaves[l];
@@ -45,8 +47,10 @@ void drop_outside(const SurfaceColumns& surface, const VoxelBox& box, std::size_
 
 }  // namespace
 
-/// Blocks of some cells, one after the other. first: the first node of each, and their number; boxes: the voxels of each
-struct CellRasterizer::Batch {
+/// The blocks of some cells, one after the other.
+///
+/// first: the first node of each block, then the number of all nodes; boxes: the voxels of each block
+struct BrickFiller::Batch {
     std::span<const Index> cells;
     std::vector<std::size_t> first;
     FlatArray<Vec3> points;
@@ -55,15 +59,13 @@ struct CellRasterizer::Batch {
     std::vector<VoxelBox> boxes;
 };
 
-CellRasterizer::CellRasterizer(RasterizeCells request) : request_(std::move(request)), refined_(request_) {
-    fill_.cell_numbers = request_.cell_numbers;
-    fill_.channels = 0;
-    for (const Attribute* field : request_.fields) fill_.channels += static_cast<std::size_t>(field->channels);
-    fill_.orientation = check_voxel_count(*request_.mesh, request_.to_voxels) < 0 ? -1 : 1;
+BrickFiller::BrickFiller(CellRequest request) : request_(std::move(request)), refined_(request_) {
+    for (const Attribute* field : request_.fields) channels_ += static_cast<std::size_t>(field->channels);
+    orientation_ = check_voxel_count(*request_.mesh, request_.to_voxels) < 0 ? -1 : 1;
 }
 
-VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
-    VoxelBricks bricks(fill_.leaf_channels());
+VoxelBricks BrickFiller::run(const std::optional<VoxelBox>& part) {
+    VoxelBricks bricks(channels_ + (request_.cell_numbers ? 1 : 0));
     const std::vector<Index> cells = cells_of(part);
     const bool first_run = boxes_.empty();
     std::vector<VoxelBox> boxes;
@@ -75,12 +77,12 @@ VoxelBricks CellRasterizer::run(const std::optional<VoxelBox>& part) {
         if (first_run) boxes.insert(boxes.end(), batch.boxes.begin(), batch.boxes.end());
     }
     if (first_run) boxes_ = std::move(boxes);
-    drop_leaks();
+    drop_leaks(bricks.channels());
     report_progress(request_.progress, "rasterize", 1);
     return bricks;
 }
 
-std::vector<Index> CellRasterizer::cells_of(const std::optional<VoxelBox>& part) const {
+std::vector<Index> BrickFiller::cells_of(const std::optional<VoxelBox>& part) const {
     std::vector<Index> cells;
     for (std::size_t c = 0; c < request_.mesh->cells.size(); ++c) {
         if (!part || boxes_.empty() || touch(boxes_[c], *part)) cells.push_back(static_cast<Index>(c));
@@ -88,19 +90,22 @@ std::vector<Index> CellRasterizer::cells_of(const std::optional<VoxelBox>& part)
     return cells;
 }
 
-CellBlock CellRasterizer::block(const Batch& batch, std::size_t i) const {
+CellBlock BrickFiller::block(const Batch& batch, std::size_t i) const {
     const std::size_t first = batch.first[i];
     return {.cell = batch.cells[i],
             .side = side(batch.cells[i]),
             .step = request_.curved && request_.levels(batch.cells[i]) > request_.refine.levels ? std::size_t{2} : 1,
             .curved = request_.curved,
+            .channels = channels_,
+            .cell_numbers = request_.cell_numbers,
+            .orientation = orientation_,
             .points = batch.points.data() + first,
-            .values = batch.values.data() + first * fill_.channels,
+            .values = batch.values.data() + first * channels_,
             .ids = refines() ? nullptr : batch.ids.data() + first};
 }
 
-/// So many of the first cells as make a batch.
-void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
+/// Loads the first of the cells, as many as make a batch.
+void BrickFiller::load(std::span<const Index> cells, Batch& batch) {
     const std::size_t most = refines() ? kBatchRefinedNodes : kBatchNodes;
     batch.first.assign(1, 0);
     for (std::size_t i = 0; i < cells.size() && batch.first.back() < most; ++i) {
@@ -109,7 +114,7 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
     }
     batch.cells = cells.first(batch.first.size() - 1);
     batch.points.resize(batch.first.back());
-    batch.values.resize(batch.first.back() * fill_.channels);
+    batch.values.resize(batch.first.back() * channels_);
     batch.boxes.resize(batch.cells.size());
     if (refines()) {
         load_refined(batch);
@@ -120,7 +125,7 @@ void CellRasterizer::load(std::span<const Index> cells, Batch& batch) {
     check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
 }
 
-void CellRasterizer::load_cells(Batch& batch) const {
+void BrickFiller::load_cells(Batch& batch) const {
     batch.ids.resize(batch.first.back());
     const HexMesh& mesh = *request_.mesh;
     constexpr std::array<std::size_t, 8> kNode{0, 1, 3, 2, 4, 5, 7, 6};  // of a corner
@@ -130,7 +135,7 @@ void CellRasterizer::load_cells(Batch& batch) const {
             const std::size_t node = 8 * i + kNode[k];
             batch.ids[node] = id;
             batch.points[node] = request_.to_voxels(mesh.points[id]);
-            double* value = batch.values.data() + node * fill_.channels;
+            double* value = batch.values.data() + node * channels_;
             for (const Attribute* field : request_.fields) {
                 const auto channels = static_cast<std::size_t>(field->channels);
                 value = std::copy_n(field->values.begin() + static_cast<std::ptrdiff_t>(id * channels), channels, value);
@@ -139,7 +144,7 @@ void CellRasterizer::load_cells(Batch& batch) const {
     });
 }
 
-void CellRasterizer::load_refined(Batch& batch) const {
+void BrickFiller::load_refined(Batch& batch) const {
     std::map<int, std::vector<Index>> of_level;
     for (const Index cell : batch.cells) of_level[request_.levels(cell)].push_back(cell);
     for (const auto& [levels, cells] : of_level) {
@@ -148,7 +153,7 @@ void CellRasterizer::load_refined(Batch& batch) const {
             const std::size_t nodes = cell.points.size(), first = batch.first[slot];
             for (std::size_t n = 0; n < nodes; ++n) {
                 batch.points[first + n] = request_.to_voxels(cell.points[n]);
-                double* value = batch.values.data() + (first + n) * fill_.channels;
+                double* value = batch.values.data() + (first + n) * channels_;
                 for (std::size_t a = 0; a < cell.values.size(); ++a) {
                     const std::size_t channels = cell.values[a].size() / nodes;
                     value = std::copy_n(cell.values[a].begin() + static_cast<std::ptrdiff_t>(n * channels), channels, value);
@@ -158,7 +163,7 @@ void CellRasterizer::load_refined(Batch& batch) const {
     }
 }
 
-void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks) {
+void BrickFiller::fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks) {
     for (std::size_t i = 0; i < batch.cells.size(); ++i) {
         bricks.enter(static_cast<Index>(i), part ? common(batch.boxes[i], *part) : batch.boxes[i]);
     }
@@ -167,12 +172,12 @@ void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& par
         CellShape shape;
         for (const Index i : entered[b]->cells) {
             CellBlock cell = block(batch, i);
-            fill_block(cell, fill_, shape, *entered[b]);
-            // What lies between finer cells and those of the level, which neighbours may have.
+            fill_block(cell, shape, *entered[b]);
+            // The cells of `refine.levels` bound the volume: they fill the gaps between their faces and those of finer cells.
             const std::size_t coarsest = (cell.side - 1) >> request_.refine.levels;
             if (cell.step == coarsest) continue;
             cell.step = coarsest;
-            fill_block(cell, fill_, shape, *entered[b]);
+            fill_block(cell, shape, *entered[b]);
         }
         entered[b]->cells.clear();
         entered[b]->cells.shrink_to_fit();
@@ -182,14 +187,15 @@ void CellRasterizer::fill(const Batch& batch, const std::optional<VoxelBox>& par
     }
 }
 
-/// Orientations of the tetrahedra about a centre add up to its winding number: where it is 0, turned ones cancel the others.
-void CellRasterizer::drop_leaks() {
+/// Removes voxels that only folded cells filled. The signed number of tetrahedra around a centre is its winding number; where
+/// that is 0, turned tetrahedra cancel the others and the centre lies outside.
+void BrickFiller::drop_leaks(std::size_t leaf_channels) {
     std::ranges::sort(doubtful_);
     doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
     if (!doubtful_.empty() && !columns_) columns_.emplace(boundary_triangles(request_));
     tbb::parallel_for(std::size_t{0}, doubtful_.size(), [&](std::size_t i) {
         VoxelBrick& brick = *doubtful_[i];
-        for (const VoxelBox& box : brick.doubtful) drop_outside(*columns_, box, fill_.leaf_channels(), brick);
+        for (const VoxelBox& box : brick.doubtful) drop_outside(*columns_, box, leaf_channels, brick);
         brick.doubtful = {};
     });
     doubtful_.clear();

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "cell_request.h"
 #include "fill_block.h"
 #include "refined_cells.h"
 #include "surface_columns.h"
@@ -12,20 +13,21 @@
 
 namespace subvol::detail {
 
-/// Rasterizes the cells of a mesh into bricks of voxels, as often as wanted: for one part of space after the other.
+/// Fills bricks of voxels from the cells of a mesh; it can be run several times, for one part of space after the other.
 ///
-/// A batch of cells at a time, in the order of their numbers: refined in parallel, then filled in parallel, a brick a task, so
-/// that the first cell that holds a centre counts, whatever the number of threads. Where cells are folded, voxels that the
-/// mesh's boundary does not go round are taken out again. Memory: the voxels, and some 10 MB; where the mesh is refined, a copy
-/// of it, and some 150 MB.
-class CellRasterizer {
+/// Cells are taken in batches, in the order of their numbers: each batch is refined in parallel, then filled in parallel with
+/// one task per brick. So the first cell that contains a voxel centre determines its value, for any number of threads. Where
+/// cells are folded, voxels outside the mesh's boundary (winding number 0) are removed again. Memory: the voxels, and some 10
+/// MB; where the mesh is refined, a copy of it, and some 150 MB.
+class BrickFiller {
 public:
     /// The mesh must be valid; it is kept by reference.
     ///
-    /// throws: Error(InvalidInput) if the voxels are too small: 2³⁰ from the origin, or too many; says what would be right
-    explicit CellRasterizer(RasterizeCells request);
+    /// throws: Error(InvalidInput) if a voxel would lie 2³⁰ voxels from the origin or there would be too many of them; the
+    ///         message names a voxel size that is large enough
+    explicit BrickFiller(CellRequest request);
 
-    /// part: only these voxels; whole bricks. none: all
+    /// part: only these voxels, whole bricks; none: all voxels
     [[nodiscard]] VoxelBricks run(const std::optional<VoxelBox>& part = {});
 
 private:
@@ -34,15 +36,16 @@ private:
     void load_cells(Batch& batch) const;
     void load_refined(Batch& batch) const;
     void fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks);
-    void drop_leaks();
+    void drop_leaks(std::size_t leaf_channels);
     [[nodiscard]] std::vector<Index> cells_of(const std::optional<VoxelBox>& part) const;
     [[nodiscard]] std::size_t side(Index cell) const { return (std::size_t{1} << request_.levels(cell)) + 1; }
     [[nodiscard]] CellBlock block(const Batch& batch, std::size_t i) const;
     [[nodiscard]] bool refines() const { return request_.refines(); }
 
-    RasterizeCells request_;
+    CellRequest request_;
     RefinedCells refined_;
-    FillOptions fill_;
+    std::size_t channels_ = 0;               // of all fields
+    double orientation_ = 1;                 // -1 for a mesh of left-handed cells
     std::vector<VoxelBox> boxes_;            // of every cell, after the first run
     std::vector<VoxelBrick*> doubtful_;      // of this run
     std::optional<SurfaceColumns> columns_;  // of the boundary, once a brick was doubtful

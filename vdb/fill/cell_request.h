@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/progress.h"
+#include "subvol/refine.h"
+
+namespace subvol::detail {
+
+/// From world space to voxel space, where voxel centres have whole coordinates: (linear · x + offset) / voxel_size.
+struct ToVoxels {
+    Mat3 linear{1.0};
+    Vec3 offset{0.0};
+    double voxel_size = 1;
+
+    [[nodiscard]] Vec3 operator()(const Vec3& x) const { return (linear * x + offset) / voxel_size; }
+};
+
+/// Cells to be rasterized: a mesh, how it is refined, and the voxels.
+///
+/// fields:      of the mesh; their channels become those of the voxels, one after the other
+/// refine:      levels 0: the mesh itself, unless on_limit or curved
+/// on_limit:    the refined vertices are moved to the limit
+/// curved:      positions and values are triquadratic between the vertices of the next level; the trilinear cells of
+///              `refine.levels` still decide which voxels lie inside
+/// cell_levels: null, or for each control cell the level of its vertices, which replaces the next one; at least
+///              refine.levels, and at least 1
+/// tables:      null, or tables that do to this mesh what `refine` (with one more level if curved) and `on_limit` do
+struct CellRequest {
+    const HexMesh* mesh = nullptr;
+    std::vector<const Attribute*> fields;
+    ToVoxels to_voxels;
+    RefineOptions refine{.levels = 0};
+    bool on_limit = false;
+    bool curved = false;
+    const std::vector<std::uint8_t>* cell_levels = nullptr;
+    const RefinementTables* tables = nullptr;
+    bool cell_numbers = false;
+    Progress* progress = nullptr;
+
+    [[nodiscard]] bool refines() const { return refine.levels > 0 || on_limit || curved; }
+
+    /// The level of the vertices that a cell is made of.
+    [[nodiscard]] int levels() const { return refine.levels + (curved ? 1 : 0); }
+    [[nodiscard]] int levels(Index cell) const { return cell_levels ? (*cell_levels)[cell] : levels(); }
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subvol/detail/atomic_file.h"
+#include "subvol/vdb_grid.h"
+
+namespace subvol::detail {
+
+/// Writes grids into a file that the caller commits, alone or together with others.
+///
+/// path:   the file's final name, for error messages
+/// throws: as `subvol::write_vdb`
+void write_vdb(const AtomicFile& file, const std::filesystem::path& path, std::span<const VdbGrid> grids,
+               VdbCompression compression);
+
+}  // namespace subvol::detail
