@@ -148,11 +148,10 @@ void PictureArguments::check() const {
     if (legend) check_output(*legend, {".svg"});
 }
 
-void PictureArguments::write_legend(const Optics& optics, const Range& field, Report& report) const {
+void PictureArguments::write_legend(const Optics& optics, const std::string& field, const Range& colors, Report& report) const {
     if (!legend) return;
-    const Range range = shown_range(field);
-    subvol::write_legend(*legend, optics.function(),
-                         {.title = report.json().value("field", ""), .min = range.min, .max = range.max});
+    const Range range = shown_range(colors);
+    subvol::write_legend(*legend, optics.function(), {.title = field, .min = range.min, .max = range.max});
     report["legend"] = *legend;
 }
 

@@ -60,8 +60,8 @@ struct PictureArguments {
     /// throws: Error(InvalidInput)
     void check() const;
 
-    /// Writes the --legend, if one is wanted, over the range of the colours and with the field's name, the report's "field".
-    void write_legend(const Optics& optics, const Range& field, Report& report) const;
+    /// Writes the --legend, if there is one, over the range of the colours.
+    void write_legend(const Optics& optics, const std::string& field, const Range& colors, Report& report) const;
 
 private:
     /// What --tf-range says; without it the field's range.

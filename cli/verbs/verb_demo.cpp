@@ -61,8 +61,9 @@ public:
         report.say("model     points  equivalent cells    splat s  reference s  PSNR dB");
         report["cases"] = Json::array();
         for (const std::string& name : demo_names()) {
-            report["cases"].push_back(run_case(name, size));
-            report.say(table_row(report["cases"].back()));
+            Json shown = run_case(name, size);
+            report.say(table_row(shown));
+            report["cases"].push_back(std::move(shown));
         }
         report["version"] = SUBVOL_VERSION;
         report["host"] = host();

@@ -114,7 +114,7 @@ private:
         } else {
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
-        picture_.write_legend(optics, colors, report);
+        picture_.write_legend(optics, mesh.attributes.front().name, colors, report);
     }
 
     void draw_tetrahedra(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
@@ -147,7 +147,7 @@ private:
             return draw_grid(*voxels, view, optics, reference_, progress, report);
         };
         output.write(picture_.make_views(box), draw, report);
-        picture_.write_legend(optics, range, report);
+        picture_.write_legend(optics, grid.report().name, range, report);
     }
 
     void splat_voxels(PictureOutput& output, Report& report) {
@@ -160,7 +160,7 @@ private:
         const Optics optics = picture_.make_optics(box, range, range);
         const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
         splat(volume, picture_.make_views(box), optics, output, report);
-        picture_.write_legend(optics, range, report);
+        picture_.write_legend(optics, grid.report().name, range, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
@@ -171,7 +171,7 @@ private:
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
         splat(volume, views, optics, output, report);
-        picture_.write_legend(optics, colors, report);
+        picture_.write_legend(optics, volume.channels.front().name, colors, report);
     }
 
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,

@@ -177,7 +177,7 @@ private:
         const RasterizeOptions options = set_up(mesh, report);
         if (output_.memory_bytes > 0) {
             refuse_with_memory();
-            write_parts(mesh, names_of(mesh), options, output_, report);
+            write_parts(input_, mesh, names_of(mesh), options, output_, report);
         } else {
             write_reported(grids_of(mesh, options, report), output_, report);
         }
@@ -208,6 +208,7 @@ private:
             std::ldexp(static_cast<double>(first.cells.size()), 3 * levels) <= kMostCellsOfTables) {
             tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
         }
+        std::size_t active_voxels = 0;
         for (int frame = range.first; frame <= range.last; ++frame) {
             HexMesh mesh = frames.mesh(frame);
             const bool same = same_cells(first, mesh);
@@ -222,6 +223,8 @@ private:
             output.path = with_number(output_.path, frame);
             std::vector<VdbGrid> grids = grids_of(mesh, options, report);
             if (velocity_) spread_velocity(frame, grids, report);
+            report["voxel_size"] = grids.front().report().voxel_size_world;
+            report["active_voxels"] = active_voxels += grids.front().report().active_voxels;
             write_frame(frame, grids, output, report);
         }
         report["input"] = input_;
@@ -267,11 +270,13 @@ private:
     [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report) {
         const double voxel_size = like_grids_.empty() ? voxel_size_world(mesh) : like_grids_.front().report().voxel_size_world;
         RefineOptions refinement = refine_.options(0, report);
+        int levels = refinement.levels;
         if (refine_.levels) {
             report["levels"] = refinement.levels;
             report["cells"] = mesh.cells.size() << (3 * refinement.levels);
         } else {
             limit_ = find_limit(mesh, refinement, voxel_size, report);
+            levels = finest_level(limit_);
         }
         RasterizeOptions options = options_of_grids(report);
         options.voxel_size_world = voxel_size;
@@ -284,7 +289,7 @@ private:
                         "--sdf with another name");
         }
         options.metadata.emplace_back("subvol_scheme", refine_.scheme);
-        options.metadata.emplace_back("subvol_level", std::to_string(report["levels"].get<int>()));
+        options.metadata.emplace_back("subvol_level", std::to_string(levels));
         return options;
     }
 
@@ -344,18 +349,23 @@ private:
         return std::max({size.x, size.y, size.z}) / resolution_;
     }
 
-    /// levels: the finest whose vertices count; cells: those between them, 27 vertices each, or those of the mesh
+    /// The finest level whose vertices count.
+    [[nodiscard]] static int finest_level(const LimitCells& limit) {
+        int levels = limit.level;
+        for (const int level : limit.cell_levels) levels = std::max(levels, level);
+        return levels;
+    }
+
+    /// The report's "levels" is the finest level, its "cells" the number of curved cells, 27 vertices each, or without any that
+    /// of the mesh's own cells.
     [[nodiscard]] static LimitCells find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
                                                Report& report) {
         LimitCells limit = report.timed("limit level", [&] {
             return find_limit_cells(mesh, refinement, {.position_world = kPositionTolerance_voxels * voxel_size});
         });
-        int levels = limit.level;
+        const int levels = finest_level(limit);
         std::size_t cells = limit.cell_levels.empty() ? mesh.cells.size() : 0;
-        for (const int level : limit.cell_levels) {
-            levels = std::max(levels, level);
-            cells += std::size_t{1} << (3 * (level - 1));
-        }
+        for (const int level : limit.cell_levels) cells += std::size_t{1} << (3 * (level - 1));
         report["levels"] = levels;
         report["cells"] = cells;
         report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};
