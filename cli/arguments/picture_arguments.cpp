@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_arguments.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <sstream>
 
+#include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
 #include "text.h"

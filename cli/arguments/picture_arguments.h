@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "outputs.h"
 #include "report.h"
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/optics.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
+
+/// Of a field's values.
+struct Range {
+    double min = 0, max = 0;
+};
 
 struct PictureSize {
     int width = 512;

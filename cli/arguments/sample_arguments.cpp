@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sample_arguments.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "picture_arguments.h"
@@ -60,11 +61,11 @@ void SampleArguments::add_to(CLI::App& app) {
     app.add_option("--kernel", kernel, "the kernel of the points (default compact); see subvol fit --kernels")
         ->type_name("NAME|JSON");
     app.add_option("--value-kernel", value_kernel, "the kernel of --values paper (default paper_bc)")->type_name("NAME|JSON");
-    threshold_option = app.add_option("--threshold", threshold,
-                                      "drop points that cannot be seen: where the field is at most V; without V, where the "
-                                      "transfer function is clear")
-                           ->type_name("[V]")
-                           ->expected(0, 1);
+    threshold_option_ = app.add_option("--threshold", threshold,
+                                       "drop points that cannot be seen: where the field is at most V; without V, where the "
+                                       "transfer function is clear")
+                            ->type_name("[V]")
+                            ->expected(0, 1);
     app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default), full")
         ->type_name("NAME");
     auto* reduce = app.add_option("--reduce", reduce_rmse,
@@ -94,6 +95,10 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
             .kernel = kernel_from(kernel, "compact"),
             .value_kernel = kernel_from(value_kernel, "paper_bc"),
             .progress = refinement.progress};
+}
+
+bool SampleArguments::drops_invisible() const {
+    return threshold_option_ != nullptr && threshold_option_->count() > 0;
 }
 
 Footprint SampleArguments::footprint_of(const Box& box) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "splat_arguments.h"
 
+#include <CLI/CLI.hpp>
+
 #include "subvol/error.h"
 #include "text.h"
 

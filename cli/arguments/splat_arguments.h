@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "report.h"
 #include "subvol/splat.h"
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "subvol/error.h"
 
 namespace subvol::cli {

@@ -30,8 +30,7 @@ template <class... Part>
 /// throws: Error(InvalidInput) if it is no finite number
 [[nodiscard]] double parse_number(const std::string& option, const std::string& value);
 
-/// throws: Error(InvalidInput) unless `value` is one of `supported`; says so for what is only `planned`
-void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported,
-                  const std::vector<std::string>& planned = {});
+/// throws: Error(InvalidInput) unless `value` is one of `supported`
+void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported);
 
 }  // namespace subvol::cli

@@ -51,16 +51,10 @@ FieldInput mesh_field(const std::string& input, const CommonOptions& options, co
 
 FieldInput points_field(const std::string& input, const CommonOptions& options, Report& report) {
     const RbfVolume volume = read_points_input(input, report);
-    std::vector<std::string> names;
-    for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
-    const std::string wanted = options.field.value_or(names.front());
-    const auto found = std::ranges::find(names, wanted);
-    if (found == names.end()) {
-        throw Error(ErrorCode::InvalidInput, "there is no field '" + wanted + "'", input, "it has: " + join(names));
-    }
-    report["field"] = wanted;
-    auto field = std::make_shared<PointsField>(volume, static_cast<std::size_t>(found - names.begin()));
-    return {field->view(), field, {}, wanted};
+    const std::string name = options.field.value_or(volume.channels.front().name);
+    auto field = std::make_shared<PointsField>(volume, find_channel(volume, name, input));
+    report["field"] = name;
+    return {field->view(), field, {}, name};
 }
 
 FieldInput grid_field(const std::string& input, const CommonOptions& options, Report& report) {

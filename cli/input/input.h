@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common_options.h"
-#include "outputs.h"
+#include "picture_arguments.h"
 #include "report.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "input.h"
 #include "subvol/rbf_volume.h"
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 
@@ -20,6 +23,12 @@ namespace subvol::cli {
 /// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that only a mesh can follow
 [[nodiscard]] RbfVolume load_points(const std::string& input, const CommonOptions& options,
                                     const std::optional<std::string>& second, const CLI::App& app, Report& report);
+
+/// The number of the channel with this name.
+///
+/// input:  the file, named in the error
+/// throws: Error(InvalidInput) if there is none
+[[nodiscard]] std::size_t find_channel(const RbfVolume& volume, const std::string& name, const std::string& input);
 
 /// The range of a channel.
 [[nodiscard]] Range channel_range(const RbfVolume& volume, std::size_t channel);

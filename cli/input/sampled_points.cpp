@@ -18,7 +18,7 @@ constexpr std::initializer_list<const char*> kOfMeshesOnly{
 
 RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
                             Report& report) {
-    if (arguments.threshold_option->count() == 0) return volume;
+    if (!arguments.drops_invisible()) return volume;
     if (arguments.threshold.empty() && !seen) {
         throw Error(ErrorCode::InvalidInput, "needs a value, there is no transfer function", "--threshold");
     }

@@ -6,6 +6,10 @@
 #include "subvol/transfer_function.h"
 #include "subvol/vdb_grid.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
 /// Samples the limit of the mesh, or with --levels the refined mesh as it is, and drops what --threshold makes invisible; timed

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "text.h"

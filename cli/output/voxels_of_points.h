@@ -8,6 +8,10 @@
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
 /// Grids of a mesh whose fields are those of kernels sampled from it, summed at the voxels of the mesh. Puts the points'

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field_comparison.h"
 
+#include <CLI/CLI.hpp>
+
 #include "field_input.h"
 #include "subvol/error.h"
 #include "subvol/field_places.h"

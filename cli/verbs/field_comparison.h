@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "figures.h"
 #include "refine_arguments.h"
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 

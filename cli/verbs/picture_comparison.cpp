@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_comparison.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 
 #include "input.h"
+#include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"

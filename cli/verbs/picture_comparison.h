@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +8,10 @@
 #include "figures.h"
 #include "subvol/flip.h"
 #include "subvol/image.h"
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 

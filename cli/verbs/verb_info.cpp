@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "grid_input.h"
 #include "input.h"
 #include "points_input.h"
 #include "subvol/error.h"
@@ -73,7 +75,7 @@ public:
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
         } else if (holds_points(input_)) {
             describe_points(report);
-        } else if (std::filesystem::path(input_).extension() == ".vdb") {
+        } else if (is_vdb_file(input_)) {
             describe_grids(report);
         } else {
             describe_mesh(report);

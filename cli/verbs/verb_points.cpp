@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
 #include "grid_input.h"
 #include "input.h"
+#include "outputs.h"
 #include "picture_arguments.h"
 #include "sampled_points.h"
 #include "subvol/detail/surface_io.h"

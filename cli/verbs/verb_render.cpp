@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
 #include "grid_input.h"
 #include "input.h"
 #include "picture_arguments.h"

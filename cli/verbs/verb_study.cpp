@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tbb/global_control.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 
-#include "folder_lock.h"
 #include "input.h"
+#include "outputs.h"
 #include "study_host.h"
 #include "study_runner.h"
 #include "subvol/detail/atomic_file.h"

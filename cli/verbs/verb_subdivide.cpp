@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
 #include "input.h"
+#include "outputs.h"
 #include "refine_arguments.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "input.h"
 #include "mesh_frames.h"
+#include "outputs.h"
 #include "points_input.h"
 #include "refine_arguments.h"
 #include "subvol/error.h"
