@@ -3,10 +3,7 @@
 
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/mesh_io.h"
-#include "subvol/mesh_report.h"
-#include "subvol/model.h"
+#include "subvol/subvol.h"
 
 int main(int argc, char** argv) try {
     const char* path = argc > 1 ? argv[1] : "ball.vtu";

@@ -4,11 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/mesh_io.h"
-#include "subvol/mesh_report.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/subvol.h"
 
 int main() try {
     const subvol::HexMesh mesh = subvol::make_model("ball", 4);  // a ball, as far as its few cells can be one

@@ -5,13 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/image_io.h"
-#include "subvol/model.h"
-#include "subvol/points_io.h"
-#include "subvol/rbf_field.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
     const subvol::HexMesh mesh = subvol::make_model("twist", 16);

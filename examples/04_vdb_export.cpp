@@ -4,9 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/subvol.h"
 #include "subvol/vdb.h"
 
 int main() try {

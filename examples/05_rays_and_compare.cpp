@@ -5,13 +5,9 @@
 
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/image_io.h"
-#include "subvol/image_metrics.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
     // A mesh: any hexahedra with a density at the points. `read_mesh("part.vtk").mesh` would do as well.

@@ -3,13 +3,9 @@
 
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/fit_kernel.h"
-#include "subvol/image_io.h"
-#include "subvol/image_metrics.h"
-#include "subvol/model.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
     // What one control point of value 1 makes of the space about it. The level 4 has 16 samples a cell.

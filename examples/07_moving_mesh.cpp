@@ -4,10 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/limit.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/subvol.h"
 
 int main() try {
     subvol::HexMesh mesh = subvol::make_model("ball", 8);

@@ -5,12 +5,9 @@
 #include <cstdio>
 #include <string>
 
-#include "subvol/error.h"
-#include "subvol/image_io.h"
-#include "subvol/legend.h"
-#include "subvol/model.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
     const subvol::HexMesh mesh = subvol::make_model("nozzle", 24);
