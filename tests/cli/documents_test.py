@@ -44,6 +44,12 @@ class Documents(unittest.TestCase):
                 if not target.startswith("http"):
                     self.assertTrue((document.parent / target).exists(), f"{document}: {target}")
 
+    def test_files_that_are_named_exist(self):
+        for document in DOCUMENTS:
+            for name in re.findall(r"`([\w.-]+/[\w./-]+\.(?:cpp|h|glsl|comp|py|cmake))`", document.read_text()):
+                if not name.startswith("subvol/"):
+                    self.assertTrue((TOP / name).exists(), f"{document}: {name}")
+
     def test_citations_are_in_the_bibliography(self):
         keys = set(re.findall(r"^@\w+\{(\w+),", (TOP / "docs/references.bib").read_text(), re.M))
         for document in DOCUMENTS:

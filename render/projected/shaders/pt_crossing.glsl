@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which faces the ray of a pixel crosses, and where. It follows from the edges alone, and an edge is the same to every face that
-// has it: so nothing is lost or counted twice between neighbours (src/ray_plane.h, in single precision).
+// has it: so nothing is lost or counted twice between neighbours (ray_plane.h, in single precision).
 
 // Off the ray, in the plane across the view.
 vec2 off_ray(vec2 slope, vec4 corner) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels in eye space, as src/eye_splats.h lays them out, and what they add to a place on a sheet. Places are told by their
+// Kernels in eye space, as eye_splats.h lays them out, and what they add to a place on a sheet. Places are told by their
 // offset from the middle of the kernel's section, z_s, and e.
 struct EyeSplat {
     vec2 center;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From sums to light, between two sheets: src/splat_composite-inl.h.
+// From sums to light, between two sheets: splat_composite-inl.h.
 
 // What a ray sees on a sheet. Values are in cells of their tables; light is a factor, and the white that is added.
 struct Seen {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a value looks like: src/splat_classify-inl.h.
+// What a value looks like: splat_classify-inl.h.
 struct Row {
     ivec4 prefix;
     vec4 mean, bend;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the light does to a colour: src/splat_light-inl.h. A factor, and the white that is added.
+// What the light does to a colour: splat_light-inl.h. A factor, and the white that is added.
 vec3 unit_vector(vec3 v) { return v * (1.0 / sqrt(max(dot(v, v), 1e-30))); }
 
 float gloss(float cosine) { return exp_of(material.w * log_of(max(cosine, 1e-3))); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of src/boundary_intervals.cpp, bit for bit: where pixels are covered no rounding may differ, so every number that
+// The rules of boundary_intervals.cpp, bit for bit: where pixels are covered no rounding may differ, so every number that
 // decides it is `precise` or whole.
 layout(std140, binding = 1) uniform Camera {
     dvec4 right, up, forward;  // the last parts: the eye's x, y, z

@@ -1,6 +1,6 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// Kernels to eye space, and how many (tile, batch) bins each one meets: what src/eye_splats.cpp and splat_frame.cpp do.
+// Kernels to eye space, and how many (tile, batch) bins each one meets: what eye_splats.cpp and splat_frame.cpp do.
 layout(local_size_x = 256) in;
 struct Kernel {
     vec4 center;    // from the scene's middle; value

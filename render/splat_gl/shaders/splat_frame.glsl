@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the splatter's shaders know of a frame; src/gl_splat_frame.h has the same. The host puts in the constants: kReach, kBatch,
+// What the splatter's shaders know of a frame; gl_splat_frame.h has the same. The host puts in the constants: kReach, kBatch,
 // kTile and so on, what the scene has (BENT, COLORED …), and where a kernel's extras are.
 layout(std140, binding = 0) uniform Frame {
     dvec4 right, up, forward;  // rotation to eye space; the last parts: x, y of the middle there
@@ -18,7 +18,7 @@ layout(std140, binding = 0) uniform Frame {
 
 const float kNever = 3e38;
 
-// Ellipsoids in eye space: src/eye_splats.h says what the numbers are.
+// Ellipsoids in eye space: eye_splats.h says what the numbers are.
 struct Splat {
     vec4 place;   // center x, y, depth, 1 / S_zz
     vec4 shape;   // shear x, y, root xx, xy

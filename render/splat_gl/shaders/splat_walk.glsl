@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pixel on its way from front to back: src/splat_composite-inl.h.
+// A pixel on its way from front to back: splat_composite-inl.h.
 layout(std430, binding = 5) readonly buffer IntervalRanges { uvec2 interval_ranges[]; };  // first, end
 layout(std430, binding = 6) readonly buffer Intervals { vec2 intervals[]; };  // enter, exit
 
