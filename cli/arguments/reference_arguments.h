@@ -11,7 +11,7 @@ class App;
 
 namespace subvol::cli {
 
-/// How the reference methods draw: tets, pt, dense, grid.
+/// The options of the reference methods: tets, pt, dense, grid.
 struct ReferenceArguments {
     int samples = 1;
     double image_tolerance = 1e-3;
@@ -24,7 +24,7 @@ struct ReferenceArguments {
     /// throws: Error(InvalidInput) if the order is unknown
     [[nodiscard]] PtOrder pt_order() const;
 
-    /// throws: Error(InvalidInput) if the order is unknown, or has no faces to leave out
+    /// throws: Error(InvalidInput) if the order is unknown, or cannot leave faces out
     [[nodiscard]] PtOptions pt_options() const;
 };
 

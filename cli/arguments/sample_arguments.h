@@ -14,7 +14,7 @@ class Option;
 
 namespace subvol::cli {
 
-/// How a mesh becomes radial basis functions, as `points` and `render --method splat` ask for it.
+/// The options of sampling a mesh into radial basis functions, for `points` and `render --method splat`.
 struct SampleArguments {
     int per_edge = 1;
     double spacing_world = 0;

@@ -33,7 +33,7 @@ void check_output(const std::filesystem::path& path, const std::vector<std::stri
 void make_folder(const std::filesystem::path& path) {
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    if (error) throw Error(ErrorCode::Io, "the folder cannot be made: " + error.message(), path.string());
+    if (error) throw Error(ErrorCode::Io, "the folder cannot be created: " + error.message(), path.string());
     check_writable(path, path.string());
 }
 
@@ -44,7 +44,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder)
     }
     if (flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
     close(file_);
-    throw Error(ErrorCode::InvalidInput, "another run is writing here", folder.string(), "wait for it, or take another folder");
+    throw Error(ErrorCode::InvalidInput, "another run is writing here", folder.string(), "wait for it, or use another folder");
 }
 
 FolderLock::~FolderLock() {

@@ -31,7 +31,7 @@ double parse_number(const std::string& option, const std::string& value) {
     double number = 0;
     in >> number;
     if (in.fail() || !(in >> std::ws).eof() || !std::isfinite(number)) {
-        throw Error(ErrorCode::InvalidInput, "'" + value + "' is no number", option);
+        throw Error(ErrorCode::InvalidInput, "'" + value + "' is not a number", option);
     }
     return number;
 }

@@ -9,7 +9,7 @@
 
 namespace subvol::cli {
 
-/// All parts one after the other.
+/// All parts in one string.
 template <class... Part>
 [[nodiscard]] std::string text(const Part&... parts) {
     std::ostringstream out;
@@ -27,7 +27,7 @@ template <class... Part>
 
 /// option: named in the error
 ///
-/// throws: Error(InvalidInput) if it is no finite number
+/// throws: Error(InvalidInput) if it is not a finite number
 [[nodiscard]] double parse_number(const std::string& option, const std::string& value);
 
 /// throws: Error(InvalidInput) unless `value` is one of `supported`

@@ -36,8 +36,8 @@ HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& repo
     });
     options.levels = limit.level;
     if (!limit.converged) {
-        report.warn(text("level ", limit.level, " was the finest within limits; the last step still moved values by ",
-                         limit.value_of_range, " of their range: --levels sets it"));
+        report.warn(text("level ", limit.level, " was the finest within limits; the last step still changed values by ",
+                         limit.value_of_range, " of their range; --levels sets the level"));
     }
     return refine_reported(mesh, options, Vertices::OnTheLimit, report);
 }
@@ -78,7 +78,7 @@ InputKind kind_of(const std::string& input) {
 
 FieldInput load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, const char* key,
                       Report& report) {
-    report["input"] = input;  // whom errors are about
+    report["input"] = input;  // for errors
     Report part(options);
     FieldInput field;
     switch (kind_of(input)) {
@@ -92,7 +92,7 @@ FieldInput load_field(const std::string& input, const CommonOptions& options, co
             field = grid_field(input, options, part);
             break;
         case InputKind::Picture:
-            throw Error(ErrorCode::InvalidInput, "is no field", input, "a mesh, points or a .vdb grid");
+            throw Error(ErrorCode::InvalidInput, "is not a field", input, "a mesh, points or a .vdb grid");
     }
     for (const auto& [name, value] : part.json().items()) {
         if (name == "seconds") {

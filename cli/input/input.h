@@ -21,7 +21,7 @@ inline constexpr const char* kInputHelp =
 /// `read_input` without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
 
-/// The mesh with nothing but the field that the options select, as its first scalar, and where it is named a second one.
+/// The mesh with only the field that the options select, as a scalar, and with the field `second` if that is given.
 [[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
                                           const std::optional<std::string>& second = {});
 

@@ -18,9 +18,9 @@ namespace subvol::cli {
 /// Reads them, timed; puts "input" and "points" into the report.
 [[nodiscard]] RbfVolume read_points_input(const std::string& input, Report& report);
 
-/// `read_points_input` with nothing but the field that the options select as its first channel, and where it is named a second.
+/// `read_points_input` with only the field that the options select, and with the field `second` if that is given.
 ///
-/// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that only a mesh can follow
+/// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that applies to meshes only
 [[nodiscard]] RbfVolume load_points(const std::string& input, const CommonOptions& options,
                                     const std::optional<std::string>& second, const CLI::App& app, Report& report);
 

@@ -24,7 +24,7 @@ Json corner(const Vec3& p) {
     return {p.x, p.y, p.z};
 }
 
-/// name: that people know the file by
+/// name: of the file in messages, where its path is that of a temporary file
 void write_named(const std::string& name, const std::function<void()>& write) {
     try {
         write();

@@ -9,12 +9,12 @@
 
 namespace subvol::cli {
 
-/// What of a mesh becomes voxels, and how they are written.
+/// How grids are written.
 struct VdbOutput {
     std::string path;
     VdbCompression compression = VdbCompression::Blosc;
     std::size_t memory_bytes = 0;  // 0: in one piece
-    bool nano = false;             // NAME.nvdb too
+    bool nano = false;             // also NAME.nvdb
 };
 
 /// Rasterizes and writes slab by slab: NAME_0000.vdb and so on, and NAME.json that lists them.

@@ -14,7 +14,7 @@ class App;
 
 namespace subvol::cli {
 
-/// What is measured between two fields.
+/// The metrics of two fields.
 struct FieldComparison {
     std::size_t samples = 100'000;
     int resolution = 128;

@@ -28,7 +28,7 @@ namespace {
 constexpr std::size_t kReferenceCells = 600'000;  // 3.6 million tetrahedra: about 1 GB at the peak
 constexpr int kGridResolution = 200;
 
-/// A generated model with the way it is shown.
+/// A generated model, and how it is drawn.
 struct DemoCase {
     std::string name;
     HexMesh mesh;
@@ -38,7 +38,8 @@ struct DemoCase {
     int per_edge;
 };
 
-/// The eye and the smooth transfer function of the twisted block as a benchmark; there the picture cuts the block off.
+/// The camera and the smooth transfer function of the benchmark with the twisted block. Parts of the block are outside the
+/// picture.
 const Camera kTwistCamera{.eye = {2.6, -4.2, 2.0}, .target = {-0.3, 0, 0.1}, .up = {0, 0, 1}, .fovy_deg = 44};
 
 Optics twist_optics() {
@@ -87,7 +88,10 @@ public:
                "Run the whole chain on generated models: grid, splats, a reference by rays, their difference, a summary.",
                "  subvol demo -o out\n"
                "  subvol demo -o out --size 256") {
-        app().add_option("-o,--output", folder_, "the folder for the files (made if need be)")->type_name("DIR")->required();
+        app()
+            .add_option("-o,--output", folder_, "the folder for the files (created if it does not exist)")
+            ->type_name("DIR")
+            ->required();
         app()
             .add_option("--resolution", resolution_, "cells along a model's main direction (default: the model's own)")
             ->type_name("N")

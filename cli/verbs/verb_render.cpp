@@ -31,7 +31,7 @@ public:
                "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2\n"
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
-               "  subvol render smoke.vdb -o smoke.png                    (its voxels as kernels)") {
+               "  subvol render smoke.vdb -o smoke.png                    (the voxels as kernels)") {
         app()
             .add_option("FILE", input_, text(kInputHelp, "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
             ->required();
@@ -49,7 +49,7 @@ public:
         picture_.add_to(app());
         reference_.add_to(app());
         sample_.add_to(app());
-        refine_.add_to(app(), "show the refined mesh of this level (tets, pt: default 1; else: omitted shows the limit)");
+        refine_.add_to(app(), "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
         splat_.add_to(app());
     }
 
@@ -75,7 +75,7 @@ public:
 private:
     [[nodiscard]] bool drawn_by_splats() const { return method_ == "splat" || method_ == "sheets"; }
 
-    /// The reference methods know nothing of what is the splats' own.
+    /// Refuses options of splatting for the other methods.
     void check_reference() const {
         (void)reference_.pt_options();
         if (drawn_by_splats()) return;
@@ -85,7 +85,7 @@ private:
         }
         const bool on_gpu = method_ == "pt";
         if (splat_.seconds && !on_gpu) {
-            throw Error(ErrorCode::InvalidInput, "method " + method_ + " takes the time that it takes", "--seconds",
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " has no time limit", "--seconds",
                         "use --method splat, sheets or pt");
         }
         if (splat_.backend == (on_gpu ? "cpu" : "gl")) {
@@ -97,7 +97,7 @@ private:
 
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
-        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the colours' field is the field itself
+        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
         const Box box = bounds(mesh);
         const std::vector<View> views = picture_.make_views(box);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);

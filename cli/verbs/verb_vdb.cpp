@@ -27,14 +27,14 @@ namespace {
 
 constexpr double kPositionTolerance_voxels = 0.1;
 constexpr double kBytesOfChannel = 5.5;     // a voxel's float in leaves that are not all full, with their masks
-constexpr double kMostCellsOfTables = 8e6;  // of refined cells, some 200 bytes each
+constexpr double kMostCellsOfTables = 8e6;  // refined cells, about 200 bytes each
 constexpr const char* kDefaultLevelSet = "sdf";
 constexpr const char* kVelocity = "vel";
-// How far the velocities go beyond the volume: renderers open the shutter for a frame at most, and mostly about the frame's
-// time.
+// Velocities are written beyond the volume as far as it moves in this time: renderers open the shutter for a frame at most,
+// usually centred on the frame's time.
 constexpr double kShutter_frames = 0.5;
-constexpr int kMostVelocityLayers =
-    64;  // of voxels: beyond, the grid of a volume 200 wide would hold more outside it than in it
+// In voxels. With more, the grid of a volume 200 voxels wide would have more voxels outside the volume than inside.
+constexpr int kMostVelocityLayers = 64;
 
 VdbCompression compression_named(const std::string& name) {
     return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
@@ -49,7 +49,7 @@ std::vector<std::string> names_of(const HexMesh& mesh) {
 class VdbVerb : public Verb {
 public:
     explicit VdbVerb(CLI::App& program)
-        : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: a grid a field.",
+        : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: one grid per field.",
                "  subvol vdb model:ball -o ball.vdb\n"
                "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
                "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
@@ -92,10 +92,10 @@ private:
         auto* resolution =
             app().add_option("--resolution", resolution_, "voxels along the longest side of the bounding box (default 200)");
         resolution->type_name("N")->check(CLI::Range(1, 1 << 20))->excludes(size);
-        auto* like = app().add_option("--like", like_, "a .vdb file whose first grid's transform is taken over");
+        auto* like = app().add_option("--like", like_, "use the transform of the first grid in this .vdb file");
         like->type_name("FILE")->excludes(size)->excludes(resolution);
         app()
-            .add_option("--budget", budget_bytes_, "voxels so small that the grids take about this much memory, e.g. 500M")
+            .add_option("--budget", budget_bytes_, "choose voxels so that the grids take about this much memory, e.g. 500M")
             ->type_name("BYTES")
             ->transform(CLI::AsSizeValue(false))
             ->excludes(size)
@@ -106,19 +106,20 @@ private:
     void add_grid_options() {
         app()
             .add_option("--fields", fields_,
-                        "fields to write, the first as fog volume; one with three components becomes a grid of vectors, v.k is "
-                        "its component k")
+                        "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
+                        "NAME.k is its component k")
             ->type_name("A,B")
             ->delimiter(',');
-        app().add_flag("--cell-ids", cell_numbers_, "one more grid: the number of the control cell");
-        app().add_flag("--mask", mask_, "one more grid: where the volume is");
-        app().add_flag("--coverage", coverage_, "one more grid: the part of each voxel that the volume fills");
-        level_set_option_ = app().add_option("--sdf", level_set_.name,
-                                             "one more grid, named NAME or sdf: the distance to the boundary, negative inside, "
-                                             "as a level set with a narrow band");
+        app().add_flag("--cell-ids", cell_numbers_, "also write a grid: the number of the control cell");
+        app().add_flag("--mask", mask_, "also write a grid: a mask of the volume");
+        app().add_flag("--coverage", coverage_, "also write a grid: the part of each voxel that the volume fills");
+        level_set_option_ =
+            app().add_option("--sdf", level_set_.name,
+                             "also write a level set, named NAME or sdf: the distance to the boundary, negative "
+                             "inside, in a narrow band");
         level_set_option_->type_name("[NAME]")->expected(0, 1);
         app()
-            .add_option("--half-width", level_set_.half_width_voxels, "of that band to either side, in voxels (default 3)")
+            .add_option("--half-width", level_set_.half_width_voxels, "the band's reach to either side, in voxels (default 3)")
             ->type_name("N")
             ->check(CLI::Range(1.0, 1000.0))
             ->needs(level_set_option_);
@@ -126,11 +127,11 @@ private:
         app()
             .add_option(
                 "--from", from_,
-                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; a FILE "
-                "of points (.ply, .vtp, .vdb) has its own")
+                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; not needed "
+                "for a FILE of points (.ply, .vtp, .vdb)")
             ->type_name("WHAT");
         app()
-            .add_option("--per-edge", per_edge_, "with --from points: sample intervals an edge")
+            .add_option("--per-edge", per_edge_, "with --from points: sample intervals per edge")
             ->type_name("N")
             ->check(CLI::Range(1, 64));
     }
@@ -146,24 +147,26 @@ private:
                         "which lists them")
             ->type_name("BYTES")
             ->transform(CLI::AsSizeValue(false));
-        app().add_flag("--nano", output_.nano, "write a NanoVDB file beside it, NAME.nvdb; needs a build with NanoVDB");
+        app().add_flag("--nano", output_.nano, "also write a NanoVDB file, NAME.nvdb; needs a build with NanoVDB");
     }
 
     void add_frame_options() {
         app()
             .add_option(
                 "--frames", frames_,
-                "a sequence: A-B, or N for 1-N. The rows of # in FILE and in --output stand for the number of the frame, "
-                "with zeros before it to that many digits")
+                "a sequence: A-B, or N for 1-N. In FILE and --output a row of # is replaced by the number of the frame, "
+                "padded with zeros to that many digits")
             ->type_name("A-B");
         app()
             .add_option("--to", to_,
-                        "a sequence from FILE to this mesh of the same cells: points and values go in straight lines")
+                        "a sequence from FILE to this mesh of the same cells: points and values are interpolated linearly")
             ->type_name("FILE");
-        auto* velocity = app().add_flag("--velocity", velocity_,
-                                        "one more grid, of vectors, named vel: how the volume moves, in world units a frame");
+        auto* velocity =
+            app().add_flag("--velocity", velocity_,
+                           "also write a grid of vectors, named vel: the velocity of the volume, in world units per frame");
         app()
-            .add_option("--fps", frames_per_second_, "with --velocity: in world units a second, at so many frames a second")
+            .add_option("--fps", frames_per_second_,
+                        "with --velocity: in world units per second, at this many frames per second")
             ->type_name("F")
             ->check(CLI::PositiveNumber)
             ->needs(velocity);
@@ -174,7 +177,7 @@ private:
     }
 
     void run_one(Report& report) {
-        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         const HexMesh mesh = load(input_, report);
         const RasterizeOptions options = set_up(mesh, report);
         if (output_.memory_bytes > 0) {
@@ -186,7 +189,7 @@ private:
     }
 
     void run_points(Report& report) {
-        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         from_ = "points";
         RasterizeOptions options = options_of_grids(report);
         options.voxel_size_world = voxel_size_;
@@ -195,9 +198,10 @@ private:
         write_reported(grids_of_points(input_, fields_, common(), app(), options, report), output_, report);
     }
 
-    /// All frames have the voxels and the level that the first one asks for.
+    /// The first frame determines the voxel size and the level of all frames.
     void run_frames(Report& report) {
-        if (output_.memory_bytes > 0) throw Error(ErrorCode::InvalidInput, "goes with one mesh only, no frames", "--memory");
+        if (output_.memory_bytes > 0)
+            throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
         check_frame_names();
         const FrameRange range = parse_frames(frames_);
         MeshFrames frames(input_, to_.empty() ? std::nullopt : std::optional(to_), range,
@@ -215,7 +219,7 @@ private:
             HexMesh mesh = frames.mesh(frame);
             const bool same = same_cells(first, mesh);
             options.tables = tables && same ? &*tables : nullptr;
-            LimitCells of_others;  // the limit of the first serves all meshes of its cells
+            LimitCells of_others;  // the first limit serves all meshes with the same cells
             if (options.limit) {
                 if (!same) of_others = find_limit(mesh, options.refine, options.voxel_size_world, report);
                 options.limit = same ? &limit_ : &of_others;
@@ -234,13 +238,13 @@ private:
     }
 
     void check_frame_names() const {
-        if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "which frames?", "--frames", "1-10");
+        if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "is needed for a sequence", "--frames", "1-10");
         if (!has_number(output_.path)) {
-            throw Error(ErrorCode::InvalidInput, "has no place for the number of a frame", output_.path, "out_####.vdb");
+            throw Error(ErrorCode::InvalidInput, "has no # for the number of the frame", output_.path, "out_####.vdb");
         }
         if (to_.empty() != has_number(input_)) {
             throw Error(ErrorCode::InvalidInput,
-                        to_.empty() ? "has no place for the number of a frame" : "has a place for a number, and --to is given",
+                        to_.empty() ? "has no # for the number of the frame" : "has a # for a number, but --to is given",
                         input_, "in_####.vtu, or one mesh and --to another");
         }
     }
@@ -253,7 +257,7 @@ private:
         mesh.attributes.push_back(std::move(velocity));
     }
 
-    /// Lets the velocities reach beyond the volume, to where it is at other times while a shutter is open.
+    /// Extends the velocities beyond the volume, to where it is at other times while a shutter is open.
     void spread_velocity(int frame, std::vector<VdbGrid>& grids, Report& report) const {
         const auto velocity = std::ranges::find(grids, kVelocity, [](const VdbGrid& grid) { return grid.report().name; });
         if (velocity == grids.end() || velocity->report().kind != "vector" || velocity->report().max == 0) return;
@@ -268,7 +272,7 @@ private:
         report.timed("spread", [&] { *velocity = spread_vectors(*velocity, layers); });
     }
 
-    /// What a mesh asks for, by its box and its fields.
+    /// The options for a mesh, which depend on its box and its fields.
     [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report) {
         const double voxel_size = like_grids_.empty() ? voxel_size_world(mesh) : like_grids_.front().report().voxel_size_world;
         RefineOptions refinement = refine_.options(0, report);
@@ -295,7 +299,7 @@ private:
         return options;
     }
 
-    /// What does not depend on the mesh.
+    /// The options that do not depend on the mesh.
     [[nodiscard]] RasterizeOptions options_of_grids(Report& report) const {
         return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
                 .half = half_,
@@ -319,8 +323,8 @@ private:
     }
 
     void refuse_with_memory() const {
-        if (from_ == "points") throw Error(ErrorCode::InvalidInput, "goes with a mesh only", "--memory");
-        if (output_.nano) throw Error(ErrorCode::InvalidInput, "goes with one file only, no parts", "--nano");
+        if (from_ == "points") throw Error(ErrorCode::InvalidInput, "works with a mesh only", "--memory");
+        if (output_.nano) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--nano");
     }
 
     [[nodiscard]] HexMesh with_written_fields(HexMesh mesh, Report& report) const {
