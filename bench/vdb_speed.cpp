@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twisted block into voxels, by resolution: seconds with 2 and 1 threads, memory, the part of a plain copy's speed,
-// writing, error against the exact inverse. Every resolution is a process of its own, so that its peak of memory is its own.
+// The twisted block into voxels, by resolution: seconds with 2 and 1 threads, memory, speed as a fraction of a plain copy's,
+// writing, error against the exact inverse. Every resolution runs in its own process, so that its peak memory can be measured.
 //
 //   vdb_speed [-n cells a side = 40] [-l level = none] [voxels along the longest side = 200 400 800…]
 //
-// level: of the refined mesh, its vertices on the limit; -l limit: the curved cells that stand for the limit; none: the mesh as
-// it is.
+// level: of the refined mesh, its vertices on the limit; -l limit: the curved cells that approximate the limit; none: the
+// control mesh.
 #include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -32,7 +32,7 @@ using namespace subvol;
 
 constexpr std::size_t kThreads = 2;
 constexpr int kAsItIs = -1, kLimit = -2;
-constexpr int kFine = 300;                // voxels from which on a run takes long
+constexpr int kFine = 300;                // with more voxels a run takes long
 constexpr double kToleranceVoxels = 0.1;  // of the limit, as the command line has it
 
 /// Every voxel of a grid as `visit(centre, value)`.
@@ -65,7 +65,7 @@ void print_error(const VdbGrid& grid) {
                 std::sqrt(squares / static_cast<double>(count)));
 }
 
-/// Seconds to copy so many bytes from memory to memory, by all threads.
+/// Seconds to copy this many bytes in memory, with all threads.
 double seconds_of_copy(std::size_t bytes) {
     constexpr std::size_t kPiece = 1 << 18;
     const std::vector<char> from(bytes, 1);
@@ -142,7 +142,7 @@ void measure(int resolution, int side, int level) {
     if (resolution <= kFine) print_error(grids.front());
 }
 
-/// In a process of its own. returns: whether it went well
+/// Runs in its own process. returns: whether it succeeded
 bool measure_apart(int resolution, int side, int level) {
     std::fflush(stdout);
     const pid_t child = fork();

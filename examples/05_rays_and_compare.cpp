@@ -18,12 +18,12 @@ int main() try {
     const subvol::View view(subvol::parse_camera("iso", box), 256, 256);
     const subvol::Optics optics(subvol::transfer_function_preset("coolwarm", -1, 1), box.diagonal() / 100);
 
-    // The limit of subdivision as radial basis functions, one a control point, and their picture.
+    // The limit of subdivision as radial basis functions, one per control point, and their picture.
     const subvol::SampleResult points = subvol::sample_rbf_points(mesh);
     const subvol::Image splat = subvol::render_splats(points.volume, view, optics).image;
     subvol::write_image("splat.png", splat);
 
-    // The same volume refined twice, every cell split into tetrahedra: slower, with nothing approximated but the limit.
+    // The same volume refined twice, every cell split into tetrahedra: slower, but only the limit is approximated.
     const subvol::HexMesh fine = subvol::refine(mesh, {.levels = 2});
     const subvol::Image rays = subvol::render_tets(fine, fine.attributes.front().values, view, optics).image;
     subvol::write_image("rays.png", rays);

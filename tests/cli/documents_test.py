@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the documents point at is there."""
+"""Documents name files, headers, calls and rooms that exist, and their code compiles."""
 
 import os
 import re
