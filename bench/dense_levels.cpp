@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dense grids level by level: seconds, what is crossed, and how the picture of one level differs from that of the finest; and
-// the tetrahedra of the refined mesh, which come to the same. The order is the logarithm of the quotient of two differences.
+// Dense grids level by level: seconds, segments, and the difference of each level's picture from that of the finest; and the
+// same for the tetrahedra of the refined mesh, which give the same picture. The order is the logarithm of the quotient of two
+// differences.
 //
-// Each level takes eight times the last, or more where grids do not fit into memory at once: half a minute for 64 cells.
+// Each level takes eight times as long as the last, or more if the grids do not fit into memory: half a minute for 64 cells.
 //
 //   dense_levels [model = twist] [resolution = 4] [finest = 6] [size = 256]
 #include <cmath>
@@ -22,7 +23,7 @@ namespace {
 
 using namespace subvol;
 
-// Refined meshes are held whole: 6 tetrahedra a cell, each with its neighbours.
+// Refined meshes are in memory as a whole: 6 tetrahedra per cell, each with its neighbours.
 constexpr std::size_t kMostCells = 1'000'000;
 
 double rms(const Image& a, const Image& b) {

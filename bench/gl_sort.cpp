@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
 
     const auto measure = [&](const char* what, double items, bool fresh, const auto& work) {
         double best = 1e30;
-        for (int i = 0; i < 4; ++i) {  // the first makes scratch memory and warms up
+        for (int i = 0; i < 4; ++i) {  // the first run allocates scratch memory and warms up
             if (fresh) glCopyNamedBufferSubData(source.id(), keys.id(), 0, 0, 4 * GLsizeiptr{count});
             glFinish();
             best = std::min(best, subvol::bench::seconds_of([&] { work(), glFinish(); }, 1));

@@ -9,7 +9,7 @@
 
 namespace subvol::bench {
 
-/// The shortest of some runs, in seconds of wall time.
+/// The shortest of several runs, in seconds of wall time.
 template <class Work>
 double seconds_of(const Work& work, int repeats) {
     double best = 1e30;
@@ -21,7 +21,7 @@ double seconds_of(const Work& work, int repeats) {
     return best;
 }
 
-/// The most memory that the process has held.
+/// The peak memory of the process.
 inline double peak_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points a second of the conversion to radial basis functions, rule `scheme`: the twisted block at 1, 2 and 4 intervals an
-// edge.
+// Points per second of the conversion to radial basis functions with the rule `scheme`: the twisted block at 1, 2 and 4
+// intervals per edge.
 //
 //   points_speed [N = 64]
 #include <cstdio>

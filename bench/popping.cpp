@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether pictures pop as the camera goes round: changes from frame to frame of a turntable, of splats and of the tetrahedra
-// reference. Kernels enter and leave sheets and tiles from frame to frame; if that showed, splats would change more.
+// Do pictures pop while the camera moves? Changes from frame to frame of a turntable, for splats and for the tetrahedra
+// reference. Kernels enter and leave sheets and tiles from frame to frame; if that were visible, splats would change more.
 //
 //   popping [frames = 72] [size = 256]
 #include <algorithm>

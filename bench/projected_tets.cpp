@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Projected tetrahedra on the twisted block: seconds a picture by order, and the difference from rays through the same
-// tetrahedra. Every row is the fastest of some pictures of one renderer.
+// Projected tetrahedra on the twisted block: seconds per picture for each order, and the difference from rays through the same
+// tetrahedra. Every row is the fastest of several pictures of one renderer.
 //
 //   projected_tets [resolution…]
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many kernels a field error costs: `reduce_rbf`, with and without moves, against uniform sampling with second-order
-// kernels (the coarsest lattice of the model that reaches the error) and one kernel a control vertex. Errors are those of one
-// set of samples of the limit volume, which no reduction has seen.
+// How many kernels an error of the field needs: `reduce_rbf`, with and without moves, against uniform sampling with
+// second-order kernels (the coarsest lattice of the model that reaches the error) and one kernel per control vertex. Errors are
+// measured on one set of samples of the limit volume that no reduction has used.
 //
 //   reduction [model…]
 #include <algorithm>
@@ -25,10 +25,10 @@ void print(const char* how, std::size_t kernels, const ErrorAtSamples& error, do
     std::fflush(stdout);
 }
 
-/// The coarsest lattice that reaches an error: the model's field on coarser control meshes, then more samples an edge of the
+/// The coarsest lattice that reaches an error: the model's field on coarser control meshes, then more samples per edge of the
 /// mesh itself (finer control meshes would have another limit).
 void print_uniform(const std::string& model, int resolution, double rmse, const FieldSamples& other) {
-    std::vector<std::pair<int, int>> lattices;  // resolution, samples an edge
+    std::vector<std::pair<int, int>> lattices;  // resolution, samples per edge
     for (int n = 4; n < resolution; n += n < 16 ? 2 : n < 40 ? 4 : 8) lattices.emplace_back(n, 1);
     for (const int per_edge : {1, 2, 3}) lattices.emplace_back(resolution, per_edge);
     for (const auto& [n, per_edge] : lattices) {

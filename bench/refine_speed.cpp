@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refinement of a twisted block: tables and their application, stored tables again and again, the trilinear split beside MCQ,
-// one thread beside all, and what part of the machine's memory bandwidth that is. All ratios from one run. Arguments: cells per
-// side, levels, repeats.
+// Refinement of a twisted block: computing and applying tables, applying stored tables repeatedly, the trilinear split compared
+// with MCQ, one thread compared with all, and the fraction of the machine's memory bandwidth that is reached. All ratios are
+// from one run. Arguments: cells per side, levels, repeats.
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -22,7 +22,7 @@ using bench::seconds_of;
 
 constexpr std::size_t kChannels = 4;  // position and density
 
-/// Bytes a second that all cores together copy (read and write counted).
+/// Bytes per second that all cores together copy (reads and writes counted).
 double copy_bandwidth() {
     constexpr std::size_t kCount = std::size_t{1} << 26, kPart = 65536;
     const std::vector<double> from(kCount, 1.0);
@@ -45,7 +45,7 @@ std::vector<double> channels_of(const HexMesh& mesh) {
     return data;
 }
 
-/// What is timed: everything from the control mesh on, and the application alone.
+/// Times: of everything from the control mesh on, and of the application alone.
 struct Timing {
     double tables = 0, streamed = 0, apply = 0, apply_float = 0;
     double peak = 0;  // bytes, of tables and their application

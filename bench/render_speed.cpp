@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames a second of the splatter: the models at two picture sizes, the twisted block from 30 thousand to 4 million points, and
-// the cost of an overlap: kernels are widened, so that nothing but the number of kernel–pixel–sheet triples changes.
+// Frames per second of the splatter: the models at two picture sizes, the twisted block from 30 thousand to 4 million points,
+// and the cost of overlaps: kernels are widened, so that only the number of kernel–pixel–sheet triples changes.
 //
 //   render_speed [cpu|gl|sheets] [models|sweep|overlaps]
 #include <ctime>
@@ -25,7 +25,7 @@ constexpr int kSheets = 200;
 
 int frames = 8;
 
-/// Pixels of all sections of all kernels by all sheets.
+/// The pixels of all sections of kernels with sheets.
 double overlaps(const RbfVolume& volume, const View& view) {
     double z_min = 1e300, z_max = -1e300;
     for (const Vec3& p : volume.boundary.points) {
@@ -45,7 +45,7 @@ struct Measured {
     double wall = 1e30, cpu = 1e30;
 };
 
-/// The best of some frames, each from another side.
+/// The best of several frames, each from another side.
 Measured draw(Splatter& splatter, const Camera& camera, int size, const Vec3& center, const Optics& optics) {
     Measured best;
     for (int i = 0; i < frames; ++i) {
@@ -94,7 +94,7 @@ void sweep(const SplatOptions& options) {
     }
 }
 
-/// A line through the costs by least squares, and how much of their variance it leaves.
+/// A least-squares line through the costs, and the part of their variance that it leaves.
 void print_slope(const std::vector<std::pair<double, double>>& costs) {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
     for (const auto& [overlap, cost] : costs) {
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
     if (backend == "sheets") options.method = SplatMethod::Sheets;
     try {
         const auto device = backend == "cpu" ? std::nullopt : find_gl_device();
-        if (device && !device->hardware) frames = 1;  // software takes seconds a frame
+        if (device && !device->hardware) frames = 1;  // software takes seconds per frame
         std::printf("%s %s\n", backend.c_str(), device ? device->renderer.c_str() : "");
         if (what.empty() || what == "models") models(options);
         if (what.empty() || what == "sweep") sweep(options);

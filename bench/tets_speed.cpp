@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays a second through the tetrahedra of the twisted block, with one thread and with all: 512², rays that meet the volume.
+// Rays per second through the tetrahedra of the twisted block, with one thread and with all, at 512²; only rays that hit the
+// volume count.
 //
 //   tets_speed [resolution…]
 #include <tbb/global_control.h>
@@ -22,7 +23,7 @@ using namespace subvol;
 constexpr int kSize = 512;
 constexpr int kFrames = 5;
 
-/// The best of some frames; wall clock.
+/// The best of several frames; wall clock.
 double seconds_a_frame(const TetsRenderer& renderer, const View& view, const Optics& optics, int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
     double cpu = 1e30;

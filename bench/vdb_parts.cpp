@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A grid made in parts against the same in one piece, voxel by voxel: the pawn.
+// A grid made in parts compared with the same grid made in one piece, voxel by voxel: the pawn.
 // Arguments: voxels along the longest side (800), memory of a part in MB (64).
 #include <bit>
 #include <cstdio>
@@ -14,14 +14,14 @@ namespace {
 
 using namespace subvol;
 
-/// What a grid holds, in the order of its voxels by x: of parts that follow each other in x it is that of the whole.
+/// The contents of a grid, in the order of its voxels along x: parts that follow each other in x add up to the whole.
 struct Contents {
     std::uint64_t hash = 0xcbf29ce484222325u;
     std::size_t voxels = 0, leaves = 0;
 
     void add(std::uint64_t number) { hash = (hash ^ number) * 0x9e3779b97f4a7c15u, hash ^= hash >> 29; }
 
-    /// Layers of leaves, one after the other; each is there with its place and its active voxels.
+    /// Layers of leaves, one after the other; each leaf counts with its place and its active voxels.
     void add(const VdbGrid& grid) {
         if (grid.report().active_voxels == 0) return;
         const auto all = grid.voxels();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twisted block into voxels, by resolution: seconds with 2 and 1 threads, memory, the part of a plain copy's speed,
-// writing, error against the exact inverse. Every resolution is a process of its own, so that its peak of memory is its own.
+// The twisted block into voxels, by resolution: seconds with 2 and 1 threads, memory, speed as a fraction of a plain copy's,
+// writing, error against the exact inverse. Every resolution runs in its own process, so that its peak memory can be measured.
 //
 //   vdb_speed [-n cells a side = 40] [-l level = none] [voxels along the longest side = 200 400 800…]
 //
-// level: of the refined mesh, its vertices on the limit; -l limit: the curved cells that stand for the limit; none: the mesh as
-// it is.
+// level: of the refined mesh, its vertices on the limit; -l limit: the curved cells that approximate the limit; none: the
+// control mesh.
 #include <sys/wait.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -64,7 +64,7 @@ void print_error(const VdbGrid& grid) {
                 std::sqrt(squares / static_cast<double>(count)));
 }
 
-/// Seconds to copy so many bytes from memory to memory, by all threads.
+/// Seconds to copy this many bytes in memory, with all threads.
 double seconds_of_copy(std::size_t bytes) {
     constexpr std::size_t kPiece = 1 << 18;
     const std::vector<char> from(bytes, 1);
@@ -140,7 +140,7 @@ void measure(int resolution, int side, int level) {
     if (resolution <= kFine) print_error(grids.front());
 }
 
-/// In a process of its own. returns: whether it went well
+/// Runs in its own process. returns: whether it succeeded
 bool measure_apart(int resolution, int side, int level) {
     std::fflush(stdout);
     const pid_t child = fork();

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# subvol_component(NAME PUBLIC target… PRIVATE target…): a component is one installed library with its own include root, made of
-# the objects of its rooms. include/ has the header that brings all of the component's public headers.
+# subvol_component(NAME PUBLIC target… PRIVATE target…): a component is one installed library, made of the objects of its rooms.
+# include/ has the header that includes all of the component's public headers.
 #
 # Libraries are static unless BUILD_SHARED_LIBS says otherwise. Symbols keep the default visibility: hiding the private ones would
 # take an export macro at each of some three hundred functions, and the tests of private headers would not link.
@@ -23,7 +23,7 @@ function(subvol_component name)
   set_property(GLOBAL PROPERTY SUBVOL_SEEN_BY_${name} ${ARG_PUBLIC})
 endfunction()
 
-# The targets that stand for the names under FOREIGN; cmake/foreign_walls.h has the same names in capitals.
+# The targets for the names under FOREIGN; cmake/foreign_walls.h has the same names in capitals.
 set(SUBVOL_CERES Ceres::ceres)
 set(SUBVOL_CLI11 CLI11::CLI11)
 set(SUBVOL_EIGEN Eigen3::Eigen)
@@ -42,8 +42,8 @@ set(SUBVOL_PUGIXML pugixml::pugixml)
 set(SUBVOL_ZLIB ZLIB::ZLIB)
 
 # subvol_room(COMPONENT NAME SOURCES file… USES room… FOREIGN library… SHADERS file… COLD): a room is a folder of a component and
-# an object library of its own. Its include roots are its folder, its door NAME/include, and those of the rooms that it uses: an
-# include against the arrows does not compile, and neither does one of a foreign library that it does not name.
+# an object library. Its include roots are its folder, its public headers in NAME/include, and those of the rooms that it uses: an
+# include against the arrows does not compile, and neither does one of a third-party library that the room does not list.
 function(subvol_room component name)
   cmake_parse_arguments(ARG "COLD" "" "SOURCES;USES;FOREIGN;SHADERS" ${ARGN})
   set(room subvol_${component}_${name})
@@ -77,7 +77,7 @@ function(subvol_room component name)
   set_property(GLOBAL APPEND PROPERTY SUBVOL_ROOMS_${component} ${CMAKE_CURRENT_SOURCE_DIR}/${name})
 endfunction()
 
-# subvol_private_roots(TARGET COMPONENT…): for tests and benchmarks of what is private.
+# subvol_private_roots(TARGET COMPONENT…): the include roots of all rooms, for tests and benchmarks of private headers.
 function(subvol_private_roots target)
   foreach(component IN LISTS ARGN)
     get_property(rooms GLOBAL PROPERTY SUBVOL_ROOMS_${component})
@@ -85,7 +85,7 @@ function(subvol_private_roots target)
   endforeach()
 endfunction()
 
-# For code that runs once and is made of libraries' templates: the compiler spends most of its time on optimising what is thrown away.
+# For code that runs once and consists of libraries' templates: with -O3 the compiler would spend most of its time optimising it.
 set(SUBVOL_COLD $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
 
 function(subvol_warnings target)

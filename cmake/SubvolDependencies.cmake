@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Every dependency, found once. The pitfalls of Debian's packages are dealt with here and nowhere else.
+# Finds every dependency once, and works around the defects of Debian's packages.
 find_package(Threads REQUIRED)
 find_package(TBB CONFIG REQUIRED)
 find_package(glm CONFIG REQUIRED)
@@ -24,7 +24,7 @@ elseif(SUBVOL_NETCDF)
   pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)
 endif()
 
-# FindOpenVDB sets BUILD_SHARED_LIBS in its caller and its folder shadows FindTBB: a function keeps both in.
+# FindOpenVDB sets BUILD_SHARED_LIBS in its caller, and its folder hides FindTBB. The function contains both effects.
 function(subvol_find_openvdb)
   list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
   find_package(OpenVDB 10 MODULE REQUIRED)

@@ -4,9 +4,9 @@ set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/subvol)
 get_property(SUBVOL_COMPONENTS GLOBAL PROPERTY SUBVOL_COMPONENTS)
 configure_package_config_file(cmake/subvolConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/subvolConfig.cmake
   INSTALL_DESTINATION ${config_dir} NO_SET_AND_CHECK_MACRO)
-# Until 1.0 a new minor version may break programs that were written for the one before.
+# Until 1.0 a new minor version may break programs written for the previous one.
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/subvolConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-foreach(component IN LISTS SUBVOL_COMPONENTS) # a file each: who takes one need not have what the others link to
+foreach(component IN LISTS SUBVOL_COMPONENTS) # one file per component: a user of one does not need the libraries of the others
   install(EXPORT subvolTargets-${component} NAMESPACE subvol:: DESTINATION ${config_dir} COMPONENT development)
 endforeach()
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/subvolConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/subvolConfigVersion.cmake

@@ -17,7 +17,7 @@ grids, and measures how good the result is.")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME subvol)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-# OpenGL is opened when it is asked for; ffmpeg makes the videos of --turntable.
+# OpenGL is loaded when it is needed; ffmpeg makes the videos of --turntable.
 set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "libegl1, libgl1, libgl1-mesa-dri")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "ffmpeg")
 

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh from a file: what is in it, and is it sound? With a file's name it reads that, else one that it writes itself.
+// A mesh from a file: what is in it, and is it sound? Reads the file that is named, or else one that it writes itself.
 
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/mesh_io.h"
-#include "subvol/mesh_report.h"
-#include "subvol/model.h"
+#include "subvol/subvol.h"
 
 int main(int argc, char** argv) try {
     const char* path = argc > 1 ? argv[1] : "ball.vtu";
     if (argc == 1) subvol::write_mesh(path, subvol::make_model("ball", 8));
 
-    // What was left out, turned round or converted comes as sentences.
+    // The warnings say what was left out, turned round or converted.
     const subvol::ReadResult read = subvol::read_mesh(path);
     for (const std::string& warning : read.warnings) std::printf("warning: %s\n", warning.c_str());
 

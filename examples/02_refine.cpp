@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refinement: every level splits a cell into eight, and the volume tends to a smooth limit. Writes fine.vtu, for ParaView.
+// Refinement: every level splits a cell into eight, and the volume converges to a smooth limit. Writes fine.vtu, for ParaView.
 
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/mesh_io.h"
-#include "subvol/mesh_report.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/subvol.h"
 
 int main() try {
-    const subvol::HexMesh mesh = subvol::make_model("ball", 4);  // a ball, as far as its few cells can be one
+    const subvol::HexMesh mesh = subvol::make_model("ball", 4);  // a ball, as well as so few cells can show one
 
     const double ball = 4 * std::acos(-1.0) / 3;
     double error = 1;

@@ -5,22 +5,18 @@
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/image_io.h"
-#include "subvol/model.h"
-#include "subvol/points_io.h"
-#include "subvol/rbf_field.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
     const subvol::HexMesh mesh = subvol::make_model("twist", 16);
 
-    // One kernel a control point: centre, frame, value, gradient and second moment. `per_edge = 2` makes eight times as many.
+    // One kernel per control point: centre, frame, value, gradient and second moment. `per_edge = 2` makes eight times as many.
     const subvol::RbfVolume volume = subvol::sample_rbf_points(mesh).volume;
     subvol::write_points("points.ply", volume);
 
-    // Between the points the kernels are a field, close to what the mesh stands for.
+    // Between the points the kernels define a field that is close to that of the mesh.
     const subvol::RbfField field(volume);
     double largest = 0;
     for (std::size_t p = 0; p < mesh.points.size(); ++p)
@@ -33,7 +29,7 @@ int main() try {
     const subvol::SplatResult drawn = subvol::render_splats(volume, view, optics);
     subvol::write_image("splat.png", drawn.image);
 
-    // The points in the file are the very same.
+    // The points in the file are the same, bit for bit.
     const bool same = subvol::read_points("points.ply").centers == volume.centers;
     return largest < .05 && same ? 0 : 1;  // of a field from -1 to 1
 } catch (const subvol::Error& error) {

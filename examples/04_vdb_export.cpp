@@ -4,19 +4,17 @@
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/subvol.h"
 #include "subvol/vdb.h"
 
 int main() try {
-    // A few cells stand for a ball only once they are refined: a grid shows what it is given.
+    // Refine first, since a grid shows the cells that it is given: only a refined mesh looks like a ball.
     subvol::HexMesh mesh = subvol::make_model("ball", 8);
     mesh.attributes.push_back({.name = "height", .channels = 1, .values = {}});
     for (const subvol::Vec3& p : mesh.points) mesh.attributes.back().values.push_back(p.z);
     const subvol::HexMesh fine = subvol::refine(mesh, {.levels = 2});
 
-    // One float grid a field. Voxel centres lie at world = size * (i, j, k).
+    // One float grid per field. Voxel centres lie at world = size * (i, j, k).
     const std::vector<std::string> fields{mesh.attributes[0].name, "height"};
     subvol::write_vdb("ball.vdb", rasterize(fine, fields, {.voxel_size_world = .02}));
 

@@ -5,13 +5,9 @@
 
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/image_io.h"
-#include "subvol/image_metrics.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
     // A mesh: any hexahedra with a density at the points. `read_mesh("part.vtk").mesh` would do as well.
@@ -22,12 +18,12 @@ int main() try {
     const subvol::View view(subvol::parse_camera("iso", box), 256, 256);
     const subvol::Optics optics(subvol::transfer_function_preset("coolwarm", -1, 1), box.diagonal() / 100);
 
-    // The limit of subdivision as radial basis functions, one a control point, and their picture.
+    // The limit of subdivision as radial basis functions, one per control point, and their picture.
     const subvol::SampleResult points = subvol::sample_rbf_points(mesh);
     const subvol::Image splat = subvol::render_splats(points.volume, view, optics).image;
     subvol::write_image("splat.png", splat);
 
-    // The same volume refined twice, every cell split into tetrahedra: slower, with nothing approximated but the limit.
+    // The same volume refined twice, every cell split into tetrahedra: slower, but only the limit is approximated.
     const subvol::HexMesh fine = subvol::refine(mesh, {.levels = 2});
     const subvol::Image rays = subvol::render_tets(fine, {}, view, optics).image;
     subvol::write_image("rays.png", rays);

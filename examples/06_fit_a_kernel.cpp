@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A kernel of one's own: fitted to a scheme's basis function, written as JSON, and used to draw. Writes own_kernel.png.
+// Your own kernel: fitted to a scheme's basis function, written as JSON, and used to draw. Writes own_kernel.png.
 
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/fit_kernel.h"
-#include "subvol/image_io.h"
-#include "subvol/image_metrics.h"
-#include "subvol/model.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
-    // What one control point of value 1 makes of the space about it. The level 4 has 16 samples a cell.
+    // The influence of one control point with value 1 on the space around it. Level 4 has 16 samples per cell edge.
     const subvol::BasisFunction basis = subvol::sample_basis_function(subvol::Scheme::Mcq, 4);
 
     const subvol::KernelFit plain = fit_kernel(basis, subvol::KernelShape::Gaussian);
@@ -21,7 +17,7 @@ int main() try {
                 two.report.errors.rmse, radial_bound(basis).rmse);
     std::printf("%s\n", to_json(two.kernel).c_str());
 
-    // Any kernel can be drawn. What it is matters little, once it carries gradients and second moments.
+    // Any kernel can be drawn. Its shape hardly matters, since kernels carry gradients and second moments.
     const subvol::HexMesh mesh = subvol::make_model("ball", 8);
     const subvol::View view(subvol::parse_camera("iso", bounds(mesh)), 128, 128);
     const subvol::Optics optics(subvol::transfer_function_preset("coolwarm", -1, 1), bounds(mesh).diagonal() / 100);

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// One table for a mesh that moves, and the limit at a place: what an animation or a simulation would do frame by frame.
+// One table for a mesh that moves, and the limit at a place: as an animation or a simulation would use them in every frame.
 
 #include <cmath>
 #include <cstdio>
 
-#include "subvol/error.h"
-#include "subvol/limit.h"
-#include "subvol/model.h"
-#include "subvol/refine.h"
+#include "subvol/subvol.h"
 
 int main() try {
     subvol::HexMesh mesh = subvol::make_model("ball", 8);
 
-    // Computed once, from who meets whom. The points may then move as they like.
+    // Computed once, from the topology alone. The points may then move freely.
     const subvol::RefinementTables tables = subvol::refinement_tables(build_topology(mesh), {.levels = 2});
     std::printf("%zu control points, %zu refined, %.1f MB of tables\n", tables.control_points, tables.levels.back().rows(),
                 static_cast<double>(tables.bytes()) / 1e6);

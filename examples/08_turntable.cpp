@@ -1,29 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// A transfer function of one's own, and a turn about the volume. Writes turn_0.png to turn_7.png and legend.svg.
+// Your own transfer function, and a turn around the volume. Writes turn_0.png to turn_7.png and legend.svg.
 
 #include <algorithm>
 #include <cstdio>
 #include <string>
 
-#include "subvol/error.h"
-#include "subvol/image_io.h"
-#include "subvol/legend.h"
-#include "subvol/model.h"
+#include "subvol/compare.h"
 #include "subvol/render.h"
-#include "subvol/sample.h"
+#include "subvol/subvol.h"
 
 int main() try {
     const subvol::HexMesh mesh = subvol::make_model("nozzle", 24);
     const subvol::Box box = bounds(mesh);
 
-    // Colours in linear light and opacities, each straight between its knots: two shells of equal speed, the fast one red.
+    // Colours in linear light and opacities, each linear between its knots: two shells of equal speed, the fast one red.
     const subvol::TransferFunction shells{.color = {{-1, {.1, .2, .8}}, {0, {.8, .8, .8}}, {1, {.8, .1, .1}}},
                                           .opacity = {{-.3, 0}, {-.25, .3}, {-.2, 0}, {.5, 0}, {.55, .8}, {.6, 0}}};
     const subvol::Optics optics(shells, box.diagonal() / 100);
 
     subvol::write_legend("legend.svg", shells, {.title = "speed", .min = -1, .max = 1});
 
-    // What all pictures share is made once.
+    // The work that all pictures share is done once.
     const subvol::RbfVolume volume = subvol::sample_rbf_points(mesh, {.per_edge = 2}).volume;
     subvol::Splatter splatter(volume);
     const subvol::Camera camera = fit_turntable(subvol::parse_camera("iso", box), box, 8);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twisted block by every method of ours: CPU-seconds of the first and of a later frame, and the error against the exact
-// picture, with the smooth transfer function. Writes that picture for others: size² RGB floats, rows from the top.
+// The twisted block by each of our methods: CPU-seconds of the first and of a later frame, and the error against the exact
+// picture, with the smooth transfer function. Writes the exact picture for the other programs: size² RGB floats, rows from the
+// top.
 //
 //   peers_ours [N = 40] [exact.f32] [size = 512]
 #include <cstdio>
@@ -51,7 +52,7 @@ void write_floats(const std::string& path, const Image& image) {
     if (!out) throw Error(ErrorCode::Io, "cannot be written", path);
 }
 
-/// start: what is done once; its result draws a frame.
+/// start: the work that is done once; it returns the function that draws a frame.
 void measure(const std::string& name, const Image& exact, const std::function<std::function<Image()>()>& start) {
     const double begin = cpu_seconds();
     const auto draw = start();

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The twisted block by our methods and by VTK's, one table: CPU-seconds a frame and RMSE against the exact picture.
+"""One table of the twisted block by our methods and by VTK's: CPU-seconds per frame and RMSE against the exact picture.
 
     bench/peers/table.py [build folder = build/release] [N = 40]
 
@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).parent
-OPENVKL_BY_VTK = 1.28  # CPU time a frame by that of VTK's projected tetrahedra, both measured on one machine; RMSE .0017
+OPENVKL_BY_VTK = 1.28  # CPU time per frame, relative to VTK's projected tetrahedra on the same machine; RMSE .0017
 
 
 def rows_of(command):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A mesh into a .vdb file by VTK, numpy and pyopenvdb, and by ours: CPU-seconds, wall time, peak memory, and their ratios.
+"""From a mesh to a .vdb file by VTK, numpy and pyopenvdb, and by our command: CPU-seconds, wall time, peak memory, and their ratios.
 
     bench/peers/vdb_route.py [build folder = build/release] [N = 40] [voxels a side = 200 400]
 
@@ -59,7 +59,7 @@ def print_active_voxels(file):
 
 
 def active_voxels(file):
-    """In a process of its own: a program's peak memory counts from that of the process which starts it."""
+    """In its own process: a program's peak memory includes that of the process that starts it."""
     return int(subprocess.run([sys.executable, __file__, "--count", file], stdout=subprocess.PIPE, check=True).stdout)
 
 

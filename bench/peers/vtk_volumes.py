@@ -106,7 +106,7 @@ def main(mesh, exact_file):
     size = round((exact.size / 3) ** .5)
     exact = exact.reshape(size, size, 3)
     tets = tetrahedra(mesh)
-    windows = []  # kept: when its last window goes, the X server of xvfb-run does too
+    windows = []  # kept: when the last window closes, the X server of xvfb-run ends
     for name, make in MAPPERS:
         mapper = make()
         mapper.SetInputData(tets)
@@ -114,7 +114,7 @@ def main(mesh, exact_file):
         windows.append(window)
         first, later = cpu_seconds_of_frame(window), 1e30
         for _ in range(1, FRAMES):
-            camera.Azimuth(1e-6)  # else nothing is drawn again
+            camera.Azimuth(1e-6)  # otherwise nothing is drawn again
             later = min(later, cpu_seconds_of_frame(window))
         rmse = numpy.sqrt(numpy.mean((picture(window, size) - exact) ** 2))
         print(f"VTK {vtk.vtkVersion().GetVTKVersion()} {name}\t{first:.2f}\t{later:.2f}\t{rmse:.5f}", flush=True)

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_arguments.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <sstream>
 
+#include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
 #include "text.h"
@@ -35,7 +37,7 @@ PictureSize parse_size(const std::string& option, const std::string& text) {
     size.height = size.width;
     if (!in.fail() && !in.eof()) in >> cross >> size.height;
     if (in.fail() || !in.eof() || cross != 'x' || size.width < 1 || size.height < 1) {
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' is no picture size", option, "write it as 640x480 or 512");
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a picture size", option, "write it as 640x480 or 512");
     }
     return size;
 }
@@ -63,13 +65,14 @@ void PictureArguments::add_camera_to(CLI::App& app) {
         ->type_name("SIDE")
         ->excludes(place);
     app.add_flag("--fit", fit, "move the camera along its line of sight until the whole box is in the picture");
-    app.add_flag("--ortho", orthographic, "an orthographic camera: as high as the box needs, or the JSON file's ortho_height");
+    app.add_flag("--ortho", orthographic,
+                 "use an orthographic camera, as high as the box needs or as the JSON file's ortho_height");
     app.add_option("--turntable", turntable_frames,
-                   "N pictures of one turn about the camera's up axis: -o NAME.png (or .exr) writes NAME_0000.png and so on; "
-                   ".mp4, .webm and .gif make a video with the program ffmpeg")
+                   "N pictures of one turn about the camera's up axis; -o NAME.png (or .exr) writes NAME_0000.png and so on, "
+                   ".mp4, .webm and .gif write a video (with the program ffmpeg)")
         ->type_name("N")
         ->check(CLI::Range(1, 100000));
-    app.add_option("--fps", frames_per_second, "pictures a second of a video (default 30)")
+    app.add_option("--fps", frames_per_second, "pictures per second of a video (default 30)")
         ->type_name("N")
         ->check(CLI::Range(1, 240));
 }
@@ -82,21 +85,21 @@ void PictureArguments::add_light_to(CLI::App& app) {
         ->type_name("FILE|NAME");
     app.add_option(
            "--tf-range", transfer_range,
-           "values that the colour map and the per cents of --opacity spread over: MIN,MAX or field (default: the field's "
-           "range, but a file's map keeps its own values)")
+           "the range that the colour map and the percentages of --opacity cover: MIN,MAX or field (default: the field's "
+           "range; a map from a file keeps its own values)")
         ->type_name("MIN,MAX|field");
     app.add_option(
            "--opacity", opacity,
-           "opacities instead of those of --tf, straight in between: values of the field or per cent of its range, such "
+           "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, such "
            "as 0%:0,50%:.2,100%:.9")
         ->type_name("V:A,V:A,…");
     app.add_option("--opacity-unit", opacity_unit_world,
-                   "world distance that the opacities are for (default: 1/100 of the bounding box's diagonal)")
+                   "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)")
         ->type_name("D")
         ->check(CLI::PositiveNumber);
     app.add_option("--legend", legend, "also write a colour bar with the opacities and the field's name")
         ->type_name("FILE.svg");
-    app.add_option("--background", background, "what .png is laid over, linear red, green, blue in 0..1 (default 0,0,0)")
+    app.add_option("--background", background, "the background of a .png: linear red, green, blue in 0..1 (default 0,0,0)")
         ->type_name("R,G,B");
 }
 
@@ -104,7 +107,7 @@ Camera PictureArguments::make_camera(const Box& box, double aspect) const {
     Camera given = parse_camera(camera.value_or(view), box, aspect);
     const bool made_orthographic = orthographic && given.ortho_height == 0;
     if (made_orthographic) given = orthographic_camera(given, box, aspect);
-    // A named view sees the whole box, and so it does from all sides.
+    // A named view shows the whole box, so all pictures of its turntable do.
     if (turntable_frames && (fit || !camera || made_orthographic)) return fit_turntable(given, box, *turntable_frames, aspect);
     return fit ? fit_camera(given, box, aspect) : given;
 }
@@ -122,12 +125,12 @@ Range PictureArguments::shown_range(const Range& field) const {
     if (!transfer_range || *transfer_range == "field") return field;
     const std::size_t comma = transfer_range->find(',');
     if (comma == std::string::npos) {
-        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' is no range", "--tf-range", "MIN,MAX or field");
+        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' is not a range", "--tf-range", "MIN,MAX or field");
     }
     const Range range{parse_number("--tf-range", transfer_range->substr(0, comma)),
                       parse_number("--tf-range", transfer_range->substr(comma + 1))};
     if (!(range.min < range.max)) {
-        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' does not ascend", "--tf-range", "MIN,MAX or field");
+        throw Error(ErrorCode::InvalidInput, "'" + *transfer_range + "' is not ascending", "--tf-range", "MIN,MAX or field");
     }
     return range;
 }
@@ -148,11 +151,10 @@ void PictureArguments::check() const {
     if (legend) check_output(*legend, {".svg"});
 }
 
-void PictureArguments::write_legend(const Optics& optics, const Range& field, Report& report) const {
+void PictureArguments::write_legend(const Optics& optics, const std::string& field, const Range& colors, Report& report) const {
     if (!legend) return;
-    const Range range = shown_range(field);
-    subvol::write_legend(*legend, optics.function(),
-                         {.title = report.json().value("field", ""), .min = range.min, .max = range.max});
+    const Range range = shown_range(colors);
+    subvol::write_legend(*legend, optics.function(), {.title = field, .min = range.min, .max = range.max});
     report["legend"] = *legend;
 }
 

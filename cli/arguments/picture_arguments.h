@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "outputs.h"
 #include "report.h"
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/optics.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
+
+/// The range of a field's values.
+struct Range {
+    double min = 0, max = 0;
+};
 
 struct PictureSize {
     int width = 512;
@@ -24,12 +31,12 @@ struct PictureSize {
 /// throws: Error(InvalidInput)
 [[nodiscard]] PictureSize parse_size(const std::string& option, const std::string& text);
 
-/// A colour map's file, or a preset over the range.
+/// Reads a colour map's file, or makes a preset over the range.
 ///
-/// stretch: a file's map too is spread over the range
+/// stretch: spreads a file's map over the range, too
 [[nodiscard]] TransferFunction find_transfer_function(const std::string& name, const Range& range, bool stretch = false);
 
-/// The box of what can be seen: the pawn fills a small part of its block.
+/// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
 [[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
 
 /// What a picture shows and how.
@@ -52,19 +59,19 @@ struct PictureArguments {
 
     /// One view, or those of the turntable.
     [[nodiscard]] std::vector<View> make_views(const Box& box) const;
-    /// field: whose opacities, colors: whose colours are shown, often the same
+    /// field, colors: the ranges of the field that gives the opacities and of the one that gives the colours, often the same
     [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
 
-    /// Refuses before any work is done what needs no mesh to be seen as wrong: size, camera, colour map, --legend.
+    /// Checks before any work is done what can be checked without a mesh: size, camera, colour map, --legend.
     ///
     /// throws: Error(InvalidInput)
     void check() const;
 
-    /// Writes the --legend, if one is wanted, over the range of the colours and with the field's name, the report's "field".
-    void write_legend(const Optics& optics, const Range& field, Report& report) const;
+    /// Writes the --legend, if there is one, over the range of the colours.
+    void write_legend(const Optics& optics, const std::string& field, const Range& colors, Report& report) const;
 
 private:
-    /// What --tf-range says; without it the field's range.
+    /// The range of --tf-range; without it the field's range.
     [[nodiscard]] Range shown_range(const Range& field) const;
     void add_camera_to(CLI::App& app);
     void add_light_to(CLI::App& app);

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "subvol/render_projected.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
-/// How the reference methods draw: tets, pt, dense, grid.
+/// The options of the reference methods: tets, pt, dense, grid.
 struct ReferenceArguments {
     int samples = 1;
     double image_tolerance = 1e-3;
@@ -21,7 +24,7 @@ struct ReferenceArguments {
     /// throws: Error(InvalidInput) if the order is unknown
     [[nodiscard]] ProjectedOrder projected_order() const;
 
-    /// throws: Error(InvalidInput) if the order is unknown, or has no faces to leave out
+    /// throws: Error(InvalidInput) if the order is unknown, or cannot leave faces out
     [[nodiscard]] ProjectedOptions projected_options() const;
 };
 

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 
 #include "subvol/error.h"
@@ -12,11 +13,11 @@
 namespace subvol::cli {
 namespace {
 
-/// At the last step: the new mesh (about 70 bytes a cell with one field), and its parent with the topology (600), of which
-/// there is one for eight cells.
+/// During the last refinement: about 70 bytes for each new cell (with one field), and 600 bytes for each cell of the parent
+/// mesh with its topology, which becomes eight new cells.
 constexpr double kBytesPerCell = 70 + 600.0 / 8;
 
-/// A few levels too many would fill the memory and have the system end the program without a word.
+/// A few levels too many would fill the memory, and the system would kill the program without a message.
 void check_memory(std::size_t cells, int levels) {
     const double fine_cells = static_cast<double>(cells) * std::pow(8.0, levels);
     const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));

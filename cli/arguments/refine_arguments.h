@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "report.h"
 #include "subvol/refine.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
 /// throws: Error(InvalidInput) unless it is mcq, cc, bsxw or linear
 [[nodiscard]] Scheme scheme_named(const std::string& name);
 
-/// How a mesh is refined, as every verb that refines asks for it.
+/// The options of refinement, the same for every verb that refines.
 struct RefineArguments {
     std::string scheme = "mcq";
     double tension = 1.0 / 16.0;
@@ -29,10 +32,10 @@ struct RefineArguments {
 
 enum class Vertices { OfTheLevel, OnTheLimit };
 
-/// `refine`, timed and with its cells in the report; the vertices are those of the level, or moved on to the limit (which is
-/// the same for schemes that interpolate).
+/// `refine`, timed and with the number of cells in the report. The vertices are those of the level, or moved to the limit
+/// (which is the same for schemes that interpolate).
 ///
-/// throws: Error(MissingCapability) if the machine has not the memory for so many levels
+/// throws: Error(MissingCapability) if the machine does not have the memory for so many levels
 [[nodiscard]] HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices, Report& report);
 
 }  // namespace subvol::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sample_arguments.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "picture_arguments.h"
@@ -31,19 +32,19 @@ Kernel kernel_from(const std::string& text, const char* fallback) {
 }
 
 void SampleArguments::add_to(CLI::App& app) {
-    auto* edges = app.add_option("--per-edge", per_edge, "sample intervals per cell edge; 1 is one kernel a control point");
+    auto* edges = app.add_option("--per-edge", per_edge, "sample intervals per cell edge; 1 is one kernel per control point");
     edges->type_name("N")->check(CLI::Range(1, 64));
     auto* world = app.add_option("--spacing", spacing_world,
-                                 "distance of the samples, in world units, instead of --per-edge; of a grid's "
-                                 "kernels, to whole voxels (default: a kernel a voxel)");
+                                 "distance between samples in world units, instead of --per-edge; for a grid, "
+                                 "rounded to whole voxels (default: one kernel per voxel)");
     world->type_name("H")->check(CLI::PositiveNumber)->excludes(edges);
-    app.add_option("--spacing-voxels", spacing_voxels, "the same in 1/200 of the longest side of the bounding box")
+    app.add_option("--spacing-voxels", spacing_voxels, "the same in units of 1/200 of the longest side of the bounding box")
         ->type_name("S")
         ->check(CLI::PositiveNumber)
         ->excludes(edges)
         ->excludes(world);
     app.add_option("--tolerance", tolerance,
-                   "instead: as many samples as it takes until the field errs by less, in its own unit")
+                   "instead: as many samples as an error of the field below E needs, in the field's unit")
         ->type_name("E")
         ->check(CLI::PositiveNumber)
         ->excludes(edges)
@@ -60,15 +61,16 @@ void SampleArguments::add_to(CLI::App& app) {
     app.add_option("--kernel", kernel, "the kernel of the points (default compact); see subvol fit --kernels")
         ->type_name("NAME|JSON");
     app.add_option("--value-kernel", value_kernel, "the kernel of --values paper (default paper_bc)")->type_name("NAME|JSON");
-    threshold_option = app.add_option("--threshold", threshold,
-                                      "drop points that cannot be seen: where the field is at most V; without V, where the "
-                                      "transfer function is clear")
-                           ->type_name("[V]")
-                           ->expected(0, 1);
-    app.add_option("--correction", correction, "how far a kernel follows the field: none, gradient, second (default), full")
+    threshold_option_ = app.add_option("--threshold", threshold,
+                                       "drop points that cannot be seen: where the field is at most V; without V, where the "
+                                       "transfer function is transparent")
+                            ->type_name("[V]")
+                            ->expected(0, 1);
+    app.add_option("--correction", correction,
+                   "the derivatives of the field that kernels carry: none, gradient, second (default), full")
         ->type_name("NAME");
     auto* reduce = app.add_option("--reduce", reduce_rmse,
-                                  "instead: as few kernels as a root mean square error of RMSE, in units of the field, needs");
+                                  "instead: as few kernels as a root mean square error of RMSE needs, in the field's unit");
     reduce->type_name("RMSE")
         ->check(CLI::PositiveNumber)
         ->excludes(edges)
@@ -77,7 +79,7 @@ void SampleArguments::add_to(CLI::App& app) {
         ->excludes("--tolerance")
         ->excludes("--footprint");
     app.add_flag("--refine", move_kernels,
-                 "with --reduce: move and resize the kernels too: about half as many, ten times as slow")
+                 "with --reduce: also move and resize the kernels: about half as many, ten times as slow")
         ->needs(reduce);
 }
 
@@ -94,6 +96,10 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
             .kernel = kernel_from(kernel, "compact"),
             .value_kernel = kernel_from(value_kernel, "paper_bc"),
             .progress = refinement.progress};
+}
+
+bool SampleArguments::drops_invisible() const {
+    return threshold_option_ != nullptr && threshold_option_->count() > 0;
 }
 
 Footprint SampleArguments::footprint_of(const Box& box) const {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "splat_arguments.h"
 
+#include <CLI/CLI.hpp>
+
 #include "subvol/error.h"
 #include "text.h"
 
@@ -16,7 +18,7 @@ void SplatArguments::add_to(CLI::App& app) {
     app.add_option("--device", device, "the OpenGL device's number in `info --gl` (default: the first GPU)")
         ->type_name("N")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--sheets", sheets, "splat: planes over the volume's depth (default 200)")
+    app.add_option("--sheets", sheets, "splat: number of planes over the volume's depth (default 200)")
         ->type_name("N")
         ->check(CLI::Range(2, 65536));
     app.add_flag("--shade", shade, "splat: light on surfaces of equal value, from the eye and from the upper left");
@@ -24,8 +26,8 @@ void SplatArguments::add_to(CLI::App& app) {
         ->type_name("NAME");
     app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
     app.add_option("--seconds", seconds,
-                   "the best picture within this time: splat: coarse first, then with the mesh sampled for the view;\n"
-                   "pt: the boundary's faces first, then rising fractions of those inside")
+                   "the best picture within this time; splat: first coarse, then with the mesh sampled for the view;\n"
+                   "pt: first the faces of the boundary, then more and more of those inside")
         ->type_name("S")
         ->check(CLI::PositiveNumber)
         ->excludes("--turntable")

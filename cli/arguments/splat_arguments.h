@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
 #include "report.h"
 #include "subvol/splat.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
-/// The method that a backend's name (auto, gl, cpu) stands for.
+/// The method of a backend's name (auto, gl, cpu).
 [[nodiscard]] SplatMethod splat_method(const std::string& backend, bool by_sheets);
 
-/// How points are splatted.
+/// The options of splatting.
 struct SplatArguments {
     std::string backend = "auto";
     std::optional<int> device;
@@ -25,14 +28,14 @@ struct SplatArguments {
 
     void add_to(CLI::App& app);
 
-    /// The colours' channel, if there is one, is the second.
+    /// If there is a --color-field, it is the volume's second channel.
     ///
     /// by_sheets: --method sheets
     /// throws:    Error(InvalidInput) if a name is unknown, or the backend cannot draw sheets
     [[nodiscard]] SplatOptions options(bool by_sheets) const;
 };
 
-/// Puts what a splatted picture took into the report.
+/// Adds the seconds, the backend and the device of a splatted picture to the report.
 void report_splats(const SplatReport& splats, const SplatArguments& arguments, Report& report);
 
 }  // namespace subvol::cli

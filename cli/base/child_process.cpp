@@ -42,14 +42,14 @@ struct Pipe {
     }
 };
 
-/// Reads both to their end; hands on a signal that asks us to stop.
+/// Reads both pipes to their end; passes an interrupt on to the child.
 void drain(Pipe& out, Pipe& err, pid_t child, ChildResult& result) {
-    bool told = false;
+    bool passed_on = false;
     std::array<pollfd, 2> files{pollfd{out.ends[0], POLLIN, 0}, pollfd{err.ends[0], POLLIN, 0}};
     const std::array<std::string*, 2> texts{&result.out, &result.err};
     while (files[0].fd >= 0 || files[1].fd >= 0) {
         if (poll(files.data(), files.size(), kLookForInterrupts_ms) < 0 && errno != EINTR) return;
-        if (!told && interrupt_signal() != 0) told = kill(child, SIGTERM) == 0;
+        if (!passed_on && interrupt_signal() != 0) passed_on = kill(child, SIGTERM) == 0;
         for (std::size_t i = 0; i < 2; ++i) {
             if (files[i].fd < 0 || files[i].revents == 0) continue;
             std::array<char, 1 << 16> bytes;
@@ -73,9 +73,9 @@ ChildResult run_self(const std::vector<std::string>& arguments) {
     const pid_t child = fork();
     if (child < 0) throw Error(ErrorCode::MissingCapability, std::generic_category().message(errno), "study");
     if (child == 0) {   // only calls that are safe between fork and exec
-        setpgid(0, 0);  // Ctrl-C reaches it once: by us
+        setpgid(0, 0);  // so that Ctrl-C reaches it only once, through us
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (getppid() != parent) _exit(127);  // it has ended meanwhile
+        if (getppid() != parent) _exit(127);  // the parent has ended meanwhile
         dup2(out.ends[1], STDOUT_FILENO);
         dup2(err.ends[1], STDERR_FILENO);
         execv("/proc/self/exe", argv.data());

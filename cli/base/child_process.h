@@ -6,17 +6,17 @@
 
 namespace subvol::cli {
 
-/// What a program that has ended left.
+/// The result of a child process.
 ///
-/// signal: that ended it; 0: it ended by itself
+/// signal: the one that ended it; 0: it exited by itself
 struct ChildResult {
     int code = 0;
     int signal = 0;
     std::string out, err;
 };
 
-/// Runs this program again with other arguments and waits for it. It is asked to stop when this program is, and ends with it,
-/// whatever ends that. Callable from several threads.
+/// Runs this program again with other arguments and waits for it. An interrupt of this program is passed on to the child, and
+/// the child ends when this program does, for whatever reason. May be called from several threads.
 ///
 /// throws: Error(MissingCapability) if it cannot be started
 [[nodiscard]] ChildResult run_self(const std::vector<std::string>& arguments);

@@ -1,22 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common_options.h"
 
+#include <CLI/CLI.hpp>
+
 #include "subvol/error.h"
 
 namespace subvol::cli {
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
     const std::string group = "Common options";
-    auto* field = app.add_option("--field", options.field,
-                                 "the attribute to take; a vector stands for its length, v.k for its channel k; without it the "
-                                 "first scalar, else the first vector's length, else density 1");
+    auto* field =
+        app.add_option("--field", options.field,
+                       "the field to use; of a vector its length, with NAME.k its component k (default: the first scalar, "
+                       "else the length of the first vector, else density 1)");
     field->group(group)->type_name("NAME");
-    app.add_option("--density", options.density, "an expression in x, y, z to take instead, e.g. \"sin(3*x)+z\"")
+    app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
         ->group(group)
         ->type_name("EXPR")
         ->excludes(field);
     app.add_option("--other-cells", options.other_cells,
-                   "what becomes of tetrahedra, prisms and pyramids: split (all cells, into smaller hexahedra), ignore, refuse")
+                   "what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse")
         ->group(group)
         ->type_name("WHAT")
         ->check(CLI::IsMember({"split", "ignore", "refuse"}));
@@ -24,17 +27,17 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
     app.add_option("--weld-distance", options.weld_distance_world, "join points of a file that are no farther apart than this")
         ->type_name("D")
         ->check(CLI::PositiveNumber);
-    app.add_option("--threads", options.threads, "number of threads, 0 takes all; results do not depend on it")
+    app.add_option("--threads", options.threads, "number of threads (0: all); results do not depend on it")
         ->group(group)
         ->type_name("N")
         ->check(CLI::Range(0, 4096));
     app.add_flag("--json", options.json, "print one JSON object on standard output")->group(group);
     app.add_flag("--quiet", options.quiet, "print nothing but errors (and the JSON object)")->group(group);
-    app.add_option("--progress", options.progress, "a progress bar on standard error: auto (on a terminal), on, off")
+    app.add_option("--progress", options.progress, "show a progress bar on standard error: auto (on a terminal), on, off")
         ->group(group)
         ->type_name("WHEN")
         ->check(CLI::IsMember({"auto", "on", "off"}));
-    app.add_option("--seed", options.seed, "seed of what is random: places of samples")->group(group)->type_name("N");
+    app.add_option("--seed", options.seed, "seed of the random numbers that place samples")->group(group)->type_name("N");
 }
 
 void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason) {

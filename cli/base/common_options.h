@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <string>
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 
@@ -14,7 +17,7 @@ struct CommonOptions {
     std::optional<std::string> field;
     std::optional<std::string> density;  // an expression in x, y, z
     std::string other_cells = "split";   // "ignore", "refuse"
-    bool weld = false;                   // points at the same place
+    bool weld = false;                   // join points at the same place
     std::optional<double> weld_distance_world;
     int threads = 0;  // 0: all
     bool json = false;
@@ -25,7 +28,7 @@ struct CommonOptions {
 
 void add_common_options(CLI::App& app, CommonOptions& options);
 
-/// Refuses an input that some options do not fit.
+/// Refuses options that do not apply to an input.
 ///
 /// throws: Error(InvalidInput) if one of `names` was given
 void refuse_options(const CLI::App& app, std::initializer_list<const char*> names, const std::string& reason);

@@ -9,7 +9,7 @@
 
 namespace subvol::cli {
 
-/// Measured numbers by their names, "psnr" or "srgb8.psnr", in the order in which they were put.
+/// Measured numbers by their names, "psnr" or "srgb8.psnr", in the order in which they were added.
 class Figures {
 public:
     void put(const std::string& name, double value) { all_.emplace_back(name, value); }
@@ -22,7 +22,7 @@ private:
     std::vector<std::pair<std::string, double>> all_;
 };
 
-/// "psnr=40": the figure may not be worse than the value. Of psnr and ssim more is better, of all others less.
+/// "psnr=40": the figure must not be worse than the value. Larger is better for psnr and ssim, smaller for all others.
 struct Demand {
     std::string metric;
     double value = 0;
@@ -32,7 +32,7 @@ struct Demand {
 
 /// known: the names that will be measured
 ///
-/// throws: Error(InvalidInput) for another name, or where there is no number
+/// throws: Error(InvalidInput) for another name, or if the value is missing or not a number
 [[nodiscard]] Demand parse_demand(const std::string& argument, const std::vector<std::string>& known);
 
 }  // namespace subvol::cli

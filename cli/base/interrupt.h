@@ -3,11 +3,11 @@
 
 namespace subvol::cli {
 
-/// From here on SIGINT (Ctrl-C), SIGTERM and SIGHUP ask the running work to stop; a second one of the same kind ends the
-/// program at once. One that is ignored, as under nohup, stays so.
+/// After this call SIGINT (Ctrl-C), SIGTERM and SIGHUP ask the running work to stop; a second signal of the same kind ends the
+/// program at once. A signal that was ignored, as under nohup, stays ignored.
 void catch_interrupts();
 
-/// The signal that has asked to stop; 0: none has.
+/// The signal that asked the work to stop; 0: none.
 [[nodiscard]] int interrupt_signal();
 
 }  // namespace subvol::cli

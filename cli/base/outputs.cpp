@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "outputs.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -19,9 +21,8 @@ void check_writable(const std::filesystem::path& folder, const std::string& outp
 
 }  // namespace
 
-void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions,
-                  const std::vector<std::string>& planned) {
-    check_choice(path.string(), path.extension().string(), extensions, planned);
+void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
+    check_choice(path.string(), path.extension().string(), extensions);
     const std::filesystem::path folder = path.parent_path();
     if (!folder.empty() && !std::filesystem::is_directory(folder)) {
         throw Error(ErrorCode::Io, "the folder " + folder.string() + " does not exist", path.string());
@@ -32,8 +33,22 @@ void check_output(const std::filesystem::path& path, const std::vector<std::stri
 void make_folder(const std::filesystem::path& path) {
     std::error_code error;
     std::filesystem::create_directories(path, error);
-    if (error) throw Error(ErrorCode::Io, "the folder cannot be made: " + error.message(), path.string());
+    if (error) throw Error(ErrorCode::Io, "the folder cannot be created: " + error.message(), path.string());
     check_writable(path, path.string());
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {  // NOLINT(cppcoreguidelines-pro-type-vararg)
+    if (file_ < 0) {
+        throw Error(ErrorCode::Io, "the folder cannot be opened: " + std::generic_category().message(errno), folder.string());
+    }
+    if (flock(file_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    close(file_);
+    throw Error(ErrorCode::InvalidInput, "another run is writing here", folder.string(), "wait for it, or use another folder");
+}
+
+FolderLock::~FolderLock() {
+    close(file_);
 }
 
 }  // namespace subvol::cli

@@ -7,20 +7,29 @@
 
 namespace subvol::cli {
 
-struct Range {
-    double min = 0, max = 0;
-};
-
-/// Refuses an output before any work is done for it: a file name that ends in none of `extensions`, a folder that is not there
-/// or that nothing can be written to.
+/// Checks an output before any work is done for it: the file name ends in one of `extensions`, the folder exists and is
+/// writable.
 ///
 /// throws: Error(InvalidInput), Error(Io)
-void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions,
-                  const std::vector<std::string>& planned = {});
+void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions);
 
-/// Makes a folder for outputs, and those above it, if need be.
+/// Creates a folder for outputs, and those above it, unless they exist.
 ///
-/// throws: Error(Io) if it cannot be made, or nothing can be written to it
+/// throws: Error(Io) if it cannot be created or is not writable
 void make_folder(const std::filesystem::path& path);
+
+/// Keeps other runs of this program out of a folder while it exists, at most as long as the process. Writes nothing. Where the
+/// file system has no locks, it keeps nobody out.
+class FolderLock {
+public:
+    /// throws: Error(InvalidInput) if another run holds the lock, Error(Io) if the folder cannot be opened
+    explicit FolderLock(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(const FolderLock&) = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int file_;
+};
 
 }  // namespace subvol::cli

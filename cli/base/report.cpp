@@ -55,7 +55,7 @@ Report::Report(const CommonOptions& options)
 void Report::warn(const std::string& warning) {
     if (warning.empty()) return;
     Json& warnings = json_["warnings"];
-    if (std::ranges::find(warnings, Json(warning)) != warnings.end()) return;  // said of another frame
+    if (std::ranges::find(warnings, Json(warning)) != warnings.end()) return;  // already reported, for another frame
     warnings.push_back(warning);
     if (print_json_ || quiet_) return;
     progress_.clear();

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 /// The most memory that this process has held so far.
 [[nodiscard]] std::int64_t peak_memory_bytes();
 
-/// What a verb tells: collected as one JSON object; at the end printed as such, or as a table for people.
+/// The output of a verb: collected as one JSON object, and printed at the end as such or as a table for people.
 class Report {
 public:
     explicit Report(const CommonOptions& options);
@@ -28,7 +28,7 @@ public:
     /// Puts a finished object in place of all that has been collected.
     void take(Json json) { json_ = std::move(json); }
 
-    /// For people on standard error and under "warnings". An empty warning is none.
+    /// For people on standard error, and under "warnings". An empty text is ignored.
     void warn(const std::string& warning);
 
     /// A line for people; not printed with --json or --quiet.
@@ -37,7 +37,7 @@ public:
     /// Adds to a stage's seconds, which go under "seconds".
     void add_seconds(const std::string& stage, double seconds);
 
-    /// Runs a stage of the work; adds its seconds. Stops before it if the user wants to.
+    /// Runs a stage of the work and adds its seconds. Throws Error(Cancelled) before it if the user has asked to stop.
     template <class Work>
     auto timed(const char* stage, Work&& work) {
         report_progress(&progress_, stage, 0);
@@ -45,12 +45,12 @@ public:
         return std::forward<Work>(work)();
     }
 
-    /// People have been told all of it by `say`: no table at the end.
+    /// `say` has printed everything: no table at the end.
     void all_said() { all_said_ = true; }
 
     /// Prints; to be called once, when the verb is done.
     ///
-    /// throws: Error(Io) if standard output takes no more
+    /// throws: Error(Io) if standard output cannot be written to
     void finish();
 
 private:

@@ -8,7 +8,7 @@
 
 namespace subvol::cli {
 
-/// A bar on standard error, and an interrupt as a wish to stop.
+/// A progress bar on standard error; an interrupt cancels the work.
 class TerminalProgress : public Progress {
 public:
     explicit TerminalProgress(bool visible) : visible_(visible) {}
@@ -19,7 +19,7 @@ public:
     void report(std::string_view stage, double fraction) override;
     [[nodiscard]] bool cancelled() const override;
 
-    /// Takes the bar away, so that a line can be printed.
+    /// Erases the bar, so that a line can be printed.
     void clear();
 
 private:

@@ -31,17 +31,14 @@ double parse_number(const std::string& option, const std::string& value) {
     double number = 0;
     in >> number;
     if (in.fail() || !(in >> std::ws).eof() || !std::isfinite(number)) {
-        throw Error(ErrorCode::InvalidInput, "'" + value + "' is no number", option);
+        throw Error(ErrorCode::InvalidInput, "'" + value + "' is not a number", option);
     }
     return number;
 }
 
-void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported,
-                  const std::vector<std::string>& planned) {
+void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported) {
     if (std::ranges::find(supported, value) != supported.end()) return;
-    const bool known = std::ranges::find(planned, value) != planned.end();
-    throw Error(ErrorCode::InvalidInput, "'" + value + "' is " + (known ? "not supported yet" : "unknown"), option,
-                "supported: " + join(supported));
+    throw Error(ErrorCode::InvalidInput, "'" + value + "' is unknown", option, "supported: " + join(supported));
 }
 
 }  // namespace subvol::cli

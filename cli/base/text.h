@@ -9,7 +9,7 @@
 
 namespace subvol::cli {
 
-/// All parts one after the other.
+/// All parts in one string.
 template <class... Part>
 [[nodiscard]] std::string text(const Part&... parts) {
     std::ostringstream out;
@@ -27,11 +27,10 @@ template <class... Part>
 
 /// option: named in the error
 ///
-/// throws: Error(InvalidInput) if it is no finite number
+/// throws: Error(InvalidInput) if it is not a finite number
 [[nodiscard]] double parse_number(const std::string& option, const std::string& value);
 
-/// throws: Error(InvalidInput) unless `value` is one of `supported`; says so for what is only `planned`
-void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported,
-                  const std::vector<std::string>& planned = {});
+/// throws: Error(InvalidInput) unless `value` is one of `supported`
+void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported);
 
 }  // namespace subvol::cli

@@ -35,8 +35,8 @@ HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& repo
     });
     options.levels = limit.level;
     if (!limit.converged) {
-        report.warn(text("level ", limit.level, " was the finest within limits; the last step still moved values by ",
-                         limit.value_of_range, " of their range: --levels sets it"));
+        report.warn(text("level ", limit.level, " was the finest within limits; the last step still changed values by ",
+                         limit.value_of_range, " of their range; --levels sets the level"));
     }
     return refine_reported(mesh, options, Vertices::OnTheLimit, report);
 }
@@ -50,16 +50,10 @@ FieldInput mesh_field(const std::string& input, const CommonOptions& options, co
 
 FieldInput points_field(const std::string& input, const CommonOptions& options, Report& report) {
     const RbfVolume volume = read_points_input(input, report);
-    std::vector<std::string> names;
-    for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
-    const std::string wanted = options.field.value_or(names.front());
-    const auto found = std::ranges::find(names, wanted);
-    if (found == names.end()) {
-        throw Error(ErrorCode::InvalidInput, "there is no field '" + wanted + "'", input, "it has: " + join(names));
-    }
-    report["field"] = wanted;
-    auto field = std::make_shared<PointsField>(volume, static_cast<std::size_t>(found - names.begin()));
-    return {field->view(), field, {}, wanted};
+    const std::string name = options.field.value_or(volume.channels.front().name);
+    auto field = std::make_shared<PointsField>(volume, find_channel(volume, name, input));
+    report["field"] = name;
+    return {field->view(), field, {}, name};
 }
 
 FieldInput grid_field(const std::string& input, const CommonOptions& options, Report& report) {
@@ -83,7 +77,7 @@ InputKind kind_of(const std::string& input) {
 
 FieldInput load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, const char* key,
                       Report& report) {
-    report["input"] = input;  // whom errors are about
+    report["input"] = input;  // for errors
     Report part(options);
     FieldInput field;
     switch (kind_of(input)) {
@@ -97,7 +91,7 @@ FieldInput load_field(const std::string& input, const CommonOptions& options, co
             field = grid_field(input, options, part);
             break;
         case InputKind::Picture:
-            throw Error(ErrorCode::InvalidInput, "is no field", input, "a mesh, points or a .vdb grid");
+            throw Error(ErrorCode::InvalidInput, "is not a field", input, "a mesh, points or a .vdb grid");
     }
     for (const auto& [name, value] : part.json().items()) {
         if (name == "seconds") {

@@ -13,20 +13,20 @@ namespace subvol::cli {
 
 enum class InputKind { Picture, Mesh, Points, Grid };
 
-/// What an input is, as every verb takes it: "model:…" and the extensions of meshes; points by their extensions; a .vdb file by
-/// what it holds. Anything else should be a picture.
+/// The kind of an input. "model:…" and the extensions of mesh files are meshes, the extensions of points are points, and a .vdb
+/// file is what it contains. Anything else should be a picture.
 [[nodiscard]] InputKind kind_of(const std::string& input);
 
-/// A field from a file or a model, and what was found out about it.
+/// A field from a file or a model, with what is known about it.
 struct FieldInput {
     FieldView view;
-    std::shared_ptr<const void> owner;    // of what the view refers to
-    std::shared_ptr<const HexMesh> mesh;  // of a mesh: as it came, its first attribute the field
+    std::shared_ptr<const void> owner;    // keeps what the view refers to
+    std::shared_ptr<const HexMesh> mesh;  // if it is of a mesh: the control mesh, the field as its first attribute
     std::string field;
 };
 
-/// Reads the field that the options select. A mesh is refined as the arguments say; without --levels to the level that stands
-/// for the limit. What the report is told goes under `key`.
+/// Reads the field that the options select. A mesh is refined as the arguments say, without --levels to a level that is within
+/// tolerance of the limit. The figures of the report go under `key`.
 ///
 /// throws: Error(InvalidInput) if it is a picture
 [[nodiscard]] FieldInput load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine,

@@ -9,16 +9,16 @@
 
 namespace subvol::cli {
 
-/// Whether the input is a `.vdb` file; it may hold points instead.
+/// Whether the input is a `.vdb` file; it may contain points instead of grids.
 [[nodiscard]] bool is_vdb_file(const std::string& input);
 
-/// Reads the float grid of a `.vdb` file that --field names, else the first. Puts "input", "field", the voxels' number and size
-/// into the report.
+/// Reads the float grid of a `.vdb` file that --field names, else the first. Puts "input", "field", and the number and
+/// size of the voxels into the report.
 ///
-/// throws: Error(InvalidInput) if it is no `.vdb` file, has no such grid or the grid no active voxels
+/// throws: Error(InvalidInput) if it is not a `.vdb` file, has no such grid, or the grid has no active voxels
 [[nodiscard]] VdbGrid load_grid(const std::string& input, const CommonOptions& options, Report& report);
 
-/// Where the active voxels lie, with the halves of the outer ones.
+/// The box of the active voxels: that of their centres, and half a voxel more to all sides.
 [[nodiscard]] Box box_of(const GridReport& grid);
 
 }  // namespace subvol::cli

@@ -31,7 +31,7 @@ ReadResult generate(const std::string& description) {
         const std::string number = description.substr(colon + 1);
         const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), resolution);
         if (error != std::errc() || end != number.data() + number.size() || resolution == 0) {
-            throw Error(ErrorCode::InvalidInput, "'" + number + "' is no resolution", "model:" + description, "2..512");
+            throw Error(ErrorCode::InvalidInput, "'" + number + "' is not a resolution", "model:" + description, "2..512");
         }
     }
     ReadResult result;

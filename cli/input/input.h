@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common_options.h"
-#include "outputs.h"
+#include "picture_arguments.h"
 #include "report.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
@@ -21,7 +21,7 @@ namespace subvol::cli {
 /// `read_input` without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
 
-/// The mesh with nothing but the field that the options select, as its first scalar, and where it is named a second one.
+/// The mesh with only the field that the options select, as a scalar, and with the field `second` if that is given.
 [[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
                                           const std::optional<std::string>& second = {});
 

@@ -31,7 +31,7 @@ FrameRange parse_frames(const std::string& text) {
     const auto first = dash == std::string::npos ? std::optional(1) : whole_number(all.substr(0, dash));
     const auto last = whole_number(dash == std::string::npos ? all : all.substr(dash + 1));
     if (!first || !last || *last < *first) {
-        throw Error(ErrorCode::InvalidInput, "'" + text + "' are no frames", "--frames", "1-10, or 10 for the same");
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a range of frames", "--frames", "1-10, or 10 for the same");
     }
     return {*first, *last};
 }
@@ -57,11 +57,12 @@ MeshFrames::MeshFrames(std::string input, const std::optional<std::string>& to, 
     from_ = load_(input_);
     to_ = load_(*to);
     if (!same_cells(*from_, *to_)) {
-        throw Error(ErrorCode::InvalidInput, "has not the same cells as " + input_, *to,
+        throw Error(ErrorCode::InvalidInput, "does not have the same cells as " + input_, *to,
                     "two meshes that differ in points and values");
     }
     if (!same_fields(*from_, *to_)) {
-        throw Error(ErrorCode::InvalidInput, "has not the same fields as " + input_, *to, "--fields names some that both have");
+        throw Error(ErrorCode::InvalidInput, "does not have the same fields as " + input_, *to,
+                    "--fields with those that both have");
     }
 }
 
@@ -85,7 +86,7 @@ const HexMesh& MeshFrames::mesh(int frame) {
 }
 
 Attribute MeshFrames::velocity(int frame) {
-    if (range_.count() < 2) throw Error(ErrorCode::InvalidInput, "needs two frames at least", "--velocity");
+    if (range_.count() < 2) throw Error(ErrorCode::InvalidInput, "needs at least two frames", "--velocity");
     const int before = std::max(frame - 1, range_.first), after = std::min(frame + 1, range_.last);
     const HexMesh &a = mesh(before), &here = mesh(frame), &b = mesh(after);
     if (!same_cells(a, here) || !same_cells(here, b)) {

@@ -10,7 +10,7 @@
 
 namespace subvol::cli {
 
-/// Numbers of frames, both ends in it.
+/// The first and the last frame of a sequence.
 struct FrameRange {
     int first = 1, last = 1;
 
@@ -25,21 +25,21 @@ struct FrameRange {
 /// Whether a file's name has a place for the number of a frame: one or more #.
 [[nodiscard]] bool has_number(const std::string& pattern);
 
-/// The name with the number in the place of its last row of #, with zeros before it to that many digits.
+/// The name with the number in place of its last row of #, padded with zeros to that many digits.
 [[nodiscard]] std::string with_number(const std::string& pattern, int number);
 
-/// The meshes of a sequence: files with numbers in their names, or one mesh that becomes another, all its points and values in
-/// straight lines.
+/// The meshes of a sequence: files with numbers in their names, or two meshes with points and values interpolated linearly
+/// between them.
 class MeshFrames {
 public:
     /// Reads a mesh by the name of its file.
     using Load = std::function<HexMesh(const std::string&)>;
 
-    /// to: the mesh at the last frame; none: `input` has a place for the number
-    /// throws: Error(InvalidInput) if the two have not the same cells and fields
+    /// to:     the mesh of the last frame; none: `input` has # for the number
+    /// throws: Error(InvalidInput) if the two do not have the same cells and fields
     MeshFrames(std::string input, const std::optional<std::string>& to, FrameRange range, Load load);
 
-    /// Meshes are kept until they are two frames old.
+    /// Keeps the mesh until it is two frames old.
     [[nodiscard]] const HexMesh& mesh(int frame);
 
     /// `velocity_between` the frames before and after, in world units a frame; one-sided at the first and the last one.
@@ -53,7 +53,7 @@ private:
     std::string input_;
     FrameRange range_;
     Load load_;
-    std::optional<HexMesh> from_, to_;  // of a morph
+    std::optional<HexMesh> from_, to_;  // with `to`
     std::map<int, HexMesh> meshes_;
 };
 

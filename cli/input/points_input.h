@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "input.h"
 #include "subvol/rbf_volume.h"
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 
@@ -15,11 +18,17 @@ namespace subvol::cli {
 /// Reads them, timed; puts "input" and "points" into the report.
 [[nodiscard]] RbfVolume read_points_input(const std::string& input, Report& report);
 
-/// `read_points_input` with nothing but the field that the options select as its first channel, and where it is named a second.
+/// `read_points_input` with only the field that the options select, and with the field `second` if that is given.
 ///
-/// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that only a mesh can follow
+/// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that applies to meshes only
 [[nodiscard]] RbfVolume load_points(const std::string& input, const CommonOptions& options,
                                     const std::optional<std::string>& second, const CLI::App& app, Report& report);
+
+/// The number of the channel with this name.
+///
+/// input:  the file, named in the error
+/// throws: Error(InvalidInput) if there is none
+[[nodiscard]] std::size_t find_channel(const RbfVolume& volume, const std::string& name, const std::string& input);
 
 /// The range of a channel.
 [[nodiscard]] Range channel_range(const RbfVolume& volume, std::size_t channel);

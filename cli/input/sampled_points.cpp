@@ -18,9 +18,9 @@ constexpr std::initializer_list<const char*> kOfMeshesOnly{
 
 RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
                             Report& report) {
-    if (arguments.threshold_option->count() == 0) return volume;
+    if (!arguments.drops_invisible()) return volume;
     if (arguments.threshold.empty() && !seen) {
-        throw Error(ErrorCode::InvalidInput, "needs a value, there is no transfer function", "--threshold");
+        throw Error(ErrorCode::InvalidInput, "needs a value, as there is no transfer function", "--threshold");
     }
     const TransferFunction function =
         arguments.threshold.empty() ? *seen : opaque_above(parse_number("--threshold", arguments.threshold));
@@ -42,7 +42,7 @@ RbfVolume reduce_reported(const HexMesh& mesh, const SampleArguments& arguments,
     report["points_before"] = mesh.points.size();
     report["field_rmse"] = reduced.report.validation.rmse;
     if (reduced.report.points > mesh.points.size()) {
-        report.warn("these are more kernels than control points: --per-edge 1 has fewer, maybe at no greater error");
+        report.warn("these are more kernels than control points; --per-edge 1 has fewer, perhaps with no larger error");
     }
     if (!reduced.report.reached) {
         report.warn(text("the field's error is ", reduced.report.validation.rmse, ", not ", arguments.reduce_rmse,
@@ -56,7 +56,7 @@ RbfVolume sample_and_warn(HexMesh mesh, const SampleOptions& options, Report& re
     if (options.tolerance > 0) {
         report["largest_error"] = sampled.report.largest_error;
         if (sampled.report.largest_error > options.tolerance)
-            report.warn("the tolerance was not reached with 64 samples a cell edge");
+            report.warn("the tolerance was not reached with 64 samples per cell edge");
     }
     if (sampled.report.flat_frames > 0) {
         report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));

@@ -6,18 +6,22 @@
 #include "subvol/transfer_function.h"
 #include "subvol/vdb_grid.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
 /// Samples the limit of the mesh, or with --levels the refined mesh as it is, and drops what --threshold makes invisible; timed
 /// and with its points in the report.
 ///
-/// seen: what is shown of the first field; none: --threshold needs a value
+/// seen: the transfer function of the first field; none: --threshold needs a value
 [[nodiscard]] RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const RefineArguments& refinement,
                                         const std::optional<TransferFunction>& seen, Report& report);
 
 /// The same of a grid's voxels.
 ///
-/// app: the verb's, whose options that only a mesh can follow are refused
+/// app: the verb's; its options that apply to meshes only are refused
 [[nodiscard]] RbfVolume sample_reported(const VdbGrid& grid, const SampleArguments& arguments,
                                         const std::optional<TransferFunction>& seen, const CLI::App& app, Report& report);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "outputs.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -11,7 +12,7 @@
 namespace subvol::cli {
 namespace {
 
-/// The frames as one stage; what goes on within a frame is told as the frame it belongs to.
+/// Reports all frames as one stage, whose fraction grows from frame to frame.
 class FrameProgress : public Progress {
 public:
     FrameProgress(Progress* whole, std::size_t frame, std::size_t frames)
@@ -35,7 +36,7 @@ PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames,
     if (!is_video(path_)) {
         check_output(path_, {".png", ".exr"});
     } else if (!frames_) {
-        throw Error(ErrorCode::InvalidInput, "a video is made by a turntable only", path, "--turntable N, or .png or .exr");
+        throw Error(ErrorCode::InvalidInput, "only a turntable makes a video", path, "--turntable N, or .png or .exr");
     } else {
         video_.emplace(path_, parse_size("--size", arguments.size), arguments.frames_per_second);
     }

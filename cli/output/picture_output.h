@@ -14,9 +14,9 @@
 
 namespace subvol::cli {
 
-/// What drawing yields.
+/// A drawn picture.
 ///
-/// depth: one a pixel for .exr, as `write_image` takes it; none: not known
+/// depth: one per pixel for .exr, see `write_image`; empty: not known
 struct Picture {
     Image image;
     std::vector<float> depth{};
@@ -25,13 +25,13 @@ struct Picture {
 /// Where the pictures of a run go: one file, numbered files NAME_0000.png and so on, or a video.
 class PictureOutput {
 public:
-    /// Refuses before any work is done what cannot be written.
+    /// Checks before any work is done that the output can be written.
     ///
     /// frames: of a turntable; none: a single picture
     /// throws: Error(InvalidInput), Error(Io), Error(MissingCapability)
     PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments);
 
-    /// Draws and writes one picture a view; tells the report how far it is and the names of the files.
+    /// Draws and writes one picture for each view; the names of the files go into the report.
     void write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw, Report& report);
 
 private:

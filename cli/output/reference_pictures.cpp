@@ -51,10 +51,9 @@ void report_tets(const ProjectedReport& pt, ProjectedOrder order, Report& report
         report["late_faces"] = pt.late_faces;
     }
     if (pt.violations) report["order_violations"] = *pt.violations;
-    if (pt.cycles > 0) report.warn(text("the order of the tetrahedra has cycles, broken ", pt.cycles, " times"));
+    if (pt.cycles > 0) report.warn(text("the order of the tetrahedra has cycles, which were broken ", pt.cycles, " times"));
     if (pt.late_faces > 0)
-        report.warn(
-            text(pt.late_faces, " faces were too late for the k-buffer: --kbuffer with more entries, or --order lists"));
+        report.warn(text(pt.late_faces, " faces came too late for the k-buffer; use a larger --kbuffer, or --order lists"));
 }
 
 }  // namespace

@@ -13,16 +13,16 @@
 
 namespace subvol::cli {
 
-/// One picture by a reference method; what it took goes into the report, lost rays become a warning.
+/// One picture by a reference method. Its counts and seconds go into the report; lost rays become a warning.
 [[nodiscard]] Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& optics,
                                 const ReferenceArguments& arguments, Progress* progress, Report& report);
 
-/// seconds: the best picture within this time, if there is one
+/// seconds: a time limit; none: the whole picture, whatever time it takes
 [[nodiscard]] Picture draw_projected_tets(ProjectedRenderer& renderer, const View& view, const Optics& optics,
                                           const ReferenceArguments& arguments, std::optional<double> seconds,
                                           Progress* progress, Report& report);
 
-/// levels: of the dense grids; none: raised until the picture stays the same
+/// levels: of the dense grids; none: raised until the picture changes by less than the tolerance
 [[nodiscard]] Picture draw_dense(const HexMesh& mesh, const RefineOptions& refine, std::optional<int> levels, const View& view,
                                  const Optics& optics, const ReferenceArguments& arguments, Progress* progress, Report& report);
 

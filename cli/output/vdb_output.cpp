@@ -50,19 +50,20 @@ void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Rep
 
 void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
     report.timed("write", [&] { write_files(grids, output); });
-    const GridReport& first = grids.front().report();
-    report["voxel_size"] = first.voxel_size_world;
-    report["active_voxels"] = report.json().value("active_voxels", std::size_t{0}) + first.active_voxels;
-    Json entry{{"frame", frame}, {"output", output.path}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
+    Json entry{{"frame", frame},
+               {"output", output.path},
+               {"active_voxels", grids.front().report().active_voxels},
+               {"grids", Json::array()}};
     for (const VdbGrid& grid : grids) entry["grids"].push_back(about(grid.report()));
     report["frames"].push_back(std::move(entry));
 }
 
-void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
-                 const VdbOutput& output, Report& report) {
+void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
+                 const RasterizeOptions& options, const VdbOutput& output, Report& report) {
     const std::filesystem::path path(output.path);
     std::deque<detail::AtomicFile> files;  // all of them appear, or none
     std::size_t active = 0;
+    double voxel_size_world = 0;
     Json parts = Json::array();
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
     const detail::Stopwatch whole;
@@ -74,7 +75,7 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
         detail::write_vdb(files.emplace_back(path.parent_path() / name), name, part.grids, output.compression);
         writing += one.seconds();
         active += first.active_voxels;
-        report["voxel_size"] = first.voxel_size_world;
+        report["voxel_size"] = voxel_size_world = first.voxel_size_world;
         Json entry{{"file", name}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
         if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
         for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report()));
@@ -83,9 +84,9 @@ void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const
     report.add_seconds("rasterize", whole.seconds() - writing);
     report.add_seconds("write", writing);
     const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
-    const Json json{{"input", report["input"]},
+    const Json json{{"input", input},
                     {"version", SUBVOL_VERSION},
-                    {"voxel_size", report["voxel_size"]},
+                    {"voxel_size", voxel_size_world},
                     {"active_voxels", active},
                     {"parts", parts}};
     write_text(files.emplace_back(manifest), manifest, json.dump(2) + "\n");

@@ -9,22 +9,24 @@
 
 namespace subvol::cli {
 
-/// What of a mesh becomes voxels, and how they are written.
+/// How grids are written.
 struct VdbOutput {
     std::string path;
     VdbCompression compression = VdbCompression::Blosc;
     std::size_t memory_bytes = 0;  // 0: in one piece
-    bool nano = false;             // NAME.nvdb too
+    bool nano = false;             // also NAME.nvdb
 };
 
 /// Rasterizes and writes slab by slab: NAME_0000.vdb and so on, and NAME.json that lists them.
-void write_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
-                 const VdbOutput& output, Report& report);
+///
+/// input: the name of the mesh, for NAME.json
+void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
+                 const RasterizeOptions& options, const VdbOutput& output, Report& report);
 
 /// Writes grids; puts what is in them into the report.
 void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);
 
-/// Writes the grids of one frame; adds it to the report.
+/// Writes the grids of one frame; adds it to the report's "frames".
 void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);
 
 }  // namespace subvol::cli

@@ -54,7 +54,7 @@ std::vector<std::string> arguments_for(const std::filesystem::path& path, const 
         if (path.extension() == ".webm") add({"-b:v", "0"});
         if (path.extension() == ".mp4") add({"-movflags", "+faststart"});
     }
-    arguments.push_back("file:" + path.string());  // else a colon or a dash in the name would mean something
+    arguments.push_back("file:" + path.string());  // otherwise a colon or a dash in the name would have a meaning
     return arguments;
 }
 
@@ -99,7 +99,7 @@ VideoFile::~VideoFile() {
 }
 
 void VideoFile::start(const PictureSize& size, int frames_per_second) {
-    // A socket rather than a pipe: a write to one that nobody reads any more need not be a signal.
+    // A socket rather than a pipe: once nobody reads it, writing to it can be an error instead of a signal.
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail_with(errno, path_);
     pipe_ = ends[0];
@@ -110,7 +110,7 @@ void VideoFile::start(const PictureSize& size, int frames_per_second) {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, ::fileno(words_), STDERR_FILENO);
-    // In a group of its own: an interrupt is for us, and we end it.
+    // In its own process group, so that an interrupt reaches only us; we then end ffmpeg.
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     posix_spawnattr_setpgroup(&attributes, 0);
 
@@ -154,7 +154,7 @@ bool VideoFile::wait() {
 
 void VideoFile::fail() {
     close_pipe();
-    if (process_ >= 0) wait();  // so that it has said everything
+    if (process_ >= 0) wait();  // so that its messages are complete
     const std::string words = last_line(words_);
     throw Error(ErrorCode::Io, "ffmpeg failed" + (words.empty() ? std::string() : ": " + words), path_.string());
 }

@@ -14,13 +14,13 @@
 
 namespace subvol::cli {
 
-/// A file name that ends as a video: .mp4, .webm, .gif.
+/// Whether the file name has the extension of a video: .mp4, .webm, .gif.
 [[nodiscard]] bool is_video(const std::filesystem::path& path);
 
-/// A video that the program `ffmpeg` makes of frames that go through a pipe to it. Written beside and renamed.
+/// A video that the program `ffmpeg` makes from frames sent through a pipe. It is written beside its place, then renamed.
 class VideoFile {
 public:
-    /// Starts ffmpeg, so that its absence shows before any work is done.
+    /// Starts ffmpeg at once, so that a missing ffmpeg is noticed before any work is done.
     ///
     /// throws: Error(MissingCapability) if there is no ffmpeg
     VideoFile(const std::filesystem::path& path, const PictureSize& size, int frames_per_second);
@@ -30,7 +30,7 @@ public:
 
     /// rgb: 8-bit sRGB, 3 · width · height, rows from the top
     ///
-    /// throws: Error(Io) with the last line of what ffmpeg said
+    /// throws: Error(Io) with the last line of ffmpeg's messages
     void write(std::span<const std::uint8_t> rgb);
 
     /// Waits for ffmpeg and gives the file its name.
@@ -40,14 +40,14 @@ public:
 
 private:
     void start(const PictureSize& size, int frames_per_second);
-    /// returns: whether ffmpeg ended well
+    /// returns: whether ffmpeg succeeded
     bool wait();
     [[noreturn]] void fail();
     void close_pipe();
 
     std::filesystem::path path_;
     detail::AtomicFile file_;
-    std::FILE* words_;  // what ffmpeg says
+    std::FILE* words_;  // ffmpeg's messages
     pid_t process_ = -1;
     int pipe_ = -1;
 };

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "voxels_of_points.h"
 
-#include <algorithm>
-
 #include "points_input.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
 #include "subvol/sample.h"
-#include "text.h"
 
 namespace subvol::cli {
 
@@ -43,17 +40,9 @@ std::vector<VdbGrid> grids_of_points(const std::string& input, std::vector<std::
                     "--crease-angle", "--per-edge", "--cell-ids", "--coverage", "--budget", "--memory"},
                    "needs a mesh; these are points that have been sampled already");
     const RbfVolume volume = read_points_input(input, report);
-    std::vector<std::string> names;
-    for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
-    if (fields.empty()) fields.push_back(common.field.value_or(names.front()));
+    if (fields.empty()) fields.push_back(common.field.value_or(volume.channels.front().name));
     std::vector<std::size_t> channels;
-    for (const std::string& field : fields) {
-        const auto found = std::ranges::find(names, field);
-        if (found == names.end()) {
-            throw Error(ErrorCode::InvalidInput, "there is no field '" + field + "'", input, "it has: " + join(names));
-        }
-        channels.push_back(static_cast<std::size_t>(found - names.begin()));
-    }
+    for (const std::string& field : fields) channels.push_back(find_channel(volume, field, input));
     return report.timed("kernel sums", [&] { return rasterize_points(volume, channels, options); });
 }
 

@@ -8,18 +8,22 @@
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
-/// Grids of a mesh whose fields are those of kernels sampled from it, summed at the voxels of the mesh. Puts the points'
-/// number, and how far the sums are from the mesh's own values, into the report.
+/// Grids of a mesh whose values are the sums of kernels sampled from it, at the voxels of the mesh. Puts the number of points,
+/// and the difference of the sums from the mesh's own values, into the report.
 ///
 /// throws: Error(InvalidInput) as `rasterize`, or if a field has three components
 [[nodiscard]] std::vector<VdbGrid> kernel_sums(const HexMesh& mesh, const RasterizeOptions& options, int per_edge,
                                                Report& report);
 
-/// Grids of a file of points: of the fields named, or of the one that the options select, or of the first.
+/// Grids of a file of points: of the fields named, else of the one that the options select, else of the first.
 ///
-/// app:    the verb's, whose options that only a mesh can follow are refused
+/// app:    the verb's; its options that apply to meshes only are refused
 /// throws: Error(InvalidInput) as `rasterize_points`, or if a field is not there
 [[nodiscard]] std::vector<VdbGrid> grids_of_points(const std::string& input, std::vector<std::string> fields,
                                                    const CommonOptions& common, const CLI::App& app,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <ostream>
 
 #include "manual.h"
@@ -67,7 +68,7 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
     out << "# Made by the build: subvol --generate bash\n"
            "_subvol() {\n"
            "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} words=\n"
-           "    COMPREPLY=() # what is not known is left to bash: files\n"
+           "    COMPREPLY=() # the rest is left to bash, which completes files\n"
            "    local models='"
         << model_names()
         << "'\n"
@@ -75,7 +76,7 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
            "        words='"
         << with_spaces(verbs)
         << " --help --version'\n"
-           "    elif [ \"$before\" = : ] || [ \"$word\" = : ]; then # model:NAME, which bash takes for three words\n"
+           "    elif [ \"$before\" = : ] || [ \"$word\" = : ]; then # model:NAME, which bash splits into three words\n"
            "        words=$models\n"
            "        word=${word#:}\n"
            "    else\n"

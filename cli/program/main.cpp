@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -56,18 +57,18 @@ int complain(const std::string& message, int code) {
     return code;
 }
 
-/// A mistyped verb deserves the list of verbs rather than the parser's "argument was not expected".
+/// For a mistyped verb the list of verbs is more helpful than the parser's "argument was not expected".
 void check_verb(const CLI::App& program, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return;
     std::vector<std::string> known;
     for (const CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; }))
         known.push_back(verb->get_name());
     if (std::ranges::find(known, argv[1]) == known.end()) {
-        throw Error(ErrorCode::InvalidInput, std::string("'") + argv[1] + "' is no verb", {}, subvol::cli::join(known));
+        throw Error(ErrorCode::InvalidInput, std::string("'") + argv[1] + "' is not a verb", {}, subvol::cli::join(known));
     }
 }
 
-/// The library speaks of cells and points; a person who reads the message wants to know of which file.
+/// The library's messages name cells and points. This adds the name of the input where it is missing.
 int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
     try {
         return verb.run(report);
@@ -112,16 +113,17 @@ int run(CLI::App& program, int argc, char** argv) {
     return kBadInput;
 }
 
-/// A stream that is closed would be the next file that is opened. To write to what is opened here instead is refused.
+/// A file that is opened while a standard stream is closed would take its place. This opens /dev/null there instead, so that
+/// using the stream is an error.
 void keep_standard_streams() {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (fcntl(stream, F_GETFD) < 0) (void)open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
     }
 }
 
-/// Libraries may throw where nothing can be caught, as OpenVDB does when it frees a grid and memory is short.
+/// Libraries may throw where exceptions cannot be caught, as OpenVDB does when it frees a grid and memory is short.
 [[noreturn]] void end_with_a_sentence() {
-    std::fputs("subvol: a library could not go on; memory may be short\n", stderr);
+    std::fputs("subvol: a library failed; memory may be short\n", stderr);
     std::_Exit(kEnvironment);
 }
 
@@ -130,8 +132,8 @@ void keep_standard_streams() {
 int main(int argc, char** argv) {
     std::set_terminate(end_with_a_sentence);
     keep_standard_streams();
-    setenv("EGL_LOG_LEVEL", "fatal", 0);  // what OpenGL lacks is said in one sentence, by us
-    std::signal(SIGXFSZ, SIG_IGN);        // a file that gets too long is an error of the write
+    setenv("EGL_LOG_LEVEL", "fatal", 0);  // we report a lack of OpenGL ourselves, in one sentence
+    std::signal(SIGXFSZ, SIG_IGN);        // when a file gets too long, the write fails
     CLI::App program(kDescription, "subvol");
     try {
         return run(program, argc, argv);
@@ -145,7 +147,7 @@ int main(int argc, char** argv) {
         return complain("not enough memory for this; try a lower resolution or fewer levels", kEnvironment);
     } catch (const std::filesystem::filesystem_error& error) {
         return complain(error.what(), kBadInput);
-    } catch (const std::exception& error) {  // of a library, where nobody expected it
+    } catch (const std::exception& error) {  // thrown unexpectedly by a library
         return complain(error.what(), kEnvironment);
     }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "manual.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -57,7 +58,7 @@ Argument argument_of(const CLI::Option& option) {
     return argument;
 }
 
-/// A character of more than one byte as roff's "\[u2026]"; i goes to its last byte.
+/// A character of more than one byte as roff's "\[u2026]"; moves i to its last byte.
 std::string roff_unicode(const std::string& text, std::size_t& i) {
     const auto first = static_cast<unsigned char>(text[i]);
     const int more = first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : 1;

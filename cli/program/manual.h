@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <iosfwd>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 
 /// What `subvol --generate` can write from the argument table.
 inline const std::vector<std::string> kManuals{"man", "bash", "zsh"};
 
-/// The manual page subvol(1), in man's macros. It bears the day of SOURCE_DATE_EPOCH, else today's.
+/// The manual page subvol(1), in man's macros. Its date is that of SOURCE_DATE_EPOCH, else today.
 void write_man_page(std::ostream& out, const CLI::App& program);
 
 /// Completion of verbs, options and values for bash.
@@ -26,8 +29,8 @@ void write_manual(std::ostream& out, const std::string& kind, const CLI::App& pr
 /// An option as the manuals see it.
 struct Argument {
     std::vector<std::string> names;  ///< "-o", "--output"; of a positional argument its name
-    std::string value;               ///< what is given, as "FILE"; empty for a flag
-    std::string range;               ///< what it may be, as "INT in [1 - 64]"; empty for anything
+    std::string value;               ///< the name of its value, as "FILE"; empty for a flag
+    std::string range;               ///< the allowed values, as "INT in [1 - 64]"; empty: all
     std::vector<std::string> choices;
     std::string description;
     bool positional = false, required = false, repeatable = false, value_optional = false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "field_comparison.h"
 
+#include <CLI/CLI.hpp>
+
 #include "field_input.h"
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
@@ -11,18 +13,18 @@ namespace subvol::cli {
 
 void FieldComparison::add_to(CLI::App& app) {
     const std::string group = "Fields";
-    app.add_option("--samples", samples, "random places in the second field's domain (default 100000; --seed)")
+    app.add_option("--samples", samples, "number of random places in the second field's domain (default 100000; see --seed)")
         ->group(group)
         ->type_name("N")
         ->check(CLI::Range(1, 100'000'000));
-    app.add_option("--iso", iso, "the Hausdorff distance of the isosurfaces of this value too (hausdorff)")
+    app.add_option("--iso", iso, "also the Hausdorff distance between the isosurfaces of this value (hausdorff)")
         ->group(group)
         ->type_name("V");
     app.add_option("--resolution", resolution, "cells along the longest side for mass and isosurfaces (default 128)")
         ->group(group)
         ->type_name("N")
         ->check(CLI::Range(2, 2000));
-    refine.add_to(app, "meshes are taken at this level; omitted: at the level that stands for the limit");
+    refine.add_to(app, "compare meshes at this level; omitted: at a level within tolerance of the limit");
     for (const char* name : {"--scheme", "--tension", "--levels", "--crease-angle"}) app.get_option(name)->group(group);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +8,13 @@
 #include "figures.h"
 #include "refine_arguments.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
-/// What is measured between two fields.
+/// The metrics of two fields.
 struct FieldComparison {
     std::size_t samples = 100'000;
     int resolution = 128;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "picture_comparison.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 
 #include "input.h"
+#include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
@@ -36,7 +38,7 @@ void check_sizes(const std::string& test, const Image& a, const std::string& ref
     if (a.width == b.width && a.height == b.height) return;
     throw Error(ErrorCode::InvalidInput,
                 text("has ", a.width, " x ", a.height, " pixels, ", reference, " has ", b.width, " x ", b.height), test,
-                "pictures of one size can be compared");
+                "only pictures of the same size can be compared");
 }
 
 /// 1 − similarity: 0 where the pictures agree, as in the other maps.
@@ -49,36 +51,34 @@ MetricMap dissimilarity(MetricMap map) {
 
 void PictureComparison::add_to(CLI::App& app) {
     const std::string group = "Pictures";
-    app.add_option("--heatmap", heatmap, "draw where they differ into this picture (.png, .exr)")
-        ->group(group)
-        ->type_name("FILE");
+    app.add_option("--heatmap", heatmap, "write a picture of the differences (.png, .exr)")->group(group)->type_name("FILE");
     app.add_option("--heatmap-of", heatmap_of,
-                   "what is drawn: abs (the largest channel's difference; default), flip, ssim (1 - it)")
+                   "what it shows: abs (the largest channel's difference; default), flip, ssim (1 - ssim)")
         ->group(group)
         ->type_name("METRIC");
-    app.add_option("--heatmap-scale", heatmap_scale, "the value of the last colour; without it the largest there is")
+    app.add_option("--heatmap-scale", heatmap_scale, "the value of the last colour (default: the largest value)")
         ->group(group)
         ->type_name("V")
         ->check(CLI::PositiveNumber);
-    app.add_option("--ppd", pixels_per_degree, "flip: pixels a degree of the viewer's sight (default 67.02)")
+    app.add_option("--ppd", pixels_per_degree, "flip: pixels per degree of the viewer's sight (default 67.02)")
         ->group(group)
         ->type_name("N")
         ->check(CLI::Range(1.0, 1000.0));
-    app.add_flag("--hdr", hdr, "HDR-FLIP too (hdr_flip): over all exposures that the second picture asks for")->group(group);
-    app.add_flag("--oiio", oiio, "what OpenImageIO's idiff says too: warnings, failures, Yee's perceptual failures")
+    app.add_flag("--hdr", hdr, "also HDR-FLIP (hdr_flip), over all exposures that the second picture needs")->group(group);
+    app.add_flag("--oiio", oiio, "also the figures of OpenImageIO's idiff: warnings, failures, Yee's perceptual failures")
         ->group(group);
     app.add_flag(
            "--optical-depth", optical_depth,
-           "the relative error of the summed optical depth -ln(1-alpha) too, which with --ortho is the volume's integral\n"
+           "also the relative error of the summed optical depth -ln(1-alpha), which with --ortho is the volume's integral\n"
            "(optical_depth_error)")
         ->group(group);
     app.add_option("--edge-band", edge_band_px,
-                   "measure apart within N pixels of the second picture's silhouette, and inside it")
+                   "measure separately within N pixels of the second picture's silhouette, and inside it")
         ->group(group)
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
     app.add_option("--background", background,
-                   "--edge-band: what is no object in pictures without alpha (linear RGB; default black)")
+                   "with --edge-band: the background of pictures without alpha (linear RGB; default black)")
         ->group(group)
         ->type_name("R,G,B");
 }
@@ -147,7 +147,7 @@ void PictureComparison::measure_optical_depth(const Image& a, const Image& b, Fi
     const std::size_t saturated = std::max(subvol::optical_depth(a).saturated, subvol::optical_depth(b).saturated);
     if (saturated == 0) return;
     report.warn(text(saturated,
-                     " pixels let nearly nothing through: their optical depth is not known well; render with a larger "
+                     " pixels are nearly opaque, so their optical depth is inaccurate; render with a larger "
                      "--opacity-unit"));
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,9 +9,13 @@
 #include "subvol/flip.h"
 #include "subvol/image.h"
 
+namespace CLI {
+class App;
+}
+
 namespace subvol::cli {
 
-/// What is measured between two pictures, and drawn.
+/// The metrics of two pictures, and their heat map.
 struct PictureComparison {
     std::string heatmap;
     std::string heatmap_of = "abs";
@@ -26,13 +29,15 @@ struct PictureComparison {
 
     void add_to(CLI::App& app);
 
-    /// throws: Error(InvalidInput) for options that are wrong, before any work is done
+    /// Before any work is done.
+    ///
+    /// throws: Error(InvalidInput) if an option is wrong
     void check() const;
 
     /// The names of the figures that `measure` will give.
     [[nodiscard]] std::vector<std::string> names() const;
 
-    /// Reads and measures; draws the heat map if one is wanted.
+    /// Reads and measures; draws the heat map if --heatmap is given.
     ///
     /// throws: Error(InvalidInput) if the sizes differ or pixels are not finite
     [[nodiscard]] Figures measure(const std::string& test, const std::string& reference, Report& report) const;

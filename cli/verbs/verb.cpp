@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verb.h"
 
+#include <CLI/CLI.hpp>
+
 namespace subvol::cli {
 
 Verb::Verb(CLI::App& program, const std::string& name, const std::string& description, const std::string& examples)
     : app_(*program.add_subcommand(name, description)) {
     app_.footer("Examples:\n" + examples);
     add_common_options(app_, common_);
+}
+
+bool Verb::chosen() const {
+    return app_.parsed();
 }
 
 std::vector<std::unique_ptr<Verb>> make_verbs(CLI::App& program) {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "common_options.h"
 #include "report.h"
+
+namespace CLI {
+class App;
+}
 
 namespace subvol::cli {
 
@@ -20,7 +23,7 @@ public:
     Verb(const Verb&) = delete;
     Verb& operator=(const Verb&) = delete;
 
-    [[nodiscard]] bool chosen() const { return app_.parsed(); }
+    [[nodiscard]] bool chosen() const;
     [[nodiscard]] const CommonOptions& common() const { return common_; }
 
     /// returns: the exit code

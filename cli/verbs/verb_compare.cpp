@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "field_comparison.h"
@@ -23,13 +24,13 @@ public:
                "\n"
                "Pictures (any that OpenImageIO reads) are compared in linear light, peak 1: mse, rmse, mae, max, psnr (dB), "
                "ssim,\n"
-               "flip; under srgb8 the same of their 8-bit sRGB. Fields are meshes, points or .vdb grids: l1, l2 (root mean "
+               "flip; under srgb8 the same for 8-bit sRGB. Fields are meshes, points or .vdb grids: l1, l2 (root mean "
                "square),\n"
                "linf, gradient_rmse, mass (relative), hausdorff (with --iso); new_vertex_rmse against a mesh: at the vertices "
                "that\n"
                "its first refinement adds. Exit code 1 if a --fail-under is not met.") {
         app().add_option("A", a_, "a picture or a field")->required();
-        app().add_option("B", b_, "another: a picture of the same size, or a field")->required();
+        app().add_option("B", b_, "the reference: a picture of the same size, or a field")->required();
         app()
             .add_option(
                 "--fail-under", demands_,
@@ -66,7 +67,7 @@ public:
     }
 
 private:
-    /// Before a long time is spent on the other one.
+    /// Checks both inputs before a long time is spent on one of them.
     static void check_there(const std::string& input) {
         std::error_code ignored;
         if (input.starts_with("model:") || std::filesystem::is_regular_file(input, ignored)) return;

@@ -2,14 +2,16 @@
 #include <sys/utsname.h>
 #include <tbb/global_control.h>
 
+#include <CLI/CLI.hpp>
 #include <iomanip>
 
-#include "demo_cases.h"
 #include "input.h"
+#include "outputs.h"
 #include "picture_arguments.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
+#include "subvol/model.h"
 #include "subvol/rasterize.h"
 #include "subvol/render_tets.h"
 #include "subvol/sample.h"
@@ -25,6 +27,45 @@ namespace {
 
 constexpr std::size_t kReferenceCells = 600'000;  // 3.6 million tetrahedra: about 1 GB at the peak
 constexpr int kGridResolution = 200;
+
+/// A generated model, and how it is drawn.
+struct DemoCase {
+    std::string name;
+    HexMesh mesh;
+    Camera camera;
+    Optics optics;
+    int sheets;
+    int per_edge;
+};
+
+/// The camera and the smooth transfer function of the benchmark with the twisted block. Parts of the block are outside the
+/// picture.
+const Camera kTwistCamera{.eye = {2.6, -4.2, 2.0}, .target = {-0.3, 0, 0.1}, .up = {0, 0, 1}, .fovy_deg = 44};
+
+Optics twist_optics() {
+    return {{.color = {{-1, {.1, .2, .9}}, {0, {.9, .9, .9}}, {1, {.9, .2, .1}}},
+             .opacity = {{-1, .30}, {-.3, .05}, {0, 0}, {.3, .05}, {1, .40}}},
+            0.1};
+}
+
+Optics preset_optics(const std::string& preset, const HexMesh& mesh) {
+    const auto [min, max] = field_range(mesh);
+    return {transfer_function_preset(preset, min, max), bounds(mesh).diagonal() / 100};
+}
+
+std::vector<std::string> demo_names() {
+    return {"pawn", "ball", "twist"};
+}
+
+/// resolution: as make_model takes it; 0: the model's default
+DemoCase make_demo_case(const std::string& name, int resolution, double aspect) {
+    HexMesh mesh = make_model(name, resolution);
+    if (name == "twist") return {name, std::move(mesh), kTwistCamera, twist_optics(), 200, 1};
+    Optics optics = preset_optics(name == "pawn" ? "surface" : "coolwarm", mesh);
+    const Camera camera = parse_camera("iso", visible_bounds(mesh, optics), aspect);
+    const int sheets = name == "pawn" ? 400 : 200;  // an opaque surface shows every step in depth
+    return {name, std::move(mesh), camera, std::move(optics), sheets, 1};
+}
 
 /// The finest level whose cells the reference can march.
 int reference_level(std::size_t cells) {
@@ -47,7 +88,10 @@ public:
                "Run the whole chain on generated models: grid, splats, a reference by rays, their difference, a summary.",
                "  subvol demo -o out\n"
                "  subvol demo -o out --size 256") {
-        app().add_option("-o,--output", folder_, "the folder for the files (made if need be)")->type_name("DIR")->required();
+        app()
+            .add_option("-o,--output", folder_, "the folder for the files (created if it does not exist)")
+            ->type_name("DIR")
+            ->required();
         app()
             .add_option("--resolution", resolution_, "cells along a model's main direction (default: the model's own)")
             ->type_name("N")
@@ -61,8 +105,9 @@ public:
         report.say("model     points  equivalent cells    splat s  reference s  PSNR dB");
         report["cases"] = Json::array();
         for (const std::string& name : demo_names()) {
-            report["cases"].push_back(run_case(name, size));
-            report.say(table_row(report["cases"].back()));
+            Json shown = run_case(name, size);
+            report.say(table_row(shown));
+            report["cases"].push_back(std::move(shown));
         }
         report["version"] = SUBVOL_VERSION;
         report["host"] = host();

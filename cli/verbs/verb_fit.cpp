@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "fit_tables.h"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int kPaperLevel = 5;
 
-/// Kernels with a name but nothing to fit: their errors are told.
+/// Kernels with a name but no parameters to fit; only their errors are reported.
 const std::vector<std::string> kFixed{"compact", "paper_bc", "cubic"};
 
 std::string kernel_choices() {
@@ -30,7 +31,7 @@ public:
                "  subvol fit --kernels\n"
                "  subvol fit --kernel bc --scheme cc --json\n"
                "  subvol fit --kernel '{\"type\": \"gaussian\", \"sigma\": 0.5}'") {
-        app().add_flag("--table1", table1_, "table 1 of the EuroVis 2007 paper: its figures, ours, the difference");
+        app().add_flag("--table1", table1_, "table 1 of the EuroVis 2007 paper: its figures, ours, and the difference");
         app().add_flag("--kernels", kernels_, "fit every kind of kernel: parameters and errors");
         app()
             .add_option("--kernel", kernel_,
@@ -40,13 +41,13 @@ public:
             ->type_name("NAME|JSON");
         app().add_option("--scheme", scheme_, "mcq (the default), cc, bsxw, linear")->type_name("NAME");
         app()
-            .add_option("--level", level_, "the basis function's samples: 2^L a unit (default 5)")
+            .add_option("--level", level_, "samples of the basis function: 2^L per unit (default 5)")
             ->type_name("L")
             ->check(CLI::Range(0, 6));
-        app().add_option("--extent", options_.extent, "where bc and cardinal end (default 2)")->type_name("R");
-        app().add_option("--terms", options_.terms, "of gaussians, 1 to 6 (default 2)")->type_name("N");
+        app().add_option("--extent", options_.extent, "the distance at which bc and cardinal end (default 2)")->type_name("R");
+        app().add_option("--terms", options_.terms, "number of gaussians in a sum, 1 to 6 (default 2)")->type_name("N");
         app().add_flag("--sign-slip", options_.sign_slip,
-                       "fit bc with the inner cubic coefficient's sign as the paper's fits have it");
+                       "fit bc with the sign error of the paper's fits in the inner cubic coefficient");
     }
 
     int run(Report& report) override {
@@ -54,7 +55,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "nothing was chosen", "fit", "--table1, --kernels or --kernel NAME");
         }
         if (table1_ && (scheme_ != "mcq" || level_ != kPaperLevel)) {
-            throw Error(ErrorCode::InvalidInput, "the paper's table is of mcq at level 5", "--table1",
+            throw Error(ErrorCode::InvalidInput, "the paper's table is for mcq at level 5", "--table1",
                         "leave out --scheme and --level");
         }
         const Scheme scheme = scheme_named(scheme_);

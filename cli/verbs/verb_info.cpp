@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "grid_input.h"
 #include "input.h"
 #include "points_input.h"
 #include "subvol/error.h"
@@ -55,12 +57,12 @@ void put_mesh_report(Report& report, const MeshReport& mesh) {
 class InfoVerb : public Verb {
 public:
     explicit InfoVerb(CLI::App& program)
-        : Verb(program, "info", "What is in a mesh, a .vdb file or a file of points, and is it sound?",
+        : Verb(program, "info", "Show what is in a mesh, a .vdb file or a file of points, and whether a mesh is sound.",
                "  subvol info model:ball\n"
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
                "  subvol info --gl") {
         app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp)"));
-        app().add_flag("--gl", gl_, "what OpenGL there is to splat with");
+        app().add_flag("--gl", gl_, "list the OpenGL devices that can splat");
         app()
             .add_option("--at", points_, "print the value of a .vdb file's grid there (repeatable)")
             ->type_name("X,Y,Z")
@@ -73,7 +75,7 @@ public:
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
         } else if (holds_points(input_)) {
             describe_points(report);
-        } else if (std::filesystem::path(input_).extension() == ".vdb") {
+        } else if (is_vdb_file(input_)) {
             describe_grids(report);
         } else {
             describe_mesh(report);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <iomanip>
 
 #include "input.h"
+#include "outputs.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
 #include "grid_input.h"
 #include "input.h"
+#include "outputs.h"
 #include "picture_arguments.h"
 #include "sampled_points.h"
 #include "subvol/detail/surface_io.h"
@@ -18,18 +21,17 @@ public:
     explicit PointsVerb(CLI::App& program)
         : Verb(program, "points", "Turn a mesh or a .vdb grid into radial basis functions.",
                "  subvol points model:ball -o ball.ply\n"
-               "  subvol points model:ball -o ball.vtp                (ParaView; the surface is beside it: ball.boundary.vtp)\n"
-               "  subvol points model:ball -o ball.vdb                (Houdini; as well)\n"
+               "  subvol points model:ball -o ball.vtp                (ParaView; the boundary is in ball.boundary.vtp)\n"
+               "  subvol points model:ball -o ball.vdb                (Houdini; the boundary likewise)\n"
                "  subvol points model:ball -o dense.ply --per-edge 2 --splats\n"
-               "  subvol points smoke.vdb -o smoke.ply --threshold 0  (a kernel a voxel; --spacing for fewer)") {
+               "  subvol points smoke.vdb -o smoke.ply --threshold 0  (one kernel per voxel; --spacing for fewer)") {
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
         app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb)")->type_name("FILE")->required();
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
-        app().add_flag("--splats", splats_, ".ply: for viewers of Gaussian splats too; the surface is then beside it");
+        app().add_flag("--splats", splats_,
+                       ".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it");
         sample_.add_to(app());
-        app()
-            .add_option("--tf", transfer_function_, "what --threshold goes by: a colour map as `render` takes it")
-            ->type_name("FILE|NAME");
+        app().add_option("--tf", transfer_function_, "the colour map for --threshold, as for `render`")->type_name("FILE|NAME");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
     }
 

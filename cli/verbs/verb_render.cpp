@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
 #include "grid_input.h"
 #include "input.h"
 #include "picture_arguments.h"
@@ -29,7 +31,7 @@ public:
                "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2\n"
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
-               "  subvol render smoke.vdb -o smoke.png                    (its voxels as kernels)") {
+               "  subvol render smoke.vdb -o smoke.png                    (the voxels as kernels)") {
         app()
             .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
             ->required();
@@ -47,7 +49,7 @@ public:
         picture_.add_to(app());
         reference_.add_to(app());
         sample_.add_to(app());
-        refine_.add_to(app(), "show the refined mesh of this level (tets, pt: default 1; else: omitted shows the limit)");
+        refine_.add_to(app(), "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
         splat_.add_to(app());
     }
 
@@ -73,7 +75,7 @@ public:
 private:
     [[nodiscard]] bool drawn_by_splats() const { return method_ == "splat" || method_ == "sheets"; }
 
-    /// The reference methods know nothing of what is the splats' own.
+    /// Refuses options of splatting for the other methods.
     void check_reference() const {
         (void)reference_.projected_options();
         if (drawn_by_splats()) return;
@@ -83,7 +85,7 @@ private:
         }
         const bool on_gpu = method_ == "pt";
         if (splat_.seconds && !on_gpu) {
-            throw Error(ErrorCode::InvalidInput, "method " + method_ + " takes the time that it takes", "--seconds",
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " has no time limit", "--seconds",
                         "use --method splat, sheets or pt");
         }
         if (splat_.backend == (on_gpu ? "cpu" : "gl")) {
@@ -95,7 +97,7 @@ private:
 
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
-        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the colours' field is the field itself
+        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
         const Box box = bounds(mesh);
         const std::vector<View> views = picture_.make_views(box);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
@@ -114,7 +116,7 @@ private:
         } else {
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
-        picture_.write_legend(optics, colors, report);
+        picture_.write_legend(optics, mesh.attributes.front().name, colors, report);
     }
 
     void draw_tetrahedra(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
@@ -146,7 +148,7 @@ private:
             return draw_grid(*voxels, view, optics, reference_, progress, report);
         };
         output.write(picture_.make_views(box), draw, report);
-        picture_.write_legend(optics, range, report);
+        picture_.write_legend(optics, grid.report().name, range, report);
     }
 
     void splat_voxels(PictureOutput& output, Report& report) {
@@ -159,7 +161,7 @@ private:
         const Optics optics = picture_.make_optics(box, range, range);
         const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
         splat(volume, picture_.make_views(box), optics, output, report);
-        picture_.write_legend(optics, range, report);
+        picture_.write_legend(optics, grid.report().name, range, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
@@ -170,7 +172,7 @@ private:
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
         splat(volume, views, optics, output, report);
-        picture_.write_legend(optics, colors, report);
+        picture_.write_legend(optics, volume.channels.front().name, colors, report);
     }
 
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tbb/global_control.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
 
-#include "folder_lock.h"
 #include "input.h"
+#include "outputs.h"
 #include "study_host.h"
 #include "study_runner.h"
 #include "subvol/detail/atomic_file.h"
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int kCaseFailed = 1;
 
-/// A number that does not exist is null.
+/// A number that is not known becomes null.
 Json to_json(const StudyTable& table) {
     Json rows = Json::array();
     for (const auto& row : table.rows) {
@@ -50,18 +51,17 @@ public:
                         "the folder: report.html, and for each study a folder with results.csv, costs.csv, cases, pictures")
             ->type_name("DIR");
         app()
-            .add_option("--mesh", meshes_,
-                        "a mesh that takes part beside the study's first input, with its options (repeatable)")
+            .add_option("--mesh", meshes_, "another mesh for the study, with the options of its first input (repeatable)")
             ->type_name("FILE");
         app()
-            .add_option("--jobs", jobs_, "cases at a time, where costs are not measured (default: one a core)")
+            .add_option("--jobs", jobs_, "cases that run at the same time, unless costs are measured (default: one per core)")
             ->type_name("N")
             ->check(CLI::Range(1, 1024));
         auto* resume =
             app().add_flag("--resume", resume_, "keep the finished cases of an earlier run in the folder (the default)");
         app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);
         app().add_flag("--list", list_, "list the studies");
-        app().add_option("--print", print_, "print a built-in study's file, to start one's own from")->type_name("NAME");
+        app().add_option("--print", print_, "print a built-in study's file, as a start for your own")->type_name("NAME");
         app().add_option("--case", case_)->group("");  // how the verb runs its cases, each in a process of its own
         app().add_option("--case-of", case_of_)->group("");
     }
@@ -126,7 +126,7 @@ private:
         for (const Study& study : studies) {
             all.push_back(report.timed(study.name.c_str(), [&] { return run_one(study, report); }));
             failed += all.back().failed;
-            tell(all.back(), report);
+            report_results(all.back(), report);
         }
         const fs::path page = fs::path(output_) / "report.html";
         detail::write_text_file(page, report_html(all, output_, {study_host(), study_versions(), command()}));
@@ -136,7 +136,7 @@ private:
         return failed > 0 ? kCaseFailed : 0;
     }
 
-    /// What runs the same studies again.
+    /// The command that runs the same studies again.
     [[nodiscard]] std::string command() const {
         std::string words = "subvol study";
         for (const std::string& name : names_) words += " " + name;
@@ -169,7 +169,7 @@ private:
                           .progress = report.progress()});
     }
 
-    void tell(const StudyResults& results, Report& report) const {
+    void report_results(const StudyResults& results, Report& report) const {
         const Study& study = results.study;
         const fs::path folder = fs::path(output_) / study.name;
         report["studies"].push_back({{"name", study.name},

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+
 #include "input.h"
+#include "outputs.h"
 #include "refine_arguments.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
@@ -20,8 +23,9 @@ public:
             .add_option("-o,--output", output_, "the mesh to write (.vtu with its fields, .mesh without)")
             ->type_name("FILE")
             ->required();
-        refine_.add_to(app(), "how many times (default 1)");
-        app().add_flag("--on-limit", on_limit_, "move the refined points on to the limit (cc and bsxw; the others lie on it)");
+        refine_.add_to(app(), "number of refinements (default 1)");
+        app().add_flag("--on-limit", on_limit_,
+                       "move the refined points to the limit (cc and bsxw; those of the other schemes lie on it)");
     }
 
     int run(Report& report) override {
@@ -39,7 +43,7 @@ public:
     }
 
 private:
-    /// A scheme that goes through its control points can fold cells that were badly shaped.
+    /// A scheme that interpolates its control points can fold badly shaped cells.
     static void put_shape(const HexMesh& control, const HexMesh& fine, Report& report) {
         const ShapeReport before = measure_cells(control), after = measure_cells(fine);
         report["inverted_cells"] = after.inverted_cells;

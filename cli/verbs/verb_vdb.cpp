@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "input.h"
 #include "mesh_frames.h"
+#include "outputs.h"
 #include "points_input.h"
 #include "refine_arguments.h"
 #include "subvol/error.h"
@@ -24,14 +26,14 @@ namespace subvol::cli {
 namespace {
 
 constexpr double kBytesOfChannel = 5.5;     // a voxel's float in leaves that are not all full, with their masks
-constexpr double kMostCellsOfTables = 8e6;  // of refined cells, some 200 bytes each
+constexpr double kMostCellsOfTables = 8e6;  // refined cells, about 200 bytes each
 constexpr const char* kDefaultLevelSet = "sdf";
 constexpr const char* kVelocity = "vel";
-// How far the velocities go beyond the volume: renderers open the shutter for a frame at most, and mostly about the frame's
-// time.
+// Velocities are written beyond the volume as far as it moves in this time: renderers open the shutter for a frame at most,
+// usually centred on the frame's time.
 constexpr double kShutter_frames = 0.5;
-constexpr int kMostVelocityLayers =
-    64;  // of voxels: beyond, the grid of a volume 200 wide would hold more outside it than in it
+// In voxels. With more, the grid of a volume 200 voxels wide would have more voxels outside the volume than inside.
+constexpr int kMostVelocityLayers = 64;
 
 VdbCompression compression_named(const std::string& name) {
     return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
@@ -46,7 +48,7 @@ std::vector<std::string> names_of(const HexMesh& mesh) {
 class VdbVerb : public Verb {
 public:
     explicit VdbVerb(CLI::App& program)
-        : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: a grid a field.",
+        : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: one grid per field.",
                "  subvol vdb model:ball -o ball.vdb\n"
                "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
                "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
@@ -89,10 +91,10 @@ private:
         auto* resolution =
             app().add_option("--resolution", resolution_, "voxels along the longest side of the bounding box (default 200)");
         resolution->type_name("N")->check(CLI::Range(1, 1 << 20))->excludes(size);
-        auto* like = app().add_option("--like", like_, "a .vdb file whose first grid's transform is taken over");
+        auto* like = app().add_option("--like", like_, "use the transform of the first grid in this .vdb file");
         like->type_name("FILE")->excludes(size)->excludes(resolution);
         app()
-            .add_option("--budget", budget_bytes_, "voxels so small that the grids take about this much memory, e.g. 500M")
+            .add_option("--budget", budget_bytes_, "choose voxels so that the grids take about this much memory, e.g. 500M")
             ->type_name("BYTES")
             ->transform(CLI::AsSizeValue(false))
             ->excludes(size)
@@ -103,19 +105,20 @@ private:
     void add_grid_options() {
         app()
             .add_option("--fields", fields_,
-                        "fields to write, the first as fog volume; one with three components becomes a grid of vectors, v.k is "
-                        "its component k")
+                        "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
+                        "NAME.k is its component k")
             ->type_name("A,B")
             ->delimiter(',');
-        app().add_flag("--cell-ids", cell_numbers_, "one more grid: the number of the control cell");
-        app().add_flag("--mask", mask_, "one more grid: where the volume is");
-        app().add_flag("--coverage", coverage_, "one more grid: the part of each voxel that the volume fills");
-        level_set_option_ = app().add_option("--sdf", level_set_.name,
-                                             "one more grid, named NAME or sdf: the distance to the boundary, negative inside, "
-                                             "as a level set with a narrow band");
+        app().add_flag("--cell-ids", cell_numbers_, "also write a grid: the number of the control cell");
+        app().add_flag("--mask", mask_, "also write a grid: a mask of the volume");
+        app().add_flag("--coverage", coverage_, "also write a grid: the part of each voxel that the volume fills");
+        level_set_option_ =
+            app().add_option("--sdf", level_set_.name,
+                             "also write a level set, named NAME or sdf: the distance to the boundary, negative "
+                             "inside, in a narrow band");
         level_set_option_->type_name("[NAME]")->expected(0, 1);
         app()
-            .add_option("--half-width", level_set_.half_width_voxels, "of that band to either side, in voxels (default 3)")
+            .add_option("--half-width", level_set_.half_width_voxels, "the band's reach to either side, in voxels (default 3)")
             ->type_name("N")
             ->check(CLI::Range(1.0, 1000.0))
             ->needs(level_set_option_);
@@ -123,11 +126,11 @@ private:
         app()
             .add_option(
                 "--from", from_,
-                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; a FILE "
-                "of points (.ply, .vtp, .vdb) has its own")
+                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; not needed "
+                "for a FILE of points (.ply, .vtp, .vdb)")
             ->type_name("WHAT");
         app()
-            .add_option("--per-edge", per_edge_, "with --from points: sample intervals an edge")
+            .add_option("--per-edge", per_edge_, "with --from points: sample intervals per edge")
             ->type_name("N")
             ->check(CLI::Range(1, 64));
     }
@@ -143,24 +146,26 @@ private:
                         "which lists them")
             ->type_name("BYTES")
             ->transform(CLI::AsSizeValue(false));
-        app().add_flag("--nano", output_.nano, "write a NanoVDB file beside it, NAME.nvdb; needs a build with NanoVDB");
+        app().add_flag("--nano", output_.nano, "also write a NanoVDB file, NAME.nvdb; needs a build with NanoVDB");
     }
 
     void add_frame_options() {
         app()
             .add_option(
                 "--frames", frames_,
-                "a sequence: A-B, or N for 1-N. The rows of # in FILE and in --output stand for the number of the frame, "
-                "with zeros before it to that many digits")
+                "a sequence: A-B, or N for 1-N. In FILE and --output a row of # is replaced by the number of the frame, "
+                "padded with zeros to that many digits")
             ->type_name("A-B");
         app()
             .add_option("--to", to_,
-                        "a sequence from FILE to this mesh of the same cells: points and values go in straight lines")
+                        "a sequence from FILE to this mesh of the same cells: points and values are interpolated linearly")
             ->type_name("FILE");
-        auto* velocity = app().add_flag("--velocity", velocity_,
-                                        "one more grid, of vectors, named vel: how the volume moves, in world units a frame");
+        auto* velocity =
+            app().add_flag("--velocity", velocity_,
+                           "also write a grid of vectors, named vel: the velocity of the volume, in world units per frame");
         app()
-            .add_option("--fps", frames_per_second_, "with --velocity: in world units a second, at so many frames a second")
+            .add_option("--fps", frames_per_second_,
+                        "with --velocity: in world units per second, at this many frames per second")
             ->type_name("F")
             ->check(CLI::PositiveNumber)
             ->needs(velocity);
@@ -171,19 +176,19 @@ private:
     }
 
     void run_one(Report& report) {
-        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         const HexMesh mesh = load(input_, report);
         const RasterizeOptions options = set_up(mesh, report);
         if (output_.memory_bytes > 0) {
             refuse_with_memory();
-            write_parts(mesh, names_of(mesh), options, output_, report);
+            write_parts(input_, mesh, names_of(mesh), options, output_, report);
         } else {
             write_reported(grids_of(mesh, options, report), output_, report);
         }
     }
 
     void run_points(Report& report) {
-        if (velocity_) throw Error(ErrorCode::InvalidInput, "goes with a sequence only", "--velocity", "--frames A-B");
+        if (velocity_) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         from_ = "points";
         RasterizeOptions options = options_of_grids(report);
         options.voxel_size_world = voxel_size_;
@@ -192,9 +197,10 @@ private:
         write_reported(grids_of_points(input_, fields_, common(), app(), options, report), output_, report);
     }
 
-    /// All frames have the voxels and the level that the first one asks for.
+    /// The first frame determines the voxel size and the level of all frames.
     void run_frames(Report& report) {
-        if (output_.memory_bytes > 0) throw Error(ErrorCode::InvalidInput, "goes with one mesh only, no frames", "--memory");
+        if (output_.memory_bytes > 0)
+            throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
         check_frame_names();
         const FrameRange range = parse_frames(frames_);
         MeshFrames frames(input_, to_.empty() ? std::nullopt : std::optional(to_), range,
@@ -207,11 +213,12 @@ private:
             std::ldexp(static_cast<double>(first.cells.size()), 3 * levels) <= kMostCellsOfTables) {
             tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
         }
+        std::size_t active_voxels = 0;
         for (int frame = range.first; frame <= range.last; ++frame) {
             HexMesh mesh = frames.mesh(frame);
             const bool same = same_cells(first, mesh);
             options.tables = tables && same ? &*tables : nullptr;
-            LimitCells of_others;  // the limit of the first serves all meshes of its cells
+            LimitCells of_others;  // the first limit serves all meshes with the same cells
             if (options.limit) {
                 if (!same) of_others = find_limit(mesh, options.refine, options.voxel_size_world, report);
                 options.limit = same ? &limit_ : &of_others;
@@ -221,6 +228,8 @@ private:
             output.path = with_number(output_.path, frame);
             std::vector<VdbGrid> grids = grids_of(mesh, options, report);
             if (velocity_) spread_velocity(frame, grids, report);
+            report["voxel_size"] = grids.front().report().voxel_size_world;
+            report["active_voxels"] = active_voxels += grids.front().report().active_voxels;
             write_frame(frame, grids, output, report);
         }
         report["input"] = input_;
@@ -228,13 +237,13 @@ private:
     }
 
     void check_frame_names() const {
-        if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "which frames?", "--frames", "1-10");
+        if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "is needed for a sequence", "--frames", "1-10");
         if (!has_number(output_.path)) {
-            throw Error(ErrorCode::InvalidInput, "has no place for the number of a frame", output_.path, "out_####.vdb");
+            throw Error(ErrorCode::InvalidInput, "has no # for the number of the frame", output_.path, "out_####.vdb");
         }
         if (to_.empty() != has_number(input_)) {
             throw Error(ErrorCode::InvalidInput,
-                        to_.empty() ? "has no place for the number of a frame" : "has a place for a number, and --to is given",
+                        to_.empty() ? "has no # for the number of the frame" : "has a # for a number, but --to is given",
                         input_, "in_####.vtu, or one mesh and --to another");
         }
     }
@@ -247,7 +256,7 @@ private:
         mesh.attributes.push_back(std::move(velocity));
     }
 
-    /// Lets the velocities reach beyond the volume, to where it is at other times while a shutter is open.
+    /// Extends the velocities beyond the volume, to where it is at other times while a shutter is open.
     void spread_velocity(int frame, std::vector<VdbGrid>& grids, Report& report) const {
         const auto velocity = std::ranges::find(grids, kVelocity, [](const VdbGrid& grid) { return grid.report().name; });
         if (velocity == grids.end() || velocity->report().kind != "vector" || velocity->report().max == 0) return;
@@ -262,15 +271,17 @@ private:
         report.timed("spread", [&] { *velocity = spread_vectors(*velocity, layers); });
     }
 
-    /// What a mesh asks for, by its box and its fields.
+    /// The options for a mesh, which depend on its box and its fields.
     [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report) {
         const double voxel_size = like_grids_.empty() ? voxel_size_world(mesh) : like_grids_.front().report().voxel_size_world;
         RefineOptions refinement = refine_.options(0, report);
+        int levels = refinement.levels;
         if (refine_.levels) {
             report["levels"] = refinement.levels;
             report["cells"] = mesh.cells.size() << (3 * refinement.levels);
         } else {
             limit_ = find_limit(mesh, refinement, voxel_size, report);
+            levels = finest_level(limit_);
         }
         RasterizeOptions options = options_of_grids(report);
         options.voxel_size_world = voxel_size;
@@ -283,11 +294,11 @@ private:
                         "--sdf with another name");
         }
         options.metadata.emplace_back("subvol_scheme", refine_.scheme);
-        options.metadata.emplace_back("subvol_level", std::to_string(report["levels"].get<int>()));
+        options.metadata.emplace_back("subvol_level", std::to_string(levels));
         return options;
     }
 
-    /// What does not depend on the mesh.
+    /// The options that do not depend on the mesh.
     [[nodiscard]] RasterizeOptions options_of_grids(Report& report) const {
         return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
                 .half = half_,
@@ -311,8 +322,8 @@ private:
     }
 
     void refuse_with_memory() const {
-        if (from_ == "points") throw Error(ErrorCode::InvalidInput, "goes with a mesh only", "--memory");
-        if (output_.nano) throw Error(ErrorCode::InvalidInput, "goes with one file only, no parts", "--nano");
+        if (from_ == "points") throw Error(ErrorCode::InvalidInput, "works with a mesh only", "--memory");
+        if (output_.nano) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--nano");
     }
 
     [[nodiscard]] HexMesh with_written_fields(HexMesh mesh, Report& report) const {
@@ -343,16 +354,21 @@ private:
         return std::max({size.x, size.y, size.z}) / resolution_;
     }
 
-    /// levels: the finest whose vertices count; cells: those between them, 27 vertices each, or those of the mesh
+    /// The finest level whose vertices count.
+    [[nodiscard]] static int finest_level(const LimitCells& limit) {
+        int levels = limit.level;
+        for (const int level : limit.cell_levels) levels = std::max(levels, level);
+        return levels;
+    }
+
+    /// The report's "levels" is the finest level, its "cells" the number of curved cells, 27 vertices each, or without any that
+    /// of the mesh's own cells.
     [[nodiscard]] static LimitCells find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
                                                Report& report) {
         LimitCells limit = report.timed("limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
-        int levels = limit.level;
+        const int levels = finest_level(limit);
         std::size_t cells = limit.cell_levels.empty() ? mesh.cells.size() : 0;
-        for (const int level : limit.cell_levels) {
-            levels = std::max(levels, level);
-            cells += std::size_t{1} << (3 * (level - 1));
-        }
+        for (const int level : limit.cell_levels) cells += std::size_t{1} << (3 * (level - 1));
         report["levels"] = levels;
         report["cells"] = cells;
         report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A collection of malformed meshes from outside the repository: refused with one sentence, quickly and within bounds.
+"""A collection of malformed meshes that is not part of the repository: each is rejected with one sentence, within time and memory bounds.
 
 The collection is the folder `bad` beside the one that SUBVOL_DATA names; its README.md has a table that says of each file whether
 it must work, is an error, or needs at least a word. Without it the test is skipped (exit code 77).

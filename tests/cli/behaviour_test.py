@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a user meets first: help, exit codes, one sentence for a mistake, nothing left behind, the same result again."""
+"""What a user sees first: help, exit codes, one sentence for a mistake, no files left behind, repeatable results."""
 
 import signal
 import subprocess
@@ -88,7 +88,7 @@ class Mistakes(InFolder):
 
 
 class TooMuch(InFolder):
-    """Exit code 3 and one sentence, instead of an end by the system."""
+    """Exit code 3 and one sentence, before the system kills the program."""
 
     def assert_beyond_the_machine(self, done):
         self.assertEqual(done.code, 3, done.err)
@@ -109,7 +109,7 @@ class Interrupt(InFolder):
     def test_ctrl_c_stops_and_leaves_nothing(self):
         process = subprocess.Popen([COMMAND, "render", "model:twist", "-o", "a.png", "--method", "tets", "--samples", "16",
                                     "--size", "4096"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
-        time.sleep(1)  # into the work: uninterrupted it takes minutes
+        time.sleep(1)  # the work has begun; uninterrupted it takes minutes
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 130, err)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A headless Chromium, spoken to through the pipe of its DevTools protocol."""
+"""A headless Chromium, controlled through the pipe of its DevTools protocol."""
 
 import base64
 import json
@@ -19,7 +19,7 @@ def find_chromium():
 
 
 class Browser:
-    """One page. `events` collects what it tells."""
+    """One page. `events` collects the events that it reports."""
 
     def __init__(self, program):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
@@ -104,7 +104,7 @@ class Browser:
         path.write_bytes(base64.b64decode(shot["data"]))
 
     def requests(self):
-        """Addresses that were asked for, but for the page itself and data in it."""
+        """The addresses that were requested, except for the page itself and data in it."""
         urls = [event["params"]["request"]["url"] for event in self.events if event.get("method") == "Network.requestWillBeSent"]
         return [url for url in urls if not url.startswith(("data:", "file:"))]
 

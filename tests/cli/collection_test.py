@@ -76,7 +76,7 @@ class Collection(unittest.TestCase):
             with self.subTest(name):
                 told = info(name)
                 self.check_fields(fields[name][0], told)
-                if not cells[1].startswith("0 "):  # hexahedra; the others are split into some
+                if not cells[1].startswith("0 "):  # only meshes with hexahedra; the others are split
                     self.check_counts(cells, told)
 
     def test_seam(self):
@@ -86,7 +86,7 @@ class Collection(unittest.TestCase):
         self.assertEqual(welded["points_used"], apart["points_used"] - pairs)
         self.assertEqual(welded["volume"], apart["volume"])
         self.assertTrue(any(f"{pairs} points welded" in warning for warning in welded["warnings"]))
-        self.assertEqual(info(name, "--weld-distance", "1e-6")["points_used"], welded["points_used"])  # no edge is as short
+        self.assertEqual(info(name, "--weld-distance", "1e-6")["points_used"], welded["points_used"])  # no edge is that short
 
     def test_grid(self):
         note = table("Fields and notes")["arnold_smoke.vdb"][1]

@@ -13,7 +13,7 @@ from pathlib import Path
 
 COMMAND = os.environ["SUBVOL_COMMAND"]
 
-# A sanitized program is slow and reserves terabytes of addresses: bounds on time and memory say nothing about it.
+# A sanitized program is slow and reserves terabytes of addresses, so bounds on time and memory do not apply to it.
 SANITIZED = "-fsanitize" in os.environ.get("SUBVOL_FLAGS", "")
 
 # One mesh of one cell: MEDIT, counted from 1.
@@ -54,12 +54,12 @@ def subvol(*arguments, folder=None):
 
 
 def subvol_measured(*arguments, folder=None, max_seconds=None, max_mib=None):
-    """As `subvol`, with the seconds and the peak memory of this one process, which ends where it wants more of either."""
+    """As `subvol`, with the seconds and the peak memory of this one process, which is ended if it exceeds the limits."""
 
     def limit():
         if max_seconds and not SANITIZED:
             resource.setrlimit(resource.RLIMIT_CPU, (max_seconds, max_seconds))
-        if max_mib and not SANITIZED:  # of what it allocates: libraries alone take more addresses than that
+        if max_mib and not SANITIZED:  # only of what it allocates: the libraries alone need more addresses
             resource.setrlimit(resource.RLIMIT_DATA, (max_mib << 20, max_mib << 20))
 
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+", errors="replace") as err:
@@ -75,7 +75,7 @@ def subvol_measured(*arguments, folder=None, max_seconds=None, max_mib=None):
 
 
 class InFolder(unittest.TestCase):
-    """A test with a folder of its own, that fails with what the command said."""
+    """A test with its own folder. It fails with the message of the command."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()

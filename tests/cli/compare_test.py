@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verb `compare`: figures whose right value is known, exit codes, and one sentence for what cannot be compared."""
+"""The verb `compare`: figures whose correct value is known, exit codes, and one sentence for inputs that cannot be compared."""
 
 import math
 import struct
@@ -17,7 +17,7 @@ def pfm(path, width, height, pixel):
 
 
 def ppm(path, width, height, pixel):
-    """8 bits a channel, encoded."""
+    """8 bits per channel, sRGB."""
     path.write_bytes(f"P6\n{width} {height}\n255\n".encode() + bytes(v for y in range(height) for x in range(width) for v in pixel(x, y)))
 
 
@@ -82,11 +82,11 @@ class Pictures(InFolder):
         pfm(self.folder / "spot.pfm", 40, 30, lambda x, y: (GREY + (0.5 if (x, y) == (20, 15) else 0),) * 3)
         for metric in ("abs", "flip", "ssim"):
             self.run_ok("compare", "spot.pfm", "grey.pfm", "--heatmap", f"{metric}.exr", "--heatmap-of", metric)
-            # The bar of the legend runs from the first colour to the last; equal pictures have the first alone.
+            # The legend's bar runs from the first colour to the last; equal pictures have only the first.
             self.run_ok("compare", "grey.pfm", "grey.pfm", "--heatmap", "none.exr", "--heatmap-of", metric)
             figures = self.compared(f"{metric}.exr", "none.exr")
             self.assertGreater(figures["max"], 0.5, metric)
-        # A difference in one pixel is a spot of that size; FLIP and SSIM see as far as their filters reach.
+        # A difference in one pixel is a spot of one pixel; FLIP and SSIM spread it as far as their filters reach.
         self.assertLess(self.compared("abs.exr", "none.exr")["mae"], self.compared("flip.exr", "none.exr")["mae"])
 
     def test_optical_depth(self):
@@ -103,8 +103,8 @@ class Fields(InFolder):
         return self.run_ok("compare", *arguments, "--json").json()
 
     def test_linear_fields_of_a_cube(self):
-        # The cube of one cell is so at every level. Its voxels of .05 have their centres from 0 to .95, hence fill 0 - .025 to
-        # 1 - .025 along each axis: 1+x against 1 has the mean .4875 and the mean square .975^2/3 where both are. Cells of .025
+        # The cube of one cell stays a cube at every level. Its voxels of .05 have centres from 0 to .95, hence fill 0 - .025 to
+        # 1 - .025 along each axis: where both fields have a value, 1+x against 1 has mean .4875 and mean square .975^2/3. Cells of .025
         # fit both: the integrals are exact.
         (self.folder / "cube.mesh").write_text(CUBE.format(last=8))
         self.run_ok("vdb", "cube.mesh", "-o", "one.vdb", "--density", "1", "--resolution", 20)
@@ -130,7 +130,7 @@ class Fields(InFolder):
         self.run_ok("vdb", "model:ball:4", "-o", "grid.vdb", "--resolution", 60)
         options = ["--levels", 2, "--samples", 20000, "--resolution", 32, "--iso", 0.5]
         by_points = self.compared("ball.ply", "model:ball:4", *options)
-        # A point in a .vdb file lies where it lay to 1.5e-8 of a voxel.
+        # The position of a point in a .vdb file is rounded to 1.5e-8 of a voxel.
         again = self.compared("ball.vdb", "ball.ply", *options[2:])
         self.assertLess(again["linf"], 1e-5)
         for figures in (by_points, self.compared("grid.vdb", "model:ball:4", *options)):
@@ -174,7 +174,7 @@ class Mistakes(InFolder):
         (self.folder / "text.png").write_text("no picture")
         self.assert_refused("a.pfm", "text.png", naming=["text.png"])
         self.assert_refused("model:ball:2", "missing.vtu", naming=["missing.vtu"])
-        # A field that lies elsewhere.
+        # A field in another place.
         (self.folder / "cube.mesh").write_text(CUBE.format(last=8))
         points, cells = CUBE.format(last=8).split("Hexahedra")
         points = points.replace("\n1 ", "\n91 ").replace("\n0 ", "\n90 ")

@@ -1,12 +1,40 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the documents point at is there."""
+"""Documents name files, headers, calls and rooms that exist, and their code compiles."""
 
+import os
 import re
+import subprocess
 import unittest
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 DOCUMENTS = [*TOP.glob("*.md"), *(TOP / "docs").rglob("*.md")]
+WAYS_IN = {"lib": "subvol.h", "vdb": "vdb.h", "render": "render.h", "compare": "compare.h"}
+
+
+def rooms(component):
+    """The rooms of a component, each with those that it uses, by its CMakeLists.txt."""
+    text = (TOP / component / "CMakeLists.txt").read_text()
+    calls = re.findall(rf"^subvol_room\({component} (\w+)\n([^)]*)\)", text, re.M)
+    uses = {name: re.search(r"USES ([\w ]+)", rest) for name, rest in calls}
+    return {name: sorted(found[1].split()) if found else [] for name, found in uses.items()}
+
+
+def public_headers(component):
+    """(room, header), without subvol/detail."""
+    return {(room, header.name) for room in rooms(component)
+            for header in (TOP / component / room / "include/subvol").glob("*.h")}
+
+
+def calls():
+    """The rows of the tables in docs/api.md: component, room, header, calls, example."""
+    component = None
+    for line in (TOP / "docs/api.md").read_text().splitlines():
+        if line.startswith("### subvol::"):
+            component = line.removeprefix("### subvol::")
+        cells = line.strip("| ").split(" | ")
+        if component and len(cells) == 4 and cells[1].endswith(".h`"):
+            yield component, cells[0], cells[1].strip("`"), re.findall(r"`(\w+)`", cells[2]), cells[3].strip("`")
 
 
 class Documents(unittest.TestCase):
@@ -15,6 +43,12 @@ class Documents(unittest.TestCase):
             for target in re.findall(r"\]\(([^)#\s]+)\)", document.read_text()):
                 if not target.startswith("http"):
                     self.assertTrue((document.parent / target).exists(), f"{document}: {target}")
+
+    def test_files_that_are_named_exist(self):
+        for document in DOCUMENTS:
+            for name in re.findall(r"`([\w.-]+/[\w./-]+\.(?:cpp|h|glsl|comp|py|cmake))`", document.read_text()):
+                if not name.startswith("subvol/"):
+                    self.assertTrue((TOP / name).exists(), f"{document}: {name}")
 
     def test_citations_are_in_the_bibliography(self):
         keys = set(re.findall(r"^@\w+\{(\w+),", (TOP / "docs/references.bib").read_text(), re.M))
@@ -37,6 +71,57 @@ class Documents(unittest.TestCase):
         self.assertEqual([path.name[:2] for path in examples], [f"{i:02}" for i in range(1, len(examples) + 1)])
         for example in examples:
             self.assertLess(len(example.read_text().splitlines()), 100, example.name)
+
+
+class WaysIn(unittest.TestCase):
+    def test_one_header_of_a_component_brings_all_of_its_public_headers(self):
+        for component, way_in in WAYS_IN.items():
+            text = (TOP / component / "include/subvol" / way_in).read_text()
+            included = set(re.findall(r'#include "subvol/([\w/]+\.h)"', text)) - {"version.h"}  # made by the build
+            self.assertEqual(included, {header for _, header in public_headers(component)}, way_in)
+
+    def test_the_table_of_calls_names_every_public_header_in_its_room(self):
+        for component in WAYS_IN:
+            listed = [(room, header) for of, room, header, _, _ in calls() if of == component]
+            self.assertEqual(len(listed), len(set(listed)), component)
+            self.assertEqual(set(listed), public_headers(component))
+
+    def test_the_calls_of_the_table_are_in_their_headers(self):
+        for component, room, header, names, _ in calls():
+            text = (TOP / component / room / "include/subvol" / header).read_text()
+            for name in names:
+                self.assertRegex(text, rf"\b{name}\b", header)
+
+    def test_every_room_is_in_the_table_of_rooms(self):
+        rows = re.findall(r"^\| `(\w+/\w+)` \| .+ \| ?(.*) \|$", (TOP / "CONTRIBUTING.md").read_text(), re.M)
+        listed = {room: sorted(uses.split(", ")) if uses else [] for room, uses in rows}
+        here = {f"{component}/{room}": uses for component in [*WAYS_IN, "cli"] for room, uses in rooms(component).items()}
+        self.assertEqual(listed, here)
+        for room in here:
+            self.assertTrue((TOP / room).is_dir(), room)
+
+
+@unittest.skipUnless("SUBVOL_COMPILER" in os.environ, "no compiler is named by SUBVOL_COMPILER")
+class CodeInDocuments(unittest.TestCase):
+    def compile(self, statements, parameters=""):
+        includes = [f"-I{folder}" for component in WAYS_IN
+                    for folder in [TOP / component / "include", *(TOP / component).glob("*/include")]]
+        headers = "".join(f"#include <subvol/{way_in}>\n" for way_in in WAYS_IN.values())
+        program = f"{headers}#include <cstdio>\nusing namespace subvol;\nvoid all({parameters}) {{\n{statements}\n}}\n"
+        done = subprocess.run([os.environ["SUBVOL_COMPILER"], "-std=c++20", "-fsyntax-only", "-x", "c++", "-", *includes,
+                               f"-I{os.environ['SUBVOL_BUILD']}/lib/include"],
+                              input=program, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_the_examples_of_the_table_compile(self):
+        self.compile("\n".join(f"{{ {example} }}" for *_, example in calls()),
+                     "const HexMesh& mesh, const RbfVolume& volume, const View& view, const TransferFunction& function, "
+                     "const Optics& optics, Image& image, const VdbGrid& grid, const std::vector<double>& values, "
+                     "const Study& study")
+
+    def test_the_program_of_the_readme_compiles(self):
+        code = re.search(r"```cpp\n(.*?)```", (TOP / "README.md").read_text(), re.S)[1]
+        self.compile("\n".join(line for line in code.splitlines() if not line.startswith("#include")))
 
 
 if __name__ == "__main__":

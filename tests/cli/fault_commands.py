@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the faults are tried on: a command of every verb, its files when nothing is wrong, and when one of them is whole."""
+"""The commands that the faults are tried on, one or more of every verb: their files without a fault, and when a file is complete."""
 
 import json
 import os
@@ -22,7 +22,7 @@ STUDY = {
     "pictures": True,
 }
 
-# Stands in for the program that makes videos: keeps the pictures' bytes.
+# Replaces the program that makes videos: keeps the bytes of the pictures.
 FFMPEG = """#!/bin/sh
 for last; do :; done
 exec cat > "${last#file:}"
@@ -57,7 +57,7 @@ class Command:
             return content == self.good[name]
         if suffix == ".json":
             return is_json(content)
-        if suffix == ".vdb":  # has a number of its own every time
+        if suffix == ".vdb":  # each file has its own random identifier
             return subprocess.run([COMMAND, "info", path], capture_output=True).returncode == 0
         if suffix == ".html":
             return content.rstrip().endswith(b"</html>")

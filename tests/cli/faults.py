@@ -40,7 +40,7 @@ class Ended:
         self.code, self.out, self.err, self.killed = process.returncode, out, err, killed
 
     def sentence(self):
-        """What it complained of; warnings are no complaint, and libpng cannot be kept from speaking itself."""
+        """The error messages: without warnings, and without libpng's own messages, which cannot be suppressed."""
         lines = [line for line in self.err.splitlines() if not line.startswith(("subvol: warning: ", "libpng error: "))]
         for word in DISASTERS:
             if word in self.err:
@@ -72,7 +72,7 @@ def put_old_files(command, folder):
 
 
 def check_files(command, folder, old=False, killed=False):
-    """True if all of the output is there and whole. old: there were files before"""
+    """True if all of the output exists and is complete. old: there were files before"""
     lost = [name for name in command.good if old and "/" not in name and not (folder / name).exists()]
     if lost:
         raise Problem(f"lost {lost}")
@@ -128,7 +128,7 @@ class Table:
 
 
 class Mounted:
-    """A small file system of its own at a folder."""
+    """A small file system mounted at a folder."""
 
     def __init__(self, bytes_):
         self.bytes = bytes_
@@ -166,7 +166,7 @@ class Faults:
         if not command.good:
             return
         pages = sum(-(-len(content) // PAGE) for content in command.good.values())
-        more = {0, pages // 2} if self.quick else {0, 1, pages // 2, pages - 1}  # than the old files take
+        more = {0, pages // 2} if self.quick else {0, 1, pages // 2, pages - 1}  # pages beyond those of the old files
         for size in sorted(PAGE * (len(command.good) + pages) for pages in more):
             def attempt():
                 with Mounted(size) as disk:
@@ -246,14 +246,14 @@ class Faults:
             process.kill()
             process.communicate()
             raise Problem(f"did not stop within {STOPS_WITHIN} s") from None
-        time.sleep(0.1 if command.children else 0)  # until the system has ended them too
+        time.sleep(0.1 if command.children else 0)  # until the system has ended the children too
         killed = sent == signal.SIGKILL
         whole = check_files(command, folder, old, killed)
         if ended.code == 0:
             if not whole:
                 raise Problem("exit code 0, but not all files are there")
             return "done before"
-        if ended.code == -sent:  # before it catches any
+        if ended.code == -sent:  # before it catches signals
             ended.sentence()
             return "ended (137)" if killed else f"ended ({128 + sent})"
         judge(ended, {code: ""})
@@ -283,7 +283,7 @@ class Faults:
 
 @functools.cache
 def least_addresses():
-    """Bytes of addresses that the program needs to start at all: its libraries end it below, before it has a say."""
+    """Bytes of addresses that the program needs to start: with less, its libraries end it before main()."""
     low, high = 1 << 20, 1 << 34
     while high - low > 1 << 20:
         middle = (low + high) // 2

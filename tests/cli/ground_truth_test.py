@@ -7,7 +7,7 @@ import unittest
 
 from command import InFolder
 
-# Half of the resolutions that the models are made for: two intervals an edge are then as fine as these.
+# Half of the models' default resolutions: with two intervals per edge, samples are as dense as with the default.
 MODELS = {"pawn": 32, "alien": 32, "train1": 56, "car": 44, "fan": 28, "nozzle": 24, "train2": 76, "ball": 8, "twist": 20}
 
 STUDY = {
@@ -20,11 +20,11 @@ STUDY = {
     "metrics": ["psnr", "psnr_interior", "ssim", "flip"],
     "reference": {"tolerance": 0.001, "max_levels": 3},
     "demands": [
-        # An error of 1 %, as figure 7 is judged, and half of what it may look different.
+        # An error of 1 %, the bound for figure 7, and half of its bound for visible difference.
         {"metric": "psnr_interior", "least": 40, "where": {"per_edge": "2"}},
         {"metric": "flip", "most": 0.015, "where": {"per_edge": "2"}},
         {"metric": "ssim", "least": 0.99, "where": {"per_edge": "2"}},
-        # Surfaces that are two cells thick. Kernels of second order lose 12 dB as their distance doubles; figure 7's have 47.
+        # Surfaces that are two cells thick. Kernels of second order lose 12 dB when their distance doubles; those of figure 7 have 47.
         {"metric": "psnr_interior", "least": 35, "where": {"per_edge": "1"}},
     ],
 }
@@ -44,7 +44,7 @@ class GroundTruth(InFolder):
                 value = metrics[demand["metric"]]
                 self.assertGreaterEqual(value, demand.get("least", value), (model, demand))
                 self.assertLessEqual(value, demand.get("most", value), (model, demand))
-        for model in MODELS:  # half of the gain of the second order at least: edges of the densities are no quadratics
+        for model in MODELS:  # at least half of the gain of second order: the densities have edges, which are not quadratic
             self.assertGreater(by["2"][model]["psnr_interior"], by["1"][model]["psnr_interior"] + 6, model)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The manual page and the completions name all that the command knows, and the programs that read them have nothing to say."""
+"""The manual page and the completions name every verb and option, and the programs that read them report no errors."""
 
 import re
 import shutil
@@ -88,7 +88,7 @@ class Manuals(InFolder):
     @needs("zsh")
     def test_zsh_completes_verbs_and_options(self):
         self.run_shell("zsh", "-n", "zsh")
-        # zsh's own functions need a terminal: these stand for them and print what they are given
+        # zsh's own functions need a terminal; these replace them and print their arguments
         stubs = "_arguments() { print -l -- \"$@\"; state=$want }; _describe() { print -l -- \"${(@P)2}\" }; compdef() { : }; "
         said = self.run_shell("zsh", "-f", "-c", stubs + "want=verb; source ./zsh")
         for verb in verbs():

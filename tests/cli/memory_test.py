@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a cell of a large mesh costs in memory, as docs/formats.md says: 300 000 cells stand for a hundred million."""
+"""The memory per cell of a large mesh, as in docs/formats.md, measured with 300 000 cells instead of a hundred million."""
 
 import re
 import unittest
@@ -12,7 +12,7 @@ RESOLUTION = 66  # cells along a side
 
 
 def documented(verb):
-    """Bytes a cell, of the table of large meshes."""
+    """Bytes per cell, from the table of large meshes."""
     row = re.search(rf"^\| `subvol {verb} .*\| *(\d+) *\|$", FORMATS.read_text(), re.M)
     return int(row[1])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes of other programs through the command: what is done to them as options say, and files that VTK reads."""
+"""Meshes from other programs: the command treats them as its options say, and VTK reads the files that it writes."""
 
 import unittest
 
@@ -23,7 +23,7 @@ GAP = 1e-3
 
 
 def two_cubes(gap):
-    """Side by side along x, each with points of its own."""
+    """Side by side along x, each with its own points."""
     points = [(x + (x // 2) * (gap - 1), y, z) for x in range(4) for z in (0, 1) for y in (0, 1)]
     lines = ["MeshVersionFormatted 2\nDimension 3\nVertices 16\n"]
     lines += [f"{x} {y} {z} 0\n" for x, y, z in points]
@@ -68,7 +68,7 @@ class Meshes(InFolder):
 
     @needs_vtk
     def test_vtk_reads_a_mesh_as_it_is(self):
-        told = self.run_ok("model", "twist", "-o", "a.vtu", "--resolution", 24, "--json").json()  # some blocks an array
+        told = self.run_ok("model", "twist", "-o", "a.vtu", "--resolution", 24, "--json").json()  # several blocks per array
         grid = self.read_by_vtk(vtkXMLUnstructuredGridReader(), "a.vtu")
         self.assertEqual((grid.GetNumberOfPoints(), grid.GetNumberOfCells()), (told["points"], told["cells"]))
         self.assertEqual({grid.GetCellType(c) for c in range(grid.GetNumberOfCells())}, {12})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turntables, cameras and legends of `render`; videos with a stand-in for ffmpeg that keeps what it is told."""
+"""Turntables, cameras and legends of `render`; videos with a replacement for ffmpeg that keeps its input."""
 
 import os
 import shutil
@@ -105,7 +105,7 @@ class Videos(Pictures):
 
 class Cameras(Pictures):
     def pixels_that_are_not_black(self, *arguments):
-        """By the way of a video of one frame."""
+        """The pixels of a picture, through a video of one frame."""
         path = f"{self.folder / 'tools'}:/usr/bin:/bin" if (self.folder / "tools").exists() else self.put_ffmpeg(KEEP_FRAMES)
         done = self.render("-o", "a.gif", "--turntable", 1, *arguments, path=path)
         self.assertEqual(done.code, 0, done.err)
@@ -137,7 +137,7 @@ class Cameras(Pictures):
         self.assertTrue(0 < left and right < 47 and 0 < top and bottom < 31, fitted)
 
     def test_an_orthographic_ball_has_its_height(self):
-        # 32 / 1.05 = 30.5 rows; a pixel more or less by where the centres lie.
+        # 32 / 1.05 = 30.5 rows; one pixel more or less, depending on where the centres are.
         _, left, right, top, bottom = self.pixels_that_are_not_black("--view", "-y", "--ortho", "--tf", "constant")
         self.assertIn(bottom - top + 1, (30, 31, 32))
         self.assertEqual(right - left, bottom - top)

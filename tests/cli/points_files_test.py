@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of points: what is in them is what the mesh gives, and a reader that is not ours finds it."""
+"""Files of points have the same contents as the mesh gives, and an independent reader finds them."""
 
 import array
 import base64
@@ -16,7 +16,7 @@ from command import InFolder, subvol
 TRANSFER_FUNCTION = """[{"ColorSpace": "RGB", "Name": "t", "RGBPoints": [-1, 0, 0, 1, 0, 0, 1, 0, 1, 1, 0, 0],
                          "Points": [-1, 0, 0.5, 0, 1, 0.5, 0.5, 0]}]"""
 
-# All that else would come from the mesh's own box and range.
+# Everything that would otherwise depend on the mesh's box and range.
 VIEW = ["--camera", "3,2,2.5,0,0,0,0,0,1,40", "--opacity-unit", ".02", "--tf", "tf.json", "--size", "96", "--backend", "cpu"]
 
 # Positions in a .vdb are floats within voxels, 1e-8 of the ball's size; the sum over 200 sheets is in floats, which round to
@@ -95,7 +95,7 @@ class PointsFiles(InFolder):
         (self.folder / "a.boundary.vtp").unlink()
         self.assertEqual(self.run_ok("info", "a.vtp", "--json").json()["boundary_triangles"], 0)
         self.run_ok("render", "a.vtp", "-o", "without.exr", *VIEW)
-        # Points at the rim count as inside: the picture is about half a cell larger all around, and the same within.
+        # Without the boundary, kernels at the rim reach beyond it: the picture is about half a cell larger all around, else the same.
         psnr = self.run_ok("compare", "with.exr", "without.exr", "--json").json()["psnr"]
         self.assertGreater(psnr, 18)
         self.assertLess(psnr, 40)
@@ -117,7 +117,7 @@ class PointsFiles(InFolder):
         rows = [[float(number) for number in line.split()] for line in body.splitlines()[:points]]
         self.assertEqual(list(array.array("d", arrays["Points"][2])), [x for row in rows for x in row[:3]])
         in_order = [row[8 + k] for row in rows for k in (0, 3, 5, 1, 4, 2)]
-        as_floats = array.array("f", in_order)  # the text has as few digits as tell floats apart
+        as_floats = array.array("f", in_order)  # the text has just enough digits to distinguish floats
         self.assertEqual(array.array("f", arrays["frame"][2]), as_floats)
         self.assertEqual(array.array("f", arrays["density"][2]), array.array("f", [row[3] for row in rows]))
         surface = vtk_arrays(self.folder / "a.boundary.vtp")
@@ -149,7 +149,7 @@ class PointsFiles(InFolder):
             self.assertIn(part, told)
 
     def test_viewers_of_splats_find_theirs(self):
-        """They take every property of the header for the vertex's, and no other element may follow."""
+        """Such viewers take all properties in the header as those of the vertex, so no other element may follow."""
         points = self.write("a.ply", "--splats")["points"]
         header, _, body = (self.folder / "a.ply").read_bytes().partition(b"end_header\n")
         properties = re.findall(r"^property (\w+) (\w+)$", header.decode(), re.MULTILINE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report of a study in a browser: it loads alone, its slider works, it fits a phone and a page of paper."""
+"""The report of a study in a browser: it needs no other file, its slider works, it fits a phone and a sheet of paper."""
 
 import json
 import os
@@ -32,7 +32,7 @@ STUDY = {
     "pictures": True,
 }
 
-# Elements that reach over the right edge of the page, but for what scrolls in a box of its own.
+# Elements that reach beyond the right edge of the page, except in boxes that scroll.
 OVERFLOWING = """
   [...document.querySelectorAll('body *')]
     .filter(e => !e.closest('.wide') && !e.closest('svg') && e.getBoundingClientRect().right > innerWidth + 1)
@@ -53,11 +53,11 @@ class ReportInBrowser(unittest.TestCase):
         cls.addClassCleanup(cls.browser.close)
 
     def setUp(self):
-        self.assertEqual(self.ended.code, 1, self.ended.err)  # the case that is to fail
+        self.assertEqual(self.ended.code, 1, self.ended.err)  # the case that must fail
         self.browser.send("Emulation.setEmulatedMedia", media="")
 
     def shot(self, name):
-        """Where SUBVOL_SCREENSHOTS says, for people to look at."""
+        """Saved in the folder that SUBVOL_SCREENSHOTS names, for people to look at."""
         folder = os.environ.get("SUBVOL_SCREENSHOTS")
         if folder:
             Path(folder).mkdir(parents=True, exist_ok=True)
@@ -71,7 +71,7 @@ class ReportInBrowser(unittest.TestCase):
         text = self.browser.evaluate("document.body.innerText")
         for said in ("A <small> study", "<b>splat</b>", "1 case failed", "of 2 demands met", "subvol study s.json figure4", "processor"):
             self.assertIn(said, text)
-        self.assertEqual(self.browser.evaluate("document.querySelectorAll('b, small').length"), 0)  # words stay words
+        self.assertEqual(self.browser.evaluate("document.querySelectorAll('b, small').length"), 0)  # text is not interpreted as HTML
         broken = "[...document.images].filter(i => !i.complete || i.naturalWidth === 0).length"
         self.assertEqual(self.browser.evaluate(broken), 0)
         self.assertGreaterEqual(self.browser.evaluate("document.images.length"), 4 * 3 + 5 * 3 + 1)
@@ -93,7 +93,7 @@ class ReportInBrowser(unittest.TestCase):
         self.assertAlmostEqual(value, 80, delta=6)
         moved = self.browser.evaluate(clip)
         self.assertAlmostEqual(float(re.search(r"([\d.]+)%", moved).group(1)), value, delta=0.01, msg=moved)
-        # The two pictures lie on each other, the difference beside them.
+        # One picture is on top of the other, the difference beside them.
         boxes = self.browser.evaluate("""['.ours img', '.reference img', '.difference img'].map(name =>
             (r => [r.x, r.y, r.width])(document.querySelector('.triple ' + name).getBoundingClientRect()))""")
         self.assertEqual(boxes[0], boxes[1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON keys, which are a contract, and figures whose right value is known."""
+"""The JSON keys, which are a contract, and figures whose correct value is known."""
 
 import json
 import math
@@ -7,7 +7,7 @@ import unittest
 
 from command import InFolder, subvol
 
-CELLS = 4  # of the twisted block along each side
+CELLS = 4  # along each side of the twisted block
 
 
 class Results(InFolder):
@@ -82,8 +82,8 @@ class Results(InFolder):
         grid = info["grids"][0]
         self.assertEqual((grid["name"], grid["active_voxels"]), ("density", made["active_voxels"]))
         self.assert_keys(grid, "voxel_size", "bounds", "min", "max")
-        # The scheme and trilinear voxels both reproduce linear data, but a cell's inverse mapping and the float voxels do not
-        # exactly: 1e-3 is some 1e-4 of the field's range.
+        # The scheme and trilinear voxels both reproduce linear data, but a cell's inverse mapping and the float voxels are not
+        # exact: 1e-3 is about 1e-4 of the field's range.
         self.assertAlmostEqual(info["at"][0]["value"], 0.1 + 0.1 + 0.1, delta=1e-3)
         self.assertIsNone(info["at"][1]["value"])
 

@@ -148,7 +148,7 @@ class Splats(InFolder):
         self.assertEqual((dense["method"], dense["lost_rays"]), ("dense", 0))
         self.run_ok("vdb", "model:ball:4", "-o", "ball.vdb", "--resolution", "80", "--quiet")
         self.render("grid.exr", "--method", "grid", *view, source="ball.vdb")
-        # The splats' boundary is once refined, voxels have steps at the rim.
+        # The splats' boundary is refined once; voxels have steps at the boundary.
         for name, least in [("dense.exr", 35), ("grid.exr", 22)]:
             self.assertGreater(self.run_ok("compare", "splat.exr", name, "--json").json()["psnr"], least, name)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Studies: their files, the paper's table 2, and what is left when a run is killed."""
+"""Studies: their files, the paper's table 2, and what a killed run leaves."""
 
 import csv
 import json
@@ -74,7 +74,7 @@ class Study(InFolder):
         for _, points, papers, rendered, _, _, paper, mended, two, cubic, scheme in table["rows"]:
             self.assertLess(abs(points - papers), 0.05 * papers)
             self.assertLess(rendered, points)
-            # The paper's errors are .0030 to .0107; look-alikes are no copies.
+            # The paper's errors are .0030 to .0107; our models only resemble the paper's.
             self.assertTrue(0.003 <= paper <= 0.0115, paper)
             self.assertLess(cubic, paper / 5)
             self.assertLess(scheme, paper / 10)
@@ -83,8 +83,8 @@ class Study(InFolder):
         solid = result["tables"][1]["rows"]
         self.assertEqual(len(solid), 7)
         for name, papers, ours in solid:
-            if papers is not None:  # of the nozzle there is none
-                self.assertTrue(papers / 2 <= ours <= papers * 2, name)  # of the same size: no copies
+            if papers is not None:  # the paper has none for the nozzle
+                self.assertTrue(papers / 2 <= ours <= papers * 2, name)  # similar, as the models only resemble the paper's
 
     def test_table_1_of_the_paper(self):
         tables = self.run_ok("study", "table1", "-o", "out", "--json").json()["tables"]
@@ -137,7 +137,7 @@ class Study(InFolder):
             self.assertLessEqual(errors["l2"], errors["linf"])
             self.assertTrue(all(0 < value < 1 for value in errors.values()), (name, errors))
         for metric in ("l2", "gradient_rmse", "hausdorff"):
-            self.assertLess(by["second 1"][metric], by["none 1"][metric])  # what follows the field is nearer to it
+            self.assertLess(by["second 1"][metric], by["none 1"][metric])  # a kernel with derivatives is nearer to the field
             self.assertLess(by["second 2"][metric], by["second 1"][metric])  # and so are finer kernels
 
     def test_voxels_come_nearer_to_the_limit_as_they_shrink(self):
@@ -148,7 +148,7 @@ class Study(InFolder):
         for row in (coarse, fine):
             self.assertLess(float(row["rmse"]), float(row["max"]))
             self.assertLess(float(row["uncovered"]), 0.05 * 3000)
-        # Second order inside; voxels at the boundary, where one side is missing, are of first.
+        # Second order inside; first order at the boundary, where voxels have neighbours on one side only.
         self.assertLess(float(fine["rmse"]), float(coarse["rmse"]) / 1.5)
 
     def test_jobs_change_nothing(self):
@@ -177,7 +177,7 @@ class Study(InFolder):
         self.assertFalse((self.folder / "out/small/results.csv").exists())
 
         resumed = self.run_ok("study", "s.json", "-o", "out", "--jobs", 1, "--json").json()["studies"][0]
-        self.assertEqual(resumed["ran"], whole["cases"] - len(before))  # no finished one again, all others once
+        self.assertEqual(resumed["ran"], whole["cases"] - len(before))  # every case that was not finished, once
         after = self.case_files()
         self.assertEqual({name: after[name] for name in before}, before)  # files as they were
         self.assertEqual(self.results(), self.results("whole"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Grids: what the options of `vdb` promise."""
+"""Grids: the effects of the options of `vdb`."""
 
 import json
 import math
@@ -37,7 +37,7 @@ class Grids(InFolder):
         self.assertEqual(made["warnings"], [])
 
     def test_a_limit_that_is_not_reached_is_said(self):
-        made = self.vdb("--resolution", 30, "--density", "sin(1e4*x*y)")  # of the control points, one has nothing to do with the next
+        made = self.vdb("--resolution", 30, "--density", "sin(1e4*x*y)")  # neighbouring control points have unrelated values
         self.assertGreater(made["limit_deviation"]["of_range"], 1e-3)
         self.assertRegex(made["warnings"][0], "level . was the finest within limits")
 
@@ -104,7 +104,7 @@ class Grids(InFolder):
             made = self.vdb("--voxel-size", 0.03, "--from", "points", source=points)
             self.assertEqual((made["points"], made["active_voxels"]), (125, 34**3))
             off = self.run_ok("compare", "a.vdb", "mesh.vdb", "--json").json()
-            self.assertLess(off["linf"], 1e-6, points)  # floats up to 2, and the rounding of the positions of a .vdb
+            self.assertLess(off["linf"], 1e-6, points)  # float values up to 2, and the rounding of positions in a .vdb
 
     def test_refusals(self):
         self.run_ok("points", "model:ball:2", "-o", "p.ply", "--quiet")
@@ -120,7 +120,7 @@ class Grids(InFolder):
 
 
 class Frames(InFolder):
-    """Sequences of a box of one cell that moves, is stretched, or is another one."""
+    """Sequences of a box of one cell that moves, is stretched, or changes its cells."""
 
     def frames(self, *arguments, source="in_###.mesh"):
         return self.run_ok("vdb", source, "-o", "out_##.vdb", "--voxel-size", 0.125, "--density", "x+2*y", "--quiet",
@@ -139,16 +139,16 @@ class Frames(InFolder):
             self.assertEqual(self.run_ok("compare", "a.vdb", frame["output"], "--json").json()["linf"], 0)
 
     def test_velocity_is_that_of_the_points(self):
-        for frame in range(1, 5):  # the place goes by the square of time: 0, 0.22, 0.88, 1.98
+        for frame in range(1, 5):  # the place grows with the square of time: 0, 0.22, 0.88, 1.98
             write_box(self.folder / f"in_{frame:03}.mesh", offset=0.22 * (frame - 1) ** 2)
         made = self.frames("--frames", "4", "--velocity", "--fps", "24")
-        for frame, speed in zip(made["frames"], (0.22, 0.44, 0.88, 1.1)):  # central, but for the first and the last
+        for frame, speed in zip(made["frames"], (0.22, 0.44, 0.88, 1.1)):  # central differences, one-sided at the ends
             velocity = frame["grids"][-1]
             self.assertEqual((velocity["name"], velocity["kind"]), ("vel", "vector"))
             self.assertAlmostEqual(velocity["min"], 24 * speed, places=5)
             self.assertAlmostEqual(velocity["max"], 24 * speed, places=5)
             self.assertEqual(frame["active_voxels"], 8 ** 3)
-            layers = math.ceil(speed / 2 / 0.125) + 1  # half a frame's way, and a voxel to interpolate with
+            layers = math.ceil(speed / 2 / 0.125) + 1  # half a frame's motion, and one voxel for interpolation
             self.assertEqual(velocity["active_voxels"], (8 + 2 * layers) ** 3)
 
     def test_velocities_that_reach_too_far_are_told(self):
@@ -163,7 +163,7 @@ class Frames(InFolder):
         write_box(self.folder / "long.mesh", length=2.0)
         made = self.frames("--to", "long.mesh", "--frames", "1-5", "--velocity", "--sdf", source="short.mesh")
         self.assertEqual([frame["active_voxels"] for frame in made["frames"]], [512, 640, 768, 896, 1024])
-        for frame in made["frames"]:  # the far end moves by a quarter a frame, the near one not at all
+        for frame in made["frames"]:  # the far end moves by a quarter per frame, the near end not at all
             self.assertEqual([grid["name"] for grid in frame["grids"]], ["density", "vel", "sdf"])
             self.assertAlmostEqual(frame["grids"][1]["min"], 0, places=6)
             self.assertLess(frame["grids"][1]["max"], 0.25)

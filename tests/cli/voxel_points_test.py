@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A .vdb grid as kernels: what is splatted is what rays through its voxels see."""
+"""A .vdb grid as kernels: the splats look like rays through its voxels."""
 
 import unittest
 
@@ -27,14 +27,14 @@ class VoxelPoints(InFolder):
             self.assertAlmostEqual(info["channels"][0][channel], extreme, delta=1e-6)
         coarse = self.run_ok("points", "ball.vdb", "-o", "few.ply", "--spacing", 2 * voxels["voxel_size"], "--json").json()
         self.assertEqual(coarse["voxels_a_side"], 2)
-        # Blocks at the rim count from a half on: some with fewer than eight voxels, and some voxels that are left out.
+        # Blocks at the rim count if at least half full: some have fewer than eight voxels, and some voxels are left out.
         self.assertAlmostEqual(8 * coarse["points"], made["points"], delta=0.02 * made["points"])
 
     def test_splats_of_voxels_look_like_rays_through_them(self):
         self.run_ok("render", "ball.vdb", "-o", "grid.exr", "--method", "grid", *VIEW)
         drawn = self.run_ok("render", "ball.vdb", "-o", "splat.exr", "--backend", "cpu", *VIEW, "--json").json()
         self.assertEqual((drawn["method"], drawn["field"]), ("splat", "density"))
-        # The rim of the one has steps, of the other it is where half the weight is: that is all the difference to be seen.
+        # The rim of the voxels has steps, that of the kernels is where half the weight is. There is no other visible difference.
         self.assertGreater(self.compare("grid.exr", "splat.exr")["psnr"], 30)
         self.run_ok("points", "ball.vdb", "-o", "ball.ply")
         self.run_ok("render", "ball.ply", "-o", "file.exr", "--backend", "cpu", *VIEW)

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls into every component, so that each must have been installed with what it links to.
-#include <subvol/image_metrics.h>
-#include <subvol/model.h>
-#include <subvol/refine.h>
+#include <subvol/compare.h>
 #include <subvol/render.h>
+#include <subvol/subvol.h>
 #include <subvol/vdb.h>
-#include <subvol/version.h>
 
 static_assert(SUBVOL_VERSION_MAJOR == 0 && SUBVOL_VERSION_MINOR == 1);
 

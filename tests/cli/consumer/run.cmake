@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installs the build into an empty folder, then configures, builds and runs the project here against it. Then asks for the package in
-# ways that are right and wrong.
+# Installs the build into an empty folder, then configures, builds and runs the project here against it. Then requests the package in
+# right and wrong ways.
 file(REMOVE_RECURSE ${WORK})
 
 function(run)
@@ -10,11 +10,11 @@ endfunction()
 set(project_options -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${WORK}/prefix -DCMAKE_CXX_COMPILER=${COMPILER}
     -DCMAKE_CXX_FLAGS=${FLAGS})
 
-# request("find_package's arguments" CODE TEXT): configuring ends with the exit code, and says TEXT.
+# request("find_package's arguments" CODE TEXT): configuring ends with the exit code and prints TEXT.
 function(request arguments code text)
   execute_process(COMMAND ${CMAKE_COMMAND} ${project_options} -S ${SOURCE}/request -B ${WORK}/request "-DREQUEST=${arguments}"
     RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE said)
-  string(REGEX REPLACE "[ \n]+" " " said "${said}") # CMake breaks lines where it likes
+  string(REGEX REPLACE "[ \n]+" " " said "${said}") # CMake wraps lines
   string(FIND "${said}" "${text}" found)
   if(NOT result EQUAL code OR found EQUAL -1)
     message(FATAL_ERROR "find_package(subvol ${arguments}): ${result} instead of ${code}, or '${text}' missing:\n${said}")
@@ -32,10 +32,10 @@ request("${VERSION};REQUIRED;COMPONENTS;lib" 0 "subvol ${VERSION} has: lib.")
 request("REQUIRED;COMPONENTS;render" 0 "has: lib render.")
 request("REQUIRED;COMPONENTS;lib;OPTIONAL_COMPONENTS;viewer" 0 "has: lib.")
 request("COMPONENTS;viewer" 0 "has: .")
-request("REQUIRED;COMPONENTS;viewer" 1 "'viewer' is no component of it; the components are lib, vdb, render, compare")
+request("REQUIRED;COMPONENTS;viewer" 1 "'viewer' is not a component of subvol; the components are lib, vdb, render, compare")
 request("99;REQUIRED" 1 "version: ${VERSION}")
 
-# An installation without OpenVDB, as far as its package can tell.
+# An installation that looks as if it had been built without OpenVDB.
 file(GLOB_RECURSE config ${WORK}/prefix/*/subvolConfig.cmake)
 file(READ ${config} text)
 string(REPLACE "set(subvol_built lib;vdb;render;compare)" "set(subvol_built lib;render;compare)" text "${text}")

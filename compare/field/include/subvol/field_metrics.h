@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "subvol/field_samples.h"
 #include "subvol/field.h"
+#include "subvol/field_samples.h"
 #include "subvol/progress.h"
 #include "subvol/surface.h"
 

@@ -10,8 +10,9 @@
 
 namespace subvol {
 
-/// A scalar field of a mesh (`scalar_field`): trilinear in the given cells; the tetrahedra of `split_cell` decide which cell contains x.
-/// For the limit, pass a refined mesh (`refine`, `on_limit`). Where cells overlap, the first one that the search finds counts.
+/// A scalar field of a mesh (`scalar_field`): trilinear in the given cells; the tetrahedra of `split_cell` decide which cell
+/// contains x. For the limit, pass a refined mesh (`refine`, `on_limit`). Where cells overlap, the first one that the search
+/// finds counts.
 ///
 /// throws: Error(InvalidInput) as `validate` and `scalar_field`
 /// cost:   a tree of boxes over the cells, about 60 bytes per cell beside the mesh; some µs per value; thread-safe
