@@ -5,11 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "ghost_cells.h"
 #include "mixed_cells_split.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
-#include "weld.h"
 
 namespace subvol::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "ghost_cells.h"
+#include "assemble.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 
 #include "assemble.h"
 #include "formats.h"
-#include "ghost_cells.h"
+#include "assemble.h"
 #include "number_type.h"
 #include "structured_grid.h"
 #include "subvol/error.h"

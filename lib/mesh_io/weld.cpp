@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "weld.h"
+#include "assemble.h"
 
 #include <algorithm>
 #include <bit>
