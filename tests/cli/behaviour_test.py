@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a user sees first: help, exit codes, one sentence for a mistake, no files left behind, repeatable results."""
 
+import os
 import signal
 import subprocess
-import time
 import unittest
 
-from command import COMMAND, CUBE, SANITIZED, InFolder, Run, subvol
+from command import COMMAND, CUBE, HANGS_AFTER, SANITIZED, InFolder, Run, start_and_wait_for_progress, subvol
 
 VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "compare", "demo"]
 
@@ -60,7 +60,7 @@ class Mistakes(InFolder):
 
     def test_a_full_standard_output(self):
         with open("/dev/full", "w") as full:
-            done = subprocess.run([COMMAND, "model", "--list"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+            done = subprocess.run([COMMAND, "model", "--list"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=HANGS_AFTER)
         self.assertEqual((done.returncode, done.stderr), (2, "subvol: standard output: could not be written\n"))
 
     def test_files(self):
@@ -101,18 +101,18 @@ class TooMuch(InFolder):
     @unittest.skipIf(SANITIZED, "the sanitizer needs all addresses")
     def test_memory_that_runs_out_on_the_way(self):
         limited = f"ulimit -v 900000; exec '{COMMAND}' subdivide model:twist -o a.vtu --levels 3"  # needs some 5 GB
-        done = subprocess.run(["bash", "-c", limited], cwd=self.folder, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(["bash", "-c", limited], cwd=self.folder, capture_output=True, text=True, timeout=HANGS_AFTER)
         self.assert_beyond_the_machine(Run(done.returncode, done.stdout, done.stderr))
 
 
 class Interrupt(InFolder):
     def test_ctrl_c_stops_and_leaves_nothing(self):
-        process = subprocess.Popen([COMMAND, "render", "model:twist", "-o", "a.png", "--method", "tets", "--samples", "16",
-                                    "--size", "4096"], cwd=self.folder, stderr=subprocess.PIPE, text=True)
-        time.sleep(1)  # the work has begun; uninterrupted it takes minutes
+        # Uninterrupted it takes minutes.
+        process, terminal = start_and_wait_for_progress("render", "model:twist", "-o", "a.png", "--method", "tets",
+                                                        "--samples", "16", "--size", "4096", folder=self.folder)
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130, err)
+        self.assertEqual(process.wait(HANGS_AFTER), 130)
+        os.close(terminal)
         self.assertEqual(self.files(), [])
 
 

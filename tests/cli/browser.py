@@ -71,7 +71,7 @@ class Browser:
             else:
                 return answer["result"]
 
-    def _receive(self, seconds=60):
+    def _receive(self, seconds=3000):
         deadline = time.monotonic() + seconds
         while b"\0" not in self._rest:
             if not select.select([self._from], [], [], max(0, deadline - time.monotonic()))[0]:

@@ -3,6 +3,7 @@
 
 import json
 import os
+import pty
 import resource
 import subprocess
 import tempfile
@@ -36,6 +37,10 @@ End
 """
 
 
+# Only against a command that hangs: twenty times what the longest one takes on a quiet machine.
+HANGS_AFTER = 3000
+
+
 @dataclass
 class Run:
     code: int
@@ -49,7 +54,7 @@ class Run:
 
 
 def subvol(*arguments, folder=None):
-    done = subprocess.run([COMMAND, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=120)
+    done = subprocess.run([COMMAND, *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=HANGS_AFTER)
     return Run(done.returncode, done.stdout, done.stderr)
 
 
@@ -72,6 +77,27 @@ def subvol_measured(*arguments, folder=None, max_seconds=None, max_mib=None):
         out.seek(0)
         err.seek(0)
         return Run(process.returncode, out.read(), err.read(), seconds, usage.ru_maxrss / 1024)
+
+
+def children(pid):
+    """The processes that a process has started and that still run."""
+    tasks = Path(f"/proc/{pid}/task").glob("*/children")
+    return [int(child) for task in tasks for child in task.read_text().split()]
+
+
+def wait_for_end(pids):
+    """Returns when none of these processes runs any longer; they need not be children of this one."""
+    while any(Path(f"/proc/{pid}").exists() and "\nState:\tZ" not in Path(f"/proc/{pid}/status").read_text() for pid in pids):
+        time.sleep(0.01)
+
+
+def start_and_wait_for_progress(*arguments, folder):
+    """Starts the command on a terminal of its own and returns the process and the terminal once it shows progress."""
+    terminal, end = pty.openpty()
+    process = subprocess.Popen([COMMAND, *map(str, arguments)], cwd=folder, stdout=subprocess.DEVNULL, stderr=end)
+    os.close(end)
+    os.read(terminal, 1)
+    return process, terminal
 
 
 class InFolder(unittest.TestCase):

@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from command import COMMAND
+from command import COMMAND, HANGS_AFTER
 
 STUDY = {
     "name": "small",
@@ -43,7 +43,7 @@ class Command:
     def run_undisturbed(self):
         with tempfile.TemporaryDirectory() as name:
             start = time.monotonic()
-            done = subprocess.run([COMMAND, *self.words], cwd=name, capture_output=True, text=True, timeout=300,
+            done = subprocess.run([COMMAND, *self.words], cwd=name, capture_output=True, text=True, timeout=HANGS_AFTER,
                                   env={**os.environ, **self.environment})
             self.seconds = time.monotonic() - start
             if done.returncode != 0:

@@ -21,13 +21,12 @@ import tempfile
 import time
 from pathlib import Path
 
-from command import COMMAND, SANITIZED
+from command import COMMAND, HANGS_AFTER, SANITIZED, children, wait_for_end
 from fault_commands import commands, prepare
 
 OLD = b"what was there before"
 NO_EGL = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent", "LIBGL_DRIVERS_PATH": "/nonexistent", "EGL_PLATFORM": "surfaceless"}
 PAGE = 4096
-STOPS_WITHIN = 20
 DISASTERS = ("terminate called", "core dumped", "Segmentation", "LLVM ERROR", "Assert", "what():", "Sanitizer")
 
 
@@ -62,7 +61,7 @@ def start(command, folder, environment=None, limits=(), **streams):
 
 def run(command, folder, *arguments, **keywords):
     process = start(command, folder, *arguments, **keywords)
-    return Ended(process, *process.communicate(timeout=300))
+    return Ended(process, *process.communicate(timeout=HANGS_AFTER))
 
 
 def put_old_files(command, folder):
@@ -235,18 +234,19 @@ class Faults:
                         put_old_files(command, Path(name))
                     process = start(command, name)
                     time.sleep(luck.uniform(0, 1.05 * command.seconds))
+                    running = children(process.pid)
                     process.send_signal(sent)
-                    return self.after_signal(command, Path(name), process, sent, codes[sent], old)
+                    return self.after_signal(command, Path(name), process, running, sent, codes[sent], old)
             self.table.attempt(command, sent.name, attempt)
 
-    def after_signal(self, command, folder, process, sent, code, old):
+    def after_signal(self, command, folder, process, running, sent, code, old):
         try:
-            ended = Ended(process, *process.communicate(timeout=STOPS_WITHIN))
+            ended = Ended(process, *process.communicate(timeout=HANGS_AFTER))
         except subprocess.TimeoutExpired:
             process.kill()
             process.communicate()
-            raise Problem(f"did not stop within {STOPS_WITHIN} s") from None
-        time.sleep(0.1 if command.children else 0)  # until the system has ended the children too
+            raise Problem(f"did not stop within {HANGS_AFTER} s") from None
+        wait_for_end(running)  # children end with their parent
         killed = sent == signal.SIGKILL
         whole = check_files(command, folder, old, killed)
         if ended.code == 0:

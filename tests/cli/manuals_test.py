@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import unittest
 
-from command import COMMAND, InFolder, subvol
+from command import COMMAND, HANGS_AFTER, InFolder, subvol
 
 
 def verbs():
@@ -35,7 +35,7 @@ class Manuals(InFolder):
             (self.folder / kind).write_text(done.out)
 
     def run_shell(self, *command):
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=60)
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=HANGS_AFTER)
         self.assertEqual((done.returncode, done.stderr), (0, ""), done.stdout)
         return done.stdout
 
@@ -67,7 +67,7 @@ class Manuals(InFolder):
 
     def test_the_day_can_be_set(self):
         done = subprocess.run(["env", "SOURCE_DATE_EPOCH=86400", COMMAND, "--generate", "man"],
-                              capture_output=True, text=True, timeout=60)
+                              capture_output=True, text=True, timeout=HANGS_AFTER)
         self.assertIn(".TH SUBVOL 1 1970-01-02 ", done.stdout)
 
     def test_bash_completes_verbs(self):

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 from xml.etree import ElementTree
 
-from command import COMMAND, InFolder, Run
+from command import COMMAND, HANGS_AFTER, InFolder, Run
 
 SMALL = ["--backend", "cpu", "--sheets", "20"]
 CAMERA = ["--camera", "3,-4,2,0,0,0,0,0,1,35"]
@@ -30,7 +30,7 @@ class Pictures(InFolder):
     def render(self, *arguments, path=None, size="48x32"):
         environment = dict(os.environ, **({"PATH": path} if path else {}))
         done = subprocess.run([COMMAND, "render", "model:ball:2", *map(str, arguments), "--size", size, *SMALL], cwd=self.folder,
-                              capture_output=True, text=True, timeout=120, env=environment)
+                              capture_output=True, text=True, timeout=HANGS_AFTER, env=environment)
         return Run(done.returncode, done.stdout, done.stderr)
 
     def bytes_of(self, name):

@@ -107,7 +107,7 @@ class Splats(InFolder):
             self.skipTest("no OpenGL 4.5 through EGL")
         self.render("tets.exr", "--method", "tets", "--samples", "2")
         done = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--samples", "2",
-                           "--seconds", "60", "--json").json()
+                           "--seconds", "6000", "--json").json()
         self.assertTrue(done["finished"])
         self.assertLess(self.difference("tets.exr", "pt.exr"), 1e-4)
         done = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--seconds", "1e-6",
@@ -132,7 +132,7 @@ class Splats(InFolder):
         self.assertEqual(self.files(), [])
 
     def test_a_time_is_kept_with_the_best_picture(self):
-        done = self.run_ok("render", "model:twist:6", "-o", "a.png", "--size", "64", "--backend", "cpu", "--seconds", "60",
+        done = self.run_ok("render", "model:twist:6", "-o", "a.png", "--size", "64", "--backend", "cpu", "--seconds", "6000",
                            "--json").json()
         self.assertEqual((done["picture_scale"], done["footprint_px"]), (1, 1))
         self.assertGreater(done["points"], 343)

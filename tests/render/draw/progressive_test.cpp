@@ -38,7 +38,7 @@ TEST(Progressive, PicturesComeNearerToTheLastOne) {
     Pictures pictures;
     const auto result = render_progressively(
         make_model("twist", 8), View(kCamera, 90, 71), optics(),
-        {.seconds = 600, .footprint_px = {4, 2}, .splat = {.method = SplatMethod::Cpu}, .progress = &pictures});
+        {.seconds = 6000, .footprint_px = {4, 2}, .splat = {.method = SplatMethod::Cpu}, .progress = &pictures});
     ASSERT_EQ(result.steps, 5);  // quarter, half, whole, and two finer samplings: cells are 8 pixels wide
     EXPECT_EQ(result.picture_scale, 1);
     EXPECT_EQ(result.footprint_px, 2);
@@ -73,7 +73,7 @@ TEST(Progressive, RequestToStopEndsTheWork) {
     pictures.stop_after = 2;
     try {
         (void)render_progressively(make_model("twist", 8), View(kCamera, 64, 64), optics(),
-                                   {.seconds = 600, .splat = {.method = SplatMethod::Cpu}, .progress = &pictures});
+                                   {.seconds = 6000, .splat = {.method = SplatMethod::Cpu}, .progress = &pictures});
         FAIL() << "the work was not stopped";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::Cancelled);
@@ -95,7 +95,7 @@ TEST_F(ProgressiveProjected, PicturesConvergeToTheExactOne) {
     ProjectedRenderer renderer(valued(mesh_, values));
     const auto exact = render_tets(valued(mesh_, values), {}, view_, optics()).image;
     Pictures pictures;
-    const auto result = render_progressively(renderer, view_, optics(), {.seconds = 600, .progress = &pictures});
+    const auto result = render_progressively(renderer, view_, optics(), {.seconds = 6000, .progress = &pictures});
     EXPECT_TRUE(result.finished);
     EXPECT_EQ(result.lod, 1);
     ASSERT_EQ(pictures.images.size(), static_cast<std::size_t>(result.steps));
@@ -117,7 +117,7 @@ TEST_F(ProgressiveProjected, ListsDrawWhatTheKBufferMisses) {
     const auto havs = renderer.draw(view_, optics(), {.order = ProjectedOrder::Havs, .kbuffer = 1});
     ASSERT_GT(havs.report.late_faces, 0u);
     const auto result =
-        render_progressively(renderer, view_, optics(), {.seconds = 600, .projected = {.kbuffer = 1, .samples = 2}});
+        render_progressively(renderer, view_, optics(), {.seconds = 6000, .projected = {.kbuffer = 1, .samples = 2}});
     EXPECT_TRUE(result.finished);
     const auto lists = renderer.draw(view_, optics(), {.order = ProjectedOrder::Lists, .samples = 2});
     EXPECT_EQ(result.projected.image.rgba, lists.image.rgba);
@@ -138,7 +138,7 @@ TEST_F(ProgressiveProjected, RequestToStopEndsTheWork) {
     Pictures pictures;
     pictures.stop_after = 2;
     try {
-        (void)render_progressively(renderer, view_, optics(), {.seconds = 600, .progress = &pictures});
+        (void)render_progressively(renderer, view_, optics(), {.seconds = 6000, .progress = &pictures});
         FAIL() << "the work was not stopped";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::Cancelled);
