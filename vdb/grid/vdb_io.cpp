@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/openvdb.h>
+#include "openvdb_grids.h"
 
 #include "subvol/detail/vdb_file.h"
 #include "subvol/error.h"

@@ -4,7 +4,7 @@
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
+#include "openvdb_grids.h"
 
 #include <fstream>
 #include <optional>

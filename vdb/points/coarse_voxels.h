@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <openvdb/openvdb.h>
+#include "openvdb_grids.h"
 
 namespace subvol::detail {
 

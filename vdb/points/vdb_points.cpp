@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/vdb_points.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/tools/PointIndexGrid.h>
+#include "openvdb_grids.h"
 
 #include <algorithm>
 #include <array>

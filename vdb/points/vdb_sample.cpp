@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/vdb_sample.h"
 
-#include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
+#include "openvdb_grids.h"
 
 #include <algorithm>
 #include <cmath>

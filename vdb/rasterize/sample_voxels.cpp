@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/openvdb.h>
 #include <openvdb/tree/LeafManager.h>
+#include "openvdb_grids.h"
 
 #include <algorithm>
 #include <cmath>

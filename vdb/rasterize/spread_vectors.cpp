@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/Morphology.h>
 #include <openvdb/tools/Prune.h>
 #include <openvdb/tree/LeafManager.h>
+#include "openvdb_grids.h"
 
 #include <array>
 

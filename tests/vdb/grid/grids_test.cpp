@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
+#include "openvdb_grids.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#include "openvdb_grids.h"
 
 #include <csignal>
 #include <filesystem>

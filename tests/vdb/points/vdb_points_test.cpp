@@ -2,11 +2,11 @@
 #include "subvol/vdb_points.h"
 
 #include <gmock/gmock.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointCount.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
+#include "openvdb_grids.h"
 
 #include <csignal>
 #include <random>

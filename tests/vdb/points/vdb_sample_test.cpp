@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
+#include "openvdb_grids.h"
 
 #include <cstdlib>
 #include <functional>
