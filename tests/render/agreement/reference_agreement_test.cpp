@@ -14,6 +14,7 @@ namespace {
 
 using test::evaluate;
 using test::largest_difference;
+using test::valued;
 
 constexpr double kFloatTol = 1e-6;  // images are in single precision, all before in double
 constexpr double kAgreeTol = 1e-4;  // the requirement; single precision on the device

@@ -41,7 +41,7 @@ void expect_robust(const HexMesh& mesh, const std::string& name) {
                          .up = {0.1, 0.2, 1},
                          .ortho_height = 1.5 * diagonal},
                         kSize, kSize);
-        const auto result = render_dense(valued(mesh, ones), {}, view, optics, {.levels = kLevel});
+        const auto result = render_dense(test::valued(mesh, ones), {}, view, optics, {.levels = kLevel});
         EXPECT_EQ(result.report.lost_rays, 0u) << name;
         for (int y = 0; y < kSize; ++y) {
             for (int x = 0; x < kSize; ++x) {

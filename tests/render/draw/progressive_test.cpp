@@ -91,9 +91,8 @@ protected:
 };
 
 TEST_F(ProgressiveProjected, PicturesConvergeToTheExactOne) {
-    const auto& values = mesh_.attributes[0].values;
-    ProjectedRenderer renderer(valued(mesh_, values));
-    const auto exact = render_tets(valued(mesh_, values), {}, view_, optics()).image;
+    ProjectedRenderer renderer(mesh_);
+    const auto exact = render_tets(mesh_, {}, view_, optics()).image;
     Pictures pictures;
     const auto result = render_progressively(renderer, view_, optics(), {.seconds = 6000, .progress = &pictures});
     EXPECT_TRUE(result.finished);
@@ -112,8 +111,7 @@ TEST_F(ProgressiveProjected, PicturesConvergeToTheExactOne) {
 
 TEST_F(ProgressiveProjected, ListsDrawWhatTheKBufferMisses) {
     for (Vec3& p : mesh_.points) p.z *= 0.02;  // flat cells
-    const auto& values = mesh_.attributes[0].values;
-    ProjectedRenderer renderer(valued(mesh_, values));
+    ProjectedRenderer renderer(mesh_);
     const auto havs = renderer.draw(view_, optics(), {.order = ProjectedOrder::Havs, .kbuffer = 1});
     ASSERT_GT(havs.report.late_faces, 0u);
     const auto result =

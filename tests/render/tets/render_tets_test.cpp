@@ -16,6 +16,7 @@ namespace {
 using test::constant_alpha;
 using test::constant_optics;
 using test::evaluate;
+using test::valued;
 
 // Images are in single precision, all before in double.
 constexpr double kFloatTol = 1e-6;
