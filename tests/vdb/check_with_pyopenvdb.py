@@ -1,12 +1,10 @@
-#!/ usr / bin / env python3
-#SPDX - License - Identifier : Apache - 2.0
-""
-    "Checks a .vdb file through OpenVDB's Python module against values at voxel centres.
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Checks a .vdb file through OpenVDB's Python module against values at voxel centres.
 
-    check_with_pyopenvdb.py FILE.vdb FILE.json
+check_with_pyopenvdb.py FILE.vdb FILE.json
 
-        The JSON file holds{"points" : [[x, y, z], ...], "grids" : {"NAME" : [ v, [ vx, vy, vz ] or null, ... ], ...}};
-null means that the
+The JSON file holds {"points": [[x, y, z], ...], "grids": {"NAME": [v, [vx, vy, vz] or null, ...], ...}}; null means that the
 voxel is not active. Exit status: 0 all agree, 1 some do not, 77 no module (skipped).
 """
 import json
@@ -18,7 +16,7 @@ except ImportError:
     print("skipped: the module pyopenvdb (package python3-openvdb) is missing")
     sys.exit(77)
 
-#Relative to the largest number of the grid of 32 - bit floats; each value is rounded a few times.
+# Relative to the largest number of the grid of 32-bit floats; each value is rounded a few times.
 TOLERANCE = 1e-6
 
 

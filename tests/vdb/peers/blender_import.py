@@ -1,4 +1,4 @@
-#SPDX - License - Identifier : Apache - 2.0
+# SPDX-License-Identifier: Apache-2.0
 """Imports a grid of a .vdb file into Blender, checks its position, and renders one frame.
 
   blender -b --factory-startup --python blender_import.py -- FILE.vdb -o PICTURE.exr --grid NAME \\
@@ -64,7 +64,8 @@ def described(volume):
         "box": [[min(c[k] for c in corners) for k in range(3)], [max(c[k] for c in corners) for k in range(3)]],
         "grids": [{"name": g.name, "type": g.data_type, "channels": g.channels, "matrix": [list(row) for row in g.matrix_object]}
                   for g in volume.data.grids],
-}
+    }
+
 
 def check(about, name, bounds):
     """Checks that the grid exists, its voxels are cubes, and the object's box is that of its leaves of 8³ voxels."""
