@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "lib/comma_locale.h"
 #include "lib/test_meshes.h"
 #include "projected_scenes.h"
 #include "subvol/error.h"
@@ -194,6 +195,18 @@ TEST_F(RenderHavs, InPartsItIsTheSame) {
     EXPECT_GT(parts.report.parts, 2u);
     EXPECT_EQ(parts.image.rgba, whole.image.rgba);
     EXPECT_EQ(parts.report.late_faces, whole.report.late_faces);
+}
+
+TEST_F(RenderHavs, IsTheSameInEveryLocale) {
+    const HexMesh mesh = box(3);
+    const auto values = evaluate(mesh, waves);
+    const auto draw = [&](ProjectedOrder order) {
+        return render_projected(valued(mesh, values), {}, slanted_view(64), ramp_optics(0.1), {.order = order}).image.rgba;
+    };
+    const auto havs = draw(ProjectedOrder::Havs), lists = draw(ProjectedOrder::Lists);
+    const CommaLocale comma;  // the shaders' texts have numbers in them
+    EXPECT_EQ(draw(ProjectedOrder::Havs), havs);
+    EXPECT_EQ(draw(ProjectedOrder::Lists), lists);
 }
 
 TEST_F(RenderHavs, RealMeshesAreLikeRays) {
