@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
+#include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -23,7 +24,9 @@ void check_writable(const std::filesystem::path& folder, const std::string& outp
 
 void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
     check_choice(path.string(), path.extension().string(), extensions);
-    const std::filesystem::path folder = path.parent_path();
+    const detail::OutputPlace place = detail::output_place(path);
+    if (place.stream) return;
+    const std::filesystem::path folder = place.file.parent_path();
     if (!folder.empty() && !std::filesystem::is_directory(folder)) {
         throw Error(ErrorCode::Io, "the folder " + folder.string() + " does not exist", path.string());
     }

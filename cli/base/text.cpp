@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
@@ -15,25 +16,23 @@ std::string join(const std::vector<std::string>& parts) {
 }
 
 Vec3 parse_vector(const std::string& option, const std::string& value) {
-    std::istringstream in(value);
-    Vec3 v(0.0);
-    char first = 0, second = 0;
-    in >> v.x >> first >> v.y >> second >> v.z;
-    const bool finite = std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-    if (in.fail() || !(in >> std::ws).eof() || first != ',' || second != ',' || !finite) {
+    std::vector<double> numbers;
+    for (std::string_view rest = value; numbers.size() < 4;) {
+        const std::size_t comma = rest.find(',');
+        numbers.push_back(detail::number_from(rest.substr(0, comma)).value_or(NAN));
+        if (comma == std::string_view::npos) break;
+        rest.remove_prefix(comma + 1);
+    }
+    if (numbers.size() != 3 || !std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); })) {
         throw Error(ErrorCode::InvalidInput, "'" + value + "' is not three numbers", option, "write it as 1,2,3");
     }
-    return v;
+    return {numbers[0], numbers[1], numbers[2]};
 }
 
 double parse_number(const std::string& option, const std::string& value) {
-    std::istringstream in(value);
-    double number = 0;
-    in >> number;
-    if (in.fail() || !(in >> std::ws).eof() || !std::isfinite(number)) {
-        throw Error(ErrorCode::InvalidInput, "'" + value + "' is not a number", option);
-    }
-    return number;
+    const auto number = detail::number_from(value);
+    if (!number || !std::isfinite(*number)) throw Error(ErrorCode::InvalidInput, "'" + value + "' is not a number", option);
+    return *number;
 }
 
 void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported) {

@@ -10,6 +10,7 @@
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_field.h"
+#include "subvol/mesh_io.h"
 #include "subvol/points_field.h"
 #include "text.h"
 
@@ -68,9 +69,9 @@ FieldInput grid_field(const std::string& input, const CommonOptions& options, Re
 }  // namespace
 
 InputKind kind_of(const std::string& input) {
-    constexpr std::array kMeshes{".mesh", ".vtk", ".vtu", ".msh"};
     const std::string extension = extension_of(input);
-    if (input.starts_with("model:") || std::ranges::find(kMeshes, extension) != kMeshes.end()) return InputKind::Mesh;
+    const std::vector<std::string> meshes = readable_mesh_extensions();
+    if (input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end()) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
     return extension == ".vdb" ? InputKind::Grid : InputKind::Picture;
 }

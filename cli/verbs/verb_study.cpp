@@ -57,8 +57,8 @@ public:
             .add_option("--jobs", jobs_, "cases that run at the same time, unless costs are measured (default: one per core)")
             ->type_name("N")
             ->check(CLI::Range(1, 1024));
-        auto* resume =
-            app().add_flag("--resume", resume_, "keep the finished cases of an earlier run in the folder (the default)");
+        auto* resume = app().add_flag(
+            "--resume", resume_, "keep the cases that an earlier run of this version finished in the folder (the default)");
         app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);
         app().add_flag("--list", list_, "list the studies");
         app().add_option("--print", print_, "print a built-in study's file, as a start for your own")->type_name("NAME");

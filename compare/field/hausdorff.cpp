@@ -7,6 +7,7 @@
 
 #include "closed_surface.h"
 #include "sample_grid.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/field_metrics.h"
 
 namespace subvol {
@@ -59,7 +60,7 @@ IsosurfaceDistance isosurface_distance(const FieldView& test, const FieldView& r
     const Surface a = isosurface(test, iso, box, resolution, progress);
     const Surface b = isosurface(reference, iso, box, resolution, progress);
     if (a.triangles.empty() && b.triangles.empty()) {
-        throw Error(ErrorCode::InvalidInput, "neither field takes the value " + std::to_string(iso) + " in its domain");
+        throw Error(ErrorCode::InvalidInput, "neither field takes the value " + detail::number_text(iso) + " in its domain");
     }
     return {hausdorff_distance(a, b), detail::SampleGrid(box, resolution).spacing(), a.triangles.size(), b.triangles.size()};
 }

@@ -10,6 +10,7 @@
 #include "flip_color.h"
 #include "image_difference.h"
 #include "separable.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -151,7 +152,7 @@ double feature_error(const Seen& a, const Seen& b, std::size_t i) {
 FlipResult flip(const Image& test, const Image& reference, double pixels_per_degree) {
     check_finite(test, reference);
     if (!(pixels_per_degree >= 1 && pixels_per_degree <= 1000)) {
-        throw Error(ErrorCode::InvalidInput, std::to_string(pixels_per_degree) + " pixels per degree are out of range", {},
+        throw Error(ErrorCode::InvalidInput, number_text(pixels_per_degree) + " pixels per degree are out of range", {},
                     "1 to 1000");
     }
     const Filters filters(pixels_per_degree);

@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "image_difference.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/flip.h"
 
@@ -91,8 +92,8 @@ HdrFlipResult hdr_flip(const Image& test, const Image& reference, const HdrFlipO
     if (!(range >= 0 && range <= kMostStops)) {
         throw Error(
             ErrorCode::InvalidInput,
-            "exposures from " + std::to_string(result.start) + " to " + std::to_string(result.stop) + " stops are out of range",
-            {}, "a start not beyond the stop, at most 100 stops");
+            "exposures from " + number_text(result.start) + " to " + number_text(result.stop) + " stops are out of range", {},
+            "a start not beyond the stop, at most 100 stops");
     }
     result.exposures = std::max(2, static_cast<int>(std::ceil(range)));
     const double step = range / (result.exposures - 1);

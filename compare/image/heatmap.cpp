@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <string_view>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/image_metrics.h"
 #include "subvol/srgb.h"
@@ -103,9 +103,7 @@ void set_pixel(Image& image, int x, int y, const std::array<float, 4>& rgba) {
 }
 
 std::string tick_text(double value) {
-    std::array<char, 32> text;
-    std::snprintf(text.data(), text.size(), "%.3g", value);
-    return text.data();
+    return detail::number_text(value, 3);
 }
 
 void draw_bar(Image& image, int top) {

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "html_text.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/round_ticks.h"
 
 namespace subvol {
 
@@ -24,9 +25,7 @@ constexpr double kLegendLine = 18, kFont = 12;
 constexpr std::array<const char*, 7> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#56b4e9", "#e69f00"};
 
 std::string number(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.2f", value);
-    return text.data();
+    return fixed_text(value, 2);
 }
 
 std::string superscript(int value) {
@@ -36,16 +35,43 @@ std::string superscript(int value) {
     return text;
 }
 
-std::string tick_text(double value) {
-    std::array<char, 32> text{};
-    const int decade = value > 0 ? static_cast<int>(std::floor(std::log10(value) + 1e-9)) : 0;
-    if (std::abs(decade) < 4) {
-        std::snprintf(text.data(), text.size(), "%.4g", value);
-        return text.data();
+/// The label m · 10^decade.
+std::string decade_label(double m, int decade) {
+    if (std::abs(decade) < 4) return number_text(m * std::pow(10, decade), 4);
+    return (m == 1 ? "" : number_text(m) + "·") + "10" + superscript(decade);
+}
+
+/// A power of ten as in print: "1.5e+07" becomes "1.5·10⁷".
+std::string with_superscript(const std::string& label) {
+    const std::size_t e = label.find('e');
+    if (e == std::string::npos) return label;
+    const auto exponent = number_from(std::string_view(label).substr(e + 1));
+    return label.substr(0, e) + "·10" + superscript(static_cast<int>(exponent.value_or(0)));
+}
+
+/// Ticks at decades or parts of them; fewer than two if the axis is too short for them.
+std::vector<Tick> decade_ticks(double min, double max) {
+    const double low = std::log10(min), high = std::log10(max), decades = high - low;
+    const int first = static_cast<int>(std::floor(low)), last = static_cast<int>(std::ceil(high));
+    const int step = std::max(1, static_cast<int>(std::ceil(decades / 7)));
+    std::vector<Tick> all;
+    for (int decade = first; decade <= last; decade += step) {
+        for (const double m : {1., 2., 5.}) {
+            if (m != 1 && decades > 2.2) continue;
+            const double tick = m * std::pow(10, decade);
+            if (tick >= min && tick <= max) all.push_back({tick, decade_label(m, decade)});
+        }
     }
-    const double mantissa = value / std::pow(10, decade);
-    std::snprintf(text.data(), text.size(), "%.3g·", mantissa);
-    return (std::abs(mantissa - 1) < 1e-6 ? "" : std::string(text.data())) + "10" + superscript(decade);
+    return all;
+}
+
+std::vector<Tick> labelled_ticks(double min, double max, bool log) {
+    if (log) {
+        if (auto all = decade_ticks(min, max); all.size() >= 2) return all;
+    }
+    auto all = round_ticks(min, max);
+    for (Tick& tick : all) tick.label = with_superscript(tick.label);
+    return all;
 }
 
 /// An axis, which maps values to positions.
@@ -54,9 +80,13 @@ struct Axis {
     bool log = false;
     double begin = 0, end = 1;
 
-    [[nodiscard]] double at(double value) const {
-        const double part = log ? std::log(value / min) / std::log(max / min) : (value - min) / (max - min);
-        return begin + part * (end - begin);
+    [[nodiscard]] double at(double value) const { return begin + part(value) * (end - begin); }
+
+private:
+    [[nodiscard]] double part(double value) const {
+        if (log) return (std::log(value) - std::log(min)) / (std::log(max) - std::log(min));
+        if (std::isfinite(max - min)) return (value - min) / (max - min);
+        return (value / 2 - min / 2) / (max / 2 - min / 2);
     }
 };
 
@@ -76,14 +106,15 @@ std::optional<Axis> axis_of(const Plot& plot, bool x, double begin, double end) 
         }
     }
     if (!(axis.min <= axis.max)) return {};
+    constexpr double kMost = std::numeric_limits<double>::max(), kLeast = std::numeric_limits<double>::min();
     if (axis.log) {
-        const double room = std::max(std::pow(axis.max / axis.min, .06), 1.15);
-        axis.min /= room;
-        axis.max *= room;
+        const double room = std::max(std::exp(.06 * (std::log(axis.max) - std::log(axis.min))), 1.15);
+        axis.min = std::max(axis.min / room, std::min(axis.min, kLeast));
+        axis.max = std::min(axis.max * room, kMost);
     } else {
-        const double room = axis.max > axis.min ? .06 * (axis.max - axis.min) : std::max(std::abs(axis.max), 1.) / 2;
-        axis.min -= room;
-        axis.max += room;
+        const double room = axis.max > axis.min ? .06 * axis.max - .06 * axis.min : std::max(std::abs(axis.max), 1.) / 2;
+        axis.min = std::max(axis.min - room, -kMost);
+        axis.max = std::min(axis.max + room, kMost);
     }
     return axis;
 }
@@ -98,15 +129,21 @@ std::string line_at(double x0, double y0, double x1, double y1, const char* name
            "\" y2=\"" + number(y1) + "\"/>\n";
 }
 
+/// A smaller font for a label that would be wider than its place.
+std::string fitting(const std::string& label) {
+    constexpr std::size_t kFits = 8;
+    return label.size() <= kFits ? "" : " font-size=\"" + number(kFont * kFits / static_cast<double>(label.size())) + '"';
+}
+
 std::string frame(const Plot& plot, const Axis& x, const Axis& y) {
     std::string svg;
-    for (const double tick : ticks(x.min, x.max, x.log)) {
+    for (const auto& [tick, label] : labelled_ticks(x.min, x.max, x.log)) {
         svg += line_at(x.at(tick), kTop, x.at(tick), kPlotHeight - kBottom, "grid");
-        svg += text_at(x.at(tick), kPlotHeight - kBottom + 16, "middle", tick_text(tick));
+        svg += text_at(x.at(tick), kPlotHeight - kBottom + 16, "middle", label, fitting(label));
     }
-    for (const double tick : ticks(y.min, y.max, y.log)) {
+    for (const auto& [tick, label] : labelled_ticks(y.min, y.max, y.log)) {
         svg += line_at(kLeft, y.at(tick), kWidth - kRight, y.at(tick), "grid");
-        svg += text_at(kLeft - 6, y.at(tick) + 4, "end", tick_text(tick));
+        svg += text_at(kLeft - 6, y.at(tick) + 4, "end", label, fitting(label));
     }
     svg += "<rect class=\"frame\" x=\"" + number(kLeft) + "\" y=\"" + number(kTop) + "\" width=\"" +
            number(kWidth - kLeft - kRight) + "\" height=\"" + number(kPlotHeight - kTop - kBottom) + "\"/>\n";
@@ -185,23 +222,7 @@ std::optional<double> fitted_order(const PlotLine& line) {
 
 std::vector<double> ticks(double min, double max, bool log) {
     std::vector<double> all;
-    if (log) {
-        const int first = static_cast<int>(std::floor(std::log10(min))), last = static_cast<int>(std::ceil(std::log10(max)));
-        const double decades = std::log10(max / min);
-        const int step = std::max(1, static_cast<int>(std::ceil(decades / 7)));
-        for (int decade = first; decade <= last; decade += step) {
-            for (const double m : {1., 2., 5.}) {
-                if (m != 1 && decades > 2.2) continue;
-                const double tick = m * std::pow(10, decade);
-                if (tick >= min && tick <= max) all.push_back(tick);
-            }
-        }
-        if (all.size() >= 2) return all;
-        all.clear();  // too narrow for powers of ten: use equal steps
-    }
-    const double rough = (max - min) / 5, power = std::pow(10, std::floor(std::log10(rough)));
-    const double step = power * (rough / power < 1.5 ? 1 : rough / power < 3.5 ? 2 : rough / power < 7.5 ? 5 : 10);
-    for (double k = std::ceil(min / step); k * step <= max; ++k) all.push_back(k * step);
+    for (const Tick& tick : labelled_ticks(min, max, log)) all.push_back(tick.value);
     return all;
 }
 

@@ -2,11 +2,13 @@
 #include "subvol/study_table.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "subvol/detail/number_text.h"
 
 namespace subvol {
+
+using namespace detail;
 
 namespace {
 
@@ -128,14 +130,8 @@ std::string readable(const StudyTable::Cell& cell, int digits) {
     const double number = std::get<double>(cell);
     if (std::isnan(number)) return "–";
     if (std::isinf(number)) return number > 0 ? "∞" : "−∞";
-    std::array<char, 32> text{};
     const bool count = number == std::floor(number) && std::abs(number) < 1e15;
-    if (count) {
-        std::snprintf(text.data(), text.size(), "%.0f", number);
-    } else {
-        std::snprintf(text.data(), text.size(), "%.*g", digits, number);
-    }
-    return text.data();
+    return count ? fixed_text(number, 0) : number_text(number, digits);
 }
 
 std::string as_text(const StudyTable& table) {

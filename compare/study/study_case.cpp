@@ -3,9 +3,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
 #include "study_keys.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -52,11 +52,8 @@ std::string as_text(const StudyValue& value) {
     const double number = std::get<double>(value);
     if (std::isnan(number)) return "nan";
     if (std::isinf(number)) return number > 0 ? "inf" : "-inf";
-    std::array<char, 40> text{};
     const bool count = number == std::floor(number) && std::abs(number) < 1e15;
-    const auto done = count ? std::to_chars(text.data(), text.data() + text.size(), static_cast<std::int64_t>(number))
-                            : std::to_chars(text.data(), text.data() + text.size(), number);
-    return {text.data(), done.ptr};
+    return count ? std::to_string(static_cast<std::int64_t>(number)) : detail::exact_text(number);
 }
 
 std::string detail::hash_text(std::string_view bytes) {
@@ -65,9 +62,9 @@ std::string detail::hash_text(std::string_view bytes) {
         hash ^= static_cast<unsigned char>(c);
         hash *= 1099511628211U;
     }
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash));
-    return digits.data();
+    std::array<char, 16> digits;
+    const std::string_view found(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), hash, 16).ptr);
+    return std::string(digits.size() - found.size(), '0').append(found);
 }
 
 std::string detail::case_id(const StudyValues& values) {

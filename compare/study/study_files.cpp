@@ -8,6 +8,7 @@
 #include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
 #include "subvol/study_run.h"
+#include "subvol/version.h"
 
 namespace subvol {
 
@@ -20,6 +21,10 @@ namespace {
 using detail::Json;
 
 constexpr std::uintmax_t kMaxCaseBytes = 1 << 20;
+
+// Another version of the program may compute another result. The id does not contain it: the results of two versions can be
+// compared case by case.
+constexpr const char* kProgram = "subvol " SUBVOL_VERSION;
 
 /// JSON has no infinite numbers; they are written as strings, as in the table.
 Json number_json(double value) {
@@ -102,6 +107,7 @@ CaseResult case_result_from_json(std::string_view text) {
 
 void write_case(const fs::path& file, const StudyCase& of, const CaseResult& result) {
     Json json = Json::parse(to_json(of));
+    json["program"] = kProgram;
     const Json ended = result_json(result);
     for (const auto& [key, value] : ended.items()) json[key] = value;
     write_text_file(file, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
@@ -116,7 +122,7 @@ std::optional<CaseResult> read_finished_case(const fs::path& file, const StudyCa
     text << in.rdbuf();
     try {
         const Json json = Json::parse(text.str());
-        if (json.at("id").get<std::string>() != of.id) return {};
+        if (json.at("id").get<std::string>() != of.id || json.at("program").get<std::string>() != kProgram) return {};
         CaseResult result = result_from(json);
         if (!result.failure.empty()) return {};
         for (const auto& [key, name] : result.files) {

@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <vector>
 
 #include "subvol/detail/flat_array.h"
+#include "subvol/detail/parallel_each.h"
 
 namespace subvol::detail {
-
-/// Calls body(i) for every i in [0, count), in parallel.
-template <class Body>
-void parallel_each(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-    });
-}
 
 /// Records sorted by a key whose leading part is a small integer: bucket b is records[offsets[b] .. offsets[b+1]).
 template <class Record>

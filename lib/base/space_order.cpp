@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "space_order.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <utility>
+
+#include "subvol/detail/parallel_each.h"
 
 namespace subvol::detail {
 namespace {
@@ -30,13 +30,11 @@ std::vector<Index> space_order(std::span<const Vec3> points) {
     const double longest = std::max({size.x, size.y, size.z});
     const double scale = longest > 0 ? kSteps / longest : 0;
     std::vector<std::pair<std::uint32_t, Index>> keys(points.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 1024), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const Vec3 p = scale * (points[i] - box.lower);
-            // Points need not be finite: the order is then only less local.
-            const auto key = [](double x) { return spread(x > 0 ? static_cast<std::uint32_t>(std::min(x, kSteps)) : 0); };
-            keys[i] = {key(p.x) | key(p.y) << 1 | key(p.z) << 2, static_cast<Index>(i)};
-        }
+    parallel_each(points.size(), [&](std::size_t i) {
+        const Vec3 p = scale * (points[i] - box.lower);
+        // Points need not be finite: the order is then only less local.
+        const auto key = [](double x) { return spread(x > 0 ? static_cast<std::uint32_t>(std::min(x, kSteps)) : 0); };
+        keys[i] = {key(p.x) | key(p.y) << 1 | key(p.z) << 2, static_cast<Index>(i)};
     });
     tbb::parallel_sort(keys.begin(), keys.end());
     std::vector<Index> order(points.size());

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
-#include <system_error>
 
 #include "knot_values.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
 
@@ -21,12 +20,8 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::optional<double> number_in(std::string_view text) {
-    text = trimmed(text);
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
-    return number;
+    const auto number = number_from(text);
+    return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 class Entry {

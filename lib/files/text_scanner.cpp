@@ -6,10 +6,10 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <limits>
 #include <memory>
 #include <system_error>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/index.h"
 
@@ -130,18 +130,9 @@ std::string_view TextScanner::bytes(std::size_t count, const Place& place) {
 
 double TextScanner::real(const Place& place) {
     const std::string_view found = word();
-    const std::string_view digits = without_plus(found);
-    const char* const end = digits.data() + digits.size();
-    double value = 0;
-    auto [stop, error] = std::from_chars(digits.data(), end, value);
-    if (error == std::errc::result_out_of_range && stop == end) {
-        // Out of the range of double: the wider exponent of long double distinguishes too small, which is 0, from too large.
-        long double wide = std::numeric_limits<long double>::infinity();
-        if (std::from_chars(digits.data(), end, wide).ec == std::errc()) return static_cast<double>(wide);
-        return std::numeric_limits<double>::infinity();
-    }
-    if (error != std::errc() || stop != end) fail_word(place, "a number", found);
-    return value;
+    const auto value = number_from(found);
+    if (!value) fail_word(place, "a number", found);
+    return *value;
 }
 
 std::int64_t TextScanner::integer(const Place& place) {

@@ -3,6 +3,7 @@
 
 #include "fit_samples.h"
 #include "fit_shapes.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -11,7 +12,8 @@ namespace {
 
 void check(const FitOptions& options) {
     if (!(options.extent > 0 && options.extent <= detail::kFitReach)) {
-        throw Error(ErrorCode::InvalidInput, "the extent of a cubic is " + std::to_string(options.extent), {}, "above 0, to 3");
+        throw Error(ErrorCode::InvalidInput, "the extent of a cubic is " + detail::number_text(options.extent), {},
+                    "above 0, to 3");
     }
     if (options.terms < 1 || options.terms > 6) {
         throw Error(ErrorCode::InvalidInput, "the number of Gaussians is " + std::to_string(options.terms), {}, "1 to 6");

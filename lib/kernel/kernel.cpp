@@ -7,6 +7,7 @@
 #include "kernel_formulas.h"
 #include "shader_kernel_formulas_glsl.h"
 #include "subvol/detail/kernel_code.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -73,7 +74,7 @@ struct CheckField {
     void operator()(const std::string& name, double value) const {
         if (!std::isfinite(value)) refuse(kernel, "'" + name + "' is not a finite number", "");
         const bool length = name == "radius" || name == "extent" || name == "sigma" || name == "sigmas";
-        if (length && !(value > 0)) refuse(kernel, "'" + name + "' is " + std::to_string(value), "a positive number");
+        if (length && !(value > 0)) refuse(kernel, "'" + name + "' is " + number_text(value), "a positive number");
     }
     void operator()(const std::string& name, const std::vector<double>& values) const {
         for (const double value : values) (*this)(name, value);

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <ios>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "camera_axes.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -35,16 +35,15 @@ std::optional<Vec3> view_direction(std::string_view name) {
 }
 
 /// The numbers of "a,b,c"; nothing if the text is something else.
-std::optional<std::vector<double>> parse_numbers(const std::string& text) {
+std::optional<std::vector<double>> parse_numbers(std::string_view text) {
     std::vector<double> numbers;
-    const char* at = text.c_str();
     for (;;) {
-        char* end = nullptr;
-        numbers.push_back(std::strtod(at, &end));
-        if (end == at) return std::nullopt;
-        at = end;
-        if (*at == '\0') return numbers;
-        if (*at++ != ',') return std::nullopt;
+        const std::size_t comma = text.find(',');
+        const auto number = number_from(text.substr(0, comma));
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+        if (comma == std::string_view::npos) return numbers;
+        text.remove_prefix(comma + 1);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "absorption.h"
 #include "knot_values.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -33,7 +34,7 @@ Optics::Optics(TransferFunction function, double opacity_unit_world)
     : function_(std::move(function)), unit_(opacity_unit_world) {
     validate(function_);
     if (!(unit_ > 0) || !std::isfinite(unit_)) {
-        throw Error(ErrorCode::InvalidInput, "the opacity unit is " + std::to_string(unit_), {}, "a positive world length");
+        throw Error(ErrorCode::InvalidInput, "the opacity unit is " + number_text(unit_), {}, "a positive world length");
     }
     TransferFunction bounded = function_;
     for (auto& knot : bounded.opacity) knot.alpha = std::min(knot.alpha, kMaxAlpha);

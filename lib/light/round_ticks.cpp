@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "subvol/detail/round_ticks.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
-#include "subvol/detail/round_ticks.h"
+#include "subvol/detail/number_text.h"
 
 namespace subvol::detail {
 namespace {
+
+// A multiple of a step below these has fewer than 50 bits: neighbours differ, also after the rounding of `times`.
+constexpr double kMostMultiple = 0x1p50;
+constexpr double kLeastStep = 1e-300;  // powers of ten down to here have normal inverses
 
 /// digit · 10^exponent
 struct Step {
@@ -30,29 +36,43 @@ std::string text_of(double value, std::chars_format format, int precision) {
     return {buffer.data(), end};
 }
 
+std::string sign_of(double value) {
+    return value < 0 ? "\u2212" : "";
+}
+
 /// The text of a multiple of 10^exponent, without meaningless digits.
 std::string label_of(double value, int exponent) {
     if (value == 0) return "0";
     const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9));
-    const std::string sign = value < 0 ? "\u2212" : "";
+    const std::string sign = sign_of(value);
     const bool plain = magnitude < 6 && exponent > -6;
     if (plain) return sign + text_of(std::abs(value), std::chars_format::fixed, std::max(0, -exponent));
     return sign + text_of(std::abs(value), std::chars_format::scientific, std::clamp(magnitude - exponent, 0, 17));
 }
 
+Tick exact_tick(double value) {
+    return {value, sign_of(value) + exact_text(std::abs(value))};
+}
+
 }  // namespace
 
 std::vector<Tick> round_ticks(double min, double max, int most) {
-    Step step{1, static_cast<int>(std::floor(std::log10((max - min) / most)))};
+    const double least_step = max / most - min / most;  // max - min may be more than the largest number
+    if (!(least_step >= kLeastStep)) return {exact_tick(min), exact_tick(max)};
+    Step step{1, static_cast<int>(std::floor(std::log10(least_step)))};
     const auto first = [&] { return std::ceil(min / step.value() - 1e-9); };
     const auto last = [&] { return std::floor(max / step.value() + 1e-9); };
-    while (last() - first() + 1 > most) step = step.next();
+    const auto coarse_enough = [&] {
+        return std::max(std::abs(first()), std::abs(last())) < kMostMultiple && last() - first() + 1 <= most;
+    };
+    while (!coarse_enough()) step = step.next();
     std::vector<Tick> ticks;
     for (double n = first(); n <= last(); ++n) {
         const double value = step.times(n);
         ticks.push_back({value, label_of(value, step.exponent)});
     }
-    return ticks;
+    if (ticks.size() >= 2) return ticks;
+    return {exact_tick(min), exact_tick(max)};  // only a few numbers lie between them, and none is round
 }
 
 }  // namespace subvol::detail

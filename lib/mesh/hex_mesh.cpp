@@ -220,8 +220,9 @@ std::optional<Attribute> channel_of(const HexMesh& mesh, const std::string& name
     if (dot == std::string::npos) return std::nullopt;
     const Attribute* vector = mesh.find_attribute(std::string_view(name).substr(0, dot));
     int channel = -1;
-    std::from_chars(name.data() + dot + 1, name.data() + name.size(), channel);
-    if (!vector || channel < 0 || channel >= vector->channels) return std::nullopt;
+    const char* const end = name.data() + name.size();
+    const bool whole = std::from_chars(name.data() + dot + 1, end, channel).ptr == end;
+    if (!vector || !whole || channel < 0 || channel >= vector->channels) return std::nullopt;
     const auto channels = static_cast<std::size_t>(vector->channels);
     Attribute result{name, 1, std::vector<double>(vector->values.size() / channels)};
     for (std::size_t p = 0; p < result.values.size(); ++p) {

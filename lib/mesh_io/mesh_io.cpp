@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "formats.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 
@@ -55,7 +56,7 @@ std::vector<std::string> list_extensions(bool writable_only) {
 
 ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     if (options.weld && !(*options.weld >= 0 && std::isfinite(*options.weld))) {
-        throw Error(ErrorCode::InvalidInput, "points cannot be welded within " + std::to_string(*options.weld), path.string(),
+        throw Error(ErrorCode::InvalidInput, "points cannot be welded within " + number_text(*options.weld), path.string(),
                     "0 or a length");
     }
     const MeshFormat* format = format_of(path);

@@ -7,8 +7,8 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -54,9 +54,9 @@ void check_finite(const std::string& expression, std::span<const Vec3> points, s
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (std::isfinite(values[i])) continue;
         const Vec3& p = points[i];
-        std::ostringstream message;
-        message << "is not finite at point " << i << " (" << p.x << ", " << p.y << ", " << p.z << ")";
-        refuse(expression, message.str());
+        const auto text = [](double x) { return detail::number_text(x); };
+        refuse(expression,
+               "is not finite at point " + std::to_string(i) + " (" + text(p.x) + ", " + text(p.y) + ", " + text(p.z) + ")");
     }
 }
 

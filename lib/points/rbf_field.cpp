@@ -10,6 +10,7 @@
 #include "kernel_tree.h"
 #include "kernel_weight.h"
 #include "space_order.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -84,7 +85,8 @@ RbfField::RbfField(const RbfVolume& volume, const RbfFieldOptions& options) {
                     "it has " + std::to_string(volume.channels.size()) + ", counted from 0");
     }
     if (!(options.least_weight >= 0)) {
-        throw Error(ErrorCode::InvalidInput, "the least weight is " + std::to_string(options.least_weight), {}, "0 or more");
+        throw Error(ErrorCode::InvalidInput, "the least weight is " + detail::number_text(options.least_weight), {},
+                    "0 or more");
     }
     kernels_ = std::make_unique<Kernels>(volume, options);
 }

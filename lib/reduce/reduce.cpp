@@ -11,6 +11,7 @@
 #include "bucket_sort.h"
 #include "field_fit.h"
 #include "sample_parts.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
@@ -57,9 +58,10 @@ void check(const FieldSamples& samples) {
 
 void check(const ReduceOptions& options) {
     if (!(options.rmse > 0 && std::isfinite(options.rmse)))
-        throw Error(ErrorCode::InvalidInput, "the target error is " + std::to_string(options.rmse), {}, "a positive number");
+        throw Error(ErrorCode::InvalidInput, "the target error is " + detail::number_text(options.rmse), {},
+                    "a positive number");
     if (!(options.overlap >= .7 && options.overlap <= 2))
-        throw Error(ErrorCode::InvalidInput, "the overlap is " + std::to_string(options.overlap), {}, "0.7 to 2");
+        throw Error(ErrorCode::InvalidInput, "the overlap is " + detail::number_text(options.overlap), {}, "0.7 to 2");
     if (!is_radial(options.kernel))
         throw Error(ErrorCode::InvalidInput, "the kernel is not radial: frames define no axes for it", {}, "a radial kernel");
     if (options.max_points < 1) throw Error(ErrorCode::InvalidInput, "at most 0 points", {}, "1 or more");

@@ -4,6 +4,7 @@
 
 #include "field_fit.h"
 #include "sample_parts.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 
@@ -19,7 +20,7 @@ void check(const RbfVolume& volume, const RbfRefineOptions& options) {
     if (options.iterations < 1 || options.iterations > 10000)
         throw Error(ErrorCode::InvalidInput, "iterations: " + std::to_string(options.iterations), {}, "1 to 10000");
     if (!(options.ridge > 0 && options.ridge <= 1))
-        throw Error(ErrorCode::InvalidInput, "the ridge is " + std::to_string(options.ridge), {}, "above 0, to 1");
+        throw Error(ErrorCode::InvalidInput, "the ridge is " + detail::number_text(options.ridge), {}, "above 0, to 1");
 }
 
 detail::MovingFitReport fit_fixed(RbfVolume& volume, const FieldSamples& samples, const RbfRefineOptions& options) {

@@ -10,6 +10,7 @@
 #include "refine_steps.h"
 #include "sample_counts.h"
 #include "sample_ways.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 
@@ -25,11 +26,12 @@ void check(const SampleOptions& options) {
         throw Error(ErrorCode::InvalidInput, "sample intervals per edge: " + std::to_string(options.per_edge), {}, "1 to 64");
     }
     if (!(options.spacing_world >= 0 && std::isfinite(options.spacing_world))) {
-        throw Error(ErrorCode::InvalidInput, "the spacing is " + std::to_string(options.spacing_world), {},
+        throw Error(ErrorCode::InvalidInput, "the spacing is " + detail::number_text(options.spacing_world), {},
                     "a positive length");
     }
     if (!(options.tolerance >= 0 && std::isfinite(options.tolerance))) {
-        throw Error(ErrorCode::InvalidInput, "the tolerance is " + std::to_string(options.tolerance), {}, "a positive number");
+        throw Error(ErrorCode::InvalidInput, "the tolerance is " + detail::number_text(options.tolerance), {},
+                    "a positive number");
     }
     if (options.footprint && !(options.footprint->spacing_px > 0 && options.footprint->least_cell_px >= 0)) {
         throw Error(ErrorCode::InvalidInput, "the footprint's spacing is not positive");
@@ -41,7 +43,7 @@ void check(const SampleOptions& options) {
     }
     const double radius = support_radius(options.kernel);
     if (!(radius >= 1.2 && radius <= 4)) {
-        throw Error(ErrorCode::InvalidInput, "the kernel radius is " + std::to_string(radius), {},
+        throw Error(ErrorCode::InvalidInput, "the kernel radius is " + detail::number_text(radius), {},
                     "1.2 to 4 sample intervals: smaller kernels leave holes");
     }
     const int boundary_levels = options.boundary_levels.value_or(0);

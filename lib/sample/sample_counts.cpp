@@ -7,6 +7,7 @@
 
 #include "subvol/camera.h"
 #include "subvol/cell.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -19,8 +20,8 @@ int intervals(double length, double spacing, const char* unit) {
     const double wanted = std::ceil(length / spacing);
     if (!(wanted <= kMostIntervals)) {
         throw Error(ErrorCode::InvalidInput,
-                    "a spacing of " + std::to_string(spacing) + unit + " puts " + std::to_string(wanted) +
-                        " samples on an edge of length " + std::to_string(length) + unit,
+                    "a spacing of " + number_text(spacing) + unit + " puts " + number_text(wanted) +
+                        " samples on an edge of length " + number_text(length) + unit,
                     {}, "at most " + std::to_string(kMostIntervals));
     }
     return std::max(1, static_cast<int>(wanted));

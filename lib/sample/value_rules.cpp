@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "child_topology.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/error.h"
 #include "subvol/refine.h"
 
 namespace subvol {
@@ -127,6 +129,12 @@ double RuleInCell::weighted_mean(const double* nodes, const Vec3& uvw) const {
         const double w = kernel_value(kernel_, uvw - node);
         weights += w;
         sum += w * nodes[n];
+    }
+    if (!(weights > 0)) {
+        throw Error(ErrorCode::InvalidInput,
+                    "the weights of the kernel for values do not add up to a positive number at a place in cell " +
+                        std::to_string(cell_) + "; its radius is " + number_text(support_radius(kernel_)) + " cells",
+                    {}, "a kernel that is positive out to 0.87 cells, half a cell's diagonal");
     }
     return sum / weights;
 }

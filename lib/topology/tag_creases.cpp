@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "boundary_rings.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/topology.h"
 
@@ -18,7 +19,7 @@ Vec3 quad_normal(const HexMesh& mesh, const std::array<Index, 4>& q) {
 
 void tag_creases(HexMesh& mesh, double angle_deg) {
     if (!(angle_deg > 0 && angle_deg < 180)) {
-        throw Error(ErrorCode::InvalidInput, "the crease angle is " + std::to_string(angle_deg), {},
+        throw Error(ErrorCode::InvalidInput, "the crease angle is " + detail::number_text(angle_deg), {},
                     "between 0 and 180 degrees");
     }
     const Topology topology = build_topology(mesh);

@@ -10,6 +10,7 @@
 
 #include "dense_passes.h"
 #include "dense_tracer.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 
 namespace subvol {
@@ -28,7 +29,7 @@ void check(const DenseOptions& options) {
                     "0 to " + std::to_string(kMostLevels));
     }
     if (!(options.image_tolerance > 0)) {
-        throw Error(ErrorCode::InvalidInput, "the tolerance of the image is " + std::to_string(options.image_tolerance), {},
+        throw Error(ErrorCode::InvalidInput, "the tolerance of the image is " + number_text(options.image_tolerance), {},
                     "more than 0");
     }
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 
@@ -55,7 +56,7 @@ private:
 
 void check_seconds(double seconds) {
     if (seconds > 0) return;
-    throw Error(ErrorCode::InvalidInput, "the time is " + std::to_string(seconds), {}, "a positive number of seconds");
+    throw Error(ErrorCode::InvalidInput, "the time is " + number_text(seconds), {}, "a positive number of seconds");
 }
 
 /// Repeats each pixel as a square of scale² pixels.
@@ -78,7 +79,7 @@ void check(const ProgressiveOptions& options) {
     check_seconds(options.seconds);
     for (const double px : options.footprint_px) {
         if (!(px > 0))
-            throw Error(ErrorCode::InvalidInput, "a footprint is " + std::to_string(px), {}, "a positive number of pixels");
+            throw Error(ErrorCode::InvalidInput, "a footprint is " + number_text(px), {}, "a positive number of pixels");
     }
 }
 
@@ -154,7 +155,7 @@ void check(const ProjectedProgressiveOptions& options) {
     check_seconds(options.seconds);
     for (const double lod : options.lod) {
         if (lod >= 0 && lod <= 1) continue;
-        throw Error(ErrorCode::InvalidInput, "a fraction of the faces is " + std::to_string(lod), {}, "0..1");
+        throw Error(ErrorCode::InvalidInput, "a fraction of the faces is " + number_text(lod), {}, "0..1");
     }
 }
 

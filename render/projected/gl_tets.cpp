@@ -2,6 +2,7 @@
 #include "gl_tets.h"
 
 #include <algorithm>
+#include <locale>
 #include <sstream>
 
 #include "gl_context.h"
@@ -108,6 +109,7 @@ void GlTets::make_target(int width, int height) {
 
 std::string GlTets::defines(const char* mode, int corners) const {
     std::ostringstream text;
+    text.imbue(std::locale::classic());
     const auto define = [&](const char* name, const auto& value) { text << "#define " << name << ' ' << value << '\n'; };
     define("PERSPECTIVE", int{view_->perspective()});
     define("FRAGMENT_COMPOSITE", 0);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "projected_frame.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -31,7 +30,7 @@ Values set_knots(GlTetFrame& frame, const Optics& optics) {
     const Values values{knots.front(), range > 0 ? range : 1};
     frame.opacity_units = frame.scale / optics.opacity_unit();
     if (!(frame.opacity_units < kMostUnits)) {
-        throw Error(ErrorCode::InvalidInput, "the opacity unit is " + std::to_string(optics.opacity_unit()), {},
+        throw Error(ErrorCode::InvalidInput, "the opacity unit is " + number_text(optics.opacity_unit()), {},
                     "more than 1e-30 of the volume");
     }
     for (const double knot : knots) {
@@ -46,12 +45,10 @@ Values set_knots(GlTetFrame& frame, const Optics& optics) {
 
 void set_points(GlTetFrame& frame, const TetMesh& mesh, const View& view, double middle_depth, const Values& values) {
     frame.points.resize(mesh.points.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.points.size(), 4096), [&](const auto& range) {
-        for (std::size_t p = range.begin(); p < range.end(); ++p) {
-            const Vec3 eye = (view.to_eye(mesh.points[p].position) - Vec3(0, 0, middle_depth)) / frame.scale;
-            frame.points[p] = {static_cast<float>(eye.x), static_cast<float>(eye.y), static_cast<float>(eye.z),
-                               values.parts(mesh.points[p].value)};
-        }
+    parallel_each(mesh.points.size(), [&](std::size_t p) {
+        const Vec3 eye = (view.to_eye(mesh.points[p].position) - Vec3(0, 0, middle_depth)) / frame.scale;
+        frame.points[p] = {static_cast<float>(eye.x), static_cast<float>(eye.y), static_cast<float>(eye.z),
+                           values.parts(mesh.points[p].value)};
     });
 }
 

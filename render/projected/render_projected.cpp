@@ -9,6 +9,7 @@
 #include "gl_tets.h"
 #include "pixel_tiles.h"
 #include "projected_frame.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "tet_faces.h"
@@ -48,7 +49,7 @@ void check_options(const ProjectedOptions& options) {
                     "1.." + std::to_string(kMostEntries));
     }
     if (!(options.lod >= 0 && options.lod <= 1)) {
-        throw Error(ErrorCode::InvalidInput, "the fraction of the faces is " + std::to_string(options.lod), {}, "0..1");
+        throw Error(ErrorCode::InvalidInput, "the fraction of the faces is " + number_text(options.lod), {}, "0..1");
     }
     if (options.lod != 1 && options.order != ProjectedOrder::Havs)
         throw Error(ErrorCode::InvalidInput, "only faces can be left out", {}, "the order havs");

@@ -2,7 +2,6 @@
 #include "tet_faces.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
@@ -10,6 +9,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+
+#include "subvol/detail/parallel_each.h"
 
 namespace subvol::detail {
 
@@ -82,13 +83,6 @@ std::uint32_t ascending_bits(float x) {
     return bits ^ ((bits >> 31) != 0 ? 0xffffffffU : 0x80000000U);
 }
 
-template <class Body>
-void for_each_index(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
-    });
-}
-
 }  // namespace
 
 std::size_t TetFaces::count(double fraction) const {
@@ -98,8 +92,7 @@ std::size_t TetFaces::count(double fraction) const {
 
 TetFaces find_faces(const TetMesh& mesh) {
     std::vector<std::uint8_t> positive(mesh.tets.size());
-    for_each_index(positive.size(),
-                   [&](std::size_t t) { positive[t] = signed_volume(mesh, mesh.tets[t].corner) >= 0 ? 1 : 0; });
+    parallel_each(positive.size(), [&](std::size_t t) { positive[t] = signed_volume(mesh, mesh.tets[t].corner) >= 0 ? 1 : 0; });
     TetFaces result;
     std::vector<TetFaces::Face> inner;
     for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
@@ -114,18 +107,18 @@ TetFaces find_faces(const TetMesh& mesh) {
     }
     result.outer = result.faces.size();
     std::vector<Numbered> order(inner.size());
-    for_each_index(order.size(), [&](std::size_t i) {
+    parallel_each(order.size(), [&](std::size_t i) {
         order[i] = {shuffle_key(mesh, inner[i]), static_cast<std::uint32_t>(i)};
     });
     tbb::parallel_sort(order.begin(), order.end());
     result.faces.resize(result.outer + inner.size());
-    for_each_index(order.size(), [&](std::size_t i) { result.faces[result.outer + i] = inner[order[i].number]; });
+    parallel_each(order.size(), [&](std::size_t i) { result.faces[result.outer + i] = inner[order[i].number]; });
     return result;
 }
 
 std::vector<std::uint32_t> order_faces(const TetMesh& mesh, const TetFaces& faces, std::size_t count, const View& view) {
     std::vector<std::uint64_t> keys(count);
-    for_each_index(count, [&](std::size_t i) {
+    parallel_each(count, [&](std::size_t i) {
         Vec3 sum(0.0);
         for (const Index p : faces.faces[i].corner) sum += mesh.points[p].position;
         const auto depth = static_cast<float>(view.to_eye(sum / 3.0).z);
@@ -133,7 +126,7 @@ std::vector<std::uint32_t> order_faces(const TetMesh& mesh, const TetFaces& face
     });
     tbb::parallel_sort(keys.begin(), keys.end());
     std::vector<std::uint32_t> order(count);
-    for_each_index(count, [&](std::size_t i) { order[i] = static_cast<std::uint32_t>(keys[i]); });
+    parallel_each(count, [&](std::size_t i) { order[i] = static_cast<std::uint32_t>(keys[i]); });
     return order;
 }
 

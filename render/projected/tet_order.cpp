@@ -12,8 +12,6 @@
 // a cycle; then none is ready, the farthest one left is drawn anyway, and `cycles` counts it.
 #include "tet_order.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -23,20 +21,15 @@
 #include <numeric>
 #include <queue>
 
+#include "subvol/detail/parallel_each.h"
+
 namespace subvol::detail {
 
 namespace {
 
-template <class Body>
-void for_each_index(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
-    });
-}
-
 std::vector<double> centroid_depths(const TetMesh& mesh, const View& view) {
     std::vector<double> depths(mesh.tets.size());
-    for_each_index(depths.size(), [&](std::size_t t) {
+    parallel_each(depths.size(), [&](std::size_t t) {
         Vec3 sum(0.0);
         for (const Index p : mesh.tets[t].corner) sum += mesh.points[p].position;
         depths[t] = view.to_eye(0.25 * sum).z;
@@ -72,9 +65,9 @@ bool faces_eye(const TetMesh& mesh, const View& view, std::uint32_t tet, std::ui
 /// The tetrahedron of larger volume decides for both, as its corner lies farther from the plane of the face.
 std::vector<std::uint8_t> find_nearer(const TetMesh& mesh, const View& view) {
     std::vector<double> volumes(mesh.tets.size());
-    for_each_index(volumes.size(), [&](std::size_t t) { volumes[t] = std::abs(volume_of(mesh, mesh.tets[t])); });
+    parallel_each(volumes.size(), [&](std::size_t t) { volumes[t] = std::abs(volume_of(mesh, mesh.tets[t])); });
     std::vector<std::uint8_t> nearer(mesh.tets.size());
-    for_each_index(nearer.size(), [&](std::size_t i) {
+    parallel_each(nearer.size(), [&](std::size_t i) {
         const auto t = static_cast<std::uint32_t>(i);
         for (std::uint32_t k = 0; k < 4; ++k) {
             const Index other = mesh.neighbor(t, k);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pixel_tiles.h"
+#include "subvol/detail/number_text.h"
 
 namespace subvol {
 
@@ -96,7 +97,7 @@ Image render_field(const FieldFunction& field, const Box& box, const View& view,
     check_samples(options.samples);
     if (box.empty()) return {view.width(), view.height()};
     if (!(options.step_world > 0) || !(box.diagonal() <= kMaxSteps * options.step_world)) {
-        throw Error(ErrorCode::InvalidInput, "the step is " + std::to_string(options.step_world), {},
+        throw Error(ErrorCode::InvalidInput, "the step is " + number_text(options.step_world), {},
                     "a positive world length, at least 1e-9 of the diagonal of a finite box");
     }
     const Marcher marcher(field, box, optics, options.step_world);

@@ -7,6 +7,7 @@
 
 #include "grid_tracer.h"
 #include "pixel_tiles.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 
 namespace subvol {
@@ -18,7 +19,7 @@ namespace {
 void check(const Voxels& grid, const GridOptions& options) {
     check_samples(options.samples);
     if (!(options.tolerance > 0)) {
-        throw Error(ErrorCode::InvalidInput, "the tolerance is " + std::to_string(options.tolerance), {}, "a positive number");
+        throw Error(ErrorCode::InvalidInput, "the tolerance is " + number_text(options.tolerance), {}, "a positive number");
     }
     const double volume = glm::determinant(grid.to_world());
     if (volume == 0 || !std::isfinite(volume)) {

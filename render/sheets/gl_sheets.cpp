@@ -15,6 +15,7 @@
 
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <sstream>
 
 #include "gl_context.h"
@@ -40,6 +41,7 @@ constexpr GLuint kTableBinding = 7;  // the same as in splat_classify.glsl; then
 std::string defines(const SplatFrame& frame) {
     const SplatScene& scene = *frame.scene;
     std::ostringstream text;
+    text.imbue(std::locale::classic());
     text << std::scientific;
     text.precision(9);
     const auto define = [&](const char* name, auto value) { text << "#define " << name << ' ' << value << '\n'; };

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "kernel_axes.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -24,9 +24,8 @@ constexpr double kLeastRange = 1e-30, kMostRange = 1e37;
 constexpr double kRounding = 0x1p-24;  // of a 32-bit float, relative
 
 [[noreturn]] void refuse(std::string_view what, double amount, const char* allowed) {
-    std::ostringstream message;
-    message << what << amount << ", beyond what kernels hold in 32-bit floats";
-    throw Error(ErrorCode::InvalidInput, message.str(), {}, allowed);
+    throw Error(ErrorCode::InvalidInput,
+                std::string(what) + number_text(amount) + ", beyond what kernels hold in 32-bit floats", {}, allowed);
 }
 
 void check_channel(const RbfVolume& volume, std::size_t channel) {
@@ -46,7 +45,7 @@ void check_range(const RbfChannel& channel, double min, double max) {
         const double value = static_cast<double>(v), rounding = std::abs(value) * kRounding;
         // If rounding is more than a tenth of the range, the field is noise.
         if (rounding > 0.1 * range && value + rounding >= min && value - rounding <= max) {
-            refuse("beside a value of " + std::to_string(value) + " the transfer function's range is ", range,
+            refuse("beside a value of " + number_text(value) + " the transfer function's range is ", range,
                    "a wider range, or the field less its mean");
         }
     }
@@ -63,7 +62,7 @@ bool finite(const PreintegratedTable& table) {
 void check_shading(const Shading& shading, const RbfChannel& channel) {
     for (const double part : {shading.ambient, shading.diffuse, shading.specular, shading.shininess}) {
         if (!(part >= 0) || !std::isfinite(part)) {
-            throw Error(ErrorCode::InvalidInput, "a part of the shading is " + std::to_string(part), {}, "0 or more");
+            throw Error(ErrorCode::InvalidInput, "a part of the shading is " + number_text(part), {}, "0 or more");
         }
     }
     const bool flat = std::all_of(channel.gradients.begin(), channel.gradients.end(),

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "gl_splat_kernels.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 
 #include "kernel_axes.h"
+#include "subvol/detail/parallel_each.h"
 
 namespace subvol::detail {
 
@@ -111,12 +110,10 @@ GlKernelData pack_kernels(const SplatScene& scene, std::optional<std::span<const
     GlKernelData data;
     data.kernels.resize(count * GlKernelData::kFloats);
     data.extras.resize(count * extras);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const std::size_t id = ids ? (*ids)[i] : i;
-            pack_kernel(scene, id, data.kernels.data() + i * GlKernelData::kFloats);
-            pack_extras(scene, layout, id, data.extras.data() + i * extras);
-        }
+    parallel_each(count, [&](std::size_t i) {
+        const std::size_t id = ids ? (*ids)[i] : i;
+        pack_kernel(scene, id, data.kernels.data() + i * GlKernelData::kFloats);
+        pack_extras(scene, layout, id, data.extras.data() + i * extras);
     });
     return data;
 }

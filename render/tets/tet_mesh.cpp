@@ -2,7 +2,6 @@
 #include "tet_mesh.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
@@ -11,6 +10,7 @@
 #include <tuple>
 
 #include "subvol/cell.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -38,13 +38,6 @@ FaceRecord record_of(const TetMesh& mesh, TetFace face) {
     return {{a, b, c}, face};
 }
 
-template <class Body>
-void for_each_index(std::size_t count, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i);
-    });
-}
-
 TetLink& link_of(TetMesh& mesh, TetFace face) {
     return mesh.links[face / 4][mesh.rank(face / 4, face % 4)];
 }
@@ -52,7 +45,7 @@ TetLink& link_of(TetMesh& mesh, TetFace face) {
 void connect(TetMesh& mesh) {
     mesh.links.resize(mesh.tets.size());
     std::vector<FaceRecord> faces(4 * mesh.tets.size());
-    for_each_index(faces.size(), [&](std::size_t i) { faces[i] = record_of(mesh, static_cast<TetFace>(i)); });
+    parallel_each(faces.size(), [&](std::size_t i) { faces[i] = record_of(mesh, static_cast<TetFace>(i)); });
     tbb::parallel_sort(faces.begin(), faces.end());
     for (std::size_t i = 0, end; i < faces.size(); i = end) {
         for (end = i + 1; end < faces.size() && faces[end].ids == faces[i].ids;) ++end;
@@ -112,9 +105,9 @@ TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
     }
     TetMesh mesh;
     mesh.points.resize(hexes.points.size());
-    for_each_index(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], values[p]}; });
+    parallel_each(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], values[p]}; });
     mesh.tets.resize(kTetsPerCell * hexes.cells.size());
-    for_each_index(hexes.cells.size(), [&](std::size_t c) {
+    parallel_each(hexes.cells.size(), [&](std::size_t c) {
         const auto split = split_cell(hexes.cells[c]);
         for (std::size_t k = 0; k < kTetsPerCell; ++k) mesh.tets[kTetsPerCell * c + k] = {split[k]};
     });

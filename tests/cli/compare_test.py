@@ -2,6 +2,7 @@
 """The verb `compare`: figures whose correct value is known, exit codes, and one sentence for inputs that cannot be compared."""
 
 import math
+import re
 import struct
 import unittest
 
@@ -123,6 +124,30 @@ class Fields(InFolder):
         for name in ("l1", "l2", "linf", "gradient_rmse", "mass"):
             self.assertEqual(figures[name], 0, name)
         self.assertLess(figures["hausdorff"], 1e-12)
+
+    def test_every_mesh_format_is_a_field(self):
+        # A grid of VTK's, for which no list of extensions was needed when it came: eight values, one at each corner of a cube.
+        grid = """<VTKFile type="ImageData"><ImageData WholeExtent="0 1 0 1 0 1" Origin="0 0 0" Spacing="1 1 1">
+<Piece Extent="0 1 0 1 0 1"><PointData><DataArray Name="x" type="Float64" format="ascii">0 1 0 1 0 1 0 1</DataArray></PointData>
+</Piece></ImageData></VTKFile>"""
+        for name in ("grid.vti", "GRID.VTI"):
+            (self.folder / name).write_text(grid)
+        (self.folder / "cube.mesh").write_text(CUBE.format(last=8))
+        for name in ("grid.vti", "GRID.VTI"):
+            figures = self.compared(name, "cube.mesh", "--density", "1+x", "--levels", 0, "--samples", 1000, "--resolution", 8)
+            self.assertLess(figures["linf"], 1e-12)
+            self.assertLess(self.compared(name, name, "--levels", 0, "--samples", 1000, "--resolution", 8)["linf"], 1e-12)
+        # Files that are no meshes: the reader of their format says so, and nothing calls them pictures.
+        (self.folder / "no.format").write_text("")
+        formats = subvol("info", "no.format", folder=self.folder).err
+        extensions = re.findall(r"\.[a-z0-9]+", formats[formats.index(".mesh"):])
+        self.assertEqual(len(extensions), 14, formats)
+        for extension in extensions:
+            (self.folder / f"no{extension}").write_text("no mesh")
+            done = subvol("compare", "cube.mesh", f"no{extension}", "--density", "1", folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertNotIn("picture", done.err)
+            self.assertIn(f"no{extension}", done.err)
 
     def test_points_and_grids_of_a_mesh_are_close_to_it(self):
         self.run_ok("points", "model:ball:4", "-o", "ball.ply")

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from command import COMMAND, InFolder, children, subvol, wait_for_end
+from command import COMMAND, InFolder, children, subvol, subvol_measured, wait_for_end
 
 # Pictures and figures of a small ball; twelve cases and two references.
 SMALL = {
@@ -141,6 +141,30 @@ class Study(StudyFolder):
         for metric in ("l2", "gradient_rmse", "hausdorff"):
             self.assertLess(by["second 1"][metric], by["none 1"][metric])  # a kernel with derivatives is nearer to the field
             self.assertLess(by["second 2"][metric], by["second 1"][metric])  # and so are finer kernels
+
+    def test_values_a_rounding_apart_have_an_axis(self):
+        study = {"name": "small",
+                 "inputs": [{"model": "cell", "given": {"v": 1.0}}, {"model": "cell", "resolution": 2, "name": "b", "given": {"v": 1.0000000000000002}}],
+                 "methods": [{"method": "counts", "per_edge": 1}],
+                 "plots": [{"x": "given.v", "y": "given.v", "series": "label", "log_x": False, "log_y": False}]}
+        done = subvol_measured("study", self.write(study), "-o", "out", folder=self.folder, max_seconds=60, max_mib=1000)
+        self.assertEqual(done.code, 0, done.err)
+        page = (self.folder / "out/report.html").read_text()
+        self.assertGreaterEqual(page.count(">1.0000000000000002</text>"), 2)  # a tick of either axis
+
+    def test_cases_of_another_version_are_run_again(self):
+        self.write(SMALL)
+        self.run_ok("study", "s.json", "-o", "out")
+        files = sorted((self.folder / "out").glob("*/cases/*.json")) + sorted((self.folder / "out/references").glob("*.json"))
+        version = subvol("--version").out.strip().split()[-1]
+        for file in files:
+            text = file.read_text()
+            self.assertIn(f'"program": "subvol {version}"', text)
+            file.write_text(text.replace(f"subvol {version}", "subvol 0.0.9"))
+        again = self.run_ok("study", "s.json", "-o", "out", "--json").json()["studies"][0]
+        self.assertEqual(again["ran"], again["cases"])
+        for file in files:  # references too
+            self.assertIn(f'"program": "subvol {version}"', file.read_text())
 
     def test_voxels_come_nearer_to_the_limit_as_they_shrink(self):
         methods = [{"method": "voxels", "resolution": [20, 40], "places": 3000}]

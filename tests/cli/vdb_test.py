@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Grids: the effects of the options of `vdb`."""
 
+import concurrent.futures
 import json
 import math
+import os
 import sys
 import unittest
 
@@ -117,6 +119,26 @@ class Grids(InFolder):
             done = subvol("vdb", source, "-o", "a.vdb", *arguments, folder=self.folder)
             self.assertEqual(done.code, code, f"{arguments}: {done.err}")
             self.assertEqual(self.files(), ["p.ply"])
+
+    def test_a_link_stays_and_its_file_is_written(self):
+        (self.folder / "there").mkdir()
+        (self.folder / "a.vdb").symlink_to("there/grid.vdb")
+        for resolution in (10, 12):  # where there is no file yet, and where there is one
+            made = self.vdb("--resolution", resolution)
+            self.assertTrue((self.folder / "a.vdb").is_symlink())
+            self.assertEqual(os.listdir(self.folder / "there"), ["grid.vdb"])
+            grid = self.run_ok("info", "there/grid.vdb", "--json").json()["grids"][0]
+            self.assertEqual(grid["active_voxels"], made["active_voxels"])
+
+    def test_a_pipe_gets_the_whole_file(self):
+        os.mkfifo(self.folder / "a.vdb")
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            piped = pool.submit((self.folder / "a.vdb").read_bytes)
+            made = self.vdb("--resolution", 10)
+            (self.folder / "copy.vdb").write_bytes(piped.result())
+        grid = self.run_ok("info", "copy.vdb", "--json").json()["grids"][0]
+        self.assertEqual(grid["active_voxels"], made["active_voxels"])
+        self.assertTrue((self.folder / "a.vdb").is_fifo())
 
 
 class Frames(InFolder):

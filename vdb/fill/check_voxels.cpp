@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -19,10 +19,8 @@ constexpr double kMaxActiveVoxels = 2e9;  // 8 GB a field
 constexpr double kMaxBrickEntries = 5e7;  // a few GB
 
 [[noreturn]] void throw_too_fine(double voxel_size, const std::string& why, double right_size) {
-    std::ostringstream where, allowed;
-    where << "voxel size " << voxel_size;
-    allowed << "at least " << right_size << " would be right";
-    throw Error(ErrorCode::InvalidInput, why, where.str(), allowed.str());
+    throw Error(ErrorCode::InvalidInput, why, "voxel size " + number_text(voxel_size),
+                "at least " + number_text(right_size) + " would be right");
 }
 
 /// all: the sum of absolute volumes; oriented: the sum of signed volumes

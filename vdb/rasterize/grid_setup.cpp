@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
 
@@ -43,9 +43,9 @@ ToVoxels to_voxels_of(const openvdb::GridBase& like) {
 
 void check_representable(double voxel_size) {
     if (voxel_size >= kLeastVoxel_world) return;
-    std::ostringstream message;
-    message << "voxel size " << voxel_size << ": OpenVDB treats the transform of such small voxels as singular";
-    throw Error(ErrorCode::InvalidInput, message.str(), {}, "at least 1.45e-5; a mesh in smaller units has larger voxels");
+    throw Error(ErrorCode::InvalidInput,
+                "voxel size " + number_text(voxel_size) + ": OpenVDB treats the transform of such small voxels as singular", {},
+                "at least 1.45e-5; a mesh in smaller units has larger voxels");
 }
 
 ToVoxels to_voxels_of(const Box& box, const RasterizeOptions& options) {

@@ -10,6 +10,7 @@
 #include "distance_band.h"
 #include "grid_setup.h"
 #include "level_set.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
 #include "surface_columns.h"
@@ -27,7 +28,7 @@ constexpr double kMaxIndex = 1 << 30;
 
 [[noreturn]] void throw_too_fine(const ToVoxels& to_voxels) {
     throw Error(ErrorCode::InvalidInput, "the points would fill more than 2e9 voxels, or voxel indices would not fit 32 bits",
-                "voxel size " + std::to_string(to_voxels.voxel_size), "larger voxels");
+                "voxel size " + number_text(to_voxels.voxel_size), "larger voxels");
 }
 
 /// A box in voxel space.

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "lib/comma_locale.h"
+
 namespace subvol {
 namespace {
 
@@ -36,7 +38,75 @@ TEST(Plot, TicksAreRoundAndWithinTheAxis) {
         EXPECT_LE(all.back(), max);
     }
     EXPECT_EQ(ticks(.3, 40, true), (std::vector<double>{.5, 1, 2, 5, 10, 20}));
-    EXPECT_EQ(ticks(-1, 1, false).size(), 5U);
+    EXPECT_EQ(ticks(-1, 1, false), (std::vector<double>{-1, -.5, 0, .5, 1}));
+    EXPECT_EQ(ticks(-3, 22, false), (std::vector<double>{0, 5, 10, 15, 20}));
+}
+
+/// The texts of the labels below the axis of x.
+std::vector<std::string> x_labels(const std::string& svg) {
+    std::vector<std::string> labels;
+    const std::string begin = "text-anchor=\"middle\"";
+    for (std::size_t at = svg.find(begin); at < svg.find("class=\"frame\""); at = svg.find(begin, at + 1)) {
+        const std::size_t text = svg.find('>', at) + 1;
+        labels.push_back(svg.substr(text, svg.find('<', text) - text));
+    }
+    return labels;
+}
+
+TEST(Plot, ValuesAnUlpApartHaveAnAxis) {
+    const double one = 1, next = std::nextafter(one, 2), large = 0x1p53, most = std::numeric_limits<double>::max();
+    for (const bool log : {false, true}) {
+        for (const auto& x : {std::vector{one, next}, {large, large + 2}, {most / 2, most}, {5e-324, 1e-323}, {5e-324, most}}) {
+            const std::string svg = plot_svg({.title = "t",
+                                              .x_label = "",
+                                              .y_label = "",
+                                              .log_x = log,
+                                              .log_y = log,
+                                              .lines = {{.name = "l", .x = x, .y = x}}});
+            EXPECT_EQ(svg.find("nan"), std::string::npos) << x[0];
+            EXPECT_EQ(svg.find("inf"), std::string::npos) << x[0];
+            EXPECT_EQ(count(svg, "<circle"), 3U) << x[0];  // two points and the legend
+            auto labels = x_labels(svg);
+            EXPECT_GE(labels.size(), 2U) << svg;
+            std::ranges::sort(labels);
+            EXPECT_EQ(std::ranges::adjacent_find(labels), labels.end()) << "two ticks with the same label: " << svg;
+        }
+    }
+    const std::string svg = plot_svg({.title = "t",
+                                      .x_label = "",
+                                      .y_label = "",
+                                      .log_x = false,
+                                      .log_y = false,
+                                      .lines = {{.name = "l", .x = {-most, most}, .y = {0, 1}}}});
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_GE(x_labels(svg).size(), 2U);
+}
+
+TEST(Plot, LabelsHaveTheDigitsOfTheirSteps) {
+    const auto labels = [](double min, double max, bool log) {
+        return x_labels(plot_svg({.title = "t",
+                                  .x_label = "",
+                                  .y_label = "",
+                                  .log_x = log,
+                                  .lines = {{.name = "l", .x = {min, max}, .y = {1, 2}}}}));
+    };
+    using Labels = std::vector<std::string>;
+    EXPECT_EQ(labels(2, 2.0001, false), (Labels{"2.00000", "2.00002", "2.00004", "2.00006", "2.00008", "2.00010"}));
+    EXPECT_EQ(labels(0, 3e7, false), (Labels{"0", "5·10⁶", "1.0·10⁷", "1.5·10⁷", "2.0·10⁷", "2.5·10⁷", "3.0·10⁷"}));
+    EXPECT_EQ(labels(1e-6, 10, true), (Labels{"10⁻⁵", "0.001", "0.1", "10"}));
+}
+
+TEST(Plot, HasPointsInEveryLocale) {
+    const Plot plot{.title = "t",
+                    .x_label = "x",
+                    .y_label = "y",
+                    .log_x = false,
+                    .fit = true,
+                    .lines = {{.name = "l", .x = {1000.5, 2000.25, 3000}, .y = {1, .1, .01}}}};
+    const std::string svg = plot_svg(plot);
+    const test::CommaLocale comma;
+    EXPECT_EQ(plot_svg(plot), svg);
+    EXPECT_EQ(svg.find(','), std::string::npos);
 }
 
 TEST(Plot, IsOneElementWithAllThatIsShown) {

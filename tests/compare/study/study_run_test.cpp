@@ -6,9 +6,11 @@
 #include <cmath>
 #include <mutex>
 
+#include "lib/comma_locale.h"
 #include "lib/temp_folder.h"
 #include "subvol/study_run.h"
 #include "subvol/study_table.h"
+#include "subvol/version.h"
 
 namespace subvol {
 namespace {
@@ -110,6 +112,19 @@ TEST_F(StudyRun, DamagedFilesAndOthersCasesAreRunAgain) {
     EXPECT_EQ(run("a", root_of), (std::vector<double>{1, 2, 6}));
 }
 
+TEST_F(StudyRun, CasesOfAnotherVersionAreRunAgain) {
+    (void)run("a", root_of);
+    const auto file = [&](std::size_t i) { return path("a") / "cases" / (seeds().cases[i].id + ".json"); };
+    const std::string ours = "\"program\": \"subvol " SUBVOL_VERSION "\"";
+    std::string other = read_bytes(file(2)), none = read_bytes(file(5));
+    ASSERT_NE(other.find(ours), std::string::npos) << other;
+    std::ofstream(file(2)) << other.replace(other.find(ours), ours.size(), "\"program\": \"subvol 0.0.9\"");
+    std::ofstream(file(5)) << none.replace(none.find(ours), ours.size(), "\"unknown\": 1");  // as versions before 0.1 wrote it
+    EXPECT_EQ(run("a", root_of), (std::vector<double>{2, 5}));
+    EXPECT_EQ(seeds().cases[2].id.size(), 16U);
+    EXPECT_TRUE(run("a", root_of).empty());
+}
+
 TEST_F(StudyRun, ACaseWhoseFilesAreGoneIsRunAgain) {
     const auto writes = [&](const StudyCase& of) {
         CaseResult result = root_of(of);
@@ -161,6 +176,14 @@ TEST(StudyTable, GoesAcross) {
     EXPECT_EQ(as_text(tables[0]), "\ninput  known  0  one\nball       –  0    1\npawn       7  2    3\n");
     EXPECT_EQ(tables[1].rows.size(), 2U);
     EXPECT_EQ(tables[1].name, "s_2");
+}
+
+TEST(StudyTable, HasPointsInEveryLocale) {
+    const StudyTable table{"t", "T", "Caption", {"name", "half"}, {{"a", .5}, {"b", 12345.678}, {"c", 1234567.0}}};
+    const test::CommaLocale comma;
+    EXPECT_EQ(as_text(table), "Caption\nname       half\na           0.5\nb     1.235e+04\nc       1234567\n");
+    EXPECT_EQ(as_text(StudyValue(.25)), "0.25");
+    EXPECT_EQ(as_text(StudyValue(1234567.0)), "1234567");
 }
 
 TEST(StudyTable, IsAlignedAndQuoted) {

@@ -189,8 +189,10 @@ TEST(BasisFunction, IsTheLimitOnAMesh) {
 }
 
 TEST(BasisFunction, LevelsAreBounded) {
-    test::expect_error(ErrorCode::InvalidInput, "level 8", [] { (void)sample_basis_function(Scheme::Mcq, 8); });
-    test::expect_error(ErrorCode::InvalidInput, "level -1", [] { (void)sample_basis_function(Scheme::Linear, -1); });
+    test::expect_error(ErrorCode::InvalidInput, "level of the basis function is 8",
+                       [] { (void)sample_basis_function(Scheme::Mcq, 8); });
+    test::expect_error(ErrorCode::InvalidInput, "level of the basis function is -1",
+                       [] { (void)sample_basis_function(Scheme::Linear, -1); });
     test::expect_error(ErrorCode::InvalidInput, "tension", [] { (void)sample_basis_function(Scheme::Mcq, 1, std::nan("")); });
 }
 

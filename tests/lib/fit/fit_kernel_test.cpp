@@ -198,8 +198,8 @@ TEST(FitKernel, BadOptionsAreRefused) {
     };
     refused("extent", KernelShape::BcSpline, {.extent = 0});
     refused("extent", KernelShape::CardinalSpline, {.extent = std::nan("")});
-    refused("sum of 0", KernelShape::GaussianSum, {.terms = 0});
-    test::expect_error(ErrorCode::InvalidInput, "rank of 0", [&] { (void)fit_tucker(basis, 0); });
+    refused("number of Gaussians is 0", KernelShape::GaussianSum, {.terms = 0});
+    test::expect_error(ErrorCode::InvalidInput, "rank is 0", [&] { (void)fit_tucker(basis, 0); });
     test::expect_error(ErrorCode::InvalidInput, "rank", [&] { (void)fit_tucker(basis, 8); });
 }
 

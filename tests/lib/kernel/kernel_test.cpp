@@ -211,7 +211,7 @@ TEST(Kernel, BadJsonIsRefusedInASentence) {
     refused(R"({"type": "separable_table", "values": [1]})", "1 values per axis");
     refused(R"({"type": "table", "count": 2, "values": [1, 2, 3]})", "3 values");
     refused(R"({"type": "table", "count": 4294967296, "values": [1]})", "per axis");
-    refused(R"({"type": "table", "count": -2, "values": [1]})", "whole number");
+    refused(R"({"type": "table", "count": -2, "values": [1]})", "non-negative integer");
     refused(R"({"type": "table", "values": {"a": 1}})", "not an array");
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <pugixml.hpp>
 #include <sstream>
 
@@ -53,6 +54,33 @@ TEST(RoundTicks, LieInTheRangeAndAreRound) {
         EXPECT_LT(ticks[0].value - step, min) << "one more would fit";
         EXPECT_GT(ticks.back().value + step, max) << "one more would fit";
     }
+}
+
+TEST(RoundTicks, EndForEveryRange) {
+    constexpr double kMost = std::numeric_limits<double>::max(), kLeast = std::numeric_limits<double>::denorm_min();
+    const auto next = [](double x, int steps) {
+        for (int i = 0; i < steps; ++i) x = std::nextafter(x, kMost);
+        return x;
+    };
+    std::vector<std::pair<double, double>> ranges{{-kMost, kMost}, {0, kMost}, {0, kLeast}, {-kLeast, 1e-310}, {1e-300, 1e300}};
+    for (const double x : {1.0, -1.0, 0.3, 123456.789, 0x1p53, -0x1p53, 1e17, 1e300, 1e-300, 3e-310}) {
+        for (const int steps : {1, 2, 3, 10, 50, 1000}) ranges.emplace_back(x, next(x, steps));
+    }
+    for (const auto& [min, max] : ranges) {
+        SCOPED_TRACE(testing::Message() << std::hexfloat << min << " to " << max);
+        const auto ticks = round_ticks(min, max);
+        ASSERT_GE(ticks.size(), 2u);
+        ASSERT_LE(ticks.size(), 7u);
+        // The quotient of an end and a step is rounded at 50 bits: to a hundredth of a step.
+        const double rounding = 0.01 * (ticks[1].value - ticks[0].value);
+        for (std::size_t i = 0; i < ticks.size(); ++i) {
+            EXPECT_TRUE(ticks[i].value >= min - rounding && ticks[i].value <= max + rounding) << ticks[i].value;
+            if (i == 0) continue;
+            EXPECT_LT(ticks[i - 1].value, ticks[i].value);
+            EXPECT_NE(ticks[i - 1].label, ticks[i].label);
+        }
+    }
+    EXPECT_EQ(labels(1, next(1, 1)), (Labels{"1", "1.0000000000000002"}));
 }
 
 class Legend : public test::TempFolder {

@@ -196,7 +196,7 @@ TEST(RbfField, RefusesInvalidVolumes) {
     refuse("point 3", bad);
     bad = good;
     bad.channels[0].hessians.resize(4);
-    refuse("not one Hessian a point", bad);
+    refuse("does not have one Hessian per point", bad);
     bad = good;
     bad.kernel = CubicConvolutionKernel{};
     refuse("not radial", bad);

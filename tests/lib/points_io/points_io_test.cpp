@@ -208,7 +208,8 @@ TEST_F(PointsIo, VolumesThatAreNoneAreRefused) {
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].name = "density"; }), HasSubstr("two channels are named"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels.clear(); }), HasSubstr("no channel"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].moments.pop_back(); }), HasSubstr("\"Temp."));
-    EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].hessians.pop_back(); }), HasSubstr("not one Hessian a point"));
+    EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].hessians.pop_back(); }),
+                HasSubstr("does not have one Hessian per point"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.channels[1].hessians[2][4] = NAN; }), HasSubstr("point 2: the Hessian of"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.kernel = CompactKernel{-1}; }), HasSubstr("'radius' is -1"));
     EXPECT_THAT(error_with([](RbfVolume& v) { v.frames[2][3] = 0; }), HasSubstr("point 2"));

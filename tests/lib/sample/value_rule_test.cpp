@@ -91,6 +91,25 @@ TEST(ValueRule, BetterRulesErrLess) {
     EXPECT_GT(cubic, 0);
 }
 
+TEST(ValueRule, PaperRefusesAKernelThatReachesNoControlPoint) {
+    HexMesh mesh = test::make_box(2, 2, 2);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x; });
+    const auto values = [&](double radius) {
+        return values_at_new_points(mesh, "f", ValueRule::Paper, WendlandC2Kernel{.radius = radius});
+    };
+    // The middle of a cell is √.75 = .866 from its corners.
+    for (const double radius : {0.4, 0.6, 0.86}) {
+        test::expect_error(ErrorCode::InvalidInput, "kernel for values", [&] { (void)values(radius); });
+    }
+    for (const double v : values(0.87)) EXPECT_TRUE(v >= 0 && v <= 2) << v;  // means of values from 0 to 2
+
+    // Samples at control points need no more than these; samples between them do.
+    SampleOptions options{.values = ValueRule::Paper, .value_kernel = WendlandC2Kernel{.radius = 0.4}};
+    for (const float v : sample_rbf_points(mesh, options).volume.channels[0].values) EXPECT_TRUE(std::isfinite(v));
+    options.per_edge = 2;
+    test::expect_error(ErrorCode::InvalidInput, "0.87 cells", [&] { (void)sample_rbf_points(mesh, options); });
+}
+
 TEST(ValueRule, TheFieldIsNamedOrTheFirstOfOneChannel) {
     HexMesh mesh = test::make_box(1, 1, 1);
     mesh.attributes.push_back({"v", 3, std::vector<double>(24, 0.0)});

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gl_context.h"
+#include "lib/comma_locale.h"
 #include "lib/test_meshes.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
@@ -149,6 +150,13 @@ TEST_F(Sheets, ShowAConstantFieldAsThatConstant) {
             EXPECT_NEAR(image.pixel(x, y)[1], inside ? .5 * alpha : 0, 2e-6) << x << ' ' << y;
         }
     }
+}
+
+TEST_F(Sheets, AreTheSameInEveryLocale) {
+    const auto volume = sampled_ball(Correction::Second);
+    const auto image = sheets(volume, view(), optics(false)).image;
+    const test::CommaLocale comma;  // the shaders' texts have numbers in them
+    EXPECT_EQ(sheets(volume, view(), optics(false)).image.rgba, image.rgba);
 }
 
 TEST_F(Sheets, ArePixelForPixelTheSameEveryTime) {

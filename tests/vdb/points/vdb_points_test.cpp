@@ -188,7 +188,8 @@ TEST_F(VdbPoints, HessiansOfSomePointsOnlyAreRefused) {
     const openvdb::Coord origin = with->tree().cbeginLeaf()->origin();
     with->tree().addLeaf(without->tree().stealNode<Leaf>(origin, 0, /*active=*/false));
     openvdb::io::File(path("c.vdb").string()).write({with});
-    EXPECT_THAT(error_of([&] { static_cast<void>(read_vdb_points(path("c.vdb"))); }), HasSubstr("not one Hessian a point"));
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_vdb_points(path("c.vdb"))); }),
+                HasSubstr("does not have one Hessian per point"));
 }
 
 TEST_F(VdbPoints, OtherFilesAreRefused) {

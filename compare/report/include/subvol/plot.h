@@ -31,7 +31,9 @@ struct Plot {
 [[nodiscard]] std::optional<double> fitted_order(const PlotLine& line);
 
 /// The positions of ticks on an axis from min to max, ascending, at least two: 1, 2, 5 times powers of ten; decades on a
-/// logarithmic axis that spans several.
+/// logarithmic axis that spans several; the ends of a range so narrow that it has only a few numbers.
+///
+/// min, max: finite, min < max; on a logarithmic axis positive
 [[nodiscard]] std::vector<double> ticks(double min, double max, bool log);
 
 }  // namespace subvol

@@ -34,7 +34,7 @@ using CaseWork = std::function<CaseResult(const StudyCase&)>;
 
 /// folder:   created if necessary; gets cases/ID.json for each case, results.csv, costs.csv
 /// jobs:     cases that run at the same time; 1 for a timed study
-/// fresh:    run all cases, even those that an earlier run finished
+/// fresh:    run all cases, even those that an earlier run of this version finished
 /// finished: called for each case as it ends, one at a time; ran: false if an earlier run finished it
 struct StudyRunOptions {
     std::filesystem::path folder;
@@ -53,17 +53,17 @@ struct StudyResults {
     std::size_t failed = 0;
 };
 
-/// Runs the cases of a study that an earlier run has not finished. Each case's file is written as soon as it is done, and
-/// appears whole or not at all: a run that is killed loses only the cases that were running. A failed case is kept with its
-/// message, and tried again by the next run.
+/// Runs the cases of a study that an earlier run of this version has not finished. Each case's file is written as soon as it is
+/// done, and appears whole or not at all: a run that is killed loses only the cases that were running. A failed case is kept
+/// with its message, and tried again by the next run.
 ///
 /// throws: Error(Io) if the folder cannot be written to, Error(Cancelled)
 [[nodiscard]] StudyResults run_study(const Study& study, const CaseWork& work, const StudyRunOptions& options);
 
 /// Writes the file of a case, and reads it again.
 ///
-/// returns: nothing if there is no such file, it is damaged or belongs to another case, the case failed, or files of its
-///          result are missing in `folder`
+/// returns: nothing if there is no such file, it is damaged, belongs to another case or was written by another version of this
+///          library, the case failed, or files of its result are missing in `folder`
 void write_case(const std::filesystem::path& file, const StudyCase& of, const CaseResult& result);
 [[nodiscard]] std::optional<CaseResult> read_finished_case(const std::filesystem::path& file, const StudyCase& of,
                                                            const std::filesystem::path& folder);

@@ -41,7 +41,7 @@ struct Footprint {
 /// tolerance:       > 0: instead of these, as many intervals as needed until the first channel's error, in its own unit, is
 ///                  smaller at the points of the second refinement
 /// values:          how values between control points are found; gradients and moments are those of the scheme
-/// value_kernel:    of the rule `Paper`
+/// value_kernel:    of the rule `Paper`; its weights must be positive in sum wherever there is a sample
 /// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide,
 ///                  at most 4
 struct SampleOptions {

@@ -12,7 +12,8 @@ struct Tick {
     std::string label;
 };
 
-/// Multiples of 1, 2 or 5 times a power of ten in [min, max]: at most `most`, and at least two.
+/// Multiples of 1, 2 or 5 times a power of ten in [min, max]: at most `most`, and at least two. If the range is so narrow that
+/// it has only a few numbers, the ticks are its ends, with all digits.
 ///
 /// min, max: finite, min < max; most: 5 or more
 [[nodiscard]] std::vector<Tick> round_ticks(double min, double max, int most = 7);
