@@ -131,7 +131,7 @@ TEST(SplatOracle, AgreesForLight) {
 
 TEST(SplatCpu, FlatFramesThatRoundingMadeIndefiniteLeaveThePictureFinite) {
     // Every second kernel is a disc that is seen from its face, or a needle across the view: floats cannot tell their frames
-    // from indefinite ones, which extend by the root of a negative number towards the eye.
+    // from indefinite ones, so they are valid.
     for (const Kernel& kernel : {Kernel(CompactKernel{}), Kernel(SeparableGaussianKernel{})}) {
         for (const Camera& camera : {perspective_camera(), orthographic_camera()}) {
             const View view(camera, 40, 37);
