@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "mixed_cells_split.h"
+#include "sharp_groups.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
 
@@ -241,6 +242,9 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
         ArrayConversion conversion(result, origin, file, names);
         for (auto& array : found.arrays) conversion.take(std::move(array));
         validate(result.mesh);
+        if (!found.sharp.empty()) {
+            add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);
+        }
     } catch (const Error& error) {
         const bool names_file = std::string_view(error.what()).starts_with(file);
         if (names_file) throw;
