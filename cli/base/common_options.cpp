@@ -27,6 +27,12 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
     app.add_option("--weld-distance", options.weld_distance_world, "join points of a file that are no farther apart than this")
         ->type_name("D")
         ->check(CLI::PositiveNumber);
+    app.add_option("--sharp", options.sharp,
+                   "a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its "
+                   "name or number, a reference of MEDIT, or Ridges (repeatable)")
+        ->group(group)
+        ->type_name("NAME")
+        ->allow_extra_args(false);
     app.add_option("--threads", options.threads, "number of threads (0: all); results do not depend on it")
         ->group(group)
         ->type_name("N")

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -19,7 +20,8 @@ struct CommonOptions {
     std::string other_cells = "split";   // "ignore", "refuse"
     bool weld = false;                   // join points at the same place
     std::optional<double> weld_distance_world;
-    int threads = 0;  // 0: all
+    std::vector<std::string> sharp;  // groups of faces and edges
+    int threads = 0;                 // 0: all
     bool json = false;
     bool quiet = false;
     std::string progress = "auto";

@@ -57,9 +57,12 @@ std::string input_help() {
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
     const bool model = input.starts_with(kModelPrefix);
+    if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     ReadResult read = report.timed("read", [&] {
         return model ? generate(input.substr(kModelPrefix.size()))
-                     : read_mesh(input, {.other_cells = other_cells(options.other_cells), .weld = weld_distance(options)});
+                     : read_mesh(input, {.other_cells = other_cells(options.other_cells),
+                                         .weld = weld_distance(options),
+                                         .sharp = options.sharp});
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;

@@ -14,8 +14,6 @@ namespace subvol {
 namespace {
 
 constexpr int kLevels = 6;
-constexpr std::array<std::array<int, 3>, 8> kCorners{
-    {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}};
 
 /// A part of a cell: along each axis the whole cell, or the part near one end.
 struct CellPart {
@@ -40,7 +38,7 @@ std::vector<CellPart> parts_of(const HexMesh& mesh, PlaceKind kind) {
             parts.push_back({c});
             for (std::size_t a = 0; a < 3; ++a) {
                 if (a == k / 4) continue;
-                const bool high = kCorners[static_cast<std::size_t>(kCellEdges[k][0])][a] == 1;
+                const bool high = kCornerParameters[static_cast<std::size_t>(kCellEdges[k][0])][a] == 1;
                 parts.back().extents[a] = high ? CellPart::NearHigh : CellPart::NearLow;
             }
         }

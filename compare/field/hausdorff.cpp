@@ -8,30 +8,12 @@
 #include "closed_surface.h"
 #include "sample_grid.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/triangle_distance.h"
 #include "subvol/field_metrics.h"
 
 namespace subvol {
 
 namespace {
-
-/// The square of the distance from x to a triangle: to its plane if x projects into the triangle, else to the nearest edge.
-double squared_distance(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto to_edge = [&](const Vec3& p, const Vec3& q) {
-        const Vec3 d = q - p;
-        const double length2 = glm::dot(d, d);
-        const double t = length2 > 0 ? std::clamp(glm::dot(x - p, d) / length2, 0.0, 1.0) : 0;
-        const Vec3 off = x - (p + t * d);
-        return glm::dot(off, off);
-    };
-    const Vec3 normal = glm::cross(b - a, c - a);
-    const double area2 = glm::dot(normal, normal);
-    const auto inside = [&](const Vec3& p, const Vec3& q) { return glm::dot(glm::cross(q - p, x - p), normal) >= 0; };
-    if (area2 > 0 && inside(a, b) && inside(b, c) && inside(c, a)) {
-        const double height = glm::dot(x - a, normal);
-        return height * height / area2;
-    }
-    return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
-}
 
 double one_sided(const Surface& from, const Surface& to) {
     const detail::BoxTree tree(detail::triangle_boxes(to));
@@ -40,7 +22,7 @@ double one_sided(const Surface& from, const Surface& to) {
         const Vec3& x = from.points[i];
         distances[i] = tree.nearest(x, [&](Index triangle) {
             const auto& t = to.triangles[triangle];
-            return squared_distance(x, to.points[t[0]], to.points[t[1]], to.points[t[2]]);
+            return detail::squared_distance(x, to.points[t[0]], to.points[t[1]], to.points[t[2]]);
         });
     });
     return std::sqrt(*std::max_element(distances.begin(), distances.end()));

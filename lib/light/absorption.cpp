@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "subvol/detail/compositor.h"
+
 namespace subvol::detail {
 
 namespace {
@@ -19,7 +21,6 @@ constexpr double kLeafRatio = 1.5;
 // Below these depths three points (6e-5 T₁³) or four (8e-7 T₁⁴) suffice, and the exponential is a short polynomial.
 constexpr double kThinDepth = 0.002;
 constexpr double kLowDepth = 0.03;
-constexpr double kOpaque = 1e-17;
 // A piece of this depth or more, even infinite, absorbs all light within a rounding error of its front.
 constexpr double kBlackDepth = 1e17;
 

@@ -7,6 +7,7 @@
 
 #include "absorption.h"
 #include "knot_values.h"
+#include "subvol/detail/compositor.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
@@ -17,7 +18,6 @@ using namespace detail;
 namespace {
 
 constexpr double kMaxAlpha = 1 - 1e-6;
-constexpr double kOpaque = 1e-16;  // below this, what lies behind does not change a double
 
 std::vector<double> merged_knots(const TransferFunction& function) {
     std::vector<double> knots;

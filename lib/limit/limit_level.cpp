@@ -25,10 +25,21 @@ struct Step {
     double position = 0, value = 0;
 };
 
+/// The range of each attribute over the points that cells use; others may have any value. The mesh is valid.
 std::vector<double> ranges_of(const HexMesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size(), 0);
+    for (const auto& cell : mesh.cells) {
+        for (const Index p : cell) used[p] = 1;
+    }
     std::vector<double> ranges;
     for (const Attribute& attribute : mesh.attributes) {
-        const auto [min, max] = std::ranges::minmax(attribute.values);
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        double min = HUGE_VAL, max = -HUGE_VAL;
+        for (std::size_t i = 0; i < attribute.values.size(); ++i) {
+            if (!used[i / channels]) continue;
+            min = std::min(min, attribute.values[i]);
+            max = std::max(max, attribute.values[i]);
+        }
         constexpr double kRounding = 1e-12;  // relative: a field that varies less is constant
         ranges.push_back(max - min > kRounding * std::max(std::abs(min), std::abs(max)) ? max - min : HUGE_VAL);
     }
@@ -113,6 +124,7 @@ std::vector<Index> all_cells(const HexMesh& mesh) {
 }  // namespace
 
 LimitLevel find_limit_level(const HexMesh& mesh, RefineOptions refinement, const LimitLevelOptions& options) {
+    validate(mesh);
     const std::vector<double> ranges = ranges_of(mesh);
     refinement.progress = nullptr;
     std::vector<Index> open = all_cells(mesh);
@@ -143,6 +155,7 @@ LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const
     const std::size_t count = mesh.cells.size();
     LimitCells result{.cell_levels = {}, .converged = count == 0};
     if (count == 0 || !fits(count, 1, options.max_cells)) return result;
+    validate(mesh);
     const std::vector<double> ranges = ranges_of(mesh);
     refinement.progress = nullptr;
     const DenseCells dense(mesh, refinement, true);

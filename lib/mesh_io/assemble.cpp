@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "mixed_cells_split.h"
+#include "sharp_groups.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
 
@@ -71,14 +72,15 @@ FieldInfo describe(const FileArray& array) {
     return info;
 }
 
-// The mean at each point over its cells, weighted by volume; where all of them have no volume, the plain mean.
+// The mean at each point over its cells, weighted by volume; where all of them have no volume, the plain mean. Splitting may
+// make folded cells, whose signed volume is negative: their size counts, so that the mean stays between the values.
 std::vector<double> mean_over_cells(const HexMesh& mesh, const std::vector<double>& values, std::size_t components) {
     std::vector<double> sums(mesh.points.size() * components);
     std::vector<double> plain_sums(sums.size());
     std::vector<double> weights(mesh.points.size());
     std::vector<double> counts(mesh.points.size());
     for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
-        const double volume = cell_volume(corners_of(mesh, mesh.cells[c]));
+        const double volume = std::abs(cell_volume(corners_of(mesh, mesh.cells[c])));
         for (const Index p : mesh.cells[c]) {
             weights[p] += volume;
             counts[p] += 1;
@@ -240,6 +242,9 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
         ArrayConversion conversion(result, origin, file, names);
         for (auto& array : found.arrays) conversion.take(std::move(array));
         validate(result.mesh);
+        if (!found.sharp.empty()) {
+            add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);
+        }
     } catch (const Error& error) {
         const bool names_file = std::string_view(error.what()).starts_with(file);
         if (names_file) throw;

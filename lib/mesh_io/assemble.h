@@ -7,7 +7,8 @@
 namespace subvol::detail {
 
 /// Makes a mesh of what a reader found. The steps, in this order: drop ghost cells, refuse used points that are not finite,
-/// weld points, turn left-handed hexahedra, split other cells into hexahedra, move cell arrays to the points, validate.
+/// weld points, turn left-handed hexahedra, split other cells into hexahedra, move cell arrays to the points, validate, tag
+/// sharp faces and creases.
 ///
 /// in, file, names: for messages
 /// throws: Error(InvalidInput) as `read_mesh`

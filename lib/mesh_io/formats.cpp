@@ -23,14 +23,14 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
 }
 
 constexpr std::array<MeshFormat, 10> kFormats{{
-    {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit},
-    {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr},
+    {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
+    {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
     {{".vtu"}, "VTK XML", read_file<read_vtu>, write_vtu},
     {{".vts"}, "VTK XML", read_file<read_vts>, nullptr},
     {{".vtr"}, "VTK XML", read_file<read_vtr>, nullptr},
     {{".vti"}, "VTK XML", read_file<read_vti>, nullptr},
-    {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr},
+    {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr, true},
     {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
     {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr},
 }};

@@ -58,11 +58,13 @@ std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexM
 ///
 /// extensions: in lower case, unused ones empty
 /// write:      null if the library only reads the format
+/// groups:     whether its groups of faces and edges are read
 struct MeshFormat {
     std::array<std::string_view, 4> extensions;
     std::string_view name;
     ReadResult (*read)(const std::filesystem::path& path, const ReadOptions& options);
     std::vector<std::string> (*write)(const std::filesystem::path& path, const HexMesh& mesh);
+    bool groups = false;
 };
 
 [[nodiscard]] std::span<const MeshFormat> mesh_formats();

@@ -7,6 +7,7 @@
 #include "assemble.h"
 #include "formats.h"
 #include "output_file.h"
+#include "sharp_groups.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -28,10 +29,13 @@ const std::map<std::string_view, std::array<std::string_view, 2>> kVolumeCells{{
                                                                                {"Wedges", {"wedge", "wedges"}},
                                                                                {"Pyramids", {"pyramid", "pyramids"}}};
 
+// Sections of which groups of faces and edges are made.
+const std::set<std::string_view> kTagSections{"Edges", "Ridges", "Triangles", "Quadrilaterals"};
+
 class MeditReader {
 public:
     MeditReader(std::string_view text, std::string_view file, const ReadOptions& options)
-        : in_(text, file, TextScanner::Comments::Hash), file_(file), options_(options) {}
+        : in_(text, file, TextScanner::Comments::Hash), file_(file), options_(options), groups_(options.sharp) {}
 
     ReadResult read() {
         read_header();
@@ -47,6 +51,8 @@ public:
             in_ = place;
             read_cells(keyword);
         }
+        tag_ridges();
+        groups_.check(file_);
         list_left_out();
         return assemble(std::move(found_), in_, file_, kNames, options_);
     }
@@ -66,7 +72,8 @@ private:
             read_dimension();
         } else if (keyword == "Vertices") {
             read_vertices();
-        } else if (keyword == "Hexahedra" || (kVolumeCells.contains(keyword) && options_.other_cells != OtherCells::Ignore)) {
+        } else if (keyword == "Hexahedra" || (kVolumeCells.contains(keyword) && options_.other_cells != OtherCells::Ignore) ||
+                   (kTagSections.contains(keyword) && groups_.any())) {
             if (!cell_sections_.insert(keyword).second) in_.fail("there is a second " + std::string(keyword) + " section");
             if (has_vertices_) {
                 read_cells(keyword);
@@ -105,8 +112,45 @@ private:
             read_cells(keyword, {"vertex", "tetrahedron", 1}, "a tetrahedron", found_.tets.corners);
         } else if (keyword == "Pyramids") {
             read_cells(keyword, {"vertex", "pyramid", 1}, "a pyramid", found_.pyramids.corners);
+        } else if (keyword == "Quadrilaterals") {
+            read_tags<4>(keyword, "quadrilateral", [&](const auto& quad) { found_.sharp.faces.push_back(quad); });
+        } else if (keyword == "Triangles") {
+            read_tags<3>(keyword, "triangle", [&](const auto& t) { found_.sharp.faces.push_back({t[0], t[1], t[2], t[2]}); });
+        } else if (keyword == "Edges") {
+            read_tags<2>(keyword, "edge", [&](const auto& edge) { found_.sharp.edges.push_back(edge); });
+        } else if (keyword == "Ridges") {
+            const std::size_t count = in_.count({keyword});
+            for (std::size_t r = 0; r < count; ++r) {
+                ridges_.push_back(in_.integer({"ridge", static_cast<std::int64_t>(r + 1), count}));
+            }
         } else {
             read_cells(keyword, {"vertex", "prism", 1}, "a prism", found_.prisms.corners);
+        }
+    }
+
+    // Reads faces or edges, and calls take(corners) for those whose reference is that of a wanted group.
+    template <std::size_t N, class Take>
+    void read_tags(std::string_view keyword, std::string_view word, const Take& take) {
+        const std::size_t count = in_.count({keyword});
+        const std::string reference = "reference of " + std::string(word);
+        for (std::size_t t = 0; t < count; ++t) {
+            const auto number = static_cast<std::int64_t>(t + 1);
+            std::array<Index, N> corners;
+            for (Index& corner : corners) corner = read_vertex_index({word, number, count});
+            if constexpr (N == 2) edges_.push_back(corners);
+            if (groups_.takes(std::to_string(in_.integer({reference, number, count})))) take(corners);
+        }
+    }
+
+    // Ridges are numbers of edges, from 1.
+    void tag_ridges() {
+        if (ridges_.empty() || !groups_.takes("Ridges")) return;
+        for (const std::int64_t ridge : ridges_) {
+            if (ridge < 1 || ridge > static_cast<std::int64_t>(edges_.size())) {
+                in_.fail("Ridges: there is no edge with index " + std::to_string(ridge),
+                         "indices are 1 to " + std::to_string(edges_.size()));
+            }
+            found_.sharp.edges.push_back(edges_[static_cast<std::size_t>(ridge - 1)]);
         }
     }
 
@@ -176,6 +220,9 @@ private:
     std::string_view file_;
     ReadOptions options_;
     MeshFile found_;
+    SharpGroups groups_;
+    std::vector<std::array<Index, 2>> edges_;
+    std::vector<std::int64_t> ridges_;
     std::vector<std::pair<std::string_view, TextScanner>> early_cells_;
     std::set<std::string_view> cell_sections_;
     std::map<std::string, std::size_t> left_out_;

@@ -29,6 +29,14 @@ struct FileCells {
     std::vector<Index> numbers;
 };
 
+/// The faces and edges of the groups that ReadOptions::sharp names. A triangle repeats its last corner.
+struct FileTags {
+    std::vector<std::array<Index, 4>> faces;
+    std::vector<std::array<Index, 2>> edges;
+
+    [[nodiscard]] bool empty() const { return faces.empty() && edges.empty(); }
+};
+
 /// The contents of a file as a reader found them; `assemble` makes a mesh of them.
 ///
 /// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
@@ -43,6 +51,7 @@ struct MeshFile {
     FileCells<4> tets;
     FileCells<6> prisms;
     FileCells<5> pyramids;
+    FileTags sharp;
     std::vector<FileArray> arrays;
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;

@@ -61,6 +61,10 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     }
     const MeshFormat* format = format_of(path);
     if (!format) refuse_format(path, "read", list_formats(false));
+    if (!options.sharp.empty() && !format->groups) {
+        throw Error(ErrorCode::InvalidInput, "groups of faces and edges are not read from such files", path.string(),
+                    "sharp faces come from Gmsh (.msh) and MEDIT (.mesh, .meshb) files");
+    }
     return format->read(path, options);
 }
 

@@ -4,6 +4,7 @@
 #include "assemble.h"
 #include "formats.h"
 #include "number_type.h"
+#include "sharp_groups.h"
 
 namespace subvol::detail {
 
@@ -14,9 +15,13 @@ constexpr EntityNames kNames{"vertex", "hex", 1};
 // Sections by their numbers in the format.
 constexpr std::int64_t kDimension = 3;
 constexpr std::int64_t kVertices = 4;
+constexpr std::int64_t kEdges = 5;
+constexpr std::int64_t kTriangles = 6;
+constexpr std::int64_t kQuadrilaterals = 7;
 constexpr std::int64_t kTetrahedra = 8;
 constexpr std::int64_t kPrisms = 9;
 constexpr std::int64_t kHexahedra = 10;
+constexpr std::int64_t kRidges = 14;
 constexpr std::int64_t kPyramids = 49;
 constexpr std::int64_t kEnd = 54;
 
@@ -24,7 +29,7 @@ constexpr std::int64_t kEnd = 54;
 class MeshbReader {
 public:
     MeshbReader(std::string_view text, std::string_view file, const ReadOptions& options)
-        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options) {
+        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options), groups_(options.sharp) {
         in_.name_bytes();
         in_.seek(0);
     }
@@ -45,6 +50,8 @@ public:
             read_cells(kPrisms, "prism", "a prism", found_.prisms);
             read_cells(kPyramids, "pyramid", "a pyramid", found_.pyramids);
         }
+        if (groups_.any()) read_groups();
+        groups_.check(file_);
         add_left_out_warning(found_, left_out_, file_);
         return assemble(std::move(found_), in_, file_, kNames, options_);
     }
@@ -131,6 +138,41 @@ private:
         }
     }
 
+    void read_groups() {
+        auto& [faces, edges] = found_.sharp;
+        read_tags<4>(kQuadrilaterals, "quadrilateral", [&](const auto& quad) { faces.push_back(quad); });
+        read_tags<3>(kTriangles, "triangle", [&](const auto& t) { faces.push_back({t[0], t[1], t[2], t[2]}); });
+        std::vector<std::array<Index, 2>> all;
+        read_tags<2>(
+            kEdges, "edge", [&](const auto& edge) { edges.push_back(edge); }, &all);
+        if (!sections_.contains(kRidges)) return;
+        const std::size_t count = count_in(kRidges, {"Ridges"}, size_of(integer_));
+        if (count == 0 || !groups_.takes("Ridges")) return;
+        for (std::size_t r = 0; r < count; ++r) {
+            const std::int64_t edge = number({"ridge", static_cast<std::int64_t>(r + 1), count}, integer_);
+            if (edge < 1 || edge > static_cast<std::int64_t>(all.size())) {
+                in_.fail("Ridges: there is no edge with index " + std::to_string(edge),
+                         "indices are 1 to " + std::to_string(all.size()));
+            }
+            edges.push_back(all[static_cast<std::size_t>(edge - 1)]);
+        }
+    }
+
+    // Reads faces or edges, and calls take(corners) for those whose reference is that of a wanted group.
+    template <std::size_t N, class Take>
+    void read_tags(std::int64_t section, std::string_view name, const Take& take,
+                   std::vector<std::array<Index, N>>* all = nullptr) {
+        if (!sections_.contains(section)) return;
+        const std::size_t count = count_in(section, {name}, (N + 1) * size_of(integer_));
+        for (std::size_t t = 0; t < count; ++t) {
+            const Place place{name, static_cast<std::int64_t>(t + 1), count};
+            std::array<Index, N> corners;
+            for (Index& corner : corners) corner = read_corner(place);
+            if (all) all->push_back(corners);
+            if (groups_.takes(std::to_string(number(place, integer_)))) take(corners);
+        }
+    }
+
     Index read_corner(const Place& place) {
         const std::int64_t index = number(place, integer_);
         const std::size_t points = found_.points.size();
@@ -161,6 +203,7 @@ private:
     NumberType integer_ = NumberType::Int32;
     std::map<std::int64_t, std::size_t> sections_;  // the position of the count of each
     MeshFile found_;
+    SharpGroups groups_;
     std::string left_out_;
 };
 

@@ -99,6 +99,11 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
             cell[k] = joined[cell[k]];
         }
     });
+    const auto join_tag = [&](auto& tag) {
+        for (Index& p : tag) p = joined[p] == kNone ? p : joined[p];
+    };
+    std::ranges::for_each(found.sharp.faces, join_tag);
+    std::ranges::for_each(found.sharp.edges, join_tag);
     found.warnings.push_back(counted(welded, "point", "points") + " welded to others " +
                              (tolerance > 0 ? "nearby" : "at the same place") +
                              "; of their values those of the first are kept");

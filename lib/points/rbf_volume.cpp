@@ -24,6 +24,23 @@ bool is_finite(const Vec3& p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
+/// Whether the frame is positive definite, or so nearly that rounding to floats may have made it indefinite. Its extents along
+/// the axes are made 1 first, so that this does not depend on how they differ.
+bool is_positive(const Symmetric3& s) {
+    constexpr double kRounding =
+        1e-6;  // each entry may be wrong by 2⁻²⁴ of itself, a root of the unit matrix by three of these
+    const auto cosine = [&](std::size_t entry, std::size_t a, std::size_t b) {
+        return double(s[entry]) / (std::sqrt(double(s[a])) * std::sqrt(double(s[b])));
+    };
+    if (!(s[0] > 0 && s[3] > 0 && s[5] > 0)) return false;
+    // The pivots of Cholesky's decomposition.
+    const double xy = cosine(1, 0, 3), xz = cosine(2, 0, 5), yz = cosine(4, 3, 5), one = 1 + kRounding;
+    const double second = one - xy * xy / one;
+    if (!(second > 0)) return false;
+    const double mixed = yz - xy * xz / one;
+    return one - xz * xz / one - mixed * mixed / second > 0;
+}
+
 void check_names(const std::vector<RbfChannel>& channels) {
     if (channels.empty()) throw Error(ErrorCode::InvalidInput, "the points have no channel", {}, "at least one");
     std::set<std::string> names;
@@ -81,7 +98,10 @@ void validate(const RbfVolume& volume) {
         if (!is_finite(volume.centers[i])) refuse_point(i, "a coordinate is not finite");
         const auto& s = volume.frames[i];
         if (!all_finite(s)) refuse_point(i, "the frame is not finite");
-        if (!(s[0] > 0 && s[3] > 0 && s[5] > 0)) refuse_point(i, "the frame's diagonal is not positive");
+        if (!is_positive(s)) {
+            throw Error(ErrorCode::InvalidInput, "point " + std::to_string(i) + ": the frame is not positive definite", {},
+                        "a covariance: dᵀSd > 0 for every direction d");
+        }
     }
     check_names(volume.channels);
     for (const auto& channel : volume.channels) check_channel(channel, volume.size());

@@ -14,17 +14,18 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "bucket_sort.h"
 #include "kernel_weight.h"
+#include "subvol/rbf_field.h"
 
 namespace subvol::detail {
 namespace {
 
-constexpr double kLeastWeight = 0.02;  // as the splatter has it
-constexpr double kLeastGain = 1e-10;   // the solver ends at this part of the first step's gain
+constexpr double kLeastGain = 1e-10;  // the solver ends at this part of the first step's gain
 
 /// Sums of fixed pieces, added in a fixed tree: the same bits for any number of threads.
 double dot(std::span<const KernelTerms> a, std::span<const KernelTerms> b) {
@@ -39,19 +40,11 @@ double dot(std::span<const KernelTerms> a, std::span<const KernelTerms> b) {
         std::plus<>());
 }
 
-/// Inverts a symmetric positive definite 5×5 matrix in place, by Gauss-Jordan: no pivot is 0.
-void invert(std::array<double, 25>& m) {
-    for (std::size_t p = 0; p < 5; ++p) {
-        const double inverse = 1 / m[6 * p];
-        m[6 * p] = 1;
-        for (std::size_t j = 0; j < 5; ++j) m[5 * p + j] *= inverse;
-        for (std::size_t i = 0; i < 5; ++i) {
-            if (i == p) continue;
-            const double factor = m[5 * i + p];
-            m[5 * i + p] = 0;
-            for (std::size_t j = 0; j < 5; ++j) m[5 * i + j] -= factor * m[5 * p + j];
-        }
-    }
+/// Inverts a symmetric positive definite 5×5 matrix in place.
+void invert(std::array<double, 25>& numbers) {
+    using Matrix5 = Eigen::Matrix<double, 5, 5>;
+    Eigen::Map<Matrix5> m(numbers.data());
+    m = Matrix5(m).ldlt().solve(Matrix5::Identity());
 }
 
 }  // namespace

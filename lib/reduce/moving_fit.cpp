@@ -8,6 +8,7 @@
 #include "field_fit.h"
 #include "kernel_weight.h"
 #include "subvol/error.h"
+#include "subvol/rbf_field.h"
 
 namespace subvol::detail {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 constexpr int kUnknowns = 9;
 using Unknowns = std::array<double, kUnknowns>;
 
-constexpr double kLeastWeight = 0.02;
 constexpr double kMargin = 1.15;          // a sample sees the kernels that reach it after growing by this factor
 constexpr double kShape = 0.1;            // the ridge of shifts and growths, of that of terms
 constexpr int kMostCholesky = 200;        // with more kernels the factors fill up and conjugate gradients are faster

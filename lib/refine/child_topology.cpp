@@ -14,6 +14,9 @@
 #include "child_topology.h"
 
 #include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
 
 #include "boundary_rings.h"
 #include "bucket_sort.h"
@@ -251,12 +254,18 @@ private:
 
 }  // namespace
 
+void check_child(const EntityCounts& parent) {
+    const EntityCounts child = child_counts(parent);
+    const std::array<std::pair<std::size_t, const char*>, 4> kinds{
+        {{child.points, "points"}, {child.edges, "edges"}, {child.faces, "faces"}, {child.cells, "cells"}}};
+    const auto& [most, kind] = *std::ranges::max_element(kinds, {}, [](const auto& k) { return k.first; });
+    if (most < kNone) return;
+    throw Error(ErrorCode::InvalidInput, "the refined mesh needs " + std::to_string(most) + " " + kind, {},
+                "at most " + std::to_string(kNone - 1) + ": use fewer levels, or a build with SUBVOL_INDEX64");
+}
+
 Topology child_topology(const Topology& parent) {
-    const std::size_t faces = 4 * parent.faces.size() + 12 * parent.cells.size();  // a child has more faces than anything else
-    if (faces >= kNone) {
-        throw Error(ErrorCode::InvalidInput, "the refined mesh needs " + std::to_string(faces) + " faces", {},
-                    "at most " + std::to_string(kNone - 1) + ": use fewer levels, or a build with SUBVOL_INDEX64");
-    }
+    check_child({parent.point_count, parent.edges.size(), parent.faces.size(), parent.cells.size()});
     return ChildBuilder(parent).build();
 }
 

@@ -12,6 +12,20 @@ struct ChildNumbering {
     std::size_t edges, faces, cells, end;
 };
 
+/// How many entities of each kind a mesh has.
+struct EntityCounts {
+    std::size_t points, edges, faces, cells;
+};
+
+/// The numbers of a child's entities, from those of its parent.
+[[nodiscard]] constexpr EntityCounts child_counts(const EntityCounts& parent) {
+    return {parent.points + parent.edges + parent.faces + parent.cells, 2 * parent.edges + 4 * parent.faces + 6 * parent.cells,
+            4 * parent.faces + 12 * parent.cells, 8 * parent.cells};
+}
+
+/// throws: Error(InvalidInput) if the child of a mesh with these numbers has more entities of a kind than an Index can count
+void check_child(const EntityCounts& parent);
+
 /// A place in the 3×3×3 lattice of a refined cell: one of its corners, edges or faces, or its centre.
 struct LatticePlace {
     enum Kind : std::uint8_t { Corner, Edge, Face, Cell } kind = Cell;

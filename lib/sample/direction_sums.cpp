@@ -13,12 +13,15 @@ namespace {
 
 constexpr double kFlat = 1e-9;       // of the determinant of a cube of the same trace
 constexpr double kThickness = 1e-3;  // added to a flat metric, of its mean square extent
+constexpr double kSpeck = 1e-3;      // the extent of a point whose cells have none, of the mesh's diagonal
+constexpr double kNoExtent = 1e-12;  // extents below this part of the diagonal are rounding
 
 }  // namespace
 
-DirectionSums::DirectionSums(const SampleOptions& options, RbfVolume& volume)
+DirectionSums::DirectionSums(const SampleOptions& options, double diagonal, RbfVolume& volume)
     : options_(options),
       volume_(volume),
+      diagonal_(diagonal),
       radius2_(support_radius(options.kernel) * support_radius(options.kernel)),
       metric_gradient_(volume.channels.size()),
       laplacian_(volume.channels.size()) {
@@ -45,7 +48,12 @@ void DirectionSums::add(double weight, const Vec3& step, const Vec3& bend, const
 bool DirectionSums::finish(double cells) {
     const double scale = (metric_[0][0] + metric_[1][1] + metric_[2][2]) / 3;
     const bool flat = !(glm::determinant(metric_) > kFlat * scale * scale * scale);
-    if (flat) metric_ += Mat3(kThickness * (scale > 0 ? scale : 1));
+    if (flat && scale > kNoExtent * kNoExtent * diagonal_ * diagonal_) {
+        metric_ += Mat3(kThickness * scale);
+    } else if (flat) {
+        const double speck = diagonal_ > 0 ? kSpeck * diagonal_ : 1;  // any length, if the mesh is a point
+        metric_ = Mat3(cells * speck * speck);
+    }
     volume_.frames[point_] = symmetric3(metric_ * (radius2_ / cells));
     const Mat3 inverse = glm::inverse(metric_);
     for (std::size_t c = 0; c < laplacian_.size(); ++c) {

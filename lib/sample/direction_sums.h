@@ -10,7 +10,8 @@ namespace subvol::detail {
 /// the frame from the steps, the gradient by least squares, the second moment as a mean (docs/adr/0004).
 class DirectionSums {
 public:
-    DirectionSums(const SampleOptions& options, RbfVolume& volume);
+    /// diagonal: of the mesh's bounding box
+    DirectionSums(const SampleOptions& options, double diagonal, RbfVolume& volume);
 
     void begin(std::size_t point);
 
@@ -29,6 +30,7 @@ public:
 private:
     const SampleOptions& options_;
     RbfVolume& volume_;
+    double diagonal_;  // of the mesh
     double radius2_;
     std::size_t point_ = 0;
     Mat3 metric_{0.0};

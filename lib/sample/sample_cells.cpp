@@ -64,12 +64,12 @@ std::array<double, 3> in_cell(const std::array<Index, 8>& cell, Index origin, co
 class KernelWriter {
 public:
     KernelWriter(const Topology& topology, const SampleCounts& counts, const CellBlocks& blocks,
-                 std::span<const ChannelView> control, const SampleOptions& options, RbfVolume& volume)
+                 std::span<const ChannelView> control, const SampleOptions& options, double diagonal, RbfVolume& volume)
         : counts_(counts),
           blocks_(blocks),
           options_(options),
           volume_(volume),
-          sums_(options, volume),
+          sums_(options, diagonal, volume),
           rule_(topology, control, options.values, options.value_kernel),
           d_(blocks.channels()),
           dd_(blocks.channels()) {}
@@ -169,7 +169,8 @@ public:
           counts_(topology, std::move(intervals)),
           blocks_(twice_refined),
           control_(channels_of(mesh)),
-          point_cells_(cells_of_points(topology_)) {}
+          point_cells_(cells_of_points(topology_)),
+          diagonal_(bounds(mesh).diagonal()) {}
 
     SampleResult run(const HexMesh& mesh) {
         const auto first_edge = prefix(topology_.point_count, topology_.edges.size(),
@@ -214,7 +215,7 @@ private:
         report_progress(options_.progress, stage, 0);
         std::atomic<std::size_t> flat{0};
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
-            KernelWriter writer(topology_, counts_, blocks_, control_, options_, result_.volume);
+            KernelWriter writer(topology_, counts_, blocks_, control_, options_, diagonal_, result_.volume);
             std::size_t flat_here = 0;
             for (std::size_t i = range.begin(); i != range.end(); ++i) flat_here += sample(i, writer);
             flat += flat_here;
@@ -286,6 +287,7 @@ private:
     CellBlocks blocks_;
     std::vector<ChannelView> control_;
     Buckets<std::pair<Index, Index>> point_cells_;
+    double diagonal_;  // of the mesh's bounding box
     SampleResult result_;
 };
 

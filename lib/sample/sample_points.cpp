@@ -46,12 +46,13 @@ void derive(const PointLines& lines, Index p, Index ahead, Index back, LineStenc
 
 class PointSampler {
 public:
-    PointSampler(const HexMesh& mesh, const PointLines& lines, bool across_points, const SampleOptions& options,
-                 RbfVolume& volume)
+    /// diagonal: of the mesh's bounding box
+    PointSampler(const HexMesh& mesh, double diagonal, const PointLines& lines, bool across_points,
+                 const SampleOptions& options, RbfVolume& volume)
         : mesh_(mesh),
           lines_(lines),
           across_(across_points),
-          sums_(options, volume),
+          sums_(options, diagonal, volume),
           volume_(volume),
           sources_(channels_of(mesh)) {
         d_.resize(sources_.size());
@@ -122,12 +123,14 @@ SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool ac
     constexpr std::size_t kTurn = std::size_t{1} << 20;  // points between two reports of progress
     SampleResult result;
     result.volume = empty_volume(on_limit, lines.size(), options);
+    Box box;
+    for (const Vec3& p : on_limit.points) box.add(p);
     std::atomic<std::size_t> flat{0};
     for (std::size_t turn = 0; turn < lines.size(); turn += kTurn) {
         report_progress(options.progress, "sample", static_cast<double>(turn) / static_cast<double>(lines.size()));
         const tbb::blocked_range<std::size_t> points(turn, std::min(lines.size(), turn + kTurn), 256);
         tbb::parallel_for(points, [&](const auto& range) {
-            PointSampler sampler(on_limit, lines, across_points, options, result.volume);
+            PointSampler sampler(on_limit, box.diagonal(), lines, across_points, options, result.volume);
             std::size_t flat_here = 0;
             for (std::size_t p = range.begin(); p != range.end(); ++p) flat_here += sampler.sample(static_cast<Index>(p));
             flat += flat_here;

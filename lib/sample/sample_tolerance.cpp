@@ -13,17 +13,41 @@ namespace {
 constexpr int kMostRounds = 6;
 constexpr int kMostIntervals = 64;
 
+/// The exact values of the first channel, and the difference of the largest from the smallest.
+class ExactValues {
+public:
+    explicit ExactValues(const HexMesh& twice)
+        : values_(twice.attributes.front().values), channels_(static_cast<std::size_t>(twice.attributes.front().channels)) {
+        double low = at(0), high = at(0);
+        for (std::size_t p = 1; p < twice.points.size(); ++p) {
+            low = std::min(low, at(static_cast<Index>(p)));
+            high = std::max(high, at(static_cast<Index>(p)));
+        }
+        range_ = high - low;
+    }
+
+    [[nodiscard]] double at(Index p) const { return values_[p * channels_]; }
+
+    /// The error of a value. A place that no kernel covers shows what lies outside instead of the field: it is as wrong as a
+    /// value of the field can be, and at least as wrong as the value 0.
+    [[nodiscard]] double error(Index p, double value) const {
+        return std::isnan(value) ? std::max(range_, std::abs(at(p))) : std::abs(value - at(p));
+    }
+
+private:
+    const std::vector<double>& values_;
+    std::size_t channels_;
+    double range_ = 0;
+};
+
 /// The largest error in each control cell, over the points of its 64 descendants.
 std::vector<double> errors_of_cells(const RbfVolume& volume, const HexMesh& twice, std::size_t cells) {
     const std::vector<double> values = RbfField(volume, {.channel = 0, .least_weight = 0}).evaluate(twice.points);
-    const Attribute& exact = twice.attributes.front();
+    const ExactValues exact(twice);
     std::vector<double> errors(cells, 0);
     parallel_each(cells, [&](std::size_t c) {
         for (std::size_t descendant = 64 * c; descendant < 64 * (c + 1); ++descendant) {
-            for (const Index p : twice.cells[descendant]) {
-                const double error = std::abs(values[p] - exact.values[p * static_cast<std::size_t>(exact.channels)]);
-                errors[c] = std::max(errors[c], std::isnan(error) ? std::abs(exact.values[p]) : error);
-            }
+            for (const Index p : twice.cells[descendant]) errors[c] = std::max(errors[c], exact.error(p, values[p]));
         }
     });
     return errors;

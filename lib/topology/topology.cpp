@@ -38,6 +38,7 @@ void build_edges(Topology& topology) {
     auto starts = group_starts(records, [](const auto& a, const auto& b) { return a.points == b.points; });
 
     const std::size_t count = starts.size() - 1;
+    detail::check_count(count, "edges");
     topology.edges.resize(count);
     topology.face_edges.resize(topology.faces.size());
     topology.edge_faces.values.resize(records.size());

@@ -65,6 +65,12 @@ void refuse_twins(const Topology& topology) {
 
 }  // namespace
 
+void check_count(std::size_t count, std::string_view kind) {
+    if (count < kNone) return;
+    throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(count) + " " + std::string(kind), {},
+                "at most " + std::to_string(kNone - 1) + ", or a build with SUBVOL_INDEX64");
+}
+
 void build_faces(Topology& topology) {
     const auto sorted = bucket_sort<FaceRecord>(
         topology.cells.size(), topology.point_count,
@@ -78,6 +84,7 @@ void build_faces(Topology& topology) {
     const auto starts = group_starts(records, [](const auto& a, const auto& b) { return a.points == b.points; });
 
     const std::size_t count = starts.size() - 1;
+    check_count(count, "faces");
     for (std::size_t f = 0; f < count; ++f) {
         if (starts[f + 1] - starts[f] > 2)
             refuse_face(topology, std::span(records).subspan(starts[f], starts[f + 1] - starts[f]));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "subvol/topology.h"
@@ -12,6 +13,9 @@ namespace subvol::detail {
 ///
 /// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners
 void build_faces(Topology& topology);
+
+/// throws: Error(InvalidInput) if there are more entities of a kind than an Index can count. kind: "faces"
+void check_count(std::size_t count, std::string_view kind);
 
 /// Puts the faces of every edge into ring order and fills edge_cells and edge_has_ring.
 void order_edge_rings(Topology& topology);

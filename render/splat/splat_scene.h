@@ -10,15 +10,14 @@
 #include "subvol/detail/preintegrated_table.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
+#include "subvol/rbf_field.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/splat_options.h"
 
 namespace subvol::detail {
 
-// Rules of reconstruction and classification for all backends; shaders get these numbers as defines.
+// Rules of reconstruction and classification for all backends; shaders get these numbers and kLeastWeight as defines.
 
-/// The least sum of weights: below it a sheet has no value at that pixel.
-inline constexpr float kLeastWeight = 0.02f;
 /// Two values nearer than this many cells of the table are replaced by their mean: the difference quotient would lose digits.
 inline constexpr float kNearValues = 0.5f;
 /// Transmittance below which a pixel is opaque. What lies behind can change a colour by no more than this: a fortieth of a step

@@ -287,7 +287,8 @@ private:
         here.weight = hn::Load(d, sums);
         here.color = here.light.diffuse = here.light.specular = hn::Zero(d);
         const bool normalized = kPlain || frame_.scene->normalized;
-        here.known = normalized ? hn::Gt(here.weight, hn::Set(d, kLeastWeight)) : hn::Eq(here.weight, here.weight);
+        here.known =
+            normalized ? hn::Gt(here.weight, hn::Set(d, static_cast<float>(kLeastWeight))) : hn::Eq(here.weight, here.weight);
         const auto per_weight = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(here.known, here.weight, hn::Set(d, 1.0f)));
         const auto mean = [&](std::size_t which, float offset) HWY_ATTR {
             const auto total = hn::Load(d, sums + which * kBlock);

@@ -52,9 +52,9 @@ std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
     const auto line = [](const char* name, const std::string& value) { return "#define " + (name + (" " + value)) + "\n"; };
     return gl_scene_defines(scene) + line("kTile", std::to_string(tuning.tile_px)) +
            line("kBatch", std::to_string(tuning.batch)) + line("kChunk", tuning.batch <= 8 ? "64" : "32") +
-           line("kCells", std::to_string(PreintegratedTable::kCells)) + line("kLeastWeight", decimal(kLeastWeight)) +
-           line("kNearValues", decimal(kNearValues)) + line("kSplatCutoff", decimal(kSplatCutoff)) +
-           line("kFarCells", decimal(kFarCells));
+           line("kCells", std::to_string(PreintegratedTable::kCells)) +
+           line("kLeastWeight", decimal(static_cast<float>(kLeastWeight))) + line("kNearValues", decimal(kNearValues)) +
+           line("kSplatCutoff", decimal(kSplatCutoff)) + line("kFarCells", decimal(kFarCells));
 }
 
 template <class T>

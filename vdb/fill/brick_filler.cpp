@@ -128,11 +128,10 @@ void BrickFiller::load(std::span<const Index> cells, Batch& batch) {
 void BrickFiller::load_cells(Batch& batch) const {
     batch.ids.resize(batch.first.back());
     const HexMesh& mesh = *request_.mesh;
-    constexpr std::array<std::size_t, 8> kNode{0, 1, 3, 2, 4, 5, 7, 6};  // of a corner
     tbb::parallel_for(std::size_t{0}, batch.cells.size(), [&](std::size_t i) {
         for (std::size_t k = 0; k < 8; ++k) {
             const Index id = mesh.cells[batch.cells[i]][k];
-            const std::size_t node = 8 * i + kNode[k];
+            const std::size_t node = 8 * i + kCornerOctants[k];
             batch.ids[node] = id;
             batch.points[node] = request_.to_voxels(mesh.points[id]);
             double* value = batch.values.data() + node * channels_;

@@ -9,7 +9,7 @@
 //
 // A triangle may be nearer than w to a cube of side³ centres with middle m only if d(m, triangle) ≤ w + √3 (side − 1)/2. The
 // minimum does not depend on the order of triangles, and each task writes its own leaf: the result is the same for any number
-// of threads. d²(p, triangle) by the Voronoi regions of corners, edges and face: [ericson2005], section 5.1.5.
+// of threads.
 #include "distance_band.h"
 
 #include <tbb/parallel_for.h>
@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/triangle_distance.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -26,27 +27,8 @@ namespace {
 constexpr double kMaxVoxels = 2e9;
 constexpr double kMaxBricks = 5e7;
 
-/// The squared distance from p to a triangle: to its face, or to the edge or corner whose Voronoi region contains p. NaN if the
-/// triangle has no area and p lies in no region of an edge or corner; neighbouring triangles have the same edges.
 double squared_distance(const Vec3& p, const VoxelTriangle& triangle) {
-    const auto& [a, b, c] = triangle;
-    const auto squared = [](const Vec3& v) { return glm::dot(v, v); };
-    const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return squared(ap);
-    const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return squared(bp);
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared(ap - d1 / (d1 - d3) * ab);
-    const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return squared(cp);
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared(ap - d2 / (d2 - d6) * ac);
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0 && d4 >= d3 && d5 >= d6) return squared(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
-    const Vec3 normal = glm::cross(ab, ac);
-    const double along = glm::dot(normal, ap);
-    return along * along / squared(normal);
+    return detail::squared_distance(p, triangle[0], triangle[1], triangle[2]);
 }
 
 VoxelBox box_about(const VoxelTriangle& triangle, double half_width) {

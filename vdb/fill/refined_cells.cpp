@@ -10,9 +10,6 @@ namespace subvol::detail {
 
 namespace {
 
-/// The octant of each corner, bit d along axis d; the table is its own inverse.
-constexpr std::array<std::size_t, 8> kOctantOfCorner{0, 1, 3, 2, 4, 5, 7, 6};
-
 void check_tables(const RefinementTables& tables, const HexMesh& mesh, int levels) {
     const std::size_t children = std::size_t{1} << (3 * levels);
     bool fits = tables.control_points == mesh.points.size() && tables.cells.size() == children * mesh.cells.size();
@@ -84,11 +81,11 @@ void RefinedCells::refine_whole(const RefinementTables& tables) {
     for (std::size_t child = 0; child < cells * cells * cells; ++child) {
         std::array<std::size_t, 3> at{};
         for (int level = 0; level < levels_; ++level) {  // the first level is the most significant digit
-            const std::size_t octant = kOctantOfCorner[child >> (3 * (levels_ - 1 - level)) & 7];
+            const std::size_t octant = kCornerOctants[child >> (3 * (levels_ - 1 - level)) & 7];
             for (std::size_t d = 0; d < 3; ++d) at[d] = 2 * at[d] + (octant >> d & 1);
         }
         for (std::size_t k = 0; k < 8; ++k) {
-            const std::size_t octant = kOctantOfCorner[k];
+            const std::size_t octant = kCornerOctants[k];
             const std::size_t u = at[0] + (octant & 1), v = at[1] + (octant >> 1 & 1), w = at[2] + (octant >> 2);
             nodes_[u + side * (v + side * w)] = {child, k};
         }

@@ -7,12 +7,6 @@ namespace subvol::detail {
 
 namespace {
 
-std::string unquoted(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\"");
-    if (begin == std::string_view::npos) return "unnamed";
-    return as_utf8(text.substr(begin, text.find_last_not_of(" \t\"") + 1 - begin));
-}
-
 struct DataHeader {
     std::string name = "unnamed";
     std::size_t components = 0;
@@ -45,6 +39,12 @@ DataHeader read_header(TextScanner& in, const std::string& section) {
 }
 
 }  // namespace
+
+std::string unquoted(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\"");
+    if (begin == std::string_view::npos) return "unnamed";
+    return as_utf8(text.substr(begin, text.find_last_not_of(" \t\"") + 1 - begin));
+}
 
 void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& entities, MeshFile& found) {
     const auto& [at_cells, numbers, needed] = entities;

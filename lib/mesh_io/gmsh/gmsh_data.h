@@ -7,6 +7,9 @@
 
 namespace subvol::detail {
 
+/// A name without the quotes and blanks around it; "unnamed" if it is empty.
+[[nodiscard]] std::string unquoted(std::string_view text);
+
 /// The nodes or the elements that a data section has values for.
 ///
 /// at_cells: they are the elements

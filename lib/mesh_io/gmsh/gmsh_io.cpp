@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdlib>
+#include <limits>
 #include <map>
+#include <utility>
 
 #include "assemble.h"
 #include "formats.h"
 #include "gmsh_data.h"
 #include "gmsh_elements.h"
+#include "sharp_groups.h"
 
 namespace subvol::detail {
 
@@ -14,10 +18,12 @@ namespace {
 // geometry.
 enum class Layout { V2, V40, V41 };
 
+constexpr std::int64_t kMostGroup = std::numeric_limits<std::int64_t>::max();
+
 class GmshReader {
 public:
     GmshReader(std::string_view text, std::string_view file, const ReadOptions& options)
-        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options), values_(in_) {}
+        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options), values_(in_), groups_(options.sharp) {}
 
     ReadResult read() {
         read_format();
@@ -28,6 +34,7 @@ public:
         }
         if (found_.points.empty()) in_.fail("there is no $Nodes section, or it is empty");
         list_left_out();
+        groups_.check(file_);
         return assemble(std::move(found_), in_, file_, names_, options_);
     }
 
@@ -83,6 +90,10 @@ private:
         } else if (keyword == "$ElementData") {
             if (!has_elements_) in_.fail("$ElementData come before $Elements");
             read_gmsh_data(in_, values_, {.at_cells = true, .numbers = elements_, .needed = taken_}, found_);
+        } else if (keyword == "$PhysicalNames" && groups_.any()) {
+            read_group_names();
+        } else if (keyword == "$Entities" && groups_.any() && layout_ != Layout::V2) {
+            read_entities();
         } else {
             skip_section(keyword);
             return;
@@ -99,6 +110,51 @@ private:
             return;
         }
         in_.fail_word({keyword}, end, "");
+    }
+
+    // The names of groups are text even in a binary file.
+    void read_group_names() {
+        const std::size_t count = in_.count({"$PhysicalNames"});
+        for (std::size_t n = 0; n < count; ++n) {
+            const Place place{"physical name", static_cast<std::int64_t>(n + 1), count};
+            const std::int64_t dimension = in_.integer(place);
+            const std::int64_t number = in_.integer(place);
+            group_names_[{dimension, number}] = unquoted(in_.line());
+        }
+    }
+
+    // The entities of the geometry: number, bounding box, physical groups, and the entities that bound it. In version 4.1 a
+    // point has its coordinates instead of a box.
+    void read_entities() {
+        values_.begin();
+        std::array<std::size_t, 4> counts;
+        for (std::size_t& count : counts) count = values_.count({"$Entities"}, NumberType::UInt64);
+        for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
+            for (std::size_t e = 0; e < counts[dimension]; ++e) {
+                const Place place{"entity", static_cast<std::int64_t>(e + 1), counts[dimension]};
+                auto& groups = groups_of_[{static_cast<std::int64_t>(dimension), values_.integer(place)}];
+                for (int k = 0; k < (dimension == 0 && layout_ == Layout::V41 ? 3 : 6); ++k) values_.real(place);
+                const std::size_t of_groups = values_.count(place, NumberType::UInt64);
+                for (std::size_t g = 0; g < of_groups; ++g) groups.push_back(values_.integer(place));
+                const std::size_t bounds = dimension == 0 ? 0 : values_.count(place, NumberType::UInt64);
+                for (std::size_t b = 0; b < bounds; ++b) values_.integer(place);
+            }
+        }
+    }
+
+    // Whether the user wants a physical group.
+    bool is_sharp(std::int64_t dimension, std::int64_t group) {
+        if (!groups_.any() || (dimension != 1 && dimension != 2) || group == 0 || group < -kMostGroup) return false;
+        const auto [known, is_new] = sharp_.try_emplace({dimension, group}, false);
+        if (!is_new) return known->second;
+        const std::string number = std::to_string(std::abs(group));  // negative where the element is turned round
+        const auto named = group_names_.find({dimension, std::abs(group)});
+        return known->second = groups_.takes(named == group_names_.end() ? number : named->second, number);
+    }
+
+    static std::int64_t dimension_of(const GmshElement& element) {
+        if (element.shape == GmshShape::Line) return 1;
+        return element.shape == GmshShape::Triangle || element.shape == GmshShape::Quad ? 2 : 3;
     }
 
     // In a binary file of version 4.1 the numbers of nodes and elements, and their counts, have 8 bytes.
@@ -204,10 +260,11 @@ private:
     // Reads an element: number, type, tags and nodes.
     void read_element_line(std::size_t of) {
         const Place place = next_element(of);
+        in_sharp_group_ = false;
         const std::int64_t number = in_.integer(place);
         const GmshElement& element = element_of(in_.integer(place));
         const std::size_t tags = in_.count(place);
-        for (std::size_t t = 0; t < tags; ++t) in_.integer(place);
+        for (std::size_t t = 0; t < tags; ++t) read_tag(element, t, in_.integer(place));
         take(element, number, place);
     }
 
@@ -220,15 +277,26 @@ private:
         for (std::size_t e = 0; e < count; ++e) {
             const Place place = next_element(of);
             const std::int64_t number = values_.integer(place);
-            for (std::size_t t = 0; t < tags; ++t) values_.integer(place);
+            for (std::size_t t = 0; t < tags; ++t) read_tag(element, t, values_.integer(place));
+            if (tags == 0) in_sharp_group_ = false;
             take(element, number, place);
         }
     }
 
+    // The first tag of an element is its physical group.
+    void read_tag(const GmshElement& element, std::size_t tag, std::int64_t value) {
+        if (tag == 0) in_sharp_group_ = is_sharp(dimension_of(element), value);
+    }
+
     // Reads a block: elements of one type on one entity of the geometry.
     void read_element_block(std::size_t of) {
-        values_.integer({"block of $Elements"});
-        values_.integer({"block of $Elements"});
+        const std::int64_t first = values_.integer({"block of $Elements"});
+        const std::int64_t second = values_.integer({"block of $Elements"});
+        const auto entity = layout_ == Layout::V41 ? std::pair(first, second) : std::pair(second, first);
+        in_sharp_group_ = false;
+        if (const auto groups = groups_of_.find(entity); groups != groups_of_.end()) {
+            for (const std::int64_t group : groups->second) in_sharp_group_ = is_sharp(entity.first, group) || in_sharp_group_;
+        }
         const GmshElement& element = element_of(values_.integer({"block of $Elements"}));
         const std::size_t count = values_.count({"block of $Elements"}, NumberType::UInt64);
         if (count > of - elements_.size()) {
@@ -253,10 +321,21 @@ private:
         if (element.shape == GmshShape::Prism && others) return take_as(found_.prisms, element, before, place, "a prism");
         if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, before, place, "a pyramid");
         taken_.back() = 0;
+        if (in_sharp_group_ && dimension_of(element) < 3) return take_tag(element, place);
         for (std::size_t k = 0; k < element.nodes; ++k) values_.integer(place, number_type());
         auto& [count, many] = left_out_[element.one];
         ++count;
         many = element.many;
+    }
+
+    void take_tag(const GmshElement& element, const Place& place) {
+        const std::size_t corners = element.shape == GmshShape::Line ? 2 : element.shape == GmshShape::Triangle ? 3 : 4;
+        std::array<Index, 4> tag;
+        for (std::size_t k = 0; k < corners; ++k) tag[k] = read_corner(place, number_type());
+        for (std::size_t k = corners; k < element.nodes; ++k) values_.integer(place, number_type());
+        if (corners == 2) return found_.sharp.edges.push_back({tag[0], tag[1]});
+        if (corners == 3) tag[3] = tag[2];
+        found_.sharp.faces.push_back(tag);
     }
 
     template <std::size_t N>
@@ -287,6 +366,11 @@ private:
     std::string_view file_;
     ReadOptions options_;
     GmshValues values_;
+    SharpGroups groups_;
+    std::map<std::pair<std::int64_t, std::int64_t>, std::string> group_names_;              // by dimension and number
+    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::int64_t>> groups_of_;  // of an entity of the geometry
+    std::map<std::pair<std::int64_t, std::int64_t>, bool> sharp_;                           // groups that occurred
+    bool in_sharp_group_ = false;                                                           // the element that is being read
     Layout layout_ = Layout::V2;
     MeshFile found_;
     EntityNames names_{"node", "element", 1};

@@ -2,6 +2,7 @@
 #include "vtk_cells.h"
 
 #include <algorithm>
+#include <array>
 
 namespace subvol::detail {
 
@@ -14,6 +15,12 @@ const std::map<std::int64_t, std::int64_t> kLinear{
     {24, kTetrahedron}, {71, kTetrahedron}, {78, kTetrahedron}, {25, kHexahedron}, {29, kHexahedron}, {33, kHexahedron},
     {72, kHexahedron},  {79, kHexahedron},  {26, kWedge},       {31, kWedge},      {32, kWedge},      {73, kWedge},
     {80, kWedge},       {27, kPyramid},     {37, kPyramid},     {74, kPyramid},    {81, kPyramid}};
+
+// The points of VTK's curved cells: some files have them with the type of the linear cell of their shape.
+constexpr std::array<std::size_t, 3> kOfCurvedHexahedra{20, 24, 27};
+constexpr std::array<std::size_t, 1> kOfCurvedTetrahedra{10};
+constexpr std::array<std::size_t, 3> kOfCurvedWedges{12, 15, 18};
+constexpr std::array<std::size_t, 2> kOfCurvedPyramids{13, 19};
 
 const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
     {1, {"vertex", "vertices"}},
@@ -42,20 +49,22 @@ void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corne
     // Some files have hexahedra with the type of tetrahedra: the eight corners decide.
     const bool mislabelled = type_in_file == kTetrahedron && corners.size() == 8;
     if (mislabelled) ++mislabelled_;
+    const auto is_curved = [&](const auto& numbers) {
+        return curved || std::ranges::find(numbers, corners.size()) != numbers.end();
+    };
     if (type == kHexahedron || type == kVoxel || mislabelled) {
-        // Other files have curved hexahedra with the type of linear ones.
-        take_as(found_.hexes, corners, position, "a hexahedron", curved || corners.size() == 20 || corners.size() == 27);
+        take_as(found_.hexes, corners, position, "a hexahedron", is_curved(kOfCurvedHexahedra));
         if (type == kVoxel) {
             auto& hex = found_.hexes.corners.back();
             std::swap(hex[2], hex[3]);
             std::swap(hex[6], hex[7]);
         }
     } else if (type == kTetrahedron && others) {
-        take_as(found_.tets, corners, position, "a tetrahedron", curved);
+        take_as(found_.tets, corners, position, "a tetrahedron", is_curved(kOfCurvedTetrahedra));
     } else if (type == kWedge && others) {
-        take_as(found_.prisms, corners, position, "a wedge", curved);
+        take_as(found_.prisms, corners, position, "a wedge", is_curved(kOfCurvedWedges));
     } else if (type == kPyramid && others) {
-        take_as(found_.pyramids, corners, position, "a pyramid", curved);
+        take_as(found_.pyramids, corners, position, "a pyramid", is_curved(kOfCurvedPyramids));
     } else {
         ++left_out_[type_in_file];
     }

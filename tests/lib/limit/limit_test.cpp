@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
+#include "subvol/limit_level.h"
 
 namespace subvol {
 namespace {
@@ -348,6 +350,25 @@ TEST(Limit, DoesNotDependOnTheNumberOfThreadsOrOnOtherQueries) {
     const LimitSamples alone = evaluate_limit(mesh, std::span(queries).subspan(77, 1));
     EXPECT_EQ(alone.positions[0], one.positions[77]);
     EXPECT_EQ(alone.attributes[0].values[0], one.attributes[0].values[77]);
+}
+
+TEST(LimitLevel, DoesNotLookAtUnusedPoints) {
+    HexMesh mesh = test::make_box(3, 3, 3);
+    test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(2 * p.x) + p.y * p.z; });
+    HexMesh filled = mesh;
+    for (const double fill : {1e30, -1e30, double{NAN}}) {
+        filled.points.push_back(Vec3(fill));
+        filled.attributes[0].values.push_back(fill);
+    }
+    const LimitLevelOptions options{.position_world = 1e-3};
+    const LimitLevel level = find_limit_level(mesh, {}, options), with_unused = find_limit_level(filled, {}, options);
+    EXPECT_GT(level.level, 1);
+    EXPECT_EQ(with_unused.level, level.level);
+    EXPECT_EQ(with_unused.value_of_range, level.value_of_range);
+    const LimitCells cells = find_limit_cells(mesh, {}, options), cells_with_unused = find_limit_cells(filled, {}, options);
+    EXPECT_GT(std::ranges::max(cells.cell_levels), 1);
+    EXPECT_EQ(cells_with_unused.cell_levels, cells.cell_levels);
+    EXPECT_EQ(cells_with_unused.value_of_range, cells.value_of_range);
 }
 
 TEST(Limit, RefusesPlacesThatDoNotExist) {

@@ -21,6 +21,7 @@ namespace subvol::test {
 
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -253,6 +254,57 @@ TEST_F(MeshIo, CellArraysBecomeVolumeWeightedMeans) {
     EXPECT_EQ(result.fields[0].location, "cell");
     EXPECT_EQ(result.fields[0].min, 10);
     EXPECT_THAT(result.warnings, ElementsAre(HasSubstr("cell array \"s\" became a point array"), HasSubstr("\"v\"")));
+}
+
+TEST_F(MeshIo, CellArraysOfFoldedCellsStayInTheirRange) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        HexMesh folded = make_box(2, 1, 1);
+        folded.points.emplace_back(1, 0.5, 2);
+        folded.points.emplace_back(2, 0.5, 2);
+        jitter(folded, 0.9, seed);
+        std::string text = replaced(vtk_text(folded), "CELLS 2 18\n", "CELLS 3 25\n6 7 10 12 8 11 13\n");
+        text =
+            replaced(text, "\nCELL_TYPES 2\n", "\nCELL_TYPES 3\n13\n") + "CELL_DATA 3\nSCALARS s float\nLOOKUP_TABLE default\n";
+        const ReadResult result = read("a.vtk", text + "10 20 30\n");
+        for (const double value : result.mesh.find_attribute("s")->values) {
+            ASSERT_GE(value, 10 - 1e-12) << seed;  // rounding
+            ASSERT_LE(value, 30 + 1e-12) << seed;
+        }
+    }
+}
+
+TEST_F(MeshIo, VtkCellsMayHaveMorePointsThanTheirTypesCorners) {
+    struct Case {
+        int type;
+        std::size_t corners;
+        std::vector<std::size_t> points;
+        double volume;
+    };
+    // Each shape by the first corners of a unit cube, in their order.
+    const std::array<Vec3, 8> cube{Vec3{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    const std::vector<Case> cases{
+        {10, 4, {10}, 1. / 6}, {12, 8, {20, 24, 27}, 1}, {13, 6, {12, 15, 18}, .5}, {14, 5, {13, 19}, 1. / 3}};
+    const auto text_of = [&](const Case& c, std::size_t points) {
+        std::vector<std::size_t> corners{0, 1, 2, 3, 4, 5, 6, 7};
+        if (c.corners == 4) corners = {0, 1, 2, 5};
+        if (c.corners == 6) corners = {0, 1, 2, 4, 5, 6};
+        HexMesh mesh;
+        for (std::size_t k = 0; k < points; ++k) mesh.points.push_back(k < c.corners ? cube[corners[k]] : Vec3(.5));
+        std::string text = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+                           std::to_string(points) + " double\n" + point_lines(mesh) + "CELLS 1 " + std::to_string(points + 1) +
+                           "\n" + std::to_string(points);
+        for (std::size_t k = 0; k < points; ++k) text += " " + std::to_string(k);
+        return text + "\nCELL_TYPES 1\n" + std::to_string(c.type) + "\n";
+    };
+    for (const Case& c : cases) {
+        for (const std::size_t points : c.points) {
+            const ReadResult result = read("a.vtk", text_of(c, points));
+            EXPECT_NEAR(inspect(result.mesh).volume, c.volume, 1e-14) << c.type << " with " << points;
+            EXPECT_THAT(result.warnings, Contains(HasSubstr("1 cell has more points than corners: only the corners are used")));
+        }
+        const std::string corners = std::to_string(c.corners + 3) + " corners";
+        EXPECT_THAT(read_error("a.vtk", text_of(c, c.corners + 3)), HasSubstr("cell 0 has " + corners));
+    }
 }
 
 TEST_F(MeshIo, CellsWithoutVolumeCountTheSame) {

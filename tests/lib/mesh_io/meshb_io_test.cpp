@@ -123,6 +123,31 @@ TEST_F(MeshbIo, OtherCells) {
                 HasSubstr("no hexahedra, but 1 tetrahedron, 1 prism, 1 pyramid, which are ignored"));
 }
 
+TEST_F(MeshbIo, GroupsCanBeKeptSharp) {
+    for (const int version : {1, 4}) {
+        MeshbText meshb(version, std::endian::big);
+        const HexMesh box = make_box(2, 1, 1);
+        meshb.cells(7, {{2, 5, 11, 8, 7}, {1, 4, 10, 7, 9}});
+        meshb.cells(5, {{1, 2, 3}, {8, 11, 0}});
+        meshb.cells(14, {{2}});
+        meshb.vertices(box);
+        meshb.hexahedra(box);
+        const HexMesh mesh = read(meshb.text(), {.sharp = {"7", "3", "Ridges"}}).mesh;
+        ASSERT_EQ(mesh.sharp_faces.size(), 1u);
+        for (const Index p : mesh.sharp_faces[0]) EXPECT_EQ(mesh.points[p].x, 1);
+        EXPECT_EQ(mesh.creases, (std::vector<std::array<Index, 2>>{{0, 1}, {7, 10}}));
+        EXPECT_TRUE(read(meshb.text(), {.sharp = {"9"}}).mesh.sharp_faces.empty());  // on the hull
+    }
+    MeshbText meshb(2);
+    meshb.vertices(kBox);
+    meshb.hexahedra(kBox);
+    meshb.cells(5, {{1, 2, 3}});
+    meshb.cells(14, {{2}});
+    EXPECT_THAT(error_of([&] { static_cast<void>(read(meshb.text(), {.sharp = {"Ridges"}})); }),
+                HasSubstr("Ridges: there is no edge with index 2 (indices are 1 to 1)"));
+    EXPECT_THAT(error_of([&] { static_cast<void>(read(meshb.text(), {.sharp = {"4"}})); }), HasSubstr("it has: 3"));
+}
+
 TEST_F(MeshbIo, CutAnywhereItIsRefused) {
     MeshbText meshb(3);
     meshb.vertices(kBox);

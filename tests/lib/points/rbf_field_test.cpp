@@ -197,9 +197,32 @@ TEST(RbfField, RefusesInvalidVolumes) {
     bad = good;
     bad.channels[0].hessians.resize(4);
     refuse("does not have one Hessian per point", bad);
+    for (const Symmetric3& frame :
+         {Symmetric3{1, 2, 0, 1, 0, 1}, Symmetric3{1, 0, 0, 1, 1.001f, 1}, Symmetric3{1, -.6f, -.6f, 1, -.6f, 1},
+          Symmetric3{1e-8f, 0, 2, 1, 0, 1e8f}, Symmetric3{1, 0, 0, -1, 0, 1}, Symmetric3{0, 0, 0, 0, 0, 0}}) {
+        bad = good;
+        bad.frames[2] = frame;
+        refuse("point 2: the frame is not positive definite", bad);
+    }
     bad = good;
     bad.kernel = CubicConvolutionKernel{};
     refuse("not radial", bad);
+}
+
+TEST(RbfField, TakesFlatFramesThatRoundingMadeIndefinite) {
+    // Discs and needles without any thickness, in all directions and of any size: floats cannot tell them from indefinite ones.
+    Random random;
+    const Box directions{Vec3(-1), Vec3(1)};
+    std::size_t indefinite = 0;
+    RbfVolume volume = random_volume(200);
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+        const double size = std::pow(10, double(i % 17) - 8);
+        const Vec3 u = random.in(directions), v = i % 2 == 0 ? random.in(directions) : Vec3(0.0);
+        volume.frames[i] = symmetric3(size * (glm::outerProduct(u, u) + glm::outerProduct(v, v)));
+        indefinite += glm::determinant(matrix(volume.frames[i])) < 0 ? 1 : 0;
+    }
+    EXPECT_GT(indefinite, 50u);
+    EXPECT_NO_THROW(validate(volume));
 }
 
 }  // namespace

@@ -136,6 +136,9 @@ TEST(Reduce, RefusesWrongOptionsAndSamples) {
     refuse("at most 0 points", [&] { (void)reduce_rbf(mesh, "", {.max_points = 0}); });
     refuse("no field", [&] { (void)reduce_rbf(test::make_box(2, 2, 2), ""); });
     refuse("no hexahedra", [&] { (void)limit_samples_in_cells(HexMesh{{}, {}, mesh.attributes, {}, {}}, "f", 10); });
+    refuse("no hexahedra", [&] { (void)reduce_rbf(HexMesh{{}, {}, mesh.attributes, {}, {}}, "f"); });
+    refuse("no hexahedra", [&] { (void)limit_samples_at_vertices(HexMesh{{}, {}, mesh.attributes, {}, {}}, "f", 1); });
+    refuse("no hexahedra", [&] { (void)sample_rbf_points(HexMesh{{}, {}, mesh.attributes, {}, {}}); });
     FieldSamples samples = limit_samples_at_vertices(mesh, "", 1);
     const RbfVolume volume = sample_rbf_points(mesh).volume;
     refuse("iterations", [&] { (void)refine_rbf(volume, samples, {.iterations = 0}); });

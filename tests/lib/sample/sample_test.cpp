@@ -94,6 +94,43 @@ TEST(Sample, FlatCellsGetThickFramesAndAreCounted) {
     for (const auto& f : result.volume.frames) EXPECT_GT(f[5], 0);
 }
 
+/// A row of cells, some of them flat; the last ones have shrunk to a point, which is all that kernels at the end see.
+HexMesh box_with_degenerate_cells() {
+    HexMesh mesh = test::make_box(9, 1, 1);
+    for (auto& p : mesh.points) {
+        if (p.x == 2) p.z = 0;
+        p = p.x >= 3 ? Vec3(0.0) : p - Vec3(3, 0, 0);
+    }
+    for (auto& p : mesh.points) p += Vec3(.1 * p.y * p.z, .2 * p.x * p.y, .1 * p.x);
+    test::add_field(mesh, "f", [](const Vec3& p) { return 1 + p.x - p.y * p.y; });
+    return mesh;
+}
+
+TEST(Sample, AScaledMeshHasScaledKernels) {
+    const HexMesh mesh = box_with_degenerate_cells();
+    for (const double scale : {0x1p-20, 0x1p20}) {  // powers of two: products are exact
+        HexMesh scaled = mesh;
+        for (auto& p : scaled.points) p *= scale;
+        for (const SampleOptions& options : {SampleOptions{}, SampleOptions{.per_edge = 2}, SampleOptions{.per_edge = 3}}) {
+            const auto one = sample_rbf_points(mesh, options), other = sample_rbf_points(scaled, options);
+            EXPECT_GT(one.report.flat_frames, 0u);
+            EXPECT_EQ(one.report.flat_frames, other.report.flat_frames);
+            const RbfVolume &a = one.volume, &b = other.volume;
+            ASSERT_EQ(a.size(), b.size());
+            for (std::size_t i = 0; i < a.size(); ++i) {
+                ASSERT_EQ(scale * a.centers[i], b.centers[i]);
+                for (std::size_t k = 0; k < 6; ++k) {
+                    ASSERT_EQ(static_cast<float>(scale * scale * double(a.frames[i][k])), b.frames[i][k]);
+                }
+                for (std::size_t k = 0; k < 3; ++k) {
+                    ASSERT_EQ(double(a.channels[0].gradients[i][k]) / scale, double(b.channels[0].gradients[i][k]));
+                }
+                ASSERT_EQ(a.channels[0].moments[i], b.channels[0].moments[i]);
+            }
+        }
+    }
+}
+
 TEST(Sample, DoesNotDependOnTheNumberOfThreads) {
     HexMesh mesh = test::make_nested_cubes(2);
     test::jitter(mesh, .02, 3);

@@ -116,6 +116,28 @@ TEST(SampleWays, TheBoundaryDoesNotNeedSharpFacesInside) {
     }
 }
 
+TEST(SampleWays, TheBoundaryOfABoxThatASharpPlaneCuts) {
+    // Of the plane's nine faces, the middle one and its creases belong to no cell at the boundary.
+    HexMesh mesh = test::make_box(4, 3, 3);
+    test::jitter(mesh, .1, 5);
+    put_wave(mesh);
+    const auto id = [](Index i, Index j, Index k) { return i + 5 * (j + 4 * k); };
+    for (Index k = 0; k < 3; ++k) {
+        for (Index j = 0; j < 3; ++j) {
+            mesh.sharp_faces.push_back({id(2, j, k), id(2, j + 1, k), id(2, j + 1, k + 1), id(2, j, k + 1)});
+            mesh.creases.push_back({id(2, j, k), id(2, j, k + 1)});
+        }
+    }
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
+        for (const int per_edge : {1, 2, 4}) {
+            const auto volume = sample_rbf_points(mesh, {.scheme = {scheme}, .per_edge = per_edge}).volume;
+            const int levels = per_edge == 4 ? 3 : per_edge;
+            expect_same_triangles(volume.boundary,
+                                  boundary_surface(on_limit(refine(mesh, {.scheme = {scheme}, .levels = levels}), scheme)));
+        }
+    }
+}
+
 TEST(SampleWays, TheBoundaryIsAsFineAsHalfASampleInterval) {
     HexMesh mesh = test::make_nested_cubes(2);
     put_wave(mesh);
@@ -250,6 +272,31 @@ TEST(SampleWays, ToleranceIsMetWithFewerSamplesThanEverywhere) {
         }
         ASSERT_LT(++most, 8);
     }
+}
+
+TEST(SampleWays, ToleranceLeavesNoHolesWhereTheFieldIsZero) {
+    // A thin strip in long curved cells: kernels at its ends lie along tangents and miss its middle. The field ends early.
+    HexMesh mesh = test::make_box(6, 1, 1);
+    for (Vec3& p : mesh.points) {
+        const double angle = 1.57 * p.x, radius = 1 + .1 * p.y;
+        p = Vec3(radius * std::cos(angle), radius * std::sin(angle), .1 * p.z + .3 * angle);
+    }
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.z < .1 ? 1.0 : 0.0; });
+    const HexMesh twice = refine(mesh, {.levels = 2});
+    const auto holes = [&](const SampleOptions& options, double value) {
+        const auto at = RbfField(sample_rbf_points(mesh, options).volume, {.least_weight = 0}).evaluate(twice.points);
+        std::size_t count = 0;
+        for (std::size_t p = 0; p < at.size(); ++p) {
+            count += std::isnan(at[p]) && std::abs(twice.attributes[0].values[p] - value) < 1e-6 ? 1 : 0;
+        }
+        return count;
+    };
+    EXPECT_GT(holes({}, 0), 0u) << "the mesh is a test";
+    EXPECT_EQ(holes({.tolerance = .05}, 0), 0u);
+    EXPECT_EQ(holes({.tolerance = .05}, 1), 0u);
+    EXPECT_LE(sample_rbf_points(mesh, {.tolerance = .05}).report.largest_error, .05);
+    // This tolerance is met by kernels with holes: their error is the range of the field or more.
+    EXPECT_GE(sample_rbf_points(mesh, {.tolerance = 100}).report.largest_error, 1);
 }
 
 TEST(SampleWays, RulesChangeValuesBetweenControlPointsOnly) {

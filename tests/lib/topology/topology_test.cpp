@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "child_topology.h"
+#include "lib/expect_error.h"
 #include "lib/test_meshes.h"
 #include "subvol/cell.h"
 #include "subvol/error.h"
@@ -132,6 +134,40 @@ TEST(BoundarySurface, BoundsTheTetrahedraOutwards) {
     }
     EXPECT_NEAR(inside, by_surface, 1e-12);
     EXPECT_EQ(surface.triangles.size(), 2u * 6 * 4);
+}
+
+TEST(ChildTopology, CountsItsEntities) {
+    for (const HexMesh& mesh : {test::make_box(1, 1, 1), test::make_box(3, 2, 4), test::irregular()}) {
+        const Topology parent = build_topology(mesh);
+        const Topology child = detail::child_topology(parent);
+        const detail::EntityCounts counts =
+            detail::child_counts({parent.point_count, parent.edges.size(), parent.faces.size(), parent.cells.size()});
+        EXPECT_EQ(counts.points, child.point_count);
+        EXPECT_EQ(counts.edges, child.edges.size());
+        EXPECT_EQ(counts.faces, child.faces.size());
+        EXPECT_EQ(counts.cells, child.cells.size());
+    }
+}
+
+TEST(ChildTopology, RefusesMoreEdgesThanAnIndexCounts) {
+    // Near the boundary of a mesh there are more edges than faces. Of the child of a plate of n × n cells, 32 n² edges and 28
+    // n² faces: at n = 12,000 the faces can be counted with 32 bits, but not the edges.
+    const auto plate = [](std::size_t n) {
+        return detail::EntityCounts{.points = 2 * (n + 1) * (n + 1),
+                                    .edges = 4 * n * (n + 1) + (n + 1) * (n + 1),
+                                    .faces = 2 * n * n + 2 * n * (n + 1),
+                                    .cells = n * n};
+    };
+    const Topology small = build_topology(test::make_box(3, 3, 1));
+    EXPECT_EQ(plate(3).edges, small.edges.size());
+    EXPECT_EQ(plate(3).faces, small.faces.size());
+    EXPECT_NO_THROW(detail::check_child(plate(11'000)));
+    if (sizeof(Index) > 4) return;
+    const detail::EntityCounts child = detail::child_counts(plate(12'000));
+    EXPECT_LT(child.faces, std::size_t{kNone});
+    EXPECT_GE(child.edges, std::size_t{kNone});
+    test::expect_error(ErrorCode::InvalidInput, "the refined mesh needs " + std::to_string(child.edges) + " edges",
+                       [&] { detail::check_child(plate(12'000)); });
 }
 
 }  // namespace

@@ -8,8 +8,6 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
-#include "boundary_intervals.h"
-
 namespace subvol::test {
 
 namespace {
@@ -27,6 +25,42 @@ Mat3 inverse_root(const Mat3& s) {
         root = next;
     }
     return inverse / std::sqrt(scale);
+}
+
+/// The intervals of depth in which a ray is inside a closed surface, from `near` on: all triangles, one by one.
+///
+/// edge_ray: nearly the same ray. It decides between the triangles at an edge, and on which side of the outline the ray is
+std::vector<Vec2> intervals_inside(const Surface& surface, const Ray& ray, const Ray& edge_ray, double near) {
+    struct Crossing {
+        double depth;
+        int sign;  // +1 where the ray enters
+    };
+    std::vector<Crossing> crossings;
+    for (const auto& triangle : surface.triangles) {
+        std::array<Vec3, 3> p;
+        for (std::size_t k = 0; k < 3; ++k) p[k] = surface.points[triangle[k]] - edge_ray.origin;
+        // The signed volumes of the ray's direction with each side: all of one sign if the ray goes through the triangle.
+        const auto side = [&](const Vec3& a, const Vec3& b) { return glm::dot(edge_ray.direction, glm::cross(a, b)); };
+        const bool first = side(p[0], p[1]) > 0;
+        if ((side(p[1], p[2]) > 0) != first || (side(p[2], p[0]) > 0) != first) continue;
+        const Vec3 normal = glm::cross(p[1] - p[0], p[2] - p[0]);
+        const double depth = glm::dot(surface.points[triangle[0]] - ray.origin, normal) / glm::dot(ray.direction, normal);
+        crossings.push_back({depth, first ? -1 : 1});
+    }
+    std::sort(crossings.begin(), crossings.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
+    std::vector<Vec2> intervals;
+    int inside = 0;
+    for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
+        inside += crossings[i].sign;
+        const Vec2 interval(std::max(near, crossings[i].depth), crossings[i + 1].depth);
+        if (inside <= 0 || !(interval[0] < interval[1])) continue;
+        if (!intervals.empty() && intervals.back()[1] == interval[0]) {
+            intervals.back()[1] = interval[1];  // the ray is in several shells
+        } else {
+            intervals.push_back(interval);
+        }
+    }
+    return intervals;
 }
 
 /// The values of a ray on one sheet.
@@ -53,18 +87,15 @@ public:
     [[nodiscard]] SplatResult draw() const {
         SplatResult result{Image(view_.width(), view_.height()), {}, {}};
         result.depth.resize(result.image.rgba.size() / 4);
-        // Depths of entries and exits are floats; relative to the volume's middle they are more precise.
-        const double middle = view_.to_eye(box_of(volume_).center()).z;
-        const auto inside = detail::boundary_intervals(volume_.boundary, view_, near_, middle);
         tbb::parallel_for(0, view_.height(), [&](int y) {
             for (int x = 0; x < view_.width(); ++x) {
-                std::vector<Vec2> intervals;
                 const auto pixel = static_cast<std::size_t>(y * view_.width() + x);
-                for (auto i = inside.offsets[pixel]; i < inside.offsets[pixel + 1]; ++i) {
-                    intervals.push_back(middle + Vec2(inside.depths[2 * i], inside.depths[2 * i + 1]));
-                }
-                if (half_weight_ > 0) intervals = {{near_, kInfinity}};
-                draw_pixel(view_.ray(x + .5, y + .5), intervals, result.image.pixel(x, y), result.depth[pixel]);
+                const Ray ray = view_.ray(x + .5, y + .5);
+                // A centre on the outline belongs to the picture as if it lay a little to the left, and less above.
+                const Ray edge_ray = view_.ray(x + .5 - 1e-7, y + .5 - 1e-10);
+                const std::vector<Vec2> intervals = half_weight_ > 0 ? std::vector<Vec2>{{near_, kInfinity}}
+                                                                     : intervals_inside(volume_.boundary, ray, edge_ray, near_);
+                draw_pixel(ray, intervals, result.image.pixel(x, y), result.depth[pixel]);
             }
         });
         return result;

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <glm/matrix.hpp>
+
 #include "splat_scenes.h"
 
 namespace subvol::test {
@@ -121,6 +125,29 @@ TEST(SplatOracle, AgreesForLight) {
                 options.color_channel = 1;
                 expect_same(ball(correction), {.sharp = sharp, .camera = camera}, options, sharp ? kSharp : kSmooth);
             }
+        }
+    }
+}
+
+TEST(SplatCpu, FlatFramesThatRoundingMadeIndefiniteLeaveThePictureFinite) {
+    // Every second kernel is a disc that is seen from its face, or a needle across the view: floats cannot tell their frames
+    // from indefinite ones, so they are valid.
+    for (const Kernel& kernel : {Kernel(CompactKernel{}), Kernel(SeparableGaussianKernel{})}) {
+        for (const Camera& camera : {perspective_camera(), orthographic_camera()}) {
+            const View view(camera, 40, 37);
+            const auto& [right, up, forward] = view.axes();
+            RbfVolume volume = ball();
+            volume.kernel = kernel;
+            std::size_t indefinite = 0;
+            for (std::size_t i = 0; i < volume.size(); i += 2) {
+                const Vec3 along = .3 * (std::cos(double(i)) * right + std::sin(double(i)) * up);
+                const Vec3 aside = i % 4 == 0 ? .3 * glm::cross(along, forward) : Vec3(0.0);
+                volume.frames[i] = symmetric3(glm::outerProduct(along, along) + glm::outerProduct(aside, aside));
+                indefinite += glm::dot(forward, matrix(volume.frames[i]) * forward) < 0 ? 1 : 0;
+            }
+            EXPECT_GT(indefinite, 5u);
+            const auto drawn = render_splats(volume, view, smooth_optics(), {.method = SplatMethod::Cpu, .sheets = 30});
+            EXPECT_TRUE(std::ranges::all_of(drawn.image.rgba, [](float v) { return std::isfinite(v) && v >= 0 && v <= 1; }));
         }
     }
 }

@@ -26,11 +26,15 @@ struct FieldInfo {
 /// Refuse: they are an error
 enum class OtherCells { Split, Ignore, Refuse };
 
+/// sharp: names of groups of faces and edges (MEDIT, Gmsh): their faces inside the mesh become sharp faces, their edges on the
+///       boundary or on such faces creases. In Gmsh the name of a physical group of dimension 2 or 1, or its number; in MEDIT a
+///       reference of quadrilaterals, triangles and edges, or "Ridges"
 /// weld: joins points that are no farther apart than this (world units; 0: at exactly the same place), as the borders between
 ///       pieces of a file need. The first of them is kept, with its values; a warning gives the number. Nothing: no welding
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
     std::optional<double> weld = {};
+    std::vector<std::string> sharp = {};
 };
 
 struct ReadResult {
@@ -54,6 +58,8 @@ struct ReadResult {
 /// throws: Error(Io) if the file cannot be opened;
 ///         Error(InvalidInput) if it is malformed, naming the line, and the cell or point as the file counts them;
 ///         Error(InvalidInput) if options.weld is negative, or makes two corners of a cell the same;
+///         Error(InvalidInput) if there is no group that options.sharp names, the format has none, or one of its faces is not a
+///         face of a cell;
 ///         Error(MissingCapability) for Exodus II in HDF5 if the library is built without netCDF
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 

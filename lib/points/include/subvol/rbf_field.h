@@ -10,11 +10,14 @@
 
 namespace subvol {
 
+/// Where the sum of the weights is not above this there is no value, neither in a field nor in a picture.
+inline constexpr double kLeastWeight = 0.02;
+
 /// channel:      which channel of the volume
-/// least_weight: where the sum of the weights is not above this the field has no value, as in the splatter
+/// least_weight: where the sum of the weights is not above this the field has no value
 struct RbfFieldOptions {
     std::size_t channel = 0;
-    double least_weight = 0.02;
+    double least_weight = kLeastWeight;
 };
 
 /// gradient: world⁻¹

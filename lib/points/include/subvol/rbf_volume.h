@@ -58,8 +58,8 @@ struct RbfVolume {
 [[nodiscard]] Box box_of(const RbfVolume& volume);
 
 /// throws: Error(InvalidInput), naming the point counted from 0, unless every array has one entry per point (or, of Hessians,
-///         none), there is a channel, the names of channels differ, numbers are finite, the kernel is valid, the diagonals of
-///         the frames are positive and the corners of the triangles exist
+///         none), there is a channel, the names of channels differ, numbers are finite, the kernel is valid, the frames are
+///         positive definite (up to the rounding of floats) and the corners of the triangles exist
 void validate(const RbfVolume& volume);
 
 }  // namespace subvol

@@ -39,7 +39,8 @@ struct Footprint {
 /// spacing_world:   > 0: instead of per_edge, each edge gets ⌈length / spacing⌉ intervals
 /// footprint:       instead of both, each edge gets ⌈length in pixels / spacing⌉ intervals
 /// tolerance:       > 0: instead of these, as many intervals as needed until the first channel's error, in its own unit, is
-///                  smaller at the points of the second refinement
+///                  smaller at the points of the second refinement. Where no kernel covers a point, the error is the channel's
+///                  range, or the value there if that is larger
 /// values:          how values between control points are found; gradients and moments are those of the scheme
 /// value_kernel:    of the rule `Paper`; its weights must be positive in sum wherever there is a sample
 /// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide,

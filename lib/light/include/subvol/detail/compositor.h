@@ -8,6 +8,9 @@
 
 namespace subvol::detail {
 
+/// Below this transmittance, what lies behind does not change a double.
+inline constexpr double kOpaque = 1e-16;
+
 /// Composites the stretches of a ray front to back. The result is that of `composite` with `Optics::integrate` of each stretch,
 /// but many are integrated at once, in SIMD vectors: stretches are cut at the knots when they are added, and the pieces wait
 /// until they fill the vectors. The same stretches after `start` give the same bits, whatever was added before it.
@@ -15,7 +18,7 @@ namespace subvol::detail {
 /// opaque: below this transmittance, what lies behind is left out
 class Compositor {
 public:
-    explicit Compositor(const Optics& optics, double opaque = 1e-16);
+    explicit Compositor(const Optics& optics, double opaque = kOpaque);
 
     /// Begins a ray. light: what is in front of its first stretch
     void start(const Segment& light);
