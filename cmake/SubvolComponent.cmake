@@ -105,7 +105,7 @@ endfunction()
 
 # For code that runs once and consists of libraries' templates: with -O3 the compiler would spend most of its time optimising it.
 # HOT rooms have the inner loops: they keep the build type's -O3, which takes a quarter longer to compile than -O2.
-set(SUBVOL_WARM $<$<CONFIG:Release,RelWithDebInfo>:-O2>)
+set(SUBVOL_WARM $<$<CONFIG:Release>:-O2>)
 set(SUBVOL_COLD $<$<CONFIG:Release,RelWithDebInfo>:-O1>)
 
 function(subvol_warnings target)

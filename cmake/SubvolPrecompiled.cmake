@@ -3,7 +3,7 @@
 #
 # subvol_precompiled(NAME HEADERS header… LIBRARIES target…) makes such a set; a set has the standard headers besides its own.
 # subvol_use_precompiled(TARGET NAME) uses it in a target, before all else that is included. Sources include what they need all
-# the same: builds without SUBVOL_PRECOMPILED (the sanitizers', clang's) show that they do.
+# the same: builds without SUBVOL_PRECOMPILED (clang's, the fuzzers') show that they do.
 option(SUBVOL_PRECOMPILED "Precompile the headers of libraries (GCC, single-configuration generators)" ON)
 if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_CONFIGURATION_TYPES)
   set(SUBVOL_PRECOMPILED OFF)
