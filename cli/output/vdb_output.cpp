@@ -9,7 +9,6 @@
 #include "subvol/detail/vdb_file.h"
 #include "subvol/error.h"
 #include "subvol/nanovdb.h"
-#include "subvol/study_run.h"
 #include "subvol/version.h"
 #include "text.h"
 
