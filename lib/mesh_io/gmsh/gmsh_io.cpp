@@ -68,7 +68,7 @@ private:
     void read_end(std::string_view keyword) {
         const std::string end = "$End" + std::string(keyword.substr(1));
         const std::string_view word = in_.word();
-        if (word != end) in_.fail_word({keyword}, end, word);
+        if (word != end) in_.fail_word({shortened(keyword)}, shortened(end), word);
     }
 
     void read_section(std::string_view keyword) {
@@ -95,10 +95,10 @@ private:
         const std::string end = "$End" + std::string(keyword.substr(1));
         while (!in_.at_end()) {
             if (in_.word() != end) continue;
-            if (keyword.ends_with("Data")) found_.warnings.push_back("section " + std::string(keyword) + " ignored");
+            if (keyword.ends_with("Data")) found_.warnings.push_back("section " + shortened(keyword) + " ignored");
             return;
         }
-        in_.fail_word({keyword}, end, "");
+        in_.fail_word({shortened(keyword)}, shortened(end), "");
     }
 
     // In a binary file of version 4.1 the numbers of nodes and elements, and their counts, have 8 bytes.
