@@ -8,6 +8,7 @@
 #include <iomanip>
 #include <iostream>
 
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -21,7 +22,7 @@ bool progress_visible(const CommonOptions& options) {
 
 /// A value for people: text without quotes, real numbers with six digits, an object as "key value, key value".
 std::string for_people(const Json& value) {
-    if (value.is_string()) return value.get<std::string>();
+    if (value.is_string()) return detail::printable(value.get<std::string>());
     if (value.is_number_float()) return text(std::setprecision(6), value.get<double>());
     if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
     if (value.is_null()) return "none";
@@ -52,8 +53,9 @@ Report::Report(const CommonOptions& options)
     : print_json_(options.json), quiet_(options.quiet), progress_(progress_visible(options)) {
 }
 
-void Report::warn(const std::string& warning) {
-    if (warning.empty()) return;
+void Report::warn(const std::string& text) {
+    if (text.empty()) return;
+    const std::string warning = detail::printable(text);  // whichever library it comes from
     Json& warnings = json_["warnings"];
     if (std::ranges::find(warnings, Json(warning)) != warnings.end()) return;  // already reported, for another frame
     warnings.push_back(warning);

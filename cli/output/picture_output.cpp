@@ -29,6 +29,13 @@ private:
     double fraction_;
 };
 
+/// The largest opacity of a pixel.
+float most_opaque(const Image& image) {
+    float most = 0;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) most = std::max(most, image.rgba[i]);
+    return most;
+}
+
 }  // namespace
 
 PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments)
@@ -44,14 +51,23 @@ PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames,
 
 void PictureOutput::write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
                           Report& report) {
+    float opacity = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
         FrameProgress of_frame(report.progress(), i, views.size());
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
         const Picture picture = draw(views[i], progress);
+        opacity = std::max(opacity, most_opaque(picture.image));
         const detail::Stopwatch watch;
         write_frame(i, picture);
         report.add_seconds("write", watch.seconds());
+    }
+    constexpr float kLeastByte = 0.5F / 255;  // what is less is 0 in a .png
+    if (opacity == 0) {
+        report.warn("the picture is empty: no pixel is hit where the volume is opaque (--fit, --view, --opacity, --samples)");
+    } else if (opacity < kLeastByte) {
+        report.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity,
+                         " (a shorter --opacity-unit makes the volume more opaque)"));
     }
     report["output"] = frame_path(0).string();
     if (!frames_) return;

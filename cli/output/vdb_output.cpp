@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "vdb_output.h"
 
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 
 #include "subvol/detail/stopwatch.h"
 #include "subvol/detail/vdb_file.h"
-#include "subvol/error.h"
+#include "subvol/mesh_report.h"
 #include "subvol/nanovdb.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -39,11 +42,32 @@ void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
 
 }  // namespace
 
+bool has_voxels(std::span<const VdbGrid> grids) {
+    return std::ranges::any_of(grids, [](const VdbGrid& grid) { return grid.report().active_voxels > 0; });
+}
+
+std::string finer_voxels(const HexMesh& mesh) {
+    constexpr double kMostVoxels = 2e9;  // of `rasterize`
+    constexpr double kAcross = 2;        // voxels across the mean thickness
+    const Vec3 size = bounds(mesh).size();
+    const double widest = std::max({size.x * size.y, size.y * size.z, size.z * size.x});
+    const double voxel = std::abs(measure_cells(mesh).volume) / widest / kAcross;
+    const double voxels = std::ceil(size.x / voxel) * std::ceil(size.y / voxel) * std::ceil(size.z / voxel);
+    if (voxels < kMostVoxels) return text("try --voxel-size ", std::setprecision(3), voxel);
+    return "it is thinner than the voxels of any grid of its size; stretch it, or cut it into parts";
+}
+
+Error no_voxels(const std::string& input, const std::string& hint) {
+    return {ErrorCode::InvalidInput, "no voxel centre lies inside", input, hint};
+}
+
 void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+    const GridReport& first = grids.front().report();
+    if (first.active_voxels == 0) report.warn("the grid \"" + first.name + "\" is empty: no voxel centre lies inside");
     report.timed("write", [&] { write_files(grids, output); });
     report["output"] = output.path;
-    report["active_voxels"] = grids.front().report().active_voxels;
-    report["voxel_size"] = grids.front().report().voxel_size_world;
+    report["active_voxels"] = first.active_voxels;
+    report["voxel_size"] = first.voxel_size_world;
     for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report()));
 }
 
@@ -80,6 +104,7 @@ void write_parts(const std::string& input, const HexMesh& mesh, std::span<const 
         for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report()));
         parts.push_back(std::move(entry));
     });
+    if (active == 0) throw no_voxels(input, finer_voxels(mesh));
     report.add_seconds("rasterize", whole.seconds() - writing);
     report.add_seconds("write", writing);
     const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "report.h"
+#include "subvol/error.h"
 #include "subvol/rasterize.h"
 #include "subvol/vdb_grid.h"
 
@@ -16,6 +17,15 @@ struct VdbOutput {
     std::size_t memory_bytes = 0;  // 0: in one piece
     bool nano = false;             // also NAME.nvdb
 };
+
+/// Whether a grid has an active voxel.
+[[nodiscard]] bool has_voxels(std::span<const VdbGrid> grids);
+
+/// What helps where a volume lies between the voxels' centres, as thin ones may: "try --voxel-size 0.01".
+[[nodiscard]] std::string finer_voxels(const HexMesh& mesh);
+
+/// The error that nothing would be written. hint: what helps
+[[nodiscard]] Error no_voxels(const std::string& input, const std::string& hint);
 
 /// Rasterizes and writes slab by slab: NAME_0000.vdb and so on, and NAME.json that lists them.
 ///

@@ -15,6 +15,7 @@
 
 #include "interrupt.h"
 #include "manual.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -24,6 +25,7 @@ namespace {
 
 using subvol::Error;
 using subvol::ErrorCode;
+using subvol::detail::printable;
 
 constexpr int kBadInput = 2;
 constexpr int kEnvironment = 3;
@@ -142,12 +144,12 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return complain(std::string(error.what()) + " (see subvol --help)", kBadInput);
     } catch (const Error& error) {
-        return complain(error.what(), exit_code(error.code()));
+        return complain(printable(error.what()), exit_code(error.code()));
     } catch (const std::bad_alloc&) {
         return complain("not enough memory for this; try a lower resolution or fewer levels", kEnvironment);
     } catch (const std::filesystem::filesystem_error& error) {
-        return complain(error.what(), kBadInput);
+        return complain(printable(error.what()), kBadInput);
     } catch (const std::exception& error) {  // thrown unexpectedly by a library
-        return complain(error.what(), kEnvironment);
+        return complain(printable(error.what()), kEnvironment);
     }
 }

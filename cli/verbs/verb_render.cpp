@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "grid_input.h"
 #include "input.h"
@@ -21,6 +22,17 @@ namespace subvol::cli {
 namespace {
 
 constexpr int kTetsLevel = 1;
+
+void check_coordinates(const HexMesh& mesh) {
+    constexpr double kMost_world = 1e18;  // as of splats; far beyond it, squares and volumes overflow
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const Vec3 x = glm::abs(mesh.points[p]);
+        const double largest = std::max({x.x, x.y, x.z});
+        if (largest <= kMost_world) continue;
+        throw Error(ErrorCode::InvalidInput, text("point ", p, " has the coordinate ", largest), {},
+                    "at most 1e18 can be drawn");
+    }
+}
 
 class RenderVerb : public Verb {
 public:
@@ -97,6 +109,7 @@ private:
 
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
+        check_coordinates(mesh);
         if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
         const Box box = bounds(mesh);
         const std::vector<View> views = picture_.make_views(box);

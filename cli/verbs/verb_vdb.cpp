@@ -182,9 +182,11 @@ private:
         if (output_.memory_bytes > 0) {
             refuse_with_memory();
             write_parts(input_, mesh, names_of(mesh), options, output_, report);
-        } else {
-            write_reported(grids_of(mesh, options, report), output_, report);
+            return;
         }
+        const std::vector<VdbGrid> grids = grids_of(mesh, options, report);
+        if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
+        write_reported(grids, output_, report);
     }
 
     void run_points(Report& report) {
@@ -194,7 +196,11 @@ private:
         options.voxel_size_world = voxel_size_;
         options.resolution = resolution_;
         options.level_set = level_set();
-        write_reported(grids_of_points(input_, fields_, common(), app(), options, report), output_, report);
+        const std::vector<VdbGrid> grids = grids_of_points(input_, fields_, common(), app(), options, report);
+        if (!has_voxels(grids)) {
+            throw no_voxels(input_, text("try --voxel-size below ", grids.front().report().voxel_size_world));
+        }
+        write_reported(grids, output_, report);
     }
 
     /// The first frame determines the voxel size and the level of all frames.
@@ -230,6 +236,9 @@ private:
             if (velocity_) spread_velocity(frame, grids, report);
             report["voxel_size"] = grids.front().report().voxel_size_world;
             report["active_voxels"] = active_voxels += grids.front().report().active_voxels;
+            if (!has_voxels(grids)) {
+                report.warn(text("frame ", frame, ": no voxel centre lies inside: ", finer_voxels(mesh)));
+            }
             write_frame(frame, grids, output, report);
         }
         report["input"] = input_;

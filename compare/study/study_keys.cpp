@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/kernel.h"
 
@@ -58,7 +59,7 @@ std::string must_be(const std::string& type, const Json& json) {
 }
 
 void refuse(const std::string& path, const std::string& message, const std::string& allowed) {
-    throw Error(ErrorCode::InvalidInput, message, path, allowed);
+    throw Error(ErrorCode::InvalidInput, printable(message), printable(path), allowed);
 }
 
 std::string in(const std::string& path, const std::string& key) {
@@ -72,7 +73,8 @@ std::string at(const std::string& path, std::size_t index) {
 void check_object(const Json& json, const std::string& path, std::span<const std::string> known) {
     if (!json.is_object()) refuse(path, must_be("an object", json));
     for (const auto& [key, value] : json.items()) {
-        if (std::ranges::find(known, key) == known.end()) refuse(in(path, key), "this key is unknown", joined(known));
+        if (std::ranges::find(known, key) == known.end())
+            refuse(in(path, shortened(key)), "this key is unknown", joined(known));
     }
 }
 
@@ -98,7 +100,7 @@ StudyValue read_value(const Json& json, const Key& key, const std::string& path)
     }
     const std::string text = read_text(json, path);
     if (!key.choices.empty() && std::ranges::find(key.choices, text) == key.choices.end()) {
-        refuse(path, "'" + text + "' is unknown", joined(key.choices));
+        refuse(path, "'" + shortened(text) + "' is unknown", joined(key.choices));
     }
     return text;
 }

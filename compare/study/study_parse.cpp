@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "study_keys.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
 
@@ -371,7 +372,7 @@ Study parse_study(std::string_view text, const fs::path& file) {
     try {
         json = detail::Json::parse(text);
     } catch (const nlohmann::json::exception& error) {
-        throw Error(ErrorCode::InvalidInput, std::string("is not JSON: ") + error.what(), file.string());
+        throw Error(ErrorCode::InvalidInput, "is not JSON: " + detail::parser_message(error.what()), file.string());
     }
     return detail::Parser(json, file).study();
 }

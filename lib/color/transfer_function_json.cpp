@@ -6,6 +6,7 @@
 
 #include "curves.h"
 #include "knot_values.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/transfer_function.h"
 
@@ -19,7 +20,7 @@ using ColorKnots = std::vector<TransferFunction::ColorKnot>;
 using OpacityKnots = std::vector<TransferFunction::OpacityKnot>;
 
 [[noreturn]] void refuse(const std::string& file, const std::string& message, const std::string& allowed = {}) {
-    throw Error(ErrorCode::InvalidInput, message, file, allowed);
+    throw Error(ErrorCode::InvalidInput, printable(message), file, printable(allowed));
 }
 
 std::string name_of(const json& map) {
@@ -33,7 +34,7 @@ json map_named(const json& maps, const std::string& name, const std::string& fil
     std::size_t others = 0;
     for (const json& map : maps) {
         if (name_of(map) == name) return map;
-        if (++others <= kShown) names += (names.empty() ? "" : ", ") + name_of(map);
+        if (++others <= kShown) names += (names.empty() ? "" : ", ") + shortened(name_of(map));
     }
     refuse(file, "has no colour map '" + name + "'", names + (others > kShown ? ", …" : ""));
 }
@@ -45,7 +46,7 @@ json read_color_map(const std::string& file, const std::string& name) {
     try {
         document = json::parse(stream);
     } catch (const json::exception& e) {
-        refuse(file, e.what());
+        refuse(file, parser_message(e.what()));
     } catch (const std::ios_base::failure&) {  // for example, it is a folder
         throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }
@@ -77,7 +78,7 @@ ColorSpace read_color_space(const json& map, const std::string& file) {
     const auto found = map.find("ColorSpace");
     if (found == map.end()) return ColorSpace::Rgb;
     const auto space = found->is_string() ? color_space_named(found->get<std::string>()) : std::nullopt;
-    if (!space) refuse(file, "key 'ColorSpace' is " + found->dump(), "RGB, HSV, Lab, Lab/CIELAB, Diverging or Step");
+    if (!space) refuse(file, "key 'ColorSpace' is " + shortened(found->dump()), "RGB, HSV, Lab, Lab/CIELAB, Diverging or Step");
     return *space;
 }
 

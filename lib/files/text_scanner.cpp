@@ -23,22 +23,11 @@ bool is_space(char c) {
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-// The length of a UTF-8 sequence by its first byte; 0 if no sequence begins with that byte.
-std::size_t sequence_length(unsigned char first) {
-    if (first < 0x80) return 1;
-    if (first >= 0xC2 && first < 0xE0) return 2;
-    if (first >= 0xE0 && first < 0xF0) return 3;
-    return first >= 0xF0 && first < 0xF5 ? 4 : 0;
-}
-
 bool is_utf8(std::string_view text) {
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = sequence_length(static_cast<unsigned char>(text[i]));
-        if (length == 0 || i + length > text.size()) return false;
-        for (std::size_t k = 1; k < length; ++k) {
-            if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return false;
-        }
-        i += length;
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
     }
     return true;
 }
@@ -181,19 +170,12 @@ void TextScanner::fail_at(std::size_t position, const std::string& message, cons
     std::string place;
     if (places_ == Places::Bytes) place = ", byte " + std::to_string(position);
     if (places_ == Places::Lines) place = ", line " + std::to_string(1 + lines_before());
-    throw Error(ErrorCode::InvalidInput, message, std::string(file_) + place, allowed);
+    throw Error(ErrorCode::InvalidInput, printable(message), std::string(file_) + place, printable(allowed));
 }
 
 void TextScanner::fail_word(const Place& place, std::string_view expected, std::string_view found) const {
     if (found.empty()) fail(describe(place) + ": unexpected end of file");
     fail(describe(place) + ": " + std::string(expected) + " is expected, not " + in_quotes(found));
-}
-
-std::string in_quotes(std::string_view text) {
-    constexpr std::size_t kLongest = 32;
-    std::string result = "\"";
-    for (const char c : text.substr(0, kLongest)) result += c >= ' ' && c <= '~' ? c : '?';
-    return result + (text.size() > kLongest ? "…\"" : "\"");
 }
 
 std::string upper_case(std::string_view text) {

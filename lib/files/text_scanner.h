@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "subvol/detail/printable.h"
+
 namespace subvol::detail {
 
 /// The whole file, in one read.
@@ -81,9 +83,6 @@ private:
     std::size_t next_ = 0;
     std::size_t start_ = 0;
 };
-
-/// A part of a file in quotes for messages: unprintable characters are replaced, a long text is cut.
-[[nodiscard]] std::string in_quotes(std::string_view text);
 
 [[nodiscard]] std::string upper_case(std::string_view text);
 

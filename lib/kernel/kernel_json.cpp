@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "kernel_fields.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -11,7 +12,7 @@ namespace {
 using nlohmann::json;
 
 [[noreturn]] void refuse(const std::string& message, const std::string& allowed = {}) {
-    throw Error(ErrorCode::InvalidInput, message, "kernel", allowed);
+    throw Error(ErrorCode::InvalidInput, detail::printable(message), "kernel", allowed);
 }
 
 double number(const std::string& name, const json& item) {
@@ -39,7 +40,7 @@ json parse_object(std::string_view text) {
     try {
         object = json::parse(text);
     } catch (const json::exception& e) {
-        refuse(std::string("not JSON: ") + e.what());
+        refuse("not JSON: " + detail::parser_message(e.what()));
     }
     if (!object.is_object()) refuse("not an object", "{\"type\": \"gaussian\", \"sigma\": 0.43, …}");
     return object;
@@ -55,7 +56,7 @@ std::string all_types() {
 template <std::size_t I = 0>
 Kernel default_kernel(const std::string& type) {
     if constexpr (I == std::variant_size_v<Kernel>) {
-        refuse("there is no type '" + type + "'", all_types());
+        refuse("there is no type '" + detail::shortened(type) + "'", all_types());
     } else {
         if (type == detail::kKernelTypes[I]) return Kernel(std::in_place_index<I>);
         return default_kernel<I + 1>(type);

@@ -13,6 +13,7 @@
 
 #include "camera_axes.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -75,7 +76,7 @@ nlohmann::json read_json_object(const std::string& file) {
     try {
         json = nlohmann::json::parse(stream);
     } catch (const nlohmann::json::exception& e) {
-        throw Error(ErrorCode::InvalidInput, e.what(), file);
+        throw Error(ErrorCode::InvalidInput, detail::parser_message(e.what()), file);
     } catch (const std::ios_base::failure&) {  // for example, it is a folder
         throw Error(ErrorCode::Io, "cannot be read", file, "a JSON file");
     }

@@ -42,10 +42,16 @@ std::vector<Vec3> corners_of(const Box& box) {
     return corners;
 }
 
+void require_box(const Box& box) {
+    require(!box.empty(), "there is no box to look at");
+    require(std::isfinite(box.diagonal()), "the box to look at is too large: the squares of its sides are infinite",
+            "coordinates up to 1e150");
+}
+
 /// Fits a camera to points around the box's centre that are no farther from it than the box's corners.
 Camera fit(const Camera& camera, std::span<const Vec3> points, const Box& box, double aspect) {
     validate(camera);
-    require(!box.empty(), "there is no box to look at");
+    require_box(box);
     require(std::isfinite(aspect) && aspect > 0, "the picture's aspect is not a positive number");
     const auto axes = camera_axes(camera.target - camera.eye, camera.up);
     const bool perspective = camera.ortho_height == 0;
@@ -72,6 +78,7 @@ Camera fit(const Camera& camera, std::span<const Vec3> points, const Box& box, d
 
 Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg, double aspect) {
     require(finite(direction) && direction != Vec3(0.0), "the direction of view is zero or not finite");
+    require_box(box);
     const Vec3 back = std::max(box.diagonal(), 1.0) * glm::normalize(direction);
     return fit_camera({.eye = box.center() - back, .target = box.center(), .up = upright_for(direction), .fovy_deg = fovy_deg},
                       box, aspect);

@@ -115,10 +115,12 @@ public:
         : result_(result), origin_(origin), file_(file), names_(names) {}
 
     void take(FileArray&& array) {
+        // Of all formats; from here on it is in messages, JSON and files, and is what users write to choose the field.
+        array.name = array.name.empty() ? "unnamed" : printable(array.name);
         result_.fields.push_back(describe(array));
         const FieldInfo& info = result_.fields.back();
         if (array.components == 1 && upper_case(array.name) == "DENSITY" && info.min < 0) {
-            result_.warnings.push_back("\"" + array.name + "\" has negative values");
+            result_.warnings.push_back(in_quotes(array.name) + " has negative values");
         }
         Attribute attribute{unused_name(array.name), array.components, {}};
         attribute.values = array.at_cells ? from_cells(array) : from_points(std::move(array));
@@ -128,7 +130,7 @@ public:
 private:
     [[noreturn]] void refuse(const std::string& array, const std::string& entity) const {
         throw Error(ErrorCode::InvalidInput, "the value at " + entity + " is not finite",
-                    std::string(file_) + ", array \"" + array + "\"");
+                    std::string(file_) + ", array " + in_quotes(array));
     }
 
     std::vector<double> from_points(FileArray&& array) const {
@@ -152,8 +154,8 @@ private:
                 if (!std::isfinite(of_hexes.back())) refuse(array.name, names_.cell(number));
             }
         }
-        result_.warnings.push_back("cell array \"" + array.name +
-                                   "\" became a point array: the volume-weighted mean over the cells at each point");
+        result_.warnings.push_back("cell array " + in_quotes(array.name) +
+                                   " became a point array: the volume-weighted mean over the cells at each point");
         return mean_over_cells(result_.mesh, of_hexes, components);
     }
 
@@ -161,8 +163,8 @@ private:
         std::string candidate = name;
         for (int k = 2; result_.mesh.find_attribute(candidate) != nullptr; ++k) candidate = name + "_" + std::to_string(k);
         if (candidate != name) {
-            result_.warnings.push_back("there is more than one array \"" + name + "\": another is called \"" + candidate +
-                                       "\"");
+            result_.warnings.push_back("there is more than one array " + in_quotes(name) + ": another is called " +
+                                       in_quotes(candidate));
         }
         return candidate;
     }

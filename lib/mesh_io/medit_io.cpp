@@ -74,7 +74,7 @@ private:
             read_vertices();
         } else if (keyword == "Hexahedra" || (kVolumeCells.contains(keyword) && options_.other_cells != OtherCells::Ignore) ||
                    (kTagSections.contains(keyword) && groups_.any())) {
-            if (!cell_sections_.insert(keyword).second) in_.fail("there is a second " + std::string(keyword) + " section");
+            if (!cell_sections_.insert(keyword).second) in_.fail("there is a second " + shortened(keyword) + " section");
             if (has_vertices_) {
                 read_cells(keyword);
             } else {

@@ -41,6 +41,7 @@ RbfVolume read_points(const std::filesystem::path& path) {
     const std::string text = read_text(path);
     try {
         RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path) : read_vtp(text, path);
+        for (RbfChannel& channel : volume.channels) channel.name = printable(channel.name);
         validate(volume);
         volume.bounds = box_of(volume);
         return volume;

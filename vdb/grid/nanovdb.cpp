@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/nanovdb.h"
 
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
 #ifndef SUBVOL_NANOVDB
@@ -41,7 +42,7 @@ Handle convert(const openvdb::GridBase& grid) {
     if (const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(&grid)) return nanovdb::openToNanoVDB(*vectors);
     if (const auto* integers = dynamic_cast<const openvdb::Int32Grid*>(&grid)) return nanovdb::openToNanoVDB(*integers);
     if (const auto* mask = dynamic_cast<const openvdb::MaskGrid*>(&grid)) return nanovdb::openToNanoVDB(*mask);
-    throw Error(ErrorCode::InvalidInput, "has voxels of type " + grid.valueType(), "grid \"" + grid.getName() + "\"",
+    throw Error(ErrorCode::InvalidInput, "has voxels of type " + grid.valueType(), "grid " + detail::in_quotes(grid.getName()),
                 "floats, vectors of floats, integers or a mask");
 }
 

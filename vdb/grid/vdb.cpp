@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/printable.h"
 #include "vdb_data.h"
 
 namespace subvol {
@@ -54,7 +55,7 @@ VdbGrid detail::VdbData::wrap(VdbData data) {
 }
 
 VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
-    GridReport report{.name = grid->getName(),
+    GridReport report{.name = printable(grid->getName()),
                       .kind = {},
                       .active_voxels = grid->activeVoxelCount(),
                       .voxel_size_world = grid->voxelSize()[0],

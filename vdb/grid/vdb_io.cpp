@@ -24,19 +24,9 @@ void write_vdb(const std::filesystem::path& path, std::span<const VdbGrid> grids
 }
 
 std::vector<VdbGrid> read_vdb(const std::filesystem::path& path) {
-    const auto grids = read_grids(path);
     std::vector<VdbGrid> result;
-    std::string others;
-    for (const auto& grid : *grids) {
-        if (grid->isType<openvdb::FloatGrid>()) {
-            result.push_back(make_vdb_grid(grid));
-        } else {
-            others += (others.empty() ? "" : ", ") + grid->type();
-        }
-    }
-    if (result.empty()) {
-        throw Error(ErrorCode::InvalidInput, "holds no float grid", path.string(), others.empty() ? "" : "it holds: " + others);
-    }
+    for (const auto& grid : read_grids(path, openvdb::FloatGrid::gridType(), "float grid"))
+        result.push_back(make_vdb_grid(grid));
     return result;
 }
 

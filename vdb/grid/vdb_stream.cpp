@@ -7,48 +7,36 @@
 #include "openvdb_grids.h"
 
 #include <fstream>
-#include <optional>
+#include <span>
 
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "vdb_check.h"
 
 namespace subvol::detail {
 
 namespace {
 
-// OpenVDB's own File continues after a short read with memory that was never filled; a stream that throws stops it.
-template <class Read>
-auto read_throwing(const std::filesystem::path& path, const Read& read) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) throw Error(ErrorCode::Io, "cannot be read", path.string());
-    file.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-    try {
-        openvdb::initialize();
-        return read(file);
-    } catch (const std::ios_base::failure&) {
-        throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: it ends too early", path.string());
-    } catch (const std::exception& error) {
-        throw Error(ErrorCode::InvalidInput, std::string("is not a whole OpenVDB file: ") + error.what(), path.string());
-    }
-}
-
-/// Reads the descriptions of a file's grids only; nothing if the file does not store their positions.
-class DescriptionReader : public openvdb::io::Archive {
+/// Reads grids of a file that has been checked, where the check found them.
+class CheckedReader : public openvdb::io::Archive {
 public:
-    std::optional<std::vector<std::string>> types(std::istream& file) {
+    openvdb::GridPtrVec read(std::istream& file, std::span<const GridEntry> entries) {
         openvdb::io::StreamMetadata::Ptr metadata(new openvdb::io::StreamMetadata);
         openvdb::io::setStreamMetadataPtr(file, metadata, /*transfer=*/false);
-        if (!readHeader(file)) return std::nullopt;
+        readHeader(file);
         openvdb::io::setVersion(file, libraryVersion(), fileVersion());
-        openvdb::MetaMap().readMeta(file);
-        std::vector<std::string> types;
-        for (std::int32_t left = readGridCount(file); left > 0; --left) {
-            openvdb::io::GridDescriptor description;
-            static_cast<void>(description.read(file));
-            types.push_back(description.gridType());
-            if (description.getEndPos() <= file.tellg()) OPENVDB_THROW(openvdb::IoError, "a grid ends before it begins");
-            description.seekToEnd(file);
+        std::vector<openvdb::io::GridDescriptor> descriptions;
+        openvdb::GridPtrVec grids;
+        NamedGridMap by_name;
+        for (const GridEntry& entry : entries) {
+            file.seekg(static_cast<std::streamoff>(entry.begin));
+            openvdb::io::GridDescriptor& description = descriptions.emplace_back();
+            grids.push_back(description.read(file));
+            readGrid(grids.back(), description, file);
+            by_name[description.uniqueName()] = grids.back();
         }
-        return types;
+        for (const auto& description : descriptions) connectInstance(description, by_name);
+        return grids;
     }
 };
 
@@ -81,14 +69,31 @@ std::uint32_t flag_of(VdbCompression compression) {
 
 }  // namespace
 
-openvdb::GridPtrVecPtr read_grids(const std::filesystem::path& path) {
-    return read_throwing(path, [](std::istream& file) { return openvdb::io::Stream(file, /*delayLoad=*/false).getGrids(); });
+openvdb::GridPtrVec read_grids(const std::filesystem::path& path, const std::string& type, const std::string& what) {
+    std::vector<GridEntry> entries = checked_grids(path, std::span(&type, 1));
+    std::string others;
+    for (const GridEntry& entry : entries) {
+        if (entry.type != type) others += (others.empty() ? "" : ", ") + printable(entry.type);
+    }
+    std::erase_if(entries, [&](const GridEntry& entry) { return entry.type != type; });
+    if (entries.empty()) {
+        throw Error(ErrorCode::InvalidInput, "holds no " + what, path.string(), others.empty() ? "" : "it holds: " + others);
+    }
+    std::ifstream file(path, std::ios::binary);
+    // OpenVDB continues after a short read with memory that was never filled; a stream that throws stops it.
+    file.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+    try {
+        return CheckedReader().read(file, entries);
+    } catch (const std::ios_base::failure&) {
+        throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: it ends too early", path.string());
+    } catch (const std::exception& error) {
+        throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: " + printable(error.what()), path.string());
+    }
 }
 
 std::vector<std::string> grid_types(const std::filesystem::path& path) {
-    if (auto types = read_throwing(path, [](std::istream& file) { return DescriptionReader().types(file); })) return *types;
     std::vector<std::string> types;
-    for (const auto& grid : *read_grids(path)) types.push_back(grid->type());
+    for (GridEntry& entry : checked_grids(path, {})) types.push_back(std::move(entry.type));
     return types;
 }
 

@@ -12,14 +12,16 @@
 
 namespace subvol::detail {
 
-/// All grids of a file.
+/// The grids of one type in a file, which is checked before OpenVDB reads it (docs/adr/0017).
 ///
-/// throws: Error(Io), Error(InvalidInput) if it is not a whole OpenVDB file
-[[nodiscard]] openvdb::GridPtrVecPtr read_grids(const std::filesystem::path& path);
+/// type:   OpenVDB's name of the type; what: its name in messages, such as "float grid"
+/// throws: Error(Io); Error(InvalidInput) if it is not a whole OpenVDB file or holds no such grid
+[[nodiscard]] openvdb::GridPtrVec read_grids(const std::filesystem::path& path, const std::string& type,
+                                             const std::string& what);
 
 /// The types of a file's grids; the grids themselves are not read.
 ///
-/// throws: as `read_grids`
+/// throws: Error(Io), Error(InvalidInput) if it is not an OpenVDB file
 [[nodiscard]] std::vector<std::string> grid_types(const std::filesystem::path& path);
 
 /// Writes grids to the temporary file of `file`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "openvdb_grids.h"
 
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
 
@@ -87,11 +88,11 @@ private:
 
 std::unique_ptr<Voxels> VdbGrid::voxels() const {
     if (!data_->grid->transform().isLinear()) {
-        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid \"" + data_->grid->getName() + "\"",
-                    "a linear transform, not a frustum");
+        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear",
+                    "grid " + detail::in_quotes(data_->grid->getName()), "a linear transform, not a frustum");
     }
     if (!data_->floats) {
-        throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid \"" + data_->grid->getName() + "\"");
+        throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid " + detail::in_quotes(data_->grid->getName()));
     }
     return std::make_unique<GridVoxels>(data_->floats);
 }

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "subvol/detail/principal_axes.h"
+#include "subvol/detail/printable.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "subvol/points_io.h"
@@ -200,7 +201,7 @@ public:
             const auto name = grid.getMetadata<openvdb::StringMetadata>(kChannel + std::to_string(names.size()));
             if (!name) break;
             names.push_back(name->value());
-            volume_.channels.push_back({.name = name->value()});
+            volume_.channels.push_back({.name = printable(name->value())});
         }
         attributes_ = attribute_names(names);
     }
@@ -259,16 +260,6 @@ private:
     RbfVolume volume_;
 };
 
-Grid::Ptr point_grid(const std::filesystem::path& path) {
-    const auto grids = read_grids(path);
-    std::string others;
-    for (const auto& grid : *grids) {
-        if (auto found = openvdb::gridPtrCast<Grid>(grid)) return found;
-        others += (others.empty() ? "" : ", ") + grid->type();
-    }
-    throw Error(ErrorCode::InvalidInput, "holds no point grid", path.string(), others.empty() ? "" : "it holds: " + others);
-}
-
 }  // namespace
 
 void write_vdb_points(const std::filesystem::path& path, const RbfVolume& volume, const VdbPointsOptions& options) {
@@ -285,7 +276,7 @@ void write_vdb_points(const std::filesystem::path& path, const RbfVolume& volume
 }
 
 RbfVolume read_vdb_points(const std::filesystem::path& path) {
-    const Grid::Ptr grid = point_grid(path);
+    const auto grid = openvdb::gridPtrCast<Grid>(read_grids(path, Grid::gridType(), "point grid").front());
     try {
         RbfVolume volume = PointsReader(*grid).read();
         const auto triangles = grid->metaValue<std::int64_t>(kTriangles);
@@ -297,7 +288,7 @@ RbfVolume read_vdb_points(const std::filesystem::path& path) {
         if (std::string_view(error.what()).starts_with(boundary_path(path).string())) throw;
         throw Error(error.code(), error.what(), path.string());
     } catch (const std::exception& error) {
-        throw Error(ErrorCode::InvalidInput, std::string("has no points in this library's layout: ") + error.what(),
+        throw Error(ErrorCode::InvalidInput, "has no points in this library's layout: " + printable(error.what()),
                     path.string());
     }
 }

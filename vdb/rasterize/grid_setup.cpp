@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
 
@@ -27,7 +28,7 @@ double voxel_size_of(const Box& box, const RasterizeOptions& options) {
 
 ToVoxels to_voxels_of(const openvdb::GridBase& like) {
     if (!like.transform().isLinear()) {
-        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid \"" + like.getName() + "\"",
+        throw Error(ErrorCode::InvalidInput, "the grid's transform is not linear", "grid " + detail::in_quotes(like.getName()),
                     "a linear transform, not a frustum");
     }
     const auto vec = [](const openvdb::Vec3d& v) { return Vec3(v[0], v[1], v[2]); };

@@ -96,7 +96,7 @@ std::string ExodusFile::attribute(const std::string& variable, const std::string
 }
 
 void ExodusFile::fail(const std::string& message, const std::string& allowed) const {
-    throw Error(ErrorCode::InvalidInput, message, std::string(file_), allowed);
+    throw Error(ErrorCode::InvalidInput, printable(message), std::string(file_), printable(allowed));
 }
 
 }  // namespace subvol::detail

@@ -180,7 +180,7 @@ private:
             const std::size_t number = variable.numbers[c];
             const auto values = at_cells ? element_values(number) : node_values(number);
             if (values.empty()) {
-                found_.warnings.push_back("array \"" + variable.name + "\" is not in every block: ignored");
+                found_.warnings.push_back("array " + in_quotes(variable.name) + " is not in every block: ignored");
                 return;
             }
             for (std::size_t i = 0; i < values.size(); ++i) array.values[i * components + c] = values[i];

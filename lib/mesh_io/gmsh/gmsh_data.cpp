@@ -70,8 +70,8 @@ void read_gmsh_data(TextScanner& in, GmshValues& values, const GmshEntities& ent
     if (count == 0) {
         found.arrays.push_back(std::move(array));
     } else {
-        found.warnings.push_back("array \"" + header.name + "\" has no value at " + counted(count, entity, entity + "s") +
-                                 ": ignored");
+        found.warnings.push_back("array " + in_quotes(header.name) + " has no value at " +
+                                 counted(count, entity, entity + "s") + ": ignored");
     }
 }
 

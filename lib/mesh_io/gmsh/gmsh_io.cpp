@@ -75,7 +75,7 @@ private:
     void read_end(std::string_view keyword) {
         const std::string end = "$End" + std::string(keyword.substr(1));
         const std::string_view word = in_.word();
-        if (word != end) in_.fail_word({keyword}, end, word);
+        if (word != end) in_.fail_word({shortened(keyword)}, shortened(end), word);
     }
 
     void read_section(std::string_view keyword) {
@@ -106,10 +106,10 @@ private:
         const std::string end = "$End" + std::string(keyword.substr(1));
         while (!in_.at_end()) {
             if (in_.word() != end) continue;
-            if (keyword.ends_with("Data")) found_.warnings.push_back("section " + std::string(keyword) + " ignored");
+            if (keyword.ends_with("Data")) found_.warnings.push_back("section " + shortened(keyword) + " ignored");
             return;
         }
-        in_.fail_word({keyword}, end, "");
+        in_.fail_word({shortened(keyword)}, shortened(end), "");
     }
 
     // The names of groups are text even in a binary file.

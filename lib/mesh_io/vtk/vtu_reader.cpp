@@ -150,7 +150,7 @@ private:
             const std::string name = as_utf8(array.attribute("Name").as_string("unnamed"));
             const std::string_view type = array.attribute("type").as_string();
             if (type == "String" || type == "Bit") {
-                found_.warnings.push_back("array \"" + name + "\" of type " + std::string(type) + " ignored");
+                found_.warnings.push_back("array " + in_quotes(name) + " of type " + std::string(type) + " ignored");
                 continue;
             }
             const std::size_t components = number_attribute(array, "NumberOfComponents").value_or(1);
@@ -185,7 +185,7 @@ private:
         std::erase_if(found_.arrays, [&](const FileArray& array) {
             const std::size_t tuples = array.at_cells ? cells_before_ : found_.points.size();
             const bool partial = array.values.size() != tuples * static_cast<std::size_t>(array.components);
-            if (partial) found_.warnings.push_back("array \"" + array.name + "\" is not in every piece: ignored");
+            if (partial) found_.warnings.push_back("array " + in_quotes(array.name) + " is not in every piece: ignored");
             return partial;
         });
     }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstdlib>
 #include <random>
 #include <string>
 
 #include "lib/temp_folder.h"
+#include "subvol/detail/printable.h"
 #include "subvol/mesh_io.h"
 
 namespace subvol::test {
@@ -26,26 +29,43 @@ inline std::string damaged(std::string text, std::mt19937& random) {
     return text;
 }
 
+/// SUBVOL_MUTATIONS sets how many damaged files a test makes of each good one.
+inline int run_count() {
+    constexpr int kUsual = 1500;
+    const char* const given = std::getenv("SUBVOL_MUTATIONS");
+    return given ? std::max(std::atoi(given), 1) : kUsual;
+}
+
+/// A text for people or JSON, which must not repeat bytes of a file that a terminal obeys.
+inline void expect_printable(const std::string& text) {
+    EXPECT_FALSE(text.empty());
+    EXPECT_EQ(text, detail::printable(text));
+}
+
 /// A test of how a reader copes with damaged files.
 class MeshFuzz : public TempFolder {
 protected:
     /// A damaged file either gives a valid mesh or is refused by an Error; the reader throws nothing else.
     void expect_sound_or_refused(const std::string& extension, const std::string& text, unsigned seed) const {
-        constexpr int kRuns = 1500;
+        const int runs = run_count();
         std::mt19937 random(seed);
         int refused = 0;
-        for (int run = 0; run < kRuns; ++run) {
+        for (int run = 0; run < runs; ++run) {
             const auto file =
                 write(std::to_string(run) + extension, damaged(text, random));  // a new file each time: truncating one is slow
             try {
-                validate(read_mesh(file).mesh);
+                const ReadResult read = read_mesh(file);
+                validate(read.mesh);
+                for (const std::string& warning : read.warnings) expect_printable(warning);
+                for (const FieldInfo& field : read.fields) expect_printable(field.name);
+                for (const Attribute& attribute : read.mesh.attributes) expect_printable(attribute.name);
             } catch (const Error& error) {
-                EXPECT_FALSE(std::string(error.what()).empty());
+                expect_printable(error.what());
                 ++refused;
             }
             std::filesystem::remove(file);
         }
-        EXPECT_GT(refused, kRuns / 10);  // the damage is real
+        EXPECT_GT(refused, runs / 10);  // the damage is real
     }
 };
 

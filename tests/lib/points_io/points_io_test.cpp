@@ -16,6 +16,7 @@
 #include "lib/rbf_volumes.h"
 #include "lib/temp_folder.h"
 #include "subvol/detail/principal_axes.h"
+#include "subvol/detail/printable.h"
 #include "subvol/detail/surface_io.h"
 
 namespace subvol::test {
@@ -153,8 +154,11 @@ TEST_F(PointsIo, DamagedFilesDoNotCrash) {
             for (int n = trial % 4; n > 0 && !bad.empty(); --n) bad[random() % bad.size()] = static_cast<char>(random());
             const auto file = write(name, bad);
             try {
-                validate(read_points(file));
+                const RbfVolume read = read_points(file);
+                validate(read);
+                for (const RbfChannel& channel : read.channels) EXPECT_EQ(channel.name, printable(channel.name));
             } catch (const Error& error) {
+                EXPECT_EQ(printable(error.what()), error.what());
                 EXPECT_EQ(error.code(), ErrorCode::InvalidInput) << error.what();
             }
         }

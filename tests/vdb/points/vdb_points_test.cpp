@@ -15,9 +15,11 @@
 #include "lib/kernel_samples.h"
 #include "lib/rbf_volumes.h"
 #include "lib/temp_folder.h"
+#include "subvol/detail/printable.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_grid.h"
+#include "vdb/vdb_damage.h"
 
 namespace subvol::test {
 
@@ -225,6 +227,27 @@ TEST_F(VdbPoints, CutOffFilesAreRefused) {
         const auto file = write("cut.vdb", whole.substr(0, whole.size() * cut / kCuts));
         ASSERT_THAT(error_of([&] { static_cast<void>(read_vdb_points(file)); }), HasSubstr("cut.vdb")) << cut;
     }
+}
+
+// The damage must not bring OpenVDB beyond its buffers, which the sanitizers would see, and it prints nothing.
+TEST_F(VdbPoints, DamagedFilesAreReadOrRefused) {
+    write_vdb_points(path("a.vdb"), random_points(60, 1));
+    const std::string whole = read_bytes(path("a.vdb"));
+    std::mt19937 random(5);
+    const int runs = run_count();
+    int refused = 0;
+    testing::internal::CaptureStderr();
+    for (int run = 0; run < runs; ++run) {
+        const auto file = write("damaged.vdb", mutated(whole, random));
+        try {
+            validate(read_vdb_points(file));
+        } catch (const Error& error) {
+            ++refused;
+            EXPECT_EQ(printable(error.what()), error.what());
+        }
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_GT(refused, runs / 4);
 }
 
 TEST_F(VdbPoints, AForeignBoundaryIsRefused) {

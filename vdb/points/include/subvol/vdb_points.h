@@ -28,9 +28,6 @@ void write_vdb_points(const std::filesystem::path& path, const RbfVolume& volume
 
 /// Reads what `write_vdb_points` writes, in the order of the ids. The bounds are `box_of`.
 ///
-/// A file that ends too early is an error. If its bytes were changed and OpenVDB was built with assertions, those about
-/// compressed pages can still abort the program.
-///
 /// throws: Error(Io), Error(InvalidInput) if it is not a whole OpenVDB file or has no such points
 [[nodiscard]] RbfVolume read_vdb_points(const std::filesystem::path& path);
 
