@@ -6,7 +6,7 @@
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/math/Maps.h>
-#include <openvdb/openvdb.h>
+#include "openvdb_grids.h"
 
 #include <algorithm>
 #include <cctype>

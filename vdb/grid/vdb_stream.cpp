@@ -3,7 +3,6 @@
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
-#include <openvdb/io/Stream.h>
 #include "openvdb_grids.h"
 
 #include <fstream>

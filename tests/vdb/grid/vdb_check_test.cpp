@@ -5,11 +5,11 @@
 #include <gmock/gmock.h>
 #include <openvdb/io/File.h>
 #include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/points/PointConversion.h>
 #include <openvdb/points/PointGroup.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <sys/resource.h>
+#include "openvdb_grids.h"
 
 #include <cstring>
 #include <optional>
