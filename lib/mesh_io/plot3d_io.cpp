@@ -4,7 +4,6 @@
 
 #include "assemble.h"
 #include "formats.h"
-#include "assemble.h"
 #include "number_type.h"
 #include "structured_grid.h"
 #include "subvol/error.h"

@@ -140,7 +140,7 @@ void VtkArrayReader::read_field_array() {
     if (type_word == "STRING" || type_word == "UTF8_STRING") {
         in_.word();
         values_.skip_texts(components * tuples, what);
-        found_.warnings.push_back("text array \"" + decoded(name) + "\" ignored");
+        found_.warnings.push_back("text array " + in_quotes(decoded(name)) + " ignored");
         return;
     }
     const VtkType type = values_.read_type(what);

@@ -150,7 +150,7 @@ private:
             const std::string name = as_utf8(array.attribute("Name").as_string("unnamed"));
             const std::string_view type = array.attribute("type").as_string();
             if (type == "String" || type == "Bit") {
-                found_.warnings.push_back("array " + in_quotes(name) + " of type " + std::string(type) + " ignored");
+                found_.warnings.push_back("array " + in_quotes(name) + " of type " + shortened(type) + " ignored");
                 continue;
             }
             const std::size_t components = number_attribute(array, "NumberOfComponents").value_or(1);
