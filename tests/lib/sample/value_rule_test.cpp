@@ -105,7 +105,8 @@ TEST(ValueRule, PaperRefusesAKernelThatReachesNoControlPoint) {
 
     // Samples at control points need no more than these; samples between them do.
     SampleOptions options{.values = ValueRule::Paper, .value_kernel = WendlandC2Kernel{.radius = 0.4}};
-    for (const float v : sample_rbf_points(mesh, options).volume.channels[0].values) EXPECT_TRUE(std::isfinite(v));
+    const SampleResult sampled = sample_rbf_points(mesh, options);
+    for (const float v : sampled.volume.channels[0].values) EXPECT_TRUE(std::isfinite(v));
     options.per_edge = 2;
     test::expect_error(ErrorCode::InvalidInput, "0.87 cells", [&] { (void)sample_rbf_points(mesh, options); });
 }
