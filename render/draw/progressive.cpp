@@ -121,7 +121,7 @@ private:
 
     [[nodiscard]] SplatOptions splat_options(int scale) {
         SplatOptions options = options_.splat;
-        options.sheets = std::max(2, options.sheets / scale);
+        if (options.sheets > 0) options.sheets = std::max(2, options.sheets / scale);
         if (scale > 1) options.samples = 1;
         options.progress = &deadline_;
         return options;

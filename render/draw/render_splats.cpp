@@ -117,6 +117,8 @@ struct Splatter::State {
                                            SplatReport& report) {
         const detail::Stopwatch watch;
         detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
+        if (scene.half_weight == 0) detail::find_interval_ends(frame);
+        report.sheets = frame.sheets.count;
         report.seconds_prepare += watch.seconds();
         report.backend = sheets ? "gl" : "cpu";
         report.device = sheets ? sheets->renderer() : cpu_threads();
@@ -130,6 +132,7 @@ struct Splatter::State {
         auto drawn = gpu->draw(view, classification, options.sheets, progress);
         report.backend = "gl";
         report.device = gpu->renderer();
+        report.sheets = gpu->report().sheets;
         report.bin_entries = gpu->report().bin_entries;
         report.boundary_hits = gpu->report().boundary_hits;
         report.stages = gpu->report().stages;

@@ -26,6 +26,7 @@
 #include "shader_sheet_kernel_vert.h"
 #include "shader_sheet_splats_glsl.h"
 #include "shader_sheet_walk_glsl.h"
+#include "shader_splat_absorb_glsl.h"
 #include "shader_splat_classify_glsl.h"
 #include "shader_splat_light_glsl.h"
 
@@ -58,6 +59,10 @@ std::string defines(const SplatFrame& frame) {
     define("kLeastWeight", kLeastWeight);
     define("kSplatCutoff", kSplatCutoff);
     define("kFarCells", kFarCells);
+    define("kThickDepth", kThickDepth);
+    define("kAimedDepth", kAimedDepth);
+    define("kOpaqueDepth", kOpaqueDepth);
+    define("kSkin_px", kSkin_px);
     return text.str();
 }
 
@@ -96,6 +101,7 @@ void set_frame(const SplatFrame& frame, const GlProgram& kernels, const GlProgra
     const Uniforms u(composite);
     u.set_integers("size_px", view.width(), view.height());
     u.set("near", frame.sheets.near);
+    u.set("middle_z", frame.sheets.middle);
     u.set("offsets", value_offset(scene, *frame.classification),
           scene.color_channel ? color_offset(scene, *frame.classification) : 0.0f);
     u.set("unit", frame.classification->table.unit);
@@ -135,6 +141,24 @@ std::size_t pixels_to_do(const SplatFrame& frame) {
     return count;
 }
 
+/// For each sheet the rectangle of the pixels whose intervals begin or end between the sheet before and this one.
+std::vector<PixelRect> rects_of_ends(const SplatFrame& frame) {
+    const SheetStack& sheets = frame.sheets;
+    std::vector<PixelRect> rects(static_cast<std::size_t>(sheets.count));
+    const int width = frame.view->width();
+    for (std::size_t id = 0; id + 1 < frame.intervals.offsets.size(); ++id) {
+        const int x = static_cast<int>(id) % width, y = static_cast<int>(id) / width;
+        for (std::size_t i = 2 * std::size_t{frame.intervals.offsets[id]}; i < 2 * std::size_t{frame.intervals.offsets[id + 1]};
+             ++i) {
+            const float behind = std::ceil((frame.intervals.depths[i] - sheets.first) / sheets.distance);
+            const auto sheet = static_cast<std::size_t>(std::clamp(behind, 0.0f, static_cast<float>(sheets.count - 1)));
+            rects[sheet] = rects[sheet].with({x, y, x + 1, y + 1});
+            if (sheet > 0) rects[sheet - 1] = rects[sheet - 1].with({x, y, x + 1, y + 1});  // in case of rounding
+        }
+    }
+    return rects;
+}
+
 }  // namespace
 
 GlSheets::GlSheets() {
@@ -158,17 +182,19 @@ Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
 
     const PixelRect window = seen_pixels(frame);
     const std::size_t to_do = pixels_to_do(frame);
+    const std::vector<PixelRect> ends = rects_of_ends(frame);
     PixelRect last;  // where the last sheet has kernels
     for (int first = 0; first < frame.sheets.count && !window.empty(); first += kListed) {
         const int end = std::min(first + kListed, frame.sheets.count);
         const SheetLists lists = list_sheets(frame, window, first, end);
         ids_.grow(lists.splats.size() * sizeof(std::uint32_t));
         ids_.upload(lists.splats.size() * sizeof(std::uint32_t), lists.splats.data());
-        ids_.bind(kListBinding);
         for (int sheet = first; sheet < end; ++sheet) {
             const auto k = static_cast<std::size_t>(sheet - first);
-            // Where neither this sheet nor the last one has kernels, there is no value, unless an empty sum counts as 0.
-            const PixelRect rect = scene.normalized ? lists.rects[k].with(last) : window;
+            // Where neither this sheet nor the last one has kernels, there is no value, unless an empty sum counts as 0, or a
+            // thin body lies between them.
+            const PixelRect kernels = scene.normalized ? lists.rects[k].with(last) : window;
+            const PixelRect rect = kernels.with(ends[static_cast<std::size_t>(sheet)]);
             last = lists.rects[k];
             if (rect.empty()) continue;
             target_.clear(rect);
@@ -193,6 +219,7 @@ const GlSheets::Programs& GlSheets::programs(const SplatFrame& frame) {
                          {"exp_log.glsl", kShader_exp_log_glsl},
                          {"splat_classify.glsl", kShader_splat_classify_glsl},
                          {"splat_light.glsl", kShader_splat_light_glsl},
+                         {"splat_absorb.glsl", kShader_splat_absorb_glsl},
                          {"sheet_walk.glsl", kShader_sheet_walk_glsl}});
     return programs_.emplace(features, Programs{std::move(kernels), std::move(composite)}).first->second;
 }
@@ -210,6 +237,8 @@ void GlSheets::upload(const SplatFrame& frame) {
     fill(color_table_, kTableBinding + 2, frame.classification->colors.rows);
     fill(interval_offsets_, kTableBinding + 3, frame.intervals.offsets);
     fill(intervals_, kTableBinding + 4, frame.intervals.depths);
+    ends_.grow(frame.ends.size() * sizeof(IntervalEnd));
+    ends_.upload(frame.ends.size() * sizeof(IntervalEnd), frame.ends.data());
 }
 
 void GlSheets::start_beams(const SplatFrame& frame) {
@@ -233,6 +262,7 @@ void GlSheets::draw_kernels(const SplatFrame& frame, const GlProgram& program, i
     u.set("across", across);
     u.set("to_pixels", 1.0f / (across * static_cast<float>(frame.view->pixel())));
     program.use();
+    ids_.bind(kListBinding);
     // Triangles instead of instances: hardware does not fill its units with four vertices; for software it is the same.
     glDrawArrays(GL_TRIANGLES, static_cast<GLint>(6 * first), static_cast<GLsizei>(6 * count));
 }
@@ -247,6 +277,7 @@ void GlSheets::composite(const SplatFrame& frame, const GlProgram& program, int 
     u.set("back_z", back);
     u.set("first", int{sheet == 0});
     program.use();
+    ends_.bind(kListBinding);  // the place of the list, which is not used here
     glDispatchCompute(groups(rect.x0, rect.x1), groups(rect.y0, rect.y1), 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
 }

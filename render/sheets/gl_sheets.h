@@ -44,7 +44,7 @@ private:
     SheetTarget target_;
     GLuint vertices_ = 0;
     GlBuffer splats_, bends_, colors_, color_bends_, axes_, kernel_table_;
-    GlBuffer table_, visible_, color_table_, interval_offsets_, intervals_;
+    GlBuffer table_, visible_, color_table_, interval_offsets_, intervals_, ends_;
     GlBuffer beams_, lasts_, looks_, done_, ids_;
 };
 

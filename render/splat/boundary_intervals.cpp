@@ -42,6 +42,7 @@ struct ScreenTriangle {
     std::int8_t sign;                     // +1 where a ray enters the solid
     Vec3 normal;
     double offset, z_min, z_max;
+    std::uint32_t id;
 };
 
 /// A crossing of the surface by the ray of a pixel; pixels are numbered within the band.
@@ -49,6 +50,7 @@ struct Hit {
     std::uint32_t pixel;
     float depth;
     std::int8_t sign;
+    std::uint32_t triangle;
 };
 
 std::int64_t snap(double px) {
@@ -86,7 +88,8 @@ class TriangleSetup {
 public:
     TriangleSetup(const View& view, double near) : view_(view), planes_(clip_planes(view, near)) {}
 
-    void add(const std::array<Vec3, 3>& eye, std::vector<ScreenTriangle>& out) {
+    void add(std::uint32_t id, const std::array<Vec3, 3>& eye, std::vector<ScreenTriangle>& out) {
+        id_ = id;
         polygon_.assign(eye.begin(), eye.end());
         for (const auto& plane : planes_) {
             const bool cut = std::any_of(polygon_.begin(), polygon_.end(), [&](const Vec3& p) { return is_outside(plane, p); });
@@ -114,12 +117,14 @@ private:
         t.offset = glm::dot(normal, eye[0]);
         t.z_min = std::min({part[0].z, part[1].z, part[2].z});
         t.z_max = std::max({part[0].z, part[1].z, part[2].z});
+        t.id = id_;
         out.push_back(t);
     }
 
     const View& view_;
     std::vector<ClipPlane> planes_;
     std::vector<Vec3> polygon_, scratch_;
+    std::uint32_t id_ = 0;
 };
 
 double depth_at(const ScreenTriangle& t, const View& view, double x_px, double y_px) {
@@ -160,7 +165,7 @@ void rasterize(const ScreenTriangle& t, const View& view, double middle, int y_b
             if ((a | b | c) >= 0) {
                 const auto pixel = static_cast<std::uint32_t>(y - y_begin) * static_cast<std::uint32_t>(view.width()) +
                                    static_cast<std::uint32_t>(x);
-                hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5) - middle), t.sign});
+                hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5) - middle), t.sign, t.id});
             }
             a += edges[0].right;
             b += edges[1].right;
@@ -188,14 +193,21 @@ void sort_hits(std::vector<Hit>& hits, std::size_t pixels, std::vector<std::uint
 }
 
 /// Turns the sorted hits of one pixel into intervals.
-void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths) {
+void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths, std::vector<std::uint32_t>& triangles) {
     int inside = 0;  // number of shells that the eye is in
     for (const Hit& hit : hits) inside -= hit.sign;
     inside = std::max(inside, 0);
     float enter = near;
+    std::uint32_t triangle = PixelIntervals::kNoTriangle;
     for (const Hit& hit : hits) {
-        if (hit.sign > 0 && inside++ == 0) enter = hit.depth;
-        if (hit.sign < 0 && inside > 0 && --inside == 0 && hit.depth > enter) depths.insert(depths.end(), {enter, hit.depth});
+        if (hit.sign > 0 && inside++ == 0) {
+            enter = hit.depth;
+            triangle = hit.triangle;
+        }
+        if (hit.sign < 0 && inside > 0 && --inside == 0 && hit.depth > enter) {
+            depths.insert(depths.end(), {enter, hit.depth});
+            triangles.push_back(triangle);
+        }
     }
 }
 
@@ -206,7 +218,8 @@ std::vector<std::vector<ScreenTriangle>> project(const Surface& surface, const V
         TriangleSetup setup(view, near);
         for (std::size_t i = count * chunk / kChunks; i < count * (chunk + 1) / kChunks; ++i) {
             const auto& t = surface.triangles[i];
-            setup.add({view.to_eye(surface.points[t[0]]), view.to_eye(surface.points[t[1]]), view.to_eye(surface.points[t[2]])},
+            setup.add(static_cast<std::uint32_t>(i),
+                      {view.to_eye(surface.points[t[0]]), view.to_eye(surface.points[t[1]]), view.to_eye(surface.points[t[2]])},
                       chunks[chunk]);
         }
     });
@@ -216,6 +229,7 @@ std::vector<std::vector<ScreenTriangle>> project(const Surface& surface, const V
 struct Band {
     std::vector<std::uint32_t> counts;  // intervals of each pixel
     std::vector<float> depths;
+    std::vector<std::uint32_t> triangles;
     std::size_t hits = 0;
 };
 
@@ -263,7 +277,8 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
         for (std::size_t i = 0, begin = 0; i < pixels; begin = ends[i++]) {
             if (ends[i] == begin) continue;
             const std::size_t before = band.depths.size();
-            resolve(std::span(sorted).subspan(begin, ends[i] - begin), static_cast<float>(near - middle), band.depths);
+            resolve(std::span(sorted).subspan(begin, ends[i] - begin), static_cast<float>(near - middle), band.depths,
+                    band.triangles);
             band.counts[i] = static_cast<std::uint32_t>((band.depths.size() - before) / 2);
         }
     });
@@ -273,6 +288,7 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
     for (const Band& band : bands) {
         for (const auto count : band.counts) result.offsets.push_back(result.offsets.back() + count);
         result.depths.insert(result.depths.end(), band.depths.begin(), band.depths.end());
+        result.triangles.insert(result.triangles.end(), band.triangles.begin(), band.triangles.end());
         result.hits += band.hits;
     }
     return result;

@@ -10,10 +10,13 @@
 namespace subvol::detail {
 
 /// The intervals in which the ray of each pixel is inside a closed surface. Pixel p (row by row) has the depth pairs {enter,
-/// exit} depths[2·offsets[p] .. 2·offsets[p+1]), ascending and disjoint. hits: crossings of all rays.
+/// exit} depths[2·offsets[p] .. 2·offsets[p+1]), ascending and disjoint. triangles: where each interval is entered; kNoTriangle
+/// at the near depth. hits: crossings of all rays.
 struct PixelIntervals {
+    static constexpr std::uint32_t kNoTriangle = 0xffffffff;
     std::vector<std::uint32_t> offsets;
     std::vector<float> depths;
+    std::vector<std::uint32_t> triangles;
     std::size_t hits = 0;
 };
 

@@ -120,6 +120,7 @@ void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view,
     if (scene.half_weight == 0) {
         frame.intervals =
             boundary_intervals(scene.volume->boundary, view, static_cast<double>(frame.sheets.near) + middle, middle);
+        if (scene.shading) frame.entry_lights = entry_lights(frame.intervals, scene, view);
     }
     report_progress(progress, "prepare splats", 0.4);
     eye_splats(frame.kernels, scene, view, classification);

@@ -5,10 +5,18 @@
 #include <vector>
 
 #include "boundary_intervals.h"
+#include "boundary_light.h"
 #include "eye_splats.h"
 #include "splat_scene.h"
 
 namespace subvol::detail {
+
+/// What a ray meets where it enters or leaves the volume. x: the value, and that of the second channel, in cells;
+/// kUnknownValue where no kernel reaches. light: a factor of the colour, and white that is added.
+struct IntervalEnd {
+    float x = kUnknownValue, color = 0;
+    BoundaryLight light;
+};
 
 /// The data of a frame for the CPU: kernels in eye space, and for each square tile the kernels that it meets, ascending.
 struct SplatFrame {
@@ -18,7 +26,9 @@ struct SplatFrame {
     const View* view = nullptr;
     const Classification* classification = nullptr;
     SheetStack sheets;
-    PixelIntervals intervals;  // no offsets: there is no boundary
+    PixelIntervals intervals;                 // no offsets: there is no boundary
+    std::vector<BoundaryLight> entry_lights;  // of each interval; empty without shading
+    std::vector<IntervalEnd> ends;            // beside the depths of the intervals
     EyeSplats kernels;
     int tiles_x = 0, tiles_y = 0;
     std::vector<std::size_t> tile_offsets;

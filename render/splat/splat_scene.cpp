@@ -59,7 +59,8 @@ bool finite(const PreintegratedTable& table) {
            std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) { return all(row.mean) && all(row.bend); });
 }
 
-void check_shading(const Shading& shading, const RbfChannel& channel) {
+/// bounded: there is a boundary, which has normals
+void check_shading(const Shading& shading, const RbfChannel& channel, bool bounded) {
     for (const double part : {shading.ambient, shading.diffuse, shading.specular, shading.shininess}) {
         if (!(part >= 0) || !std::isfinite(part)) {
             throw Error(ErrorCode::InvalidInput, "a part of the shading is " + number_text(part), {}, "0 or more");
@@ -69,7 +70,7 @@ void check_shading(const Shading& shading, const RbfChannel& channel) {
                                   [](const auto& g) { return g[0] == 0 && g[1] == 0 && g[2] == 0; });
     const bool constant =
         std::all_of(channel.values.begin(), channel.values.end(), [&](float v) { return v == channel.values.front(); });
-    if (flat && !constant) {
+    if (flat && !constant && !bounded) {
         throw Error(ErrorCode::InvalidInput, "shading needs gradients, and these points have none", {},
                     "points with a correction");
     }
@@ -152,11 +153,32 @@ double weight_inside(const RbfVolume& volume) {
     return weights[places / 2];
 }
 
+/// The row of a value in cells, and its place within.
+std::pair<std::size_t, float> row_of(float x) {
+    const float cell = std::clamp(std::floor(x), -1.0f, static_cast<float>(PreintegratedTable::kCells));
+    return {static_cast<std::size_t>(static_cast<int>(cell) + 1), x - cell};
+}
+
 }  // namespace
 
+std::array<float, 4> Classification::light_at(float x) const {
+    const auto [i, s] = row_of(x);
+    const PreintegratedTable::Row& row = table.rows[i];
+    std::array<float, 4> light;
+    for (std::size_t c = 0; c < 4; ++c) light[c] = std::max(row.mean[c] + (2 * s - 1) * row.bend[c], 0.0f);
+    return light;
+}
+
+std::array<float, 3> Classification::color_at(float x) const {
+    const auto [i, s] = row_of(x);
+    const ColorTable::Row& row = colors.rows[i];
+    return {row.color[0] + s * row.step[0], row.color[1] + s * row.step[1], row.color[2] + s * row.step[2]};
+}
+
 SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
-    if (options.sheets < 2 || options.sheets > 65536) {
-        throw Error(ErrorCode::InvalidInput, "the number of sheets is " + std::to_string(options.sheets), {}, "2 to 65536");
+    if (options.sheets != 0 && (options.sheets < 2 || options.sheets > 65536)) {
+        throw Error(ErrorCode::InvalidInput, "the number of sheets is " + std::to_string(options.sheets), {},
+                    "2 to 65536, or 0 for as many as the kernels need");
     }
     check_channel(volume, options.channel);
     if (options.color_channel) check_channel(volume, *options.color_channel);
@@ -177,7 +199,10 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
     if (scene.color_channel == scene.channel) scene.color_channel.reset();
     scene.bent = !scene.opacity_values().hessians.empty() || !scene.color_values().hessians.empty();
     if (volume.boundary.triangles.empty()) scene.half_weight = static_cast<float>(0.5 * weight_inside(volume));
-    if (scene.shading) check_shading(*scene.shading, scene.opacity_values());
+    if (scene.shading) {
+        check_shading(*scene.shading, scene.opacity_values(), !volume.boundary.triangles.empty());
+        scene.boundary_normals = corner_normals(volume.boundary);
+    }
     return scene;
 }
 
@@ -193,6 +218,40 @@ Classification classify(const SplatScene& scene, const Optics& optics) {
     }
     return classification;
 }
+
+namespace {
+
+// A kernel's section changes over its reach like (1−e)³: linear interpolation between sheets this far apart is right to about
+// 1e-3 of what the kernel adds (measured against the dense grid, see docs/science.md).
+constexpr double kSheetsPerReach = 4;
+constexpr double kFinestShare = 0.05;  // of the kernels: these may have fewer sheets, so that a few slivers do not decide
+constexpr int kFewestSheets = 64, kMostSheets = 2048;
+
+/// The distances in depth from the kernels' middles to where they end, one for each kernel.
+std::vector<float> depth_reaches(const SplatScene& scene, const View& view) {
+    const RbfVolume& volume = *scene.volume;
+    const Vec3& forward = view.axes()[2];
+    const double widening = scene.form == KernelForm::Separable ? 3 : 1;
+    std::vector<float> reaches(volume.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, volume.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            const double szz = widening * glm::dot(forward, matrix(volume.frames[i]) * forward);
+            reaches[i] = static_cast<float>(std::sqrt(std::max(0.0, szz)));
+        }
+    });
+    return reaches;
+}
+
+int sheets_needed(const SplatScene& scene, const View& view, double depth_range) {
+    std::vector<float> reaches = depth_reaches(scene, view);
+    if (reaches.empty()) return kFewestSheets;
+    const auto finest = reaches.begin() + static_cast<std::ptrdiff_t>(kFinestShare * static_cast<double>(reaches.size() - 1));
+    std::nth_element(reaches.begin(), finest, reaches.end());
+    const double needed = kSheetsPerReach * depth_range / std::max(static_cast<double>(*finest), 1e-9 * depth_range);
+    return static_cast<int>(std::clamp(std::ceil(needed) + 1, double{kFewestSheets}, double{kMostSheets}));
+}
+
+}  // namespace
 
 SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     const RbfVolume& volume = *scene.volume;
@@ -213,6 +272,7 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     const double near = view.perspective() ? 1e-4 * scene.diagonal : 0.0;
     z_min = std::max(z_min, near);
     z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all is behind the eye: the picture is empty
+    if (count == 0) count = sheets_needed(scene, view, z_max - z_min);
     return {.count = count,
             .first = static_cast<float>(z_min - middle),
             .distance = static_cast<float>((z_max - z_min) / (count - 1)),

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "corner_normals.h"
 #include "subvol/camera.h"
 #include "subvol/detail/preintegrated_table.h"
 #include "subvol/image.h"
@@ -25,6 +26,16 @@ inline constexpr float kNearValues = 0.5f;
 inline constexpr float kSplatCutoff = 1e-4f;
 /// Values further out, in cells of the table, are clamped to this.
 inline constexpr float kFarCells = 1e12f;
+/// Stands for a value that is not known.
+inline constexpr float kUnknownValue = 3e38f;
+/// A stretch of a higher optical depth is composited in steps, as its front hides its back.
+inline constexpr float kThickDepth = 0.5f;
+/// The part of that depth at which steps aim, so that rounding does not decide whether a step is thin enough.
+inline constexpr float kAimedDepth = 0.45f;
+/// The optical depth at which a pixel is opaque: −ln kSplatCutoff.
+inline constexpr float kOpaqueDepth = 9.2103404f;
+/// A volume is opaque where a ray enters it if all light ends within this part of a pixel; what lies deeper is not sampled.
+inline constexpr float kSkin_px = 0.05f;
 /// The gradient at which shading has half its effect, in parts of the range for each diagonal of the volume.
 inline constexpr float kLeastChange = 0.25f;
 /// The number of sheets that are summed together; the picture does not depend on it.
@@ -45,7 +56,8 @@ struct SplatScene {
     bool normalized = true;
     float half_weight = 0;  // > 0: there is no boundary; the volume ends where the sum of weights falls below it
     std::optional<Shading> shading{};
-    Vec3 middle{0.0};  // of the bounds; depths are relative to its depth
+    std::vector<CornerNormals> boundary_normals{};  // of the boundary's triangles; empty without shading
+    Vec3 middle{0.0};                               // of the bounds; depths are relative to its depth
     double diagonal = 0;
 
     [[nodiscard]] const RbfChannel& opacity_values() const { return volume->channels[channel]; }
@@ -79,6 +91,11 @@ struct ColorTable {
 struct Classification {
     PreintegratedTable table;
     ColorTable colors;  // empty rows: colours are those of `table`
+
+    /// Extinction and emission at a value, in cells.
+    [[nodiscard]] std::array<float, 4> light_at(float x) const;
+    /// The colour of a value of the second channel, in cells of its table.
+    [[nodiscard]] std::array<float, 3> color_at(float x) const;
 };
 
 /// throws: Error(InvalidInput) if ranges or extinctions are beyond 32-bit floats, or the range is lost in the rounding of
@@ -97,6 +114,7 @@ struct SheetStack {
     [[nodiscard]] int batches() const { return (count + kBatch - 1) / kBatch; }
 };
 
+/// count: 0: as many as the kernels need
 [[nodiscard]] SheetStack make_sheets(const SplatScene& scene, const View& view, int count);
 
 /// A picture and the mean depth of what is seen in each pixel, weighted by opacity (eye depth; infinity where nothing is seen).

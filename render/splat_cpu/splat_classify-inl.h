@@ -26,6 +26,9 @@ struct BlockState {
     HWY_ALIGN float color[kBlock], diffuse[kBlock], specular[kBlock];
     // The interval that a ray is in or reaches next; enter = kNever: the ray is done.
     HWY_ALIGN float enter[kBlock], exit[kBlock];
+    HWY_ALIGN float enter_x[kBlock], exit_x[kBlock];  // the values there; kUnknownValue: not known
+    HWY_ALIGN float enter_color[kBlock], exit_color[kBlock];
+    HWY_ALIGN float enter_diffuse[kBlock], exit_diffuse[kBlock], enter_specular[kBlock], exit_specular[kBlock];
     HWY_ALIGN float ray_length[kBlock];
     std::uint32_t interval[kBlock], intervals_end[kBlock];
 };
@@ -99,6 +102,19 @@ public:
         for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::IfThenElse(near, here[c], mean[c]);
     }
 
+    /// The extinction and emission at a value.
+    HWY_ATTR void middle(Floats x, Floats mean[4]) const {
+        const Lanes d;
+        Floats s, bend[4];
+        HWY_ALIGN std::int32_t offsets[kBlock];
+        find(x, s, offsets);
+        const float* rows = reinterpret_cast<const float*>(classification_.table.rows.data());
+        load_rows(rows + 4, offsets, mean[0], mean[1], mean[2], mean[3]);
+        load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
+        const auto slope = hn::MulSub(hn::Set(d, 2.0f), s, hn::Set(d, 1.0f));
+        for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::Max(hn::MulAdd(slope, bend[c], mean[c]), hn::Zero(d));
+    }
+
     HWY_ATTR Place place(Floats x) const {
         const Lanes d;
         Place p;
@@ -156,18 +172,6 @@ private:
         s = hn::Sub(x, cell);
         const auto row = hn::Add(hn::ConvertTo(di, cell), hn::Set(di, 1));
         hn::Store(hn::Mul(row, hn::Set(di, kRowFloats)), di, offsets);
-    }
-
-    HWY_ATTR void middle(Floats x, Floats mean[4]) const {
-        const Lanes d;
-        Floats s, bend[4];
-        HWY_ALIGN std::int32_t offsets[kBlock];
-        find(x, s, offsets);
-        const float* rows = reinterpret_cast<const float*>(classification_.table.rows.data());
-        load_rows(rows + 4, offsets, mean[0], mean[1], mean[2], mean[3]);
-        load_rows(rows + 8, offsets, bend[0], bend[1], bend[2], bend[3]);
-        const auto slope = hn::MulSub(hn::Set(d, 2.0f), s, hn::Set(d, 1.0f));
-        for (std::size_t c = 0; c < 4; ++c) mean[c] = hn::MulAdd(slope, bend[c], mean[c]);
     }
 
     const Classification& classification_;

@@ -26,6 +26,52 @@ struct SheetValues {
     Light light;
 };
 
+/// More steps than these a stretch does not need: light ends at an optical depth of 9, and a step that is too long shrinks to a
+/// sixteenth at most.
+constexpr int kMostSteps = 96;
+
+/// Composites a volume that is opaque from its boundary on: whether all light ends within the skin.
+inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t lane, const IntervalEnd& end) {
+    if (!(end.x < 0.5f * kUnknownValue)) return false;
+    const View& view = *frame.view;
+    const float across = view.perspective() ? frame.sheets.middle + state.enter[lane] : 1.0f;
+    const float skin = kSkin_px * static_cast<float>(view.pixel()) * across;
+    const std::array<float, 4> here = frame.classification->light_at(end.x);
+    if (!(here[0] * skin * state.ray_length[lane] > kOpaqueDepth && state.exit[lane] - state.enter[lane] > skin)) return false;
+    std::array<float, 3> color;
+    for (std::size_t c = 0; c < 3; ++c) color[c] = std::min(here[c + 1] / here[0], 1.0f);
+    if (frame.scene->color_channel) color = frame.classification->color_at(end.color);
+    const float light = state.transmittance[lane];
+    state.red[lane] += light * (color[0] * end.light.diffuse + end.light.specular);
+    state.green[lane] += light * (color[1] * end.light.diffuse + end.light.specular);
+    state.blue[lane] += light * (color[2] * end.light.diffuse + end.light.specular);
+    state.depth[lane] += light * state.enter[lane];
+    state.transmittance[lane] = 0;
+    return true;
+}
+
+/// Sets the ends of the interval of a pixel; those of a ray that is done or meets no more intervals are kNever.
+inline void take_interval(const SplatFrame& frame, BlockState& state, std::size_t lane) {
+    const std::size_t i = state.interval[lane];
+    const auto end_ray = [&] {
+        state.enter[lane] = state.exit[lane] = kNever;
+        state.enter_x[lane] = state.exit_x[lane] = kUnknownValue;
+    };
+    if (i >= state.intervals_end[lane]) return end_ray();
+    const IntervalEnd &enter = frame.ends[2 * i], &exit = frame.ends[2 * i + 1];
+    state.enter[lane] = frame.intervals.depths[2 * i];
+    state.exit[lane] = frame.intervals.depths[2 * i + 1];
+    state.enter_x[lane] = enter.x;
+    state.exit_x[lane] = exit.x;
+    state.enter_color[lane] = enter.color;
+    state.exit_color[lane] = exit.color;
+    state.enter_diffuse[lane] = enter.light.diffuse;
+    state.exit_diffuse[lane] = exit.light.diffuse;
+    state.enter_specular[lane] = enter.light.specular;
+    state.exit_specular[lane] = exit.light.specular;
+    if (see_boundary(frame, state, lane, enter)) end_ray();
+}
+
 /// A block of pixels in registers, between two sheets.
 template <bool kPlain>
 class BlockWalk {
@@ -33,13 +79,7 @@ public:
     HWY_ATTR BlockWalk(const SplatFrame& frame, const Classifier& classifier, BlockState& state)
         : frame_(frame), classifier_(classifier), state_(state) {
         const Lanes d;
-        transmittance_ = hn::Load(d, state.transmittance);
-        red_ = hn::Load(d, state.red);
-        green_ = hn::Load(d, state.green);
-        blue_ = hn::Load(d, state.blue);
-        depth_ = hn::Load(d, state.depth);
-        enter_ = hn::Load(d, state.enter);
-        exit_ = hn::Load(d, state.exit);
+        load();
         last_.x = hn::Load(d, state.value);
         last_.known = hn::Gt(hn::Load(d, state.known), hn::Zero(d));
         last_.weight = hn::Load(d, state.weight);
@@ -90,6 +130,23 @@ public:
     }
 
 private:
+    HWY_ATTR void load() {
+        const Lanes d;
+        transmittance_ = hn::Load(d, state_.transmittance);
+        red_ = hn::Load(d, state_.red);
+        green_ = hn::Load(d, state_.green);
+        blue_ = hn::Load(d, state_.blue);
+        depth_ = hn::Load(d, state_.depth);
+        enter_ = hn::Load(d, state_.enter);
+        exit_ = hn::Load(d, state_.exit);
+    }
+
+    /// One end of the stretches: values in cells, and what more is known there unless kPlain.
+    struct End {
+        Floats x, color;
+        Light light;
+    };
+
     /// Composites the part of each ray between two sheets that lies in its interval.
     HWY_ATTR void stretch(Mask active, float front_z, float back_z, const SheetValues& here, Place& place, bool& placed) {
         const Lanes d;
@@ -98,7 +155,13 @@ private:
         if constexpr (!kPlain) {
             if (frame_.scene->half_weight > 0) cut_where_weights_end(front, back, here.weight, from, to);
         }
-        const auto seen = hn::And(hn::And(active, hn::Lt(from, to)), hn::Or(last_.known, here.known));
+        const auto limit = hn::Set(d, 0.5f * kUnknownValue);
+        const auto enter_x = hn::Load(d, state_.enter_x), exit_x = hn::Load(d, state_.exit_x);
+        const auto at_enter = hn::And(hn::Gt(enter_, front), hn::Lt(enter_x, limit));
+        const auto at_exit = hn::And(hn::Lt(exit_, back), hn::Lt(exit_x, limit));
+        const auto on_sheet = hn::Or(last_.known, here.known);
+        const auto known = hn::Or(on_sheet, hn::Or(at_enter, at_exit));
+        const auto seen = hn::And(hn::And(active, hn::Lt(from, to)), known);
         if (hn::AllFalse(d, seen)) return;
         // The depths of rays that are done are infinite and would lead to NaN.
         from = hn::IfThenElse(seen, from, front);
@@ -107,8 +170,10 @@ private:
         const auto x_back = hn::IfThenElse(here.known, here.x, last_.x);
         const auto per_depth = hn::Div(hn::Set(d, 1.0f), hn::Sub(back, front));
         const auto slope = hn::Mul(hn::Sub(x_back, x_front), per_depth);
-        const auto x0 = hn::IfThenElse(hn::Eq(from, front), x_front, hn::MulAdd(slope, hn::Sub(from, front), x_front));
-        const auto x1 = hn::IfThenElse(hn::Eq(to, back), x_back, hn::MulAdd(slope, hn::Sub(to, front), x_front));
+        auto x0 = hn::IfThenElse(hn::Eq(from, front), x_front, hn::MulAdd(slope, hn::Sub(from, front), x_front));
+        auto x1 = hn::IfThenElse(hn::Eq(to, back), x_back, hn::MulAdd(slope, hn::Sub(to, front), x_front));
+        x0 = hn::IfThenElse(at_enter, enter_x, hn::IfThenElse(on_sheet, x0, exit_x));
+        x1 = hn::IfThenElse(at_exit, exit_x, hn::IfThenElse(on_sheet, x1, enter_x));
         if (classifier_.transparent(seen, x0, x1)) return;
 
         Floats mean[4];
@@ -121,7 +186,91 @@ private:
         } else {
             classifier_.means(classifier_.place(x0), classifier_.place(x1), mean);
         }
+        End e0{x0, x0, {x0, x0}}, e1{x1, x1, {x1, x1}};
+        if constexpr (!kPlain) {
+            const auto f0 = hn::Mul(hn::Sub(from, front), per_depth), f1 = hn::Mul(hn::Sub(to, front), per_depth);
+            find_rest(here, f0, at_enter, state_.enter_color, state_.enter_diffuse, state_.enter_specular, e0);
+            find_rest(here, f1, at_exit, state_.exit_color, state_.exit_diffuse, state_.exit_specular, e1);
+            take_other_end(hn::Or(on_sheet, at_enter), e1, e0);
+            take_other_end(hn::Or(on_sheet, at_exit), e0, e1);
+        }
         const auto length = hn::Mul(hn::Sub(to, from), hn::Load(d, state_.ray_length));
+        const auto thick = hn::And(seen, hn::Gt(hn::Mul(length, mean[0]), hn::Set(d, kThickDepth)));
+        if (hn::AllFalse(d, thick)) {
+            add_light(seen, e0, e1, mean, length, hn::Mul(hn::Set(d, 0.5f), hn::Add(from, to)));
+        } else {
+            go_in_steps(seen, e0, e1, length, from, to);
+        }
+    }
+
+    /// Where an end is at a part of the way between the sheets, and where it is an end of the interval.
+    HWY_ATTR void find_rest(const SheetValues& here, Floats part, Mask at_end, const float* color, const float* diffuse,
+                            const float* specular, End& end) const {
+        const Lanes d;
+        const auto between = [&](Floats front, Floats back, const float* at) HWY_ATTR {
+            const auto f = hn::IfThenElse(last_.known, front, back), b = hn::IfThenElse(here.known, back, front);
+            return hn::IfThenElse(at_end, hn::Load(d, at), hn::MulAdd(part, hn::Sub(b, f), f));
+        };
+        end.color = between(last_.color, here.color, color);
+        end.light.diffuse = between(last_.light.diffuse, here.light.diffuse, diffuse);
+        end.light.specular = between(last_.light.specular, here.light.specular, specular);
+    }
+
+    /// An end of which nothing is known is taken to be like the other.
+    HWY_ATTR static void take_other_end(Mask known, const End& other, End& end) {
+        end.color = hn::IfThenElse(known, end.color, other.color);
+        end.light.diffuse = hn::IfThenElse(known, end.light.diffuse, other.light.diffuse);
+        end.light.specular = hn::IfThenElse(known, end.light.specular, other.light.specular);
+    }
+
+    /// Composites stretches that are not thin: the front hides the back, so the mean colour of a whole stretch would be wrong.
+    /// Each step is as long as its optical depth allows; it shrinks until it is thin, and the next one may be twice as long.
+    HWY_ATTR void go_in_steps(Mask seen, const End& e0, const End& e1, Floats length, Floats from, Floats to) {
+        const Lanes d;
+        const auto one = hn::Set(d, 1.0f), most = hn::Set(d, kThickDepth);
+        const auto slope = hn::Sub(e1.x, e0.x), way = hn::Sub(to, from);
+        auto begin = hn::Zero(d), step = one;
+        auto front = classifier_.place(e0.x);
+        for (int i = 0; i < kMostSteps && !hn::AllFalse(d, seen); ++i) {
+            auto end = hn::Min(hn::Add(begin, step), one);
+            if (i + 1 == kMostSteps) end = one;
+            const auto back = classifier_.place(hn::IfThenElse(hn::Eq(end, one), e1.x, hn::MulAdd(slope, end, e0.x)));
+            Floats mean[4];
+            classifier_.means(front, back, mean);
+            const auto part = hn::Mul(hn::Sub(end, begin), length), depth = hn::Mul(part, mean[0]);
+            auto thin = hn::Le(depth, most);
+            if (i + 1 == kMostSteps) thin = seen;
+            const auto take = hn::And(seen, thin);
+            if (!hn::AllFalse(d, take)) {
+                End f = e0, b = e1;
+                if constexpr (!kPlain) {
+                    f = between_ends(e0, e1, begin);
+                    b = between_ends(e0, e1, end);
+                }
+                add_light(take, f, b, mean, part, hn::MulAdd(way, hn::Mul(hn::Set(d, 0.5f), hn::Add(begin, end)), from));
+            }
+            const auto shrink =
+                hn::Max(hn::Min(hn::Div(hn::Set(d, kAimedDepth), hn::Max(depth, most)), hn::Set(d, 0.9f)), hn::Set(d, 0.0625f));
+            step = hn::Mul(hn::Sub(end, begin), hn::IfThenElse(thin, hn::Set(d, 2.0f), shrink));
+            front.x = hn::IfThenElse(take, back.x, front.x);
+            for (std::size_t c = 0; c < 4; ++c) {
+                front.prefix[c] = hn::IfThenElse(hn::RebindMask(IntLanes(), take), back.prefix[c], front.prefix[c]);
+                front.within[c] = hn::IfThenElse(take, back.within[c], front.within[c]);
+            }
+            begin = hn::IfThenElse(take, end, begin);
+            seen = hn::And(seen, hn::And(hn::Lt(begin, one), hn::Ge(transmittance_, hn::Set(d, kSplatCutoff))));
+        }
+    }
+
+    HWY_ATTR static End between_ends(const End& e0, const End& e1, Floats part) {
+        const auto at = [&](Floats a, Floats b) HWY_ATTR { return hn::MulAdd(part, hn::Sub(b, a), a); };
+        return {
+            e0.x, at(e0.color, e1.color), {at(e0.light.diffuse, e1.light.diffuse), at(e0.light.specular, e1.light.specular)}};
+    }
+
+    /// Adds the light of stretches with the mean extinction and emission `mean`.
+    HWY_ATTR void add_light(Mask seen, const End& e0, const End& e1, Floats mean[4], Floats length, Floats middle) {
+        const Lanes d;
         const auto passes = hn::Exp(d, hn::Neg(hn::Mul(length, mean[0])));
         // Rounding must not leave light where there is none, nor make a colour brighter than 1.
         const auto visible = hn::And(seen, hn::Gt(mean[0], hn::Zero(d)));
@@ -129,7 +278,7 @@ private:
         for (std::size_t c = 1; c < 4; ++c) mean[c] = hn::Min(mean[c], mean[0]);
         const auto light = hn::Mul(transmittance_, opacity);
         if constexpr (!kPlain) {
-            if (frame_.scene->color_channel) take_second_color(here, mean);
+            if (frame_.scene->color_channel) take_second_color(e0, e1, mean);
         }
         const auto per_extinction = hn::Div(light, hn::Max(mean[0], hn::Set(d, 1e-37f)));
         if constexpr (kPlain) {
@@ -138,15 +287,14 @@ private:
             blue_ = hn::MulAdd(per_extinction, mean[3], blue_);
         } else {
             const auto half = hn::Set(d, 0.5f);
-            const auto lit = hn::Mul(hn::Mul(half, both_ends(last_.light.diffuse, here.light.diffuse, here)), per_extinction);
-            const auto gloss = hn::Mul(hn::Mul(half, both_ends(last_.light.specular, here.light.specular, here)), light);
+            const auto lit = hn::Mul(hn::Mul(half, hn::Add(e0.light.diffuse, e1.light.diffuse)), per_extinction);
+            const auto gloss = hn::Mul(hn::Mul(half, hn::Add(e0.light.specular, e1.light.specular)), light);
             red_ = hn::Add(red_, hn::MulAdd(lit, mean[1], gloss));
             green_ = hn::Add(green_, hn::MulAdd(lit, mean[2], gloss));
             blue_ = hn::Add(blue_, hn::MulAdd(lit, mean[3], gloss));
         }
         // Rays that are done have no middle: it would be 0 times infinity.
-        const auto middle = hn::IfThenElseZero(visible, hn::Mul(hn::Set(d, 0.5f), hn::Add(from, to)));
-        depth_ = hn::MulAdd(light, middle, depth_);
+        depth_ = hn::MulAdd(light, hn::IfThenElseZero(visible, middle), depth_);
         transmittance_ = hn::IfThenElse(visible, hn::Mul(transmittance_, passes), transmittance_);
     }
 
@@ -164,36 +312,26 @@ private:
     }
 
     /// Keeps the extinction; the emission becomes its product with the mean of the second channel's colours at both ends.
-    HWY_ATTR void take_second_color(const SheetValues& here, Floats mean[4]) const {
+    HWY_ATTR void take_second_color(const End& e0, const End& e1, Floats mean[4]) const {
         const Lanes d;
         Floats front[3], back[3];
-        classifier_.color(hn::IfThenElse(last_.known, last_.color, here.color), front);
-        classifier_.color(hn::IfThenElse(here.known, here.color, last_.color), back);
+        classifier_.color(e0.color, front);
+        classifier_.color(e1.color, back);
         for (std::size_t c = 0; c < 3; ++c)
             mean[c + 1] = hn::Mul(hn::Mul(hn::Set(d, 0.5f), mean[0]), hn::Add(front[c], back[c]));
-    }
-
-    /// The sum over the two ends of a stretch; an end without a value is taken to be like the other.
-    HWY_ATTR Floats both_ends(Floats front, Floats back, const SheetValues& here) const {
-        return hn::Add(hn::IfThenElse(last_.known, front, back), hn::IfThenElse(here.known, back, front));
     }
 
     HWY_ATTR void next_intervals(Mask through) {
         const Lanes d;
         HWY_ALIGN float done[kBlock];
         hn::Store(hn::IfThenElseZero(through, hn::Set(d, 1.0f)), d, done);
-        hn::Store(enter_, d, state_.enter);
-        hn::Store(exit_, d, state_.exit);
-        const auto& depths = frame_.intervals.depths;
+        store();
         for (std::size_t i = 0; i < kBlock; ++i) {
             if (done[i] == 0) continue;
-            const std::size_t next = ++state_.interval[i];
-            const bool more = next < state_.intervals_end[i];
-            state_.enter[i] = more ? depths[2 * next] : kNever;
-            state_.exit[i] = more ? depths[2 * next + 1] : kNever;
+            ++state_.interval[i];
+            take_interval(frame_, state_, i);
         }
-        enter_ = hn::Load(d, state_.enter);
-        exit_ = hn::Load(d, state_.exit);
+        load();
     }
 
     const SplatFrame& frame_;

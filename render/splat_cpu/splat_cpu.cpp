@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "splat_ends-inl.h"
 #include "splat_tile-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,6 +29,10 @@ void draw_tile(const SplatFrame& frame, int tile, Drawn& drawn) {
     }
 }
 
+void find_ends(const SplatFrame& frame, int tile, std::vector<IntervalEnd>& ends) {
+    EndFinder(frame).find(tile, ends);
+}
+
 }  // namespace subvol::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -35,6 +40,14 @@ HWY_AFTER_NAMESPACE();
 namespace subvol::detail {
 
 HWY_EXPORT(draw_tile);
+HWY_EXPORT(find_ends);
+
+void find_interval_ends(SplatFrame& frame) {
+    frame.ends.assign(frame.intervals.depths.size(), {});
+    tbb::parallel_for(tbb::blocked_range<int>(0, frame.tiles_x * frame.tiles_y, 1), [&](const auto& range) {
+        for (int tile = range.begin(); tile < range.end(); ++tile) HWY_DYNAMIC_DISPATCH(find_ends)(frame, tile, frame.ends);
+    });
+}
 
 Drawn draw_splats_cpu(const SplatFrame& frame, Progress* progress) {
     const View& view = *frame.view;

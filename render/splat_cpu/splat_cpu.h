@@ -6,6 +6,9 @@
 
 namespace subvol::detail {
 
+/// Finds the values where rays enter and leave the volume. The frame has a boundary.
+void find_interval_ends(SplatFrame& frame);
+
 /// Draws a frame on all threads of the CPU, tile by tile.
 [[nodiscard]] Drawn draw_splats_cpu(const SplatFrame& frame, Progress* progress);
 

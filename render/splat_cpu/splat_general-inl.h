@@ -50,7 +50,7 @@ public:
         }
     }
 
-private:
+    /// Adds a kernel to the sums of one block of pixels.
     HWY_ATTR void add_block(std::uint32_t id, const EyeSplat& s, const Offsets& at, float* to) const {
         const Lanes d;
         const auto w = weight(id, at);
@@ -72,6 +72,7 @@ private:
         }
     }
 
+private:
     HWY_ATTR Floats weight(std::uint32_t id, const Offsets& at) const {
         const Lanes d;
         if (scene_.form == KernelForm::Compact) {

@@ -41,6 +41,27 @@ struct TilePixels {
     float left = 0, top = 0;  // of the tile, in pixels
 };
 
+/// Sets the places of the pixels of the tile whose first pixel is (x0, y0).
+HWY_ATTR inline void place_pixels(const View& view, int x0, int y0, TilePixels& tile) {
+    const auto pixel = static_cast<float>(view.pixel());
+    const float mid_x = 0.5f * static_cast<float>(view.width()), mid_y = 0.5f * static_cast<float>(view.height());
+    tile.left = static_cast<float>(x0);
+    tile.top = static_cast<float>(y0);
+    for (std::size_t column = 0; column < kColumns; ++column) {
+        for (std::size_t lane = 0; lane < kBlock; ++lane) {
+            const float x = tile.left + static_cast<float>(column * kBlockWidth + lane % kBlockWidth) + 0.5f;
+            tile.x[column * kBlock + lane] = (x - mid_x) * pixel;
+        }
+    }
+    for (std::size_t row = 0; row < kRows; ++row) {
+        for (std::size_t lane = 0; lane < kBlock; ++lane) {
+            const std::size_t down = row * kBlockHeight + lane / kBlockWidth;
+            const float y = tile.top + static_cast<float>(down) + 0.5f;
+            tile.y[row * kBlock + lane] = (mid_y - y) * pixel;
+        }
+    }
+}
+
 /// The sections of a kernel with the sheets of a batch, and the blocks that they may touch.
 struct Cuts {
     HWY_ALIGN float zs[kBatch], x[kBatch], y[kBatch], e[kBatch], v[kBatch];

@@ -50,8 +50,9 @@ public:
     HWY_ATTR void draw(int tile, Drawn& drawn) {
         x0_ = tile % frame_.tiles_x * SplatFrame::kTile_px;
         y0_ = tile / frame_.tiles_x * SplatFrame::kTile_px;
-        place_pixels();
+        place_pixels(view_, x0_, y0_, tile_);
         if (!start_blocks()) return;
+        if (done()) return write(drawn);
         list_batches(tile);
         bool passed_over = false;  // whether the batch before was needed but invisible
         for (int batch = 0; batch < sheets_.batches() && !done(); ++batch) {
@@ -94,25 +95,6 @@ private:
         return memory;
     }
 
-    HWY_ATTR void place_pixels() {
-        const auto pixel = static_cast<float>(view_.pixel());
-        tile_.left = static_cast<float>(x0_);
-        tile_.top = static_cast<float>(y0_);
-        for (std::size_t column = 0; column < kColumns; ++column) {
-            for (std::size_t lane = 0; lane < kBlock; ++lane) {
-                const float x = tile_.left + static_cast<float>(column * kBlockWidth + lane % kBlockWidth) + 0.5f;
-                tile_.x[column * kBlock + lane] = (x - batch_.mid_x) * pixel;
-            }
-        }
-        for (std::size_t row = 0; row < kRows; ++row) {
-            for (std::size_t lane = 0; lane < kBlock; ++lane) {
-                const std::size_t down = row * kBlockHeight + lane / kBlockWidth;
-                const float y = tile_.top + static_cast<float>(down) + 0.5f;
-                tile_.y[row * kBlock + lane] = (batch_.mid_y - y) * pixel;
-            }
-        }
-    }
-
     /// Returns whether the ray of any pixel of the tile meets the volume.
     HWY_ATTR bool start_blocks() {
         bool any = false;
@@ -121,9 +103,13 @@ private:
         for (std::size_t block = 0; block < kBlocks; ++block) {
             BlockState& b = scratch().blocks[block];
             std::fill_n(b.transmittance, kBlock, 1.0f);
-            for (float* zero : {b.red, b.green, b.blue, b.depth, b.value, b.known, b.weight, b.color, b.diffuse, b.specular}) {
+            for (float* zero :
+                 {b.red, b.green, b.blue, b.depth, b.value, b.known, b.weight, b.color, b.diffuse, b.specular, b.enter_color,
+                  b.exit_color, b.enter_diffuse, b.exit_diffuse, b.enter_specular, b.exit_specular}) {
                 std::fill_n(zero, kBlock, 0.0f);
             }
+            std::fill_n(b.enter_x, kBlock, kUnknownValue);
+            std::fill_n(b.exit_x, kBlock, kUnknownValue);
             for (std::size_t lane = 0; lane < kBlock; ++lane) any |= start_pixel(b, block, lane);
         }
         return any;
@@ -143,10 +129,9 @@ private:
         const std::size_t first = frame_.intervals.offsets[id], end = frame_.intervals.offsets[id + 1];
         b.interval[lane] = static_cast<std::uint32_t>(first);
         b.intervals_end[lane] = static_cast<std::uint32_t>(end);
+        take_interval(frame_, b, lane);
+        if (b.enter[lane] == kNever) return b.transmittance[lane] == 0;
         for (std::size_t i = first; i < end; ++i) want(frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1]);
-        if (first == end) return false;
-        b.enter[lane] = frame_.intervals.depths[2 * first];
-        b.exit[lane] = frame_.intervals.depths[2 * first + 1];
         return true;
     }
 

@@ -81,6 +81,17 @@ void GlBoundary::upload_surface(const Surface& surface) {
     triangles_ = triangles;  // set last: after an error all of this is done again
 }
 
+void GlBoundary::set(const PixelIntervals& intervals, const View& view) {
+    pixels_ = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    ranges_.grow(pixels_ * kPair_bytes);
+    on_device_now_ = false;
+    upload_intervals(intervals);
+}
+
+std::size_t GlBoundary::room() const {
+    return intervals_.bytes() / kPair_bytes;
+}
+
 void GlBoundary::find(const Surface& surface, const View& view, double near, double middle, GlStages& stages) {
     pixels_ = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
     ranges_.grow(pixels_ * kPair_bytes);

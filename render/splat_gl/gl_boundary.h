@@ -20,6 +20,12 @@ public:
     /// call only.
     void find(const Surface& surface, const View& view, double near, double middle, GlStages& stages);
 
+    /// Takes intervals that the CPU has found.
+    void set(const PixelIntervals& intervals, const View& view);
+
+    /// The number of intervals that there is room for.
+    [[nodiscard]] std::size_t room() const;
+
     /// Whether there was room for all hits; if not, they have to be found again. Waits for the device.
     [[nodiscard]] bool found_all();
 

@@ -21,12 +21,14 @@
 #include <charconv>
 #include <cmath>
 
+#include "boundary_light.h"
 #include "gl_boundary.h"
 #include "gl_context.h"
 #include "gl_splat_bins.h"
 #include "kernel_axes.h"
 #include "shader_exp_log_glsl.h"
 #include "shader_gl_groups_glsl.h"
+#include "shader_splat_absorb_glsl.h"
 #include "shader_splat_classify_glsl.h"
 #include "shader_splat_draw_comp.h"
 #include "shader_splat_frame_glsl.h"
@@ -41,6 +43,7 @@ namespace {
 
 constexpr std::size_t kPixel_bytes = 16;  // for each pixel of the picture
 constexpr std::size_t kState_bytes = 64;  // for each pixel, between passes
+constexpr std::size_t kEnds_bytes = 32;   // for each interval
 
 std::string decimal(float value) {
     char text[32];
@@ -54,7 +57,9 @@ std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
            line("kBatch", std::to_string(tuning.batch)) + line("kChunk", tuning.batch <= 8 ? "64" : "32") +
            line("kCells", std::to_string(PreintegratedTable::kCells)) +
            line("kLeastWeight", decimal(static_cast<float>(kLeastWeight))) + line("kNearValues", decimal(kNearValues)) +
-           line("kSplatCutoff", decimal(kSplatCutoff)) + line("kFarCells", decimal(kFarCells));
+           line("kSplatCutoff", decimal(kSplatCutoff)) + line("kFarCells", decimal(kFarCells)) +
+           line("kThickDepth", decimal(kThickDepth)) + line("kAimedDepth", decimal(kAimedDepth)) +
+           line("kOpaqueDepth", decimal(kOpaqueDepth)) + line("kSkin_px", decimal(kSkin_px));
 }
 
 template <class T>
@@ -102,6 +107,7 @@ public:
                  {"exp_log.glsl", kShader_exp_log_glsl},
                  {"splat_classify.glsl", kShader_splat_classify_glsl},
                  {"splat_light.glsl", kShader_splat_light_glsl},
+                 {"splat_absorb.glsl", kShader_splat_absorb_glsl},
                  {"splat_walk.glsl", kShader_splat_walk_glsl}}) {
         GLint64 most = 0;
         glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
@@ -141,7 +147,7 @@ private:
     GlBoundary boundary_;
     GlProgram draw_;
     GlStages stages_;
-    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_;
+    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_, ends_;
 };
 
 void GlSplatter::State::prepare(const View& view, const Classification& classification) {
@@ -159,7 +165,19 @@ void GlSplatter::State::prepare(const View& view, const Classification& classifi
 void GlSplatter::State::find_intervals(const View& view) {
     if (scene_.half_weight > 0) return;
     const double middle = view.to_eye(scene_.middle).z, near = static_cast<double>(sheets_.near) + middle;
-    boundary_.find(scene_.volume->boundary, view, near, middle, stages_);
+    const Surface& surface = scene_.volume->boundary;
+    if (scene_.shading) {  // the device does not find the triangles that are seen
+        const PixelIntervals intervals = boundary_intervals(surface, view, near, middle);
+        boundary_.set(intervals, view);
+        std::vector<std::array<float, 4>> ends;
+        for (const BoundaryLight& light : entry_lights(intervals, scene_, view)) {
+            ends.insert(ends.end(), 2, {kUnknownValue, 0, light.diffuse, light.specular});
+        }
+        upload(ends_, ends);
+    } else {
+        boundary_.find(surface, view, near, middle, stages_);
+        ends_.grow(boundary_.room() * kEnds_bytes);
+    }
 }
 
 void GlSplatter::State::set_pass(int first, int end) {
@@ -185,6 +203,7 @@ void GlSplatter::State::draw_pass() {
     picture_.bind(11);
     depths_.bind(12);
     states_.bind(13);
+    ends_.bind(14);
     dispatch(frame_.tiles());
     stages_.begin("");
     check_gl("splat");
@@ -194,11 +213,12 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
     report_progress(progress, "splat", 0);
     report = {};
     sheets_ = make_sheets(scene_, view, sheets);
+    report.sheets = sheets_.count;
     prepare(view, classification);
     if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
     // Likewise for the boundary's hits.
     if (scene_.half_weight == 0 && !boundary_.found_all()) {
-        report = {};
+        report = {.sheets = sheets_.count, .stages = {}};
         find_intervals(view);
         draw_in_passes(view, 0, frame_.batches, progress);
     }

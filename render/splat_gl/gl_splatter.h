@@ -27,6 +27,7 @@ struct GlTuning {
 };
 
 struct GlSplatReport {
+    int sheets = 0;
     std::size_t bin_entries = 0;    // (tile, batch, kernel)
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     int passes = 0;

@@ -3,6 +3,7 @@
 
 /// All of subvol::render: splatters, projected tetrahedra, ray marchers.
 
+#include "subvol/boundary_shading.h"
 #include "subvol/gl_device.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"

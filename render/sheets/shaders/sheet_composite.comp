@@ -14,10 +14,11 @@ layout(std430, binding = 12) buffer Beams { vec4 beams[]; };  // colour, transmi
 layout(std430, binding = 13) buffer Lasts { Last lasts[]; };
 layout(std430, binding = 14) buffer Looks { vec4 looks[]; };  // of the last sheet: second colour's value, light
 layout(std430, binding = 15) buffer Done { uint done_pixels; };
+layout(std430, binding = 6) readonly buffer Ends { vec4 ends[]; };  // of each interval: value, second value, light
 uniform ivec4 rectangle;  // two corners; the second one is outside
 uniform ivec2 size_px;
 uniform vec2 middle_px;
-uniform float pixel, front_z, back_z, near;
+uniform float pixel, front_z, back_z, near, middle_z;
 uniform vec2 offsets;  // are added to the values of both channels where sums are not normalised
 uniform bool first;
 
@@ -49,6 +50,14 @@ vec2 interval(uint i) {
     return intervals[i];
 #else
     return vec2(near, uintBitsToFloat(0x7f800000u));
+#endif
+}
+
+End end_of_interval(uint i) {
+#if BOUNDED
+    return End(ends[i].x, ends[i].y, ends[i].zw);
+#else
+    return End(3e38, 0.0, vec2(1.0, 0.0));
 #endif
 }
 
@@ -86,7 +95,9 @@ void main() {
         for (; last.interval < end; ++last.interval) {
             vec2 inside = interval(last.interval);
             if (inside.x >= back_z) break;
-            follow(beam, before, here, front_z, back_z, inside.x, inside.y, ray_length);
+            float skin = kSkin_px * pixel * (perspective ? middle_z + inside.x : 1.0);
+            follow(beam, before, here, front_z, back_z, inside, end_of_interval(2u * last.interval),
+                   end_of_interval(2u * last.interval + 1u), ray_length, skin);
             if (beam.transmittance < kSplatCutoff) last.interval = end - 1u;
             else if (inside.y > back_z) break;
         }

@@ -24,6 +24,7 @@ shared int range_high[3];
 uint pixel_id;
 bool in_picture;
 uint step_number = 0u;
+uint next_end = 0u, last_end = 0u;  // the ends of the pixel's intervals that have no values yet
 int ranged = -2;  // the batch to which `range` belongs
 vec2 range;
 
@@ -46,9 +47,7 @@ void start_pixel(uint tile) {
     precise float square = 1.0 + slopes.x * slopes.x + slopes.y * slopes.y;
     ray_length = perspective ? sqrt(square) : 1.0;
 
-    transmittance = 1.0;
-    seen_color = vec3(0.0);
-    seen_depth = 0.0;
+    beam = Beam(vec3(0.0), 1.0, 0.0);
     last = Sheet(0.0, false, 0.0, 0.0, vec2(0.0));
     enter_z = exit_z = kNever;
     interval = intervals_end = 0u;
@@ -59,15 +58,18 @@ void start_pixel(uint tile) {
     interval = interval_ranges[pixel_id].x;
     intervals_end = interval_ranges[pixel_id].y;
     take_interval();
+    next_end = 2u * interval;
+    last_end = 2u * intervals_end;
+    if (first_batch == 0) {
+        for (uint i = next_end; i < last_end; ++i) ends[i].x = 3e38;
+    }
 #endif
 }
 
 void load_state() {
     if (!in_picture || first_batch == 0) return;
     State s = states[pixel_id];
-    seen_color = s.color.rgb;
-    transmittance = s.color.w;
-    seen_depth = s.going.x;
+    beam = Beam(s.color.rgb, s.color.w, s.going.x);
     enter_z = s.going.y;
     exit_z = s.going.z;
     interval = floatBitsToUint(s.going.w);
@@ -77,12 +79,13 @@ void load_state() {
 void store() {
     if (!in_picture) return;
     if (end_batch < batches) {
-        states[pixel_id] = State(vec4(seen_color, transmittance), vec4(seen_depth, enter_z, exit_z, uintBitsToFloat(interval)),
+        states[pixel_id] = State(vec4(beam.color, beam.transmittance), vec4(beam.depth, enter_z, exit_z, uintBitsToFloat(interval)),
                                  vec4(last.x, last.known ? 1.0 : 0.0, last.weight, last.color), vec4(last.light, 0.0, 0.0));
         return;
     }
-    precise float opacity = 1.0 - transmittance, mean_depth = middle_depth + seen_depth / (opacity > 0.0 ? opacity : 1.0);
-    picture[pixel_id] = vec4(seen_color, opacity);
+    precise float opacity = 1.0 - beam.transmittance;
+    precise float mean_depth = middle_depth + beam.depth / (opacity > 0.0 ? opacity : 1.0);
+    picture[pixel_id] = vec4(beam.color, opacity);
     depths[pixel_id] = opacity > 0.0 ? mean_depth : uintBitsToFloat(0x7f800000u);
 }
 
@@ -182,8 +185,56 @@ void shift_sums() {
     }
 }
 
+#if !UNBOUNDED
+// Whether any thread says so.
+bool any_of(bool mine) {
+    uint slot = ++step_number % 3u, ready = (step_number + 1u) % 3u;
+    if (mine) atomicMin(next_batch[slot], 0);
+    if (gl_LocalInvocationIndex == 0u) {
+        next_batch[ready] = range_low[ready] = kNone;
+        range_high[ready] = -kNone;
+    }
+    barrier();
+    return next_batch[slot] == 0;
+}
+
+// The depth of the next end, and the sheet that it lies on or behind; beyond all sheets if there is none.
+int next_end_sheet(inout float depth) {
+    if (next_end >= last_end) return kNone;
+    vec2 depths = intervals[next_end / 2u];
+    depth = next_end % 2u == 0u ? depths.x : depths.y;
+    return int(clamp((depth - first_depth) / sheet_distance, 0.0, float(sheets - 1)));
+}
+
+// Finds the values where rays enter and leave the volume on or behind the sheets from `first` to `end`: all threads take their
+// next end at a time. Those of sheets that were passed over stay unknown, as nothing is seen there.
+void find_ends(uint bin, int first, int end) {
+    float depth = 0.0;
+    while (next_end_sheet(depth) < first) ++next_end;
+    while (true) {
+        bool mine = enter_z != kNever && next_end_sheet(depth) < end;
+        if (!any_of(mine)) return;
+        sum_kernels_at(bin, depth, mine);
+        if (!mine) continue;
+        Sheet here = first_sum();
+        vec2 light = here.light;
+#if SHADED
+        if (next_end % 2u == 0u) {
+            float pixel_world = pixel * (perspective ? middle_depth + depth : 1.0);
+            light = light_at_entry(here.x, light, ends[next_end].zw, pixel_world);
+        }
+#endif
+        ends[next_end] = vec4(here.known ? here.x : 3e38, here.color, light);
+        ++next_end;
+    }
+}
+#endif
+
 // Takes the values of the last sheet of a batch that was passed over.
 void look_back(uint bin, int batch) {
+#if !UNBOUNDED
+    find_ends(bin, batch * kBatch + kBatch - 1, batch * kBatch + kBatch);
+#endif
     sum_kernels(bin, batch * kBatch, 1u << (kBatch - 1), true);
     for (int k = 0; k + 1 < kBatch; ++k) shift_sums();
     skip_to(first_sum());
@@ -199,6 +250,9 @@ void pass_over(int batch) {
 
 void go_through(uint bin, int batch) {
     int first_sheet = batch * kBatch, end_sheet = min(first_sheet + kBatch, sheets);
+#if !UNBOUNDED
+    find_ends(bin, first_sheet, end_sheet);
+#endif
     bool awake = enter_z < sheet_depth(end_sheet - 1) + 1.5 * sheet_distance;
     sum_kernels(bin, first_sheet, 0xffffffffu, awake);
     for (int sheet = first_sheet; awake && sheet < end_sheet; ++sheet) {

@@ -15,6 +15,8 @@ const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBloc
 shared vec4 cuts[kChunk * kBatch];  // of a kernel with a sheet: middle x, y; e and value there
 shared vec4 shapes[kChunk];         // root xx, xy, yy; moment
 shared vec2 gradients[kChunk];
+shared vec4 places[kChunk];         // for sums at ends: middle x, y, depth; 1 / S_zz
+shared vec4 slopes[kChunk];         // shear x, y; value, its slope
 shared uint met_sheets[kChunk * kBlocks];  // a bit for each sheet
 shared uint met_kernels[kWords * kBlocks];  // a bit for each kernel
 #if GENERAL
@@ -163,35 +165,98 @@ vec3 gradient_of(uint j, vec3 d) {
 }
 #endif
 
-void add_kernel(uint j, uint met, int first_sheet) {
+// Adds a kernel to the k-th sums. d: from the middle of its section, where e and the value are e_here and v_here
+void add_at(int k, uint j, vec2 d, float zs, float e_here, float v_here) {
     vec4 shape = shapes[j];
     vec2 gradient = gradients[j];
+    precise float across_row = shape.z * d.y, along_row = fma(shape.x, d.x, shape.y * d.y);
+    precise float e = fma(along_row, along_row, fma(across_row, across_row, e_here));
+    precise float v = fma(shape.w, e, fma(gradient.x, d.x, fma(gradient.y, d.y, v_here)));
+#if GENERAL
+    precise vec3 offset = vec3(d, zs);
+#if BENT
+    v = bent_value(v, j * kExtras + kBendAt, offset);
+#endif
+#else
+    const vec3 offset = vec3(0.0);
+#endif
+    float w = weight_of(j, offset, e);
+    weights[k] += w;
+    values[k] = fma(w, v, values[k]);
+#if COLORED
+    colors[k] = fma(w, color_of(j, offset, e), colors[k]);
+#endif
+#if SHADED
+    gradient_sums[k] = fma(vec3(w), gradient_of(j, offset), gradient_sums[k]);
+#endif
+}
+
+void add_kernel(uint j, uint met, int first_sheet) {
     for (int k = 0; k < kBatch; ++k) {
         if ((met & (1u << k)) == 0u) continue;
         vec4 at = cuts[j * kBatch + k];
         precise vec2 d = fma(ray, vec2(across[k]), -at.xy);
-        precise float across_row = shape.z * d.y, along_row = fma(shape.x, d.x, shape.y * d.y);
-        precise float e = fma(along_row, along_row, fma(across_row, across_row, at.z));
-        precise float v = fma(shape.w, e, fma(gradient.x, d.x, fma(gradient.y, d.y, at.w)));
 #if GENERAL
-        precise vec3 offset = vec3(d, sheet_depth(first_sheet + k) - rests[j].x);
-#if BENT
-        v = bent_value(v, j * kExtras + kBendAt, offset);
-#endif
+        float zs = sheet_depth(first_sheet + k) - rests[j].x;
 #else
-        const vec3 offset = vec3(0.0);
+        const float zs = 0.0;
 #endif
-        float w = weight_of(j, offset, e);
-        weights[k] += w;
-        values[k] = fma(w, v, values[k]);
-#if COLORED
-        colors[k] = fma(w, color_of(j, offset, e), colors[k]);
-#endif
-#if SHADED
-        gradient_sums[k] = fma(vec3(w), gradient_of(j, offset), gradient_sums[k]);
-#endif
+        add_at(k, j, d, zs, at.z, at.w);
     }
 }
+
+#if !UNBOUNDED
+// Puts kernels `first` to `end` into shared memory for sums at depths that differ from pixel to pixel.
+void stage_whole(uint first, uint end) {
+    barrier();  // until the last chunk is not used any more
+    for (uint j = gl_LocalInvocationIndex; j < end - first; j += kPixels) {
+        uint id = bin_splats[first + j];
+        Splat s = splats[id];
+        places[j] = s.place;
+        // Rounding may have made a flat frame indefinite: its roots are not numbers.
+        if (!(s.shape.z < 3e38 && s.shape.w < 3e38 && s.slope.x < 3e38)) places[j].w = 3e38;
+        slopes[j] = vec4(s.shape.xy, s.slope.y, s.rest.x);
+        shapes[j] = vec4(s.shape.zw, s.slope.x, s.rest.y);
+        gradients[j] = s.slope.zw;
+#if GENERAL
+        rests[j] = vec4(s.place.z, s.place.w, s.rest.x, 0.0);
+        shears[j] = s.shape.xy;
+#endif
+#if kExtras > 0
+        for (uint i = 0u; i < kExtras; ++i) extras[j * kExtras + i] = splat_extras[id * kExtras + i];
+#endif
+    }
+    barrier();
+}
+
+void start_sums(int k) {
+    weights[k] = values[k] = 0.0;
+#if COLORED
+    colors[k] = 0.0;
+#endif
+#if SHADED
+    gradient_sums[k] = vec3(0.0);
+#endif
+}
+
+// Sums the kernels of a bin at a depth of each pixel's own into the first sums.
+void sum_kernels_at(uint bin, float depth, bool awake) {
+    start_sums(0);
+    float across_here = perspective ? middle_depth + depth : 1.0;
+    uint end = bin_offsets[bin + 1u];
+    for (uint first = bin_offsets[bin]; first < end; first += kChunk) {
+        uint chunk_end = min(first + kChunk, end);
+        stage_whole(first, chunk_end);
+        for (uint j = 0u; awake && j < chunk_end - first; ++j) {
+            vec4 place = places[j], slope = slopes[j];
+            float zs = depth - place.z, e = zs * zs * place.w;
+            if (!(e < 1.0)) continue;
+            precise vec2 d = fma(ray, vec2(across_here), -fma(slope.xy, vec2(zs), place.xy));
+            add_at(0, j, d, zs, e, fma(zs, slope.w, slope.z));
+        }
+    }
+}
+#endif
 
 // Sums the wanted sheets of a batch; the sums of pixels that are not awake stay 0.
 void sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {

@@ -2,6 +2,7 @@
 // Composites a pixel from front to back; the same as splat_cpu/splat_composite-inl.h.
 layout(std430, binding = 5) readonly buffer IntervalRanges { uvec2 interval_ranges[]; };  // first, end
 layout(std430, binding = 6) readonly buffer Intervals { vec2 intervals[]; };  // enter, exit
+layout(std430, binding = 14) buffer Ends { vec4 ends[]; };  // of each interval: value, second value, light
 
 // The values of a pixel on one sheet.
 struct Sheet {
@@ -12,9 +13,7 @@ struct Sheet {
     vec2 light;   // diffuse, specular
 };
 
-precise float transmittance;
-precise vec3 seen_color;
-precise float seen_depth;
+precise Beam beam;
 float enter_z, exit_z;  // the interval that the ray is in or reaches next; enter = kNever: the ray is done
 uint interval, intervals_end;
 float ray_length;
@@ -29,6 +28,15 @@ void take_interval() {
     exit_z = depths.y;
 }
 
+End end_of_interval(uint which) {
+#if UNBOUNDED
+    return End(3e38, 0.0, vec2(1.0, 0.0));
+#else
+    vec4 end = ends[2u * interval + which];
+    return End(end.x, end.y, end.zw);
+#endif
+}
+
 // Without a boundary the volume ends where the sum of weights, linear between sheets, falls below a level.
 void cut_where_weights_end(float front, float back, float weight, inout float from, inout float to) {
     bool inside0 = last.weight > half_weight, inside1 = weight > half_weight;
@@ -38,18 +46,35 @@ void cut_where_weights_end(float front, float back, float weight, inout float fr
     to = inside1 ? to : min(to, crossing);
 }
 
+// The rest of an end on the way between two sheets. An end without a value is taken to be like the other.
+End end_between(Sheet here, float x, float part) {
+    End f = End(x, last.known ? last.color : here.color, last.known ? last.light : here.light);
+    End b = End(x, here.known ? here.color : last.color, here.known ? here.light : last.light);
+    return between_ends(f, b, part);
+}
+
 // Composites the part of the ray between two sheets that lies in its interval.
 void stretch(float front, float back, Sheet here, inout Place place, inout bool placed) {
     float from = max(enter_z, front), to = min(exit_z, back);
 #if UNBOUNDED
     cut_where_weights_end(front, back, here.weight, from, to);
 #endif
-    if (!(from < to) || !(last.known || here.known)) return;
-    float x_front = last.known ? last.x : here.x, x_back = here.known ? here.x : last.x;
-    precise float slope = (x_back - x_front) * (1.0 / (back - front));
+    if (!(from < to)) return;
+    End enter = end_of_interval(0u), exit = end_of_interval(1u);
+#if !UNBOUNDED
+    float skin = kSkin_px * pixel * (perspective ? middle_depth + enter_z : 1.0);
+    if (enter_z >= front && see_boundary(beam, enter, enter_z, exit_z, ray_length, skin)) return;
+#endif
+    bool at_enter = enter_z > front && enter.x < kUnknown, at_exit = exit_z < back && exit.x < kUnknown;
+    bool on_sheet = last.known || here.known;
+    if (!(on_sheet || at_enter || at_exit)) return;
+    float x_front = last.known ? last.x : here.x, x_back = here.known ? here.x : last.x, per_depth = 1.0 / (back - front);
+    precise float slope = (x_back - x_front) * per_depth;
     precise float x0 = fma(slope, from - front, x_front), x1 = fma(slope, to - front, x_front);
     if (from == front) x0 = x_front;
     if (to == back) x1 = x_back;
+    x0 = at_enter ? enter.x : on_sheet ? x0 : exit.x;
+    x1 = at_exit ? exit.x : on_sheet ? x1 : enter.x;
     if (!all_visible && transparent(x0, x1)) return;
 
     vec4 mean;
@@ -61,23 +86,13 @@ void stretch(float front, float back, Sheet here, inout Place place, inout bool 
     } else {
         mean = means(place_of(x0), place_of(x1));
     }
-    // Rounding must not leave light where there is none, nor make a colour brighter than 1.
-    if (!(mean.x > 0.0)) return;
-    precise float depth = (to - from) * ray_length * mean.x, passes = exp_of(-depth), light = transmittance * (1.0 - passes);
-    precise vec3 emission = min(mean.yzw, mean.x);
-#if COLORED
-    emission = 0.5 * mean.x * (color_at(last.known ? last.color : here.color) + color_at(here.known ? here.color : last.color));
-#endif
-    precise float per_extinction = light / max(mean.x, 1e-37);
-#if SHADED
-    // An end without a value is taken to be like the other.
-    precise vec2 lit = 0.5 * ((last.known ? last.light : here.light) + (here.known ? here.light : last.light)) * vec2(per_extinction, light);
-    seen_color += fma(vec3(lit.x), emission, vec3(lit.y));
-#else
-    seen_color = fma(vec3(per_extinction), emission, seen_color);
-#endif
-    seen_depth = fma(light, 0.5 * (from + to), seen_depth);
-    transmittance *= passes;
+    End e0 = at_enter ? enter : end_between(here, x0, (from - front) * per_depth);
+    End e1 = at_exit ? exit : end_between(here, x1, (to - front) * per_depth);
+    if (!(on_sheet || at_enter)) e0 = End(x0, e1.color, e1.light);
+    if (!(on_sheet || at_exit)) e1 = End(x1, e0.color, e0.light);
+    precise float length_world = (to - from) * ray_length;
+    if (length_world * mean.x > kThickDepth) go_in_steps(beam, e0, e1, length_world, from, to);
+    else add_light(beam, e0, e1, mean, length_world, 0.5 * (from + to));
 }
 
 void skip_to(Sheet here) {
@@ -91,7 +106,7 @@ void go(float front, float back, Sheet here) {
     bool placed = false;
     while (enter_z < back) {
         stretch(front, back, here, place, placed);
-        if (transmittance < kSplatCutoff) {
+        if (beam.transmittance < kSplatCutoff) {
             enter_z = exit_z = kNever;
             break;
         }

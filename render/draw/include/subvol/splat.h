@@ -19,6 +19,7 @@ struct SplatReport {
     std::string backend;  // "gl" or "cpu"
     std::string device;   // name of the GL device, or the number of CPU threads
     std::size_t points = 0;
+    int sheets = 0;                 // planes over the volume's depth
     std::size_t bin_entries = 0;    // pairs of a tile and a kernel; on a GPU, triples with a batch of sheets
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_prepare = 0, seconds_draw = 0;

@@ -18,8 +18,10 @@ namespace subvol {
 ///         paper, for comparison
 enum class SplatMethod { Auto, Cpu, Gl, Sheets };
 
-/// Light on the surfaces of equal value: the model of Blinn and Phong, with a light at the eye and a key light, both of which
-/// light either side. Where the value hardly changes there is no surface, and colours are not changed.
+/// Light on surfaces: the model of Blinn and Phong, with a light at the eye and a key light. Inside the volume surfaces are
+/// those of equal value, lit on either side; where the value hardly changes there is no surface, and colours are not changed.
+/// Where the volume is opaque already at its boundary, that is the surface: it is lit by its own normals, which are smooth
+/// except at creases.
 ///
 /// ambient, diffuse, specular: parts of the light, ≥ 0
 /// key:                        towards the key light, in eye space (right, up, away from the eye)
@@ -32,7 +34,8 @@ struct Shading {
 };
 
 /// samples:       the mean of n × n places on a regular grid in each pixel is taken, 1..16
-/// sheets:        planes of constant eye depth over the volume's depth range, 2..65536
+/// sheets:        planes of constant eye depth over the volume's depth range, 2..65536; 0: as many as the kernels need. Where
+///                rays enter and leave the volume it is sampled besides, so bodies thinner than a sheet are not lost
 /// channel:       the channel of the volume that is shown
 /// device:        the OpenGL device's number in gl_devices(); none: the first hardware, else software
 /// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
@@ -41,7 +44,7 @@ struct SplatOptions {
     SplatMethod method = SplatMethod::Auto;
     std::optional<int> device{};
     int samples = 1;
-    int sheets = 200;
+    int sheets = 0;
     std::size_t channel = 0;
     std::optional<std::size_t> color_channel{};
     bool normalized = true;

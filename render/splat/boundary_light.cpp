@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "boundary_light.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "subvol/boundary_shading.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Interpolates the normals of a triangle at a place on it (eye space).
+Vec3 normal_at(const Surface& surface, const CornerNormals& corners, const View& view, std::uint32_t triangle,
+               const Vec3& place) {
+    std::array<Vec3, 3> eye;
+    for (std::size_t k = 0; k < 3; ++k) eye[k] = view.to_eye(surface.points[surface.triangles[triangle][k]]);
+    const Vec3 flat = glm::cross(eye[1] - eye[0], eye[2] - eye[0]);
+    Vec3 sum(0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 &a = eye[(k + 1) % 3], &b = eye[(k + 2) % 3];
+        const double share = std::max(0.0, glm::dot(flat, glm::cross(b - a, place - a)));
+        sum += share * Vec3(corners[k][0], corners[k][1], corners[k][2]);
+    }
+    const auto& [right, up, forward] = view.axes();
+    return {glm::dot(right, sum), glm::dot(up, sum), glm::dot(forward, sum)};
+}
+
+BoundaryLight light_on(const Shading& shading, const Vec3& normal, const Vec3& to_eye) {
+    const Vec3 to_key = glm::normalize(shading.key);
+    const double head = std::max(0.0, glm::dot(normal, to_eye)), side = std::max(0.0, glm::dot(normal, to_key));
+    const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
+    const double gloss = std::pow(head, shading.shininess) + std::pow(halfway, shading.shininess);
+    return {static_cast<float>(shading.ambient + shading.diffuse * 0.5 * (head + side)),
+            static_cast<float>(shading.specular * 0.5 * gloss)};
+}
+
+/// What the lights depend on besides the intervals.
+struct LitSurface {
+    const Surface& surface;
+    const std::vector<CornerNormals>& normals;
+    const Shading& shading;
+    double middle;  // the depth that those of the intervals are relative to
+};
+
+std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitSurface& lit, const View& view) {
+    std::vector<BoundaryLight> lights(intervals.triangles.size());
+    tbb::parallel_for(0, view.height(), [&](int y) {
+        for (int x = 0; x < view.width(); ++x) {
+            const auto pixel =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
+            const Vec2 slopes = view.slopes(x + 0.5, y + 0.5);
+            for (std::size_t i = intervals.offsets[pixel]; i < intervals.offsets[pixel + 1]; ++i) {
+                const std::uint32_t triangle = intervals.triangles[i];
+                if (triangle == PixelIntervals::kNoTriangle) continue;
+                const double z = static_cast<double>(intervals.depths[2 * i]) + lit.middle;
+                const Vec3 place = view.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
+                const Vec3 normal = normal_at(lit.surface, lit.normals[triangle], view, triangle, place);
+                const double length = glm::length(normal);
+                if (!(length > 0)) continue;
+                const Vec3 to_eye = view.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
+                lights[i] = light_on(lit.shading, normal / length, to_eye);
+            }
+        }
+    });
+    return lights;
+}
+
+}  // namespace
+
+std::vector<BoundaryLight> entry_lights(const PixelIntervals& intervals, const SplatScene& scene, const View& view) {
+    const double middle = view.to_eye(scene.middle).z;
+    return lights_of(intervals, {scene.volume->boundary, scene.boundary_normals, *scene.shading, middle}, view);
+}
+
+}  // namespace subvol::detail
+
+namespace subvol {
+
+using namespace detail;
+
+void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples) {
+    Box box;
+    for (const Vec3& point : boundary.points) box.add(point);
+    const View fine(view.camera(), samples * view.width(), samples * view.height());
+    const double middle = fine.to_eye(box.center()).z, near = fine.perspective() ? 1e-4 * box.diagonal() : 0.0;
+    const PixelIntervals intervals = boundary_intervals(boundary, fine, near, middle);
+    const std::vector<CornerNormals> normals = corner_normals(boundary);
+    const std::vector<BoundaryLight> lights = lights_of(intervals, {boundary, normals, shading, middle}, fine);
+    tbb::parallel_for(0, view.height(), [&](int y) {
+        for (int x = 0; x < view.width(); ++x) {
+            double diffuse = 0, specular = 0;
+            int met = 0;
+            for (int k = 0; k < samples * samples; ++k) {
+                const auto row = static_cast<std::size_t>(y * samples + k / samples);
+                const auto id =
+                    row * static_cast<std::size_t>(fine.width()) + static_cast<std::size_t>(x * samples + k % samples);
+                if (intervals.offsets[id] == intervals.offsets[id + 1]) continue;
+                diffuse += static_cast<double>(lights[intervals.offsets[id]].diffuse);
+                specular += static_cast<double>(lights[intervals.offsets[id]].specular);
+                ++met;
+            }
+            // A ray may hit the body just beside the outline of these triangles: there the surface is seen edge-on.
+            if (met == 0) diffuse = shading.ambient;
+            const auto pixel = image.pixel(x, y);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double color = static_cast<double>(pixel[c]) * diffuse + static_cast<double>(pixel[3]) * specular;
+                pixel[c] = static_cast<float>(color / std::max(met, 1));
+            }
+        }
+    });
+}
+
+}  // namespace subvol

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "corner_normals.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace subvol::detail {
+
+namespace {
+
+// The boundary is that of level 1: neighbouring triangles of a round body meet at some ten degrees there, those at the edges of
+// a machined part at 45 or more.
+constexpr double kSmoothCosine = 0.766;  // of 40 degrees
+
+/// The triangles around each point.
+struct Fans {
+    std::vector<std::size_t> begin;
+    std::vector<std::uint32_t> triangles;
+};
+
+Fans fans_of(const Surface& surface) {
+    Fans fans;
+    fans.begin.assign(surface.points.size() + 1, 0);
+    for (const auto& t : surface.triangles) {
+        for (const Index p : t) ++fans.begin[p + 1];
+    }
+    for (std::size_t p = 1; p < fans.begin.size(); ++p) fans.begin[p] += fans.begin[p - 1];
+    fans.triangles.resize(fans.begin.back());
+    std::vector<std::size_t> next(fans.begin.begin(), fans.begin.end() - 1);
+    for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+        for (const Index p : surface.triangles[i]) fans.triangles[next[p]++] = static_cast<std::uint32_t>(i);
+    }
+    return fans;
+}
+
+/// A vector of unit length, or (0, 0, 0).
+Vec3 direction(const Vec3& v) {
+    const double length = glm::length(v);
+    return length > 0 ? v / length : Vec3(0.0);
+}
+
+double angle_at(const Surface& surface, const std::array<Index, 3>& t, Index point) {
+    const std::size_t k = t[0] == point ? 0 : t[1] == point ? 1 : 2;
+    const Vec3 a = direction(surface.points[t[(k + 1) % 3]] - surface.points[point]);
+    const Vec3 b = direction(surface.points[t[(k + 2) % 3]] - surface.points[point]);
+    return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+}
+
+}  // namespace
+
+std::vector<CornerNormals> corner_normals(const Surface& surface) {
+    const Fans fans = fans_of(surface);
+    const std::size_t count = surface.triangles.size();
+    std::vector<Vec3> flat(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        const auto& [a, b, c] = surface.triangles[i];
+        flat[i] = direction(glm::cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]));
+    });
+    std::vector<CornerNormals> normals(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index point = surface.triangles[i][k];
+            Vec3 sum(0.0);
+            for (std::size_t at = fans.begin[point]; at < fans.begin[point + 1]; ++at) {
+                const std::uint32_t other = fans.triangles[at];
+                const bool smooth = flat[i] == Vec3(0.0) || glm::dot(flat[i], flat[other]) > kSmoothCosine;
+                if (smooth) sum += angle_at(surface, surface.triangles[other], point) * flat[other];
+            }
+            const Vec3 normal = direction(sum);
+            normals[i][k] = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)};
+        }
+    });
+    return normals;
+}
+
+}  // namespace subvol::detail
