@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "curves.h"
 #include "knot_values.h"
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
@@ -54,7 +57,34 @@ constexpr std::array<Stop, 4> kBone{{{0, {0, 0, 0}},
 constexpr std::array<Stop, 2> kXray{{{0, {1, 1, 1}}, {1, {0, 0, 0}}}};
 constexpr std::array<Rgb, 3> kIvory{{{.80, .62, .40}, {.95, .86, .70}, {1, .97, .90}}};
 
-constexpr const char* kPresets = "viridis, coolwarm, grey, bone, xray, isosurface, surface, constant";
+// sRGB as polynomials of the part of the range, coefficients from the highest power down. plasma, inferno: fits of matplotlib's
+// maps (N. J. Smith, S. van der Walt, CC0) by M. Zucker (2019, CC0), right to 1/100. cividis: J. R. Nuñez, C. R. Anderton, R.
+// S. Renslow, PLoS ONE 13 (2018); turbo: A. Mikhailov, Google (2019, Apache-2.0); both in the form that D3 uses, in 255ths.
+using Polynomial = std::array<double, 7>;
+using Polynomials = std::array<Polynomial, 3>;
+constexpr Polynomials kPlasma{{{-3.658713842777788, 10.02306557647065, -11.10743619062271, 6.130348345893603,
+                                -2.689460476458034, 2.176514634195958, 0.05873234392399702},
+                               {-22.93153465461149, 71.41361770095349, -82.66631109428045, 42.3461881477227, -7.455851135738909,
+                                0.2383834171260182, 0.02333670892565664},
+                               {18.19190778539828, -54.07218655560067, 60.13984767418263, -28.51885465332158, 3.110799939717086,
+                                0.7539604599784036, 0.5433401826748754}}};
+constexpr Polynomials kInferno{{{25.13112622477341, -71.31942824499214, 77.162935699427, -41.70399613139459, 11.60249308247187,
+                                 0.1065134194856116, 0.0002189403691192265},
+                                {-12.24266895238567, 32.62606426397723, -33.40235894210092, 17.43639888205313,
+                                 -3.972853965665698, 0.5639564367884091, 0.001651004631001012},
+                                {-23.07032500287172, 73.20951985803202, -81.80730925738993, 44.35414519872813,
+                                 -15.9423941062914, 3.932712388889277, -0.01948089843709184}}};
+constexpr Polynomials kCividis{{{0, -2710.57 / 255, 7024.72 / 255, -6402.7 / 255, 2381.73 / 255, -35.34 / 255, -4.54 / 255},
+                                {0, -67.37 / 255, 176.58 / 255, -131.46 / 255, 52.82 / 255, 170.73 / 255, 32.49 / 255},
+                                {0, -2475.67 / 255, 6614.94 / 255, -6167.24 / 255, 2482.43 / 255, -442.36 / 255, 81.24 / 255}}};
+constexpr Polynomials kTurbo{
+    {{0, -14825.05 / 255, 38394.49 / 255, -33300.12 / 255, 10793.56 / 255, -1172.33 / 255, 34.61 / 255},
+     {0, 707.56 / 255, 1073.77 / 255, -3574.96 / 255, 1225.33 / 255, 557.33 / 255, 23.31 / 255},
+     {0, -6838.66 / 255, 22569.18 / 255, -27814.0 / 255, 15327.97 / 255, -3211.1 / 255, 27.2 / 255}}};
+constexpr int kPolynomialKnots = 48;  // straight lines between so many are right to 1/255
+
+const std::vector<std::string> kPresets{"viridis", "plasma", "inferno", "cividis",    "turbo",   "coolwarm",
+                                        "grey",    "bone",   "xray",    "isosurface", "surface", "constant"};
 constexpr double kDefaultOpacity = 0.5;
 constexpr double kSurfaceOpacity = 0.9;
 constexpr double kSurfaceRamp = 0.05;  // of the range
@@ -68,6 +98,21 @@ Vec3 vector(const Rgb& rgb) {
 ColorKnots viridis(ValueRange range) {
     ColorKnots knots;
     for (const auto& [index, rgb] : kViridis) knots.push_back({range.at(index / 255.0), linear_from_srgb(vector(rgb))});
+    return knots;
+}
+
+double value_of(const Polynomial& coefficients, double t) {
+    double value = 0;
+    for (const double c : coefficients) value = value * t + c;
+    return std::clamp(value, 0.0, 1.0);
+}
+
+ColorKnots sampled(const Polynomials& rgb, ValueRange range) {
+    ColorKnots knots;
+    for (int i = 0; i <= kPolynomialKnots; ++i) {
+        const double t = static_cast<double>(i) / kPolynomialKnots;
+        knots.push_back({range.at(t), linear_from_srgb(Vec3(value_of(rgb[0], t), value_of(rgb[1], t), value_of(rgb[2], t)))});
+    }
     return knots;
 }
 
@@ -110,6 +155,10 @@ TransferFunction constant(ValueRange range) {
 TransferFunction transfer_function_preset(const std::string& name, double min, double max) {
     const ValueRange range = usable_range(min, max);
     if (name == "viridis") return ramp(viridis(range), range);
+    if (name == "plasma") return ramp(sampled(kPlasma, range), range);
+    if (name == "inferno") return ramp(sampled(kInferno, range), range);
+    if (name == "cividis") return ramp(sampled(kCividis, range), range);
+    if (name == "turbo") return ramp(sampled(kTurbo, range), range);
     if (name == "coolwarm") return ramp(spread(kCoolwarm, ColorSpace::Diverging, range), range);
     if (name == "grey") return ramp(spread(kGrey, ColorSpace::Rgb, range), range);
     if (name == "bone") return ramp(spread(kBone, ColorSpace::Rgb, range), range);
@@ -117,7 +166,10 @@ TransferFunction transfer_function_preset(const std::string& name, double min, d
     if (name == "isosurface") return isosurfaces(range);
     if (name == "surface") return surface(range);
     if (name == "constant") return constant(range);
-    throw Error(ErrorCode::InvalidInput, "there is no transfer function '" + name + "'", {}, kPresets);
+    std::string list;
+    for (const std::string& preset : kPresets) list += (list.empty() ? "" : ", ") + preset;
+    throw Error(ErrorCode::InvalidInput, "there is no transfer function '" + name + "'" + detail::did_you_mean(name, kPresets),
+                {}, list);
 }
 
 }  // namespace subvol

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
 
 #include "camera_axes.h"
+#include "subvol/camera_fit.h"
 
 namespace subvol {
 
@@ -86,6 +88,35 @@ Camera fit_camera(const Box& box, const Vec3& direction, double fovy_deg, double
 
 Camera fit_camera(const Camera& camera, const Box& box, double aspect) {
     return fit(camera, corners_of(box), box, aspect);
+}
+
+Camera fit_camera_to_points(const Camera& camera, std::span<const Vec3> points, double aspect) {
+    validate(camera);
+    Box box;
+    for (const Vec3& point : points) box.add(point);
+    require_box(box);
+    const auto axes = camera_axes(camera.target - camera.eye, camera.up);
+    // The middle of the outline moves as the eye moves: a few steps suffice.
+    constexpr int kSteps = 4;
+    Camera fitted = fit(camera, points, box, aspect);
+    for (int step = 0; step < kSteps; ++step) {
+        Vec2 low(std::numeric_limits<double>::infinity()), high(-low);
+        double depth = 0;
+        for (const Vec3& point : points) {
+            const Vec3 d = point - fitted.eye;
+            const double z = glm::dot(axes[2], d), scale = camera.ortho_height == 0 ? 1 / std::max(z, 1e-300) : 1;
+            const Vec2 seen = scale * Vec2(glm::dot(axes[0], d), glm::dot(axes[1], d));
+            low = glm::min(low, seen);
+            high = glm::max(high, seen);
+            depth += z / static_cast<double>(points.size());
+        }
+        const Vec2 off = (camera.ortho_height == 0 ? depth : 1) * 0.5 * (low + high);
+        Camera moved = fitted;
+        moved.eye += off.x * axes[0] + off.y * axes[1];
+        moved.target += off.x * axes[0] + off.y * axes[1];
+        fitted = fit(moved, points, box, aspect);
+    }
+    return fitted;
 }
 
 Camera orthographic_camera(const Camera& camera, const Box& box, double aspect) {

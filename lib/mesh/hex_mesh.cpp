@@ -10,6 +10,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "field_names.h"
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -231,10 +233,36 @@ std::optional<Attribute> channel_of(const HexMesh& mesh, const std::string& name
     return result;
 }
 
-std::string names_of(const HexMesh& mesh) {
+std::string list_of(const HexMesh& mesh) {
     std::string names;
     for (const auto& attribute : mesh.attributes) names += (names.empty() ? "" : ", ") + attribute.name;
-    return names.empty() ? "the mesh has no fields" : "the mesh has: " + names;
+    return names;
+}
+
+std::string names_of(const HexMesh& mesh) {
+    return mesh.attributes.empty() ? "the mesh has no fields" : "the mesh has: " + list_of(mesh);
+}
+
+std::string nearest(const HexMesh& mesh, const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& attribute : mesh.attributes) names.push_back(attribute.name);
+    return detail::did_you_mean(name, names);
+}
+
+bool is_constant(const Attribute& attribute) {
+    const auto channels = static_cast<std::size_t>(attribute.channels);
+    for (std::size_t i = channels; i < attribute.values.size(); ++i) {
+        if (attribute.values[i] != attribute.values[i % channels]) return false;
+    }
+    return true;
+}
+
+/// How sensible it is to show an attribute that nobody asked for; 0: not at all.
+int merit_of(const Attribute& attribute) {
+    if (detail::is_identifier(attribute.name)) return 0;
+    if (is_constant(attribute)) return attribute.channels == 1 ? 2 : 1;
+    if (attribute.channels > 1) return 3;
+    return detail::is_physical(attribute.name) ? 5 : 4;
 }
 
 }  // namespace
@@ -246,14 +274,22 @@ SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>
             return {length_of(*found), "field \"" + *name + "\" is a vector: its length is taken"};
         }
         if (auto channel = channel_of(mesh, *name)) return {std::move(*channel), {}};
-        throw Error(ErrorCode::InvalidInput, "there is no field \"" + *name + "\"", {}, names_of(mesh));
+        throw Error(ErrorCode::InvalidInput, "there is no field \"" + *name + "\"" + nearest(mesh, *name), {}, names_of(mesh));
     }
+    const Attribute* best = nullptr;
+    int best_merit = 0;
     for (const auto& attribute : mesh.attributes) {
-        if (attribute.channels == 1) return {attribute, {}};
+        const int merit = merit_of(attribute);
+        if (merit > best_merit) {
+            best = &attribute;
+            best_merit = merit;
+        }
     }
+    if (best && best->channels == 1) return {*best, {}};
+    if (best) return {length_of(*best), "no scalar field: the length of \"" + best->name + "\" is taken"};
     if (!mesh.attributes.empty()) {
-        const auto& first = mesh.attributes.front();
-        return {length_of(first), "no scalar field: the length of \"" + first.name + "\" is taken"};
+        return {{"density", 1, std::vector<double>(mesh.points.size(), 1.0)},
+                "the only fields are identifiers and flags (" + list_of(mesh) + "): density 1 everywhere"};
     }
     return {{"density", 1, std::vector<double>(mesh.points.size(), 1.0)}, "no field: density 1 everywhere"};
 }

@@ -5,6 +5,7 @@
 
 #include "subvol/basis_function.h"
 #include "subvol/camera.h"
+#include "subvol/camera_fit.h"
 #include "subvol/cell.h"
 #include "subvol/dense_cells.h"
 #include "subvol/error.h"

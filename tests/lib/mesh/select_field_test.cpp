@@ -36,5 +36,57 @@ TEST(SelectField, RefusesWhatIsNoChannel) {
     }
 }
 
+/// A cube with scalars and vectors whose values differ from point to point, in this order.
+HexMesh mesh_with(const std::vector<std::pair<std::string, int>>& fields) {
+    HexMesh mesh = test::make_box(1, 1, 1);
+    for (const auto& [name, channels] : fields) {
+        Attribute field{name, channels, {}};
+        for (int i = 0; i < 8 * channels; ++i) field.values.push_back(i);
+        mesh.attributes.push_back(field);
+    }
+    return mesh;
+}
+
+TEST(SelectField, PassesOverIdentifiersAndFlags) {
+    EXPECT_EQ(select_field(mesh_with({{"GlobalNodeId", 1}, {"PedigreeNodeId", 1}, {"DISPL", 3}, {"EQPS", 1}}), {}).scalar.name,
+              "EQPS");
+    EXPECT_EQ(
+        select_field(mesh_with({{"IBlank", 1}, {"vtkOriginalPointIds", 1}, {"vtkGhostType", 1}, {"a", 1}}), {}).scalar.name,
+        "a");
+    EXPECT_EQ(select_field(mesh_with({{"node_id", 1}, {"Solid", 1}}), {}).scalar.name, "Solid") << "not an identifier";
+    const SelectedField none = select_field(mesh_with({{"CellIds", 1}}), {});
+    EXPECT_EQ(none.scalar.name, "density");
+    EXPECT_NE(none.warning.find("CellIds"), std::string::npos);
+    EXPECT_EQ(select_field(mesh_with({{"CellIds", 1}}), "CellIds").scalar.name, "CellIds") << "if it is asked for";
+}
+
+TEST(SelectField, PrefersPhysicalNamesThenScalarsThenVectors) {
+    EXPECT_EQ(select_field(mesh_with({{"V", 3}, {"a", 1}, {"Temp", 1}, {"Pres", 1}}), {}).scalar.name, "Temp");
+    EXPECT_EQ(select_field(mesh_with({{"Velocity", 3}, {"a", 1}}), {}).scalar.name, "a");
+    EXPECT_EQ(select_field(mesh_with({{"Velocity", 3}}), {}).scalar.name, "Velocity");
+}
+
+TEST(SelectField, TakesAConstantOnlyIfThereIsNothingElse) {
+    HexMesh mesh = mesh_with({{"density", 1}, {"a", 1}});
+    mesh.attributes[0].values.assign(8, 1.0);
+    EXPECT_EQ(select_field(mesh, {}).scalar.name, "a");
+    mesh.attributes.pop_back();
+    EXPECT_EQ(select_field(mesh, {}).scalar.name, "density");
+}
+
+TEST(SelectField, NamesTheNearestField) {
+    const auto message = [](const char* name) {
+        try {
+            (void)select_field(mesh_with({{"Temp", 1}, {"Pres", 1}}), name);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(message("temp").find("did you mean Temp?"), std::string::npos);
+    EXPECT_NE(message("Prse").find("did you mean Pres?"), std::string::npos);
+    EXPECT_EQ(message("humidity").find("did you mean"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace subvol

@@ -70,10 +70,10 @@ struct SelectedField {
     std::string warning;  // how the field was chosen or converted; empty if it is simply the named or the first scalar
 };
 
-/// Chooses a scalar: `name`, else the first one-channel attribute, else the length of the first vector, else density 1.
+/// Chooses a scalar: `name`, else the most sensible one by its name and values (docs/formats.md), else density 1 everywhere.
 ///
 /// name:   may name a vector, whose length is taken; "name.k" takes channel k
-/// throws: Error(InvalidInput) if no attribute has that name; lists those that exist
+/// throws: Error(InvalidInput) if no attribute has that name; lists those that exist, and the nearest
 [[nodiscard]] SelectedField select_field(const HexMesh& mesh, const std::optional<std::string>& name);
 
 /// The mesh with no attribute but this one. throws: as `scalar_field`
