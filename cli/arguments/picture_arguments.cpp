@@ -2,18 +2,25 @@
 #include "picture_arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
 #include <filesystem>
 #include <sstream>
 
 #include "outputs.h"
+#include "subvol/camera_fit.h"
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
+#include "subvol/srgb.h"
 #include "text.h"
 
 namespace subvol::cli {
 namespace {
 
 constexpr double kOpacityUnitsPerDiagonal = 100;
+constexpr double kSolidUnitsPerDiagonal = 1e6;  // all light ends far within a pixel
+const Vec3 kPlainColor(0.72, 0.76, 0.82);       // of a body without a field, sRGB
 
 }  // namespace
 
@@ -40,6 +47,50 @@ PictureSize parse_size(const std::string& option, const std::string& text) {
         throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a picture size", option, "write it as 640x480 or 512");
     }
     return size;
+}
+
+Vec3 parse_background(const std::string& text) {
+    struct Named {
+        const char* name;
+        int rgb;
+    };
+    constexpr std::array<Named, 14> kNamed{{{"white", 0xffffff},
+                                            {"black", 0},
+                                            {"lightgrey", 0xe4e6e9},
+                                            {"lightgray", 0xe4e6e9},
+                                            {"grey", 0x808080},
+                                            {"gray", 0x808080},
+                                            {"darkgrey", 0x404040},
+                                            {"darkgray", 0x404040},
+                                            {"red", 0xff0000},
+                                            {"green", 0x008000},
+                                            {"blue", 0x0000ff},
+                                            {"yellow", 0xffff00},
+                                            {"navy", 0x000080},
+                                            {"ivory", 0xfffff0}}};
+    const auto from_bytes = [](int rgb) { return linear_from_srgb(Vec3(rgb >> 16, rgb >> 8 & 255, rgb & 255) / 255.0); };
+    for (const auto& [name, rgb] : kNamed) {
+        if (text == name) return from_bytes(rgb);
+    }
+    if (text.starts_with('#')) {
+        int rgb = 0;
+        const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), rgb, 16);
+        if (text.size() == 7 && text[1] != '-' && error == std::errc() && end == text.data() + text.size())
+            return from_bytes(rgb);
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a colour", "--background", "write it as #rrggbb");
+    }
+    if (text.find(',') == std::string::npos) {
+        std::vector<std::string> names;
+        for (const auto& named : kNamed) names.emplace_back(named.name);
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a colour" + detail::did_you_mean(text, names),
+                    "--background", "three numbers 0..1 such as 1,.5,0; #rrggbb; or " + join(names));
+    }
+    const Vec3 color = parse_vector("--background", text);
+    for (int c = 0; c < 3; ++c) {
+        if (color[c] >= 0 && color[c] <= 1) continue;
+        throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a colour", "--background", "each number in 0..1");
+    }
+    return color;
 }
 
 Box visible_bounds(const HexMesh& mesh, const Optics& optics) {
@@ -78,10 +129,15 @@ void PictureArguments::add_camera_to(CLI::App& app) {
 }
 
 void PictureArguments::add_light_to(CLI::App& app) {
+    app.add_option("--look", look_name,
+                   "solid (opaque and lit; the default for meshes without --tf, --opacity and --opacity-unit), volume "
+                   "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five "
+                   "lit surfaces)")
+        ->type_name("NAME");
     app.add_option(
            "--tf", transfer_function,
-           "colour map: viridis (default), coolwarm, grey, bone, xray, isosurface, surface or constant over the field's "
-           "range, or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)")
+           "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface "
+           "or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)")
         ->type_name("FILE|NAME");
     app.add_option(
            "--tf-range", transfer_range,
@@ -99,22 +155,43 @@ void PictureArguments::add_light_to(CLI::App& app) {
         ->check(CLI::PositiveNumber);
     app.add_option("--legend", legend, "also write a colour bar with the opacities and the field's name")
         ->type_name("FILE.svg");
-    app.add_option("--background", background, "the background of a .png: linear red, green, blue in 0..1 (default 0,0,0)")
-        ->type_name("R,G,B");
+    app.add_option(
+           "--background", background,
+           "the background of a .png: linear red, green, blue in 0..1, #rrggbb (sRGB), or a name such as white (default: light "
+           "grey for solid and isosurface, white for xray, black for volume)")
+        ->type_name("COLOR");
 }
 
-Camera PictureArguments::make_camera(const Box& box, double aspect) const {
+void PictureArguments::settle_look(bool has_boundary) {
+    const std::string name = look_name.value_or(
+        has_boundary && !transfer_function && !opacity && !opacity_unit_world && !transfer_range ? "solid" : "volume");
+    check_choice("--look", name, {"solid", "volume", "xray", "isosurface"});
+    look = name == "solid" ? Look::Solid : name == "xray" ? Look::Xray : name == "isosurface" ? Look::Isosurface : Look::Volume;
+}
+
+Vec3 PictureArguments::background_color() const {
+    if (background) return parse_background(*background);
+    if (look == Look::Volume) return Vec3(0.0);
+    return look == Look::Xray ? Vec3(1.0) : parse_background("lightgrey");
+}
+
+std::string PictureArguments::colors_name() const {
+    return transfer_function.value_or(look == Look::Xray ? "xray" : look == Look::Isosurface ? "isosurface" : "viridis");
+}
+
+Camera PictureArguments::make_camera(const Box& box, std::span<const Vec3> points, double aspect) const {
     Camera given = parse_camera(camera.value_or(view), box, aspect);
     const bool made_orthographic = orthographic && given.ortho_height == 0;
     if (made_orthographic) given = orthographic_camera(given, box, aspect);
     // A named view shows the whole box, so all pictures of its turntable do.
     if (turntable_frames && (fit || !camera || made_orthographic)) return fit_turntable(given, box, *turntable_frames, aspect);
+    if (look == Look::Solid && !camera && !points.empty()) return fit_camera_to_points(given, points, aspect);
     return fit ? fit_camera(given, box, aspect) : given;
 }
 
-std::vector<View> PictureArguments::make_views(const Box& box) const {
+std::vector<View> PictureArguments::make_views(const Box& box, std::span<const Vec3> points) const {
     const auto [width, height] = parse_size("--size", size);
-    const Camera first = make_camera(box, static_cast<double>(width) / height);
+    const Camera first = make_camera(box, points, static_cast<double>(width) / height);
     if (!turntable_frames) return {View(first, width, height)};
     std::vector<View> views;
     for (const Camera& frame : turntable(first, box.center(), *turntable_frames)) views.emplace_back(frame, width, height);
@@ -137,17 +214,28 @@ Range PictureArguments::shown_range(const Range& field) const {
 
 Optics PictureArguments::make_optics(const Box& box, const Range& field, const Range& colors) const {
     const Range range = shown_range(field);
-    TransferFunction function = find_transfer_function(transfer_function, range, transfer_range.has_value());
-    function.color = find_transfer_function(transfer_function, shown_range(colors), transfer_range.has_value()).color;
+    TransferFunction function = find_transfer_function(colors_name(), range, transfer_range.has_value());
+    function.color = find_transfer_function(colors_name(), shown_range(colors), transfer_range.has_value()).color;
+    double unit_world = box.diagonal() / kOpacityUnitsPerDiagonal;
+    if (look == Look::Solid) {
+        unit_world = box.diagonal() / kSolidUnitsPerDiagonal;
+        for (auto& knot : function.opacity) knot.alpha = 1;
+        // Where all values are the same, a colour of the map would mean nothing.
+        const bool constant = !(colors.min < colors.max);
+        if (constant && !transfer_function) {
+            for (auto& knot : function.color) knot.rgb = linear_from_srgb(kPlainColor);
+        }
+    }
     if (opacity) function.opacity = parse_opacity(*opacity, range.min, range.max);
-    return {std::move(function), opacity_unit_world.value_or(box.diagonal() / kOpacityUnitsPerDiagonal)};
+    return {std::move(function), opacity_unit_world.value_or(unit_world)};
 }
 
 void PictureArguments::check() const {
     const Box any{{0, 0, 0}, {1, 1, 1}};
     const auto [width, height] = parse_size("--size", size);
     (void)parse_camera(camera.value_or(view), any, static_cast<double>(width) / height);
-    (void)find_transfer_function(transfer_function, {0, 1}, false);
+    (void)find_transfer_function(colors_name(), {0, 1}, false);
+    (void)background_color();
     if (legend) check_output(*legend, {".svg"});
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,15 @@ struct PictureSize {
 /// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
 [[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
 
+/// The kinds of pictures. Solid: opaque and lit. Volume: transparent as the colour map says, black behind. Xray: dark where
+/// there is much, on white. Isosurface: five lit surfaces.
+enum class Look { Solid, Volume, Xray, Isosurface };
+
+/// The colour behind a picture, in linear light: "r,g,b" in 0..1, "#rrggbb" (sRGB), or a name.
+///
+/// throws: Error(InvalidInput)
+[[nodiscard]] Vec3 parse_background(const std::string& text);
+
 /// What a picture shows and how.
 struct PictureArguments {
     std::string size = "512x512";
@@ -48,17 +58,26 @@ struct PictureArguments {
     bool orthographic = false;
     std::optional<int> turntable_frames;
     int frames_per_second = 30;
-    std::string transfer_function = "viridis";
+    std::optional<std::string> look_name;
+    Look look = Look::Volume;  // as settled
+    std::optional<std::string> transfer_function;
     std::optional<std::string> transfer_range;
     std::optional<std::string> opacity;
     std::optional<double> opacity_unit_world;
     std::optional<std::string> legend;
-    std::string background = "0,0,0";
+    std::optional<std::string> background;
 
     void add_to(CLI::App& app);
 
-    /// One view, or those of the turntable.
-    [[nodiscard]] std::vector<View> make_views(const Box& box) const;
+    /// Decides on the look: the one asked for; else solid for bodies with a boundary, unless colours or opacities are given.
+    ///
+    /// throws: Error(InvalidInput) for an unknown look
+    void settle_look(bool has_boundary);
+    [[nodiscard]] bool lit() const { return look == Look::Solid || look == Look::Isosurface; }
+    [[nodiscard]] Vec3 background_color() const;
+
+    /// One view, or those of the turntable. points: of a body that is seen as a whole: a solid's named view is fitted to them
+    [[nodiscard]] std::vector<View> make_views(const Box& box, std::span<const Vec3> points = {}) const;
     /// field, colors: the ranges of the field that gives the opacities and of the one that gives the colours, often the same
     [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
 
@@ -75,7 +94,8 @@ private:
     [[nodiscard]] Range shown_range(const Range& field) const;
     void add_camera_to(CLI::App& app);
     void add_light_to(CLI::App& app);
-    [[nodiscard]] Camera make_camera(const Box& box, double aspect) const;
+    [[nodiscard]] Camera make_camera(const Box& box, std::span<const Vec3> points, double aspect) const;
+    [[nodiscard]] std::string colors_name() const;
 };
 
 }  // namespace subvol::cli

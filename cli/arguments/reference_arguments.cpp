@@ -9,7 +9,9 @@
 namespace subvol::cli {
 
 void ReferenceArguments::add_to(CLI::App& app) {
-    app.add_option("--samples", samples, "n x n rays per pixel (default 1)")->type_name("N")->check(CLI::Range(1, 16));
+    app.add_option("--samples", samples, "n x n rays per pixel (default 1; 2 for --look solid)")
+        ->type_name("N")
+        ->check(CLI::Range(1, 16));
     app.add_option("--tolerance-image", image_tolerance,
                    "dense, without --levels: raise the level until the RMS of the picture's change is less (default 1e-3)")
         ->type_name("RMS")

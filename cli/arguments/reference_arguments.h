@@ -13,7 +13,7 @@ namespace subvol::cli {
 
 /// The options of the reference methods: tets, pt, dense, grid.
 struct ReferenceArguments {
-    int samples = 1;
+    int samples = 0;  // 0: not given
     double image_tolerance = 1e-3;
     std::string order = "topological";
     int kbuffer = 6;

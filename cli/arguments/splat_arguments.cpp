@@ -18,7 +18,7 @@ void SplatArguments::add_to(CLI::App& app) {
     app.add_option("--device", device, "the OpenGL device's number in `info --gl` (default: the first GPU)")
         ->type_name("N")
         ->check(CLI::NonNegativeNumber);
-    app.add_option("--sheets", sheets, "splat: number of planes over the volume's depth (default 200)")
+    app.add_option("--sheets", sheets, "splat: number of planes over the volume's depth (default: as many as the kernels need)")
         ->type_name("N")
         ->check(CLI::Range(2, 65536));
     app.add_flag("--shade", shade, "splat: light on surfaces of equal value, from the eye and from the upper left");
@@ -52,12 +52,12 @@ SplatOptions SplatArguments::options(bool by_sheets) const {
     return options;
 }
 
-void report_splats(const SplatReport& splats, const SplatArguments& arguments, Report& report) {
+void report_splats(const SplatReport& splats, Report& report) {
     report.add_seconds("prepare", splats.seconds_prepare);
     report.add_seconds("draw", splats.seconds_draw);
     report["backend"] = splats.backend;
     report["device"] = splats.device;
-    report["sheets"] = arguments.sheets;
+    report["sheets"] = splats.sheets;
 }
 
 }  // namespace subvol::cli

@@ -20,7 +20,7 @@ namespace subvol::cli {
 struct SplatArguments {
     std::string backend = "auto";
     std::optional<int> device;
-    int sheets = 200;
+    int sheets = 0;  // as many as needed
     bool shade = false;
     bool plain_sums = false;
     std::optional<std::string> color_field;
@@ -36,6 +36,6 @@ struct SplatArguments {
 };
 
 /// Adds the seconds, the backend and the device of a splatted picture to the report.
-void report_splats(const SplatReport& splats, const SplatArguments& arguments, Report& report);
+void report_splats(const SplatReport& splats, Report& report);
 
 }  // namespace subvol::cli

@@ -64,6 +64,12 @@ void Report::warn(const std::string& text) {
     std::cerr << "subvol: warning: " << warning << '\n';
 }
 
+void Report::note(const std::string& note) {
+    if (print_json_ || quiet_) return;
+    progress_.clear();
+    std::cerr << "subvol: " << detail::printable(note) << '\n';
+}
+
 void Report::add_seconds(const std::string& stage, double seconds) {
     Json& all = json_["seconds"];
     all[stage] = all.is_null() ? seconds : all.value(stage, 0.0) + seconds;

@@ -31,6 +31,9 @@ public:
     /// For people on standard error, and under "warnings". An empty text is ignored.
     void warn(const std::string& warning);
 
+    /// For people on standard error; not printed with --json or --quiet.
+    void note(const std::string& note);
+
     /// A line for people; not printed with --json or --quiet.
     void say(const std::string& line);
 

@@ -79,6 +79,9 @@ HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& 
     SelectedField selected = select_field(mesh, options.density ? std::optional<std::string>("density") : options.field);
     report.warn(selected.warning);
     report["field"] = selected.scalar.name;
+    if (!options.density && !options.field && mesh.attributes.size() > 1 && selected.warning.empty()) {
+        report.note(text("drawing ", selected.scalar.name, " (of ", mesh.attributes.size(), " fields; --field chooses)"));
+    }
     std::vector<Attribute> chosen{std::move(selected.scalar)};
     if (second && *second != chosen.front().name) chosen.push_back(select_field(mesh, second).scalar);
     mesh.attributes = std::move(chosen);

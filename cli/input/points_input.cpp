@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "grid_input.h"
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_points.h"
@@ -49,7 +50,8 @@ std::size_t find_channel(const RbfVolume& volume, const std::string& name, const
     if (found != volume.channels.end()) return static_cast<std::size_t>(found - volume.channels.begin());
     std::vector<std::string> names;
     for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
-    throw Error(ErrorCode::InvalidInput, "there is no field '" + name + "'", input, "it has: " + join(names));
+    throw Error(ErrorCode::InvalidInput, "there is no field '" + name + "'" + detail::did_you_mean(name, names), input,
+                "it has: " + join(names));
 }
 
 Range channel_range(const RbfVolume& volume, std::size_t channel) {

@@ -39,7 +39,7 @@ float most_opaque(const Image& image) {
 }  // namespace
 
 PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments)
-    : path_(path), frames_(frames), background_(parse_vector("--background", arguments.background)) {
+    : path_(path), frames_(frames), background_(arguments.background_color()) {
     if (!is_video(path_)) {
         check_output(path_, {".png", ".exr"});
     } else if (!frames_) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "grid_input.h"
 #include "input.h"
@@ -11,6 +13,7 @@
 #include "reference_pictures.h"
 #include "sampled_points.h"
 #include "splat_arguments.h"
+#include "subvol/boundary_shading.h"
 #include "subvol/error.h"
 #include "subvol/progressive.h"
 #include "subvol/render_tets.h"
@@ -68,7 +71,10 @@ public:
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
         options_ = splat_.options(method_ == "sheets");
+        picture_.settle_look(!holds_points(input_) && !is_vdb_file(input_) && !splat_.shade);
+        if (reference_.samples == 0) reference_.samples = picture_.look == Look::Solid ? 2 : 1;
         options_.samples = reference_.samples;
+        if (picture_.lit()) options_.shading = Shading{};
         check_reference();
         picture_.check();
         PictureOutput output(output_, picture_.turntable_frames, picture_);
@@ -112,42 +118,64 @@ private:
         check_coordinates(mesh);
         if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
         const Box box = bounds(mesh);
-        const std::vector<View> views = picture_.make_views(box);
+        const std::vector<View> views = picture_.make_views(box, mesh.points);
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
         const Optics optics = picture_.make_optics(box, range, colors);
         if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-            draw_tetrahedra(fine, views, optics, output, report);
+            draw_tetrahedra(fine, boundary_of(mesh, report), views, optics, output, report);
         } else if (method_ == "dense") {
             const RefineOptions refine = refine_.options(0, report);
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_dense(mesh, refine, refine_.levels, view, optics, reference_, progress, report);
             };
-            output.write(views, draw, report);
+            output.write(views, lit(draw, boundary_of(mesh, report)), report);
         } else if (splat_.seconds) {
             splat_in_time(mesh, views.front(), optics, output, report);
         } else {
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
-        picture_.write_legend(optics, mesh.attributes.front().name, colors, report);
+        picture_.write_legend(optics, mesh.attributes.back().name, colors, report);
     }
 
-    void draw_tetrahedra(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
-                         Report& report) const {
+    using Draw = std::function<Picture(const View&, Progress*)>;
+
+    /// The surface that is lit, if there is light.
+    [[nodiscard]] Surface boundary_of(const HexMesh& mesh, Report& report) const {
+        if (!picture_.lit()) return {};
+        if (picture_.look != Look::Solid) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " lights the boundary only", "--look isosurface",
+                        "use --method splat or sheets, or --tf isosurface for surfaces without light");
+        }
+        return sample_rbf_points(mesh, sample_.options(bounds(mesh), refine_.options(0, report))).volume.boundary;
+    }
+
+    /// The same pictures with light on the boundary; the methods themselves know none.
+    [[nodiscard]] Draw lit(const Draw& draw, Surface boundary) const {
+        if (!picture_.lit()) return draw;
+        return [this, draw, boundary = std::move(boundary)](const View& view, Progress* progress) {
+            Picture picture = draw(view, progress);
+            light_boundary(picture.image, boundary, view, Shading{}, reference_.samples);
+            return picture;
+        };
+    }
+
+    void draw_tetrahedra(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
+                         PictureOutput& output, Report& report) const {
         if (method_ == "pt") {
             ProjectedRenderer renderer(mesh, {}, splat_.device);
             report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_projected_tets(renderer, view, optics, reference_, splat_.seconds, progress, report);
             };
-            output.write(views, draw, report);
+            output.write(views, lit(draw, boundary), report);
         } else {
             const TetsRenderer renderer(mesh);
             report.add_seconds("prepare", renderer.seconds_build());
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_tets(renderer, view, optics, reference_, progress, report);
             };
-            output.write(views, draw, report);
+            output.write(views, lit(draw, boundary), report);
         }
     }
 
@@ -185,7 +213,7 @@ private:
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
         splat(volume, views, optics, output, report);
-        picture_.write_legend(optics, volume.channels.front().name, colors, report);
+        picture_.write_legend(optics, volume.channels.back().name, colors, report);
     }
 
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
@@ -194,7 +222,7 @@ private:
         const auto draw = [&](const View& view, Progress* progress) {
             SplatResult drawn = splatter.draw(view, optics, progress);
             report["method"] = method_;
-            report_splats(drawn.report, splat_, report);
+            report_splats(drawn.report, report);
             return Picture{std::move(drawn.image), std::move(drawn.depth)};
         };
         output.write(views, draw, report);
@@ -207,7 +235,7 @@ private:
             ProgressiveResult drawn = render_progressively(
                 mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
             report["method"] = method_;
-            report_splats(drawn.splat.report, splat_, report);
+            report_splats(drawn.splat.report, report);
             report["points"] = drawn.splat.report.points;
             report["steps"] = drawn.steps;
             report["picture_scale"] = drawn.picture_scale;

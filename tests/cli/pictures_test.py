@@ -5,6 +5,7 @@ import os
 import shutil
 import subprocess
 import unittest
+import zlib
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -144,6 +145,50 @@ class Cameras(Pictures):
         (self.folder / "camera.json").write_text('{"eye": [0, -9, 0], "target": [0, 0, 0], "ortho_height": 50}')
         given = self.pixels_that_are_not_black("--camera", "camera.json", "--ortho", "--tf", "constant")
         self.assertLess(given[0], 30)
+
+
+class Looks(Pictures):
+    def corner(self, name):
+        """The first pixel of a PNG, whose rows are filtered by nothing or by differences: the same as its first bytes."""
+        data = self.bytes_of(name)
+        at, packed = 8, b""
+        while at < len(data):
+            size, kind = int.from_bytes(data[at:at + 4], "big"), data[at + 4:at + 8]
+            packed += data[at + 8:at + 8 + size] if kind == b"IDAT" else b""
+            at += size + 12
+        return tuple(zlib.decompress(packed)[1:4])
+
+    def test_a_mesh_is_a_solid_on_grey_unless_colours_are_given(self):
+        self.assertEqual(self.render("-o", "solid.png").code, 0)
+        self.assertEqual(self.render("-o", "same.png", "--look", "solid").code, 0)
+        self.assertEqual(self.bytes_of("solid.png"), self.bytes_of("same.png"))
+        self.assertGreater(min(self.corner("solid.png")), 200)
+        self.assertEqual(self.render("-o", "volume.png", "--tf", "viridis").code, 0)
+        self.assertEqual(self.corner("volume.png"), (0, 0, 0))
+        self.assertEqual(self.render("-o", "xray.png", "--look", "xray").code, 0)
+        self.assertEqual(self.corner("xray.png"), (255, 255, 255))
+
+    def test_all_methods_light_a_solid_alike(self):
+        for method in ["splat", "dense", "tets"]:
+            done = self.render("-o", method + ".exr", "--method", method, size="96")
+            self.assertEqual(done.code, 0, done.err)
+        for method in ["dense", "tets"]:
+            psnr = self.run_ok("compare", "splat.exr", method + ".exr", "--json").json()["psnr"]
+            # Outlines of a coarse ball differ between the limit and its mesh of level 1.
+            self.assertGreater(psnr, 28, method)
+
+    def test_backgrounds(self):
+        for background, color in [("#ff8000", (255, 128, 0)), ("white", (255, 255, 255)), ("1,0,0", (255, 0, 0))]:
+            self.assertEqual(self.render("-o", "a.png", "--background", background).code, 0)
+            self.assertEqual(self.corner("a.png"), color)
+        for background, naming in [("2,0,0", "0..1"), ("#12", "#rrggbb"), ("wite", "did you mean white?"), ("1,2", "three numbers")]:
+            done = self.render("-o", "b.png", "--background", background)
+            self.assertEqual((done.code, naming in done.err), (2, True), done.err)
+
+    def test_unknown_names_are_answered_with_the_nearest(self):
+        self.assertIn("did you mean plasma?", self.render("-o", "a.png", "--tf", "plasme").err)
+        self.assertIn("did you mean density?", self.render("-o", "a.png", "--field", "Densty").err)
+        self.assertEqual(self.render("-o", "a.png", "--look", "nothing").code, 2)
 
 
 class Legends(Pictures):

@@ -37,7 +37,7 @@ class Splats(InFolder):
         return bool(self.run_ok("info", "--gl", "--json").json()["gl"])
 
     def test_light_changes_colours_but_no_opacity(self):
-        self.render("plain.exr", "--backend", "cpu")
+        self.render("plain.exr", "--backend", "cpu", "--look", "volume")
         self.render("lit.exr", "--backend", "cpu", "--shade")
         self.assertGreater(self.difference("plain.exr", "lit.exr"), 0.05)
         self.render("alpha.exr", "--backend", "cpu", "--shade", "--opacity", "0%:0,100%:0")
@@ -51,7 +51,7 @@ class Splats(InFolder):
         self.assertEqual(self.difference("same.exr", "one.exr"), 0)
         (self.folder / "two.vtk").write_text(TWO_FIELDS)
         for name, options in [("xx", ["--field", "x"]), ("xz", ["--field", "x", "--color-field", "z"]), ("zz", ["--field", "z"])]:
-            self.render(name + ".exr", "--backend", "cpu", "--view", "-y", *options, source="two.vtk")
+            self.render(name + ".exr", "--backend", "cpu", "--view", "-y", "--look", "volume", *options, source="two.vtk")
         self.assertGreater(self.difference("xx.exr", "xz.exr"), 0.05)
         self.assertGreater(self.difference("xz.exr", "zz.exr"), 0.05)
         done = subvol("render", "model:ball:4", "-o", "x.png", "--color-field", "nowhere", folder=self.folder)
@@ -91,11 +91,11 @@ class Splats(InFolder):
     def test_faces_are_left_out_and_counted(self):
         if not self.has_gl():
             self.skipTest("no OpenGL 4.5 through EGL")
-        self.render("tets.exr", "--method", "tets")
+        self.render("tets.exr", "--method", "tets", "--look", "volume")
         last = 1
         for lod in 0, 0.1, 0.5, 1:
             report = self.run_ok("render", "model:ball:4", "-o", "pt.exr", *SMALL, "--method", "pt", "--order", "havs",
-                                 "--kbuffer", "8", "--lod", lod, "--json").json()
+                                 "--kbuffer", "8", "--look", "volume", "--lod", lod, "--json").json()
             rmse = self.run_ok("compare", "tets.exr", "pt.exr", "--json").json()["rmse"]
             self.assertLess(rmse, last)
             self.assertEqual(report["faces_drawn"] == report["faces"], lod == 1)
