@@ -115,6 +115,11 @@ void PictureArguments::add_camera_to(CLI::App& app) {
     app.add_option("--view", view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
         ->type_name("SIDE")
         ->excludes(place);
+    app.add_option("--views", views, "4: one picture of four, from the front, the side, above and iso")
+        ->type_name("N")
+        ->check(CLI::IsMember({4}))
+        ->excludes("--view")
+        ->excludes(place);
     app.add_flag("--fit", fit, "move the camera along its line of sight until the whole box is in the picture");
     app.add_flag("--ortho", orthographic,
                  "use an orthographic camera, as high as the box needs or as the JSON file's ortho_height");
@@ -192,10 +197,21 @@ Camera PictureArguments::make_camera(const Box& box, std::span<const Vec3> point
 std::vector<View> PictureArguments::make_views(const Box& box, std::span<const Vec3> points) const {
     const auto [width, height] = parse_size("--size", size);
     const Camera first = make_camera(box, points, static_cast<double>(width) / height);
+    if (views) return make_sheet(box, points, width / 2, height / 2);
     if (!turntable_frames) return {View(first, width, height)};
     std::vector<View> views;
     for (const Camera& frame : turntable(first, box.center(), *turntable_frames)) views.emplace_back(frame, width, height);
     return views;
+}
+
+std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const {
+    std::vector<View> sheet;
+    for (const char* side : {"-y", "+x", "+z", "iso"}) {
+        PictureArguments one = *this;
+        one.view = side;
+        sheet.emplace_back(one.make_camera(box, points, static_cast<double>(width) / height), width, height);
+    }
+    return sheet;
 }
 
 Range PictureArguments::shown_range(const Range& field) const {
@@ -236,6 +252,10 @@ void PictureArguments::check() const {
     (void)parse_camera(camera.value_or(view), any, static_cast<double>(width) / height);
     (void)find_transfer_function(colors_name(), {0, 1}, false);
     (void)background_color();
+    if (views && (width % 2 != 0 || height % 2 != 0)) {
+        throw Error(ErrorCode::InvalidInput, "a sheet of four views has quarters of whole pixels", "--size " + size,
+                    "an even width and height");
+    }
     if (legend) check_output(*legend, {".svg"});
 }
 

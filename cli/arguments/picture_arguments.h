@@ -54,6 +54,7 @@ struct PictureArguments {
     std::string size = "512x512";
     std::optional<std::string> camera;
     std::string view = "iso";
+    std::optional<int> views;  // 4: a sheet of front, side, top and iso
     bool fit = false;
     bool orthographic = false;
     std::optional<int> turntable_frames;
@@ -76,7 +77,8 @@ struct PictureArguments {
     [[nodiscard]] bool lit() const { return look == Look::Solid || look == Look::Isosurface; }
     [[nodiscard]] Vec3 background_color() const;
 
-    /// One view, or those of the turntable. points: of a body that is seen as a whole: a solid's named view is fitted to them
+    /// One view, or those of the turntable, or the four of a sheet, each a quarter of the picture. points: of a body that is
+    /// seen as a whole: a solid's named view is fitted to them
     [[nodiscard]] std::vector<View> make_views(const Box& box, std::span<const Vec3> points = {}) const;
     /// field, colors: the ranges of the field that gives the opacities and of the one that gives the colours, often the same
     [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
@@ -95,6 +97,7 @@ private:
     void add_camera_to(CLI::App& app);
     void add_light_to(CLI::App& app);
     [[nodiscard]] Camera make_camera(const Box& box, std::span<const Vec3> points, double aspect) const;
+    [[nodiscard]] std::vector<View> make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const;
     [[nodiscard]] std::string colors_name() const;
 };
 

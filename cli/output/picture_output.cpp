@@ -2,6 +2,7 @@
 #include "picture_output.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "outputs.h"
 #include "subvol/detail/stopwatch.h"
@@ -36,10 +37,22 @@ float most_opaque(const Image& image) {
     return most;
 }
 
+void warn_if_empty(float opacity, Report& report) {
+    constexpr float kLeastByte = 0.5F / 255;  // what is less is 0 in a .png
+    if (opacity == 0) {
+        report.warn("the picture is empty: no pixel is hit where the volume is opaque (--fit, --view, --opacity, --samples)");
+    } else if (opacity < kLeastByte) {
+        report.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity,
+                         " (a shorter --opacity-unit makes the volume more opaque)"));
+    }
+}
+
 }  // namespace
 
 PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments)
-    : path_(path), frames_(frames), background_(arguments.background_color()) {
+    : path_(path), frames_(frames), sheet_(arguments.views.has_value()), background_(arguments.background_color()) {
+    if (sheet_ && frames_)
+        throw Error(ErrorCode::InvalidInput, "a sheet of views does not turn", "--views", "--turntable alone");
     if (!is_video(path_)) {
         check_output(path_, {".png", ".exr"});
     } else if (!frames_) {
@@ -49,8 +62,34 @@ PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames,
     }
 }
 
+void PictureOutput::write_sheet(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
+                                Report& report) {
+    const int width = views.front().width(), height = views.front().height();
+    Picture sheet{Image(2 * width, 2 * height), {}};
+    sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const Picture part = draw(views[i], report.progress());
+        const int left = static_cast<int>(i % 2) * width, top = static_cast<int>(i / 2) * height;
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                std::ranges::copy(part.image.pixel(x, y), sheet.image.pixel(left + x, top + y).begin());
+                if (part.depth.empty()) continue;
+                sheet.depth[static_cast<std::size_t>(top + y) * static_cast<std::size_t>(2 * width) +
+                            static_cast<std::size_t>(left + x)] =
+                    part.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+            }
+        }
+    }
+    warn_if_empty(most_opaque(sheet.image), report);
+    const detail::Stopwatch watch;
+    write_frame(0, sheet);
+    report.add_seconds("write", watch.seconds());
+    report["output"] = frame_path(0).string();
+}
+
 void PictureOutput::write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
                           Report& report) {
+    if (sheet_) return write_sheet(views, draw, report);
     float opacity = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
         FrameProgress of_frame(report.progress(), i, views.size());
@@ -62,13 +101,7 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
         write_frame(i, picture);
         report.add_seconds("write", watch.seconds());
     }
-    constexpr float kLeastByte = 0.5F / 255;  // what is less is 0 in a .png
-    if (opacity == 0) {
-        report.warn("the picture is empty: no pixel is hit where the volume is opaque (--fit, --view, --opacity, --samples)");
-    } else if (opacity < kLeastByte) {
-        report.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity,
-                         " (a shorter --opacity-unit makes the volume more opaque)"));
-    }
+    warn_if_empty(opacity, report);
     report["output"] = frame_path(0).string();
     if (!frames_) return;
     report["frames"] = *frames_;

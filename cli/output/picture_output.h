@@ -36,10 +36,13 @@ public:
 
 private:
     [[nodiscard]] std::filesystem::path frame_path(std::size_t frame) const;
+    void write_sheet(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
+                     Report& report);
     void write_frame(std::size_t frame, const Picture& picture);
 
     std::filesystem::path path_;
     std::optional<int> frames_;
+    bool sheet_;  // four views in one picture
     Vec3 background_;
     std::optional<VideoFile> video_;
 };

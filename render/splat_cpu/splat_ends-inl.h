@@ -161,6 +161,8 @@ private:
         const auto along_row = hn::MulAdd(hn::Set(d, s.root_xx), at.x, hn::Mul(hn::Set(d, s.root_xy), at.y));
         at.e = hn::MulAdd(along_row, along_row,
                           hn::MulAdd(across_row, across_row, hn::Mul(hn::Mul(at.zs, at.zs), hn::Set(d, s.inv_szz))));
+        // Far outside a flat kernel e overflows; beyond 1 its weight is 0 anyway.
+        at.e = hn::Min(at.e, hn::Set(d, 4.0f));
         general_.add_block(id, s, at, b.sums);
     }
 

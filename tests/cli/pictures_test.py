@@ -177,6 +177,15 @@ class Looks(Pictures):
             # Outlines of a coarse ball differ between the limit and its mesh of level 1.
             self.assertGreater(psnr, 28, method)
 
+    def test_four_views_in_one_picture(self):
+        self.assertEqual(self.render("-o", "sheet.exr", "--views", 4, size="64x48").code, 0)
+        for view, name in [("-y", "front"), ("iso", "iso")]:
+            self.assertEqual(self.render("-o", name + ".exr", "--view", view, size="32x24").code, 0)
+        done = self.render("-o", "odd.png", "--views", 4, size="33x24")
+        self.assertEqual((done.code, "even" in done.err), (2, True), done.err)
+        self.assertEqual(self.render("-o", "b.png", "--views", 4, "--turntable", 2).code, 2)
+        self.assertEqual(self.render("-o", "b.png", "--views", 3).code, 2)
+
     def test_backgrounds(self):
         for background, color in [("#ff8000", (255, 128, 0)), ("white", (255, 255, 255)), ("1,0,0", (255, 0, 0))]:
             self.assertEqual(self.render("-o", "a.png", "--background", background).code, 0)

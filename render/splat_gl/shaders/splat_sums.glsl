@@ -171,6 +171,7 @@ void add_at(int k, uint j, vec2 d, float zs, float e_here, float v_here) {
     vec2 gradient = gradients[j];
     precise float across_row = shape.z * d.y, along_row = fma(shape.x, d.x, shape.y * d.y);
     precise float e = fma(along_row, along_row, fma(across_row, across_row, e_here));
+    if (!(e <= 4.0)) return;  // far outside a flat kernel it overflows; beyond 1 the weight is 0
     precise float v = fma(shape.w, e, fma(gradient.x, d.x, fma(gradient.y, d.y, v_here)));
 #if GENERAL
     precise vec3 offset = vec3(d, zs);

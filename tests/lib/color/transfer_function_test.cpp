@@ -88,6 +88,19 @@ TEST(Preset, ColoursAreThePublishedOnes) {
     expect_color(viridis, 90, {0.182256, 0.426184, 0.557120}, kPromised);
     expect_color(viridis, 128, {0.127568, 0.566949, 0.550556}, kPromised);
     expect_color(viridis, 192, {0.369214, 0.788888, 0.382914}, kPromised);
+    // Ends and middles of the published maps; polynomials are right to 1/50 there.
+    constexpr double kPolynomial = 0.02;
+    const auto near = [&](const char* name, double value, const Vec3& srgb) {
+        expect_color(Optics(transfer_function_preset(name, 0, 255), 1), value, srgb, kPolynomial);
+    };
+    near("plasma", 0, {0.050383, 0.029803, 0.527975});
+    near("plasma", 255, {0.940015, 0.975158, 0.131326});
+    near("inferno", 0, {0.001462, 0.000466, 0.013866});
+    near("inferno", 128, {0.735683, 0.215906, 0.330245});
+    near("cividis", 128, {0.488697, 0.485318, 0.471008});
+    // The polynomials of turbo are right to 1/15 where it is steep, and to 1/7 at its dark ends, where the table has kinks.
+    expect_color(Optics(transfer_function_preset("turbo", 0, 255), 1), 128, {0.644, 0.99, 0.2336}, 0.07);
+    expect_color(Optics(transfer_function_preset("turbo", 0, 255), 1), 0, {0.18995, 0.07176, 0.23217}, 0.15);
     const Optics bone(transfer_function_preset("bone", 0, 63), 1);
     expect_color(bone, 0, {0, 0, 0}, 1e-9);
     expect_color(bone, 1, {1 / 72.0, 1 / 72.0, 1.391304 / 72}, kPromised);  // (7 grey + reversed hot) / 8 of 64 entries
@@ -137,7 +150,8 @@ TEST(Preset, ConstantFieldLiesInTheMiddle) {
 }
 
 TEST(Preset, NamesThoseThatExist) {
-    expect_error(kInvalid, "viridis, coolwarm", [] { (void)transfer_function_preset("jet", 0, 1); });
+    expect_error(kInvalid, "viridis, plasma", [] { (void)transfer_function_preset("jet", 0, 1); });
+    expect_error(kInvalid, "did you mean turbo?", [] { (void)transfer_function_preset("Turbo", 0, 1); });
     expect_error(kInvalid, "range", [] { (void)transfer_function_preset("grey", 1, 0); });
     expect_error(kInvalid, "range", [] { (void)transfer_function_preset("grey", NAN, 0); });
 }
