@@ -117,7 +117,7 @@ struct Splatter::State {
                                            SplatReport& report) {
         const detail::Stopwatch watch;
         detail::prepare_frame(frame, scene, view, classification, options.sheets, progress);
-        if (scene.half_weight == 0) detail::find_interval_ends(frame);
+        detail::find_interval_ends(frame);
         report.sheets = frame.sheets.count;
         report.seconds_prepare += watch.seconds();
         report.backend = sheets ? "gl" : "cpu";

@@ -28,6 +28,8 @@ inline constexpr float kSplatCutoff = 1e-4f;
 inline constexpr float kFarCells = 1e12f;
 /// Stands for a value that is not known.
 inline constexpr float kUnknownValue = 3e38f;
+/// Kernels with larger numbers in eye space are not summed at the ends of intervals: their squares would overflow.
+inline constexpr float kMostOfKernel = 1e18f;
 /// A stretch of a higher optical depth is composited in steps, as its front hides its back.
 inline constexpr float kThickDepth = 0.5f;
 /// The part of that depth at which steps aim, so that rounding does not decide whether a step is thin enough.

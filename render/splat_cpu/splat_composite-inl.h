@@ -174,6 +174,9 @@ private:
         auto x1 = hn::IfThenElse(hn::Eq(to, back), x_back, hn::MulAdd(slope, hn::Sub(to, front), x_front));
         x0 = hn::IfThenElse(at_enter, enter_x, hn::IfThenElse(on_sheet, x0, exit_x));
         x1 = hn::IfThenElse(at_exit, exit_x, hn::IfThenElse(on_sheet, x1, enter_x));
+        // Values that are not known would lead to NaN in lanes without light.
+        x0 = hn::IfThenElseZero(seen, x0);
+        x1 = hn::IfThenElseZero(seen, x1);
         if (classifier_.transparent(seen, x0, x1)) return;
 
         Floats mean[4];

@@ -44,6 +44,7 @@ HWY_EXPORT(find_ends);
 
 void find_interval_ends(SplatFrame& frame) {
     frame.ends.assign(frame.intervals.depths.size(), {});
+    if (frame.ends.empty()) return;
     tbb::parallel_for(tbb::blocked_range<int>(0, frame.tiles_x * frame.tiles_y, 1), [&](const auto& range) {
         for (int tile = range.begin(); tile < range.end(); ++tile) HWY_DYNAMIC_DISPATCH(find_ends)(frame, tile, frame.ends);
     });

@@ -6,7 +6,7 @@
 
 namespace subvol::detail {
 
-/// Finds the values where rays enter and leave the volume. The frame has a boundary.
+/// Finds the values where rays enter and leave the volume, which draw_splats_cpu needs. Nothing without a boundary.
 void find_interval_ends(SplatFrame& frame);
 
 /// Draws a frame on all threads of the CPU, tile by tile.

@@ -114,8 +114,7 @@ private:
     HWY_ATTR void add_kernel(std::uint32_t id) {
         const EyeSplat& s = frame_.kernels.splats[id];
         const float reach = 1.0f / std::sqrt(s.inv_szz), front = s.depth - reach, back = s.depth + reach;
-        const bool definite = s.root_xx < kUnknownValue && s.root_xy < kUnknownValue && s.root_yy < kUnknownValue;  // not NaN
-        if (!(front <= high_ && back >= low_) || !definite) return;
+        if (!(front <= high_ && back >= low_) || !usable(id)) return;
         const auto half = [&](float extent, float shear) { return std::sqrt(extent * extent + shear * reach * shear * reach); };
         const float hx = half(s.extent_x, s.shear_x), hy = half(s.extent_y, s.shear_y);
         const float near = std::max(front, low_), far = std::min(back, high_);
@@ -130,6 +129,19 @@ private:
                 add_to_block(id, s, static_cast<std::size_t>(row), static_cast<std::size_t>(column), b);
             }
         }
+    }
+
+    /// Whether the numbers of a kernel are such that its sums are finite at any depth. They are not if it is so flat that
+    /// rounding made its frame indefinite, or infinitely thin.
+    [[nodiscard]] bool usable(std::uint32_t id) const {
+        const EyeSplat& s = frame_.kernels.splats[id];
+        bool all = true;
+        for (const float v : {s.inv_szz, s.shear_x, s.shear_y, s.root_xx, s.root_xy, s.root_yy, s.value_slope}) {
+            all = all && std::abs(v) < kMostOfKernel;  // false for NaN
+        }
+        if (frame_.scene->form != KernelForm::Separable) return all;
+        for (const float v : frame_.kernels.axes[id].rows) all = all && std::abs(v) < kMostOfKernel;
+        return all;
     }
 
     /// The blocks that an interval of eye space meets between two depths, with a pixel more on each side.
@@ -201,14 +213,16 @@ private:
         }
     }
 
-    /// The opacity of a stretch as long as a pixel is wide: the boundary is a surface as far as the volume is opaque there.
+    /// How much the boundary is a surface: not at all if a stretch as long as a pixel is wide lets half of the light through or
+    /// more, wholly if it lets none through.
     HWY_ATTR Floats cover_of_pixel(Floats x, Floats depth) const {
         const Lanes d;
         const auto pixel = hn::Set(d, static_cast<float>(view_.pixel()));
         const auto across = view_.perspective() ? hn::Add(hn::Set(d, frame_.sheets.middle), depth) : hn::Set(d, 1.0f);
         Floats mean[4];
         classifier_.middle(x, mean);
-        return hn::Sub(hn::Set(d, 1.0f), hn::Exp(d, hn::Neg(hn::Mul(hn::Mul(pixel, across), mean[0]))));
+        const auto passes = hn::Exp(d, hn::Neg(hn::Mul(hn::Mul(pixel, across), mean[0])));
+        return hn::Max(hn::NegMulAdd(hn::Set(d, 2.0f), passes, hn::Set(d, 1.0f)), hn::Zero(d));
     }
 
     HWY_ATTR Light light_in(std::size_t block, const Block& b, Floats scale) const {

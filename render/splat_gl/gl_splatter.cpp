@@ -58,8 +58,9 @@ std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
            line("kCells", std::to_string(PreintegratedTable::kCells)) +
            line("kLeastWeight", decimal(static_cast<float>(kLeastWeight))) + line("kNearValues", decimal(kNearValues)) +
            line("kSplatCutoff", decimal(kSplatCutoff)) + line("kFarCells", decimal(kFarCells)) +
-           line("kThickDepth", decimal(kThickDepth)) + line("kAimedDepth", decimal(kAimedDepth)) +
-           line("kOpaqueDepth", decimal(kOpaqueDepth)) + line("kSkin_px", decimal(kSkin_px));
+           line("kMostOfKernel", decimal(kMostOfKernel)) + line("kThickDepth", decimal(kThickDepth)) +
+           line("kAimedDepth", decimal(kAimedDepth)) + line("kOpaqueDepth", decimal(kOpaqueDepth)) +
+           line("kSkin_px", decimal(kSkin_px));
 }
 
 template <class T>

@@ -81,9 +81,9 @@ bool see_boundary(inout Beam beam, End end, float enter, float exit, float ray_l
     return true;
 }
 
-// Light at the end where a ray enters: the boundary is a surface as far as the volume is opaque there within a pixel.
+// Light at the end where a ray enters: the boundary is a surface if the volume is more than half opaque there within a pixel.
 vec2 light_at_entry(float x, vec2 inside, vec2 boundary, float pixel_world) {
     Place at = place_of(x);
-    precise float cover = 1.0 - exp_of(-(pixel_world * max(means(at, at).x, 0.0)));
+    precise float cover = max(1.0 - 2.0 * exp_of(-(pixel_world * max(means(at, at).x, 0.0))), 0.0);
     return fma(vec2(cover), boundary - inside, inside);
 }

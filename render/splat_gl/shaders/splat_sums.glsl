@@ -207,6 +207,21 @@ void add_kernel(uint j, uint met, int first_sheet) {
 }
 
 #if !UNBOUNDED
+bool is_usable(float v) { return abs(v) < kMostOfKernel; }  // false for NaN
+
+// Whether a kernel's sums are finite at any depth: not if it is so flat that rounding made its frame indefinite.
+bool usable(Splat s, uint id) {
+    bool all = is_usable(s.place.w) && is_usable(s.shape.x) && is_usable(s.shape.y) && is_usable(s.shape.z) &&
+               is_usable(s.shape.w) && is_usable(s.slope.x) && is_usable(s.rest.x);
+#if SEPARABLE
+    for (uint a = 0u; a < 3u; ++a) {
+        vec3 row = splat_extras[id * kExtras + kAxesAt + a].xyz;
+        all = all && is_usable(row.x) && is_usable(row.y) && is_usable(row.z);
+    }
+#endif
+    return all;
+}
+
 // Puts kernels `first` to `end` into shared memory for sums at depths that differ from pixel to pixel.
 void stage_whole(uint first, uint end) {
     barrier();  // until the last chunk is not used any more
@@ -214,8 +229,7 @@ void stage_whole(uint first, uint end) {
         uint id = bin_splats[first + j];
         Splat s = splats[id];
         places[j] = s.place;
-        // Rounding may have made a flat frame indefinite: its roots are not numbers.
-        if (!(s.shape.z < 3e38 && s.shape.w < 3e38 && s.slope.x < 3e38)) places[j].w = 3e38;
+        if (!usable(s, id)) places[j].w = 3e38;
         slopes[j] = vec4(s.shape.xy, s.slope.y, s.rest.x);
         shapes[j] = vec4(s.shape.zw, s.slope.x, s.rest.y);
         gradients[j] = s.slope.zw;

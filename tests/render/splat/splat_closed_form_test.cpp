@@ -168,7 +168,7 @@ TEST(SplatClosedForm, ACavityIsEmptySeenFromOutsideAndFromWithin) {
     const RbfVolume volume = hollow_box();
     const auto outside = render_splats(
         volume, View({.eye = {1.5, -3, 1.5}, .target = {1.5, 0, 1.5}, .up = {0, 0, 1}, .ortho_height = 3}, 31, 31), optics,
-        {.method = SplatMethod::Cpu});
+        {.method = SplatMethod::Cpu, .sheets = 200});
     // Two walls of length 1 in the middle, three cells beside it.
     EXPECT_NEAR(outside.image.pixel(15, 15)[3], .75, 5e-6);
     EXPECT_NEAR(outside.image.pixel(5, 15)[3], .875, 5e-6);
@@ -178,7 +178,7 @@ TEST(SplatClosedForm, ACavityIsEmptySeenFromOutsideAndFromWithin) {
     EXPECT_NEAR(outside.depth[15 * 31 + 15], (.5 * (3 + mean) + .25 * (5 + mean)) / .75, 2e-5);
     const auto within =
         render_splats(volume, View({.eye = {1.5, 1.5, 1.5}, .target = {1.5, 3, 1.5}, .up = {0, 0, 1}, .fovy_deg = 30}, 31, 31),
-                      optics, {.method = SplatMethod::Cpu});
+                      optics, {.method = SplatMethod::Cpu, .sheets = 200});
     EXPECT_NEAR(within.image.pixel(15, 15)[3], .5, 5e-6);
     EXPECT_NEAR(within.depth[15 * 31 + 15], .5 + mean, 2e-5);
 }

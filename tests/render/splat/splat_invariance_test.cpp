@@ -40,6 +40,7 @@ struct Frame {
     Frame(const RbfVolume& volume, const Optics& optics, const SplatOptions& options, const View& seen = test::view())
         : scene(detail::make_scene(volume, options)), classification(classify(scene, optics)), view(seen) {
         prepare_frame(frame, scene, view, classification, options.sheets, nullptr);
+        find_interval_ends(frame);
     }
     [[nodiscard]] detail::Drawn draw() const { return draw_splats_cpu(frame, nullptr); }
 };
@@ -99,6 +100,7 @@ TEST(SplatInvariance, TilesListTheirPointsInTheirOrder) {
         EXPECT_TRUE(std::is_sorted(at(0), at(1)));
         std::reverse(at(0), at(1));
     }
+    find_interval_ends(lists.frame);
     EXPECT_EQ(lists.draw().image.rgba, Frame(turned, smooth_optics(), {}).draw().image.rgba);
 }
 

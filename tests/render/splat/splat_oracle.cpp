@@ -220,7 +220,8 @@ private:
         const double diffuse = shading.ambient + shading.diffuse * 0.5 * (head + side);
         const double specular =
             shading.specular * 0.5 * (std::pow(head, shading.shininess) + std::pow(halfway, shading.shininess));
-        const double cover = 1 - std::exp(-optics_.extinction(s.value) * pixel_at(interval.depths[0]));
+        const double opacity = 1 - std::exp(-optics_.extinction(s.value) * pixel_at(interval.depths[0]));
+        const double cover = std::max(0.0, 2 * opacity - 1);
         s.diffuse += cover * (diffuse - s.diffuse);
         s.specular += cover * (specular - s.specular);
     }

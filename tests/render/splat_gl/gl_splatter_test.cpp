@@ -59,6 +59,7 @@ View inside() {
 Drawn draw_on_cpu(const detail::SplatScene& scene, const View& view, const detail::Classification& classification, int sheets) {
     detail::SplatFrame frame;
     detail::prepare_frame(frame, scene, view, classification, sheets, nullptr);
+    detail::find_interval_ends(frame);
     return detail::draw_splats_cpu(frame, nullptr);
 }
 
