@@ -110,6 +110,15 @@ class Grids(InFolder):
             off = self.run_ok("compare", "a.vdb", "mesh.vdb", "--json").json()
             self.assertLess(off["linf"], 1e-6, points)  # float values up to 2, and the rounding of positions in a .vdb
 
+    def test_the_extension_may_be_in_capitals(self):
+        self.run_ok("vdb", "model:ball:2", "-o", "a.vdb", "--resolution", 8)
+        self.run_ok("points", "model:ball:2", "-o", "p.vdb")
+        for name in ("a", "p"):
+            os.rename(self.folder / f"{name}.vdb", self.folder / f"{name.upper()}.VDB")
+        self.assertGreater(self.run_ok("info", "A.VDB", "--json").json()["grids"][0]["active_voxels"], 0)
+        self.assertGreater(self.run_ok("info", "P.VDB", "--json").json()["points"], 0)
+        self.run_ok("render", "A.VDB", "-o", "a.png", "--size", 16, "--backend", "cpu")
+
     def test_refusals(self):
         self.run_ok("points", "model:ball:2", "-o", "p.ply", "--quiet")
         for code, source, *arguments in [
