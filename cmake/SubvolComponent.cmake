@@ -15,6 +15,13 @@ function(subvol_component name)
   target_include_directories(${target}
     PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} TBB::tbb)
+  if(NOT BUILD_SHARED_LIBS) # the program that contains the library's code looks for the modules
+    target_link_options(${target} INTERFACE
+      $<INSTALL_INTERFACE:LINKER:-rpath,$<INSTALL_PREFIX>/${SUBVOL_MODULES_INSTALLED}>)
+    if(NOT PROJECT_IS_TOP_LEVEL)
+      target_link_options(${target} INTERFACE $<BUILD_INTERFACE:LINKER:-rpath,${SUBVOL_MODULES}>)
+    endif()
+  endif()
   install(TARGETS ${target} EXPORT subvolTargets-${name}
     ARCHIVE COMPONENT development
     LIBRARY COMPONENT command NAMELINK_COMPONENT development)
@@ -35,8 +42,6 @@ set(SUBVOL_LZ4 PkgConfig::liblz4)
 set(SUBVOL_LZMA LibLZMA::LibLZMA)
 set(SUBVOL_MUPARSER PkgConfig::muparser)
 set(SUBVOL_NANOVDB "")
-set(SUBVOL_NETCDF_LIBRARY PkgConfig::netcdf)
-set(SUBVOL_OPENIMAGEIO OpenImageIO::OpenImageIO)
 set(SUBVOL_OPENVDB OpenVDB::openvdb)
 set(SUBVOL_PUGIXML pugixml::pugixml)
 set(SUBVOL_ZLIB ZLIB::ZLIB)
@@ -93,6 +98,26 @@ function(subvol_room component name)
   subvol_warnings(${room})
   target_sources(subvol_${component} PRIVATE $<TARGET_OBJECTS:${room}>)
   set_property(GLOBAL APPEND PROPERTY SUBVOL_ROOMS_${component} ${CMAKE_CURRENT_SOURCE_DIR}/${name})
+endfunction()
+
+# subvol_module(COMPONENT ROOM NAME SOURCES file… LIBRARIES target…): a part of a room that uses a large library and is loaded when a
+# program needs it first (lib/base/include/subvol/detail/module.h). Programs and shared libraries find it by their RUNPATH. What it
+# calls of our static libraries is linked into it once more, and its symbols are hidden, so that the copies do not mix.
+function(subvol_module component room name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  set(target subvol_${name})
+  list(TRANSFORM ARG_SOURCES PREPEND ${room}/)
+  add_library(${target} MODULE ${ARG_SOURCES})
+  set_target_properties(${target} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY ${SUBVOL_MODULES}
+    INSTALL_RPATH "$<$<BOOL:${BUILD_SHARED_LIBS}>:$ORIGIN/..>" LINKER_LANGUAGE CXX)
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_include_directories(${target} PRIVATE $<TARGET_PROPERTY:subvol_${component}_${room},INCLUDE_DIRECTORIES>)
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+  target_compile_options(${target} PRIVATE ${SUBVOL_COLD})
+  subvol_warnings(${target})
+  add_dependencies(subvol_${component} ${target})
+  install(TARGETS ${target} LIBRARY DESTINATION ${SUBVOL_MODULES_INSTALLED} COMPONENT command)
 endfunction()
 
 # subvol_private_roots(TARGET COMPONENT…): the include roots of all rooms, for tests and benchmarks of private headers.

@@ -26,18 +26,13 @@ Headers, static libraries and CMake package of subvol::lib, subvol::vdb,
 subvol::render and subvol::compare.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsubvol-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libtbb-dev, libglm-dev, libhwy-dev, nlohmann-json3-dev, libpugixml-dev, libceres-dev, \
+# The modules, which programs with the static libraries load as well, are in the package of the command.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "subvol (= ${PROJECT_VERSION}), libtbb-dev, libglm-dev, libhwy-dev, nlohmann-json3-dev, libpugixml-dev, libceres-dev, \
 zlib1g-dev, liblzma-dev, liblz4-dev, libmuparser-dev, pkg-config")
-if(SUBVOL_NETCDF)
-  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libnetcdf-dev")
-endif()
 if(SUBVOL_VDB)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenvdb-dev, libboost-iostreams-dev")
 endif()
 if(SUBVOL_RENDER)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libembree-dev, libepoxy-dev")
-endif()
-if(SUBVOL_COMPARE)
-  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libopenimageio-dev, openimageio-tools")
 endif()
 include(CPack)

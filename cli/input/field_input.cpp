@@ -20,12 +20,6 @@ namespace {
 constexpr double kVoxels = 200;    // along the longest side: what the limit's tolerance is relative to, as of `vdb`
 constexpr double kMaxCells = 8e6;  // the field keeps them all
 
-std::string extension_of(const std::string& input) {
-    std::string extension = std::filesystem::path(input).extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 HexMesh refined(const HexMesh& mesh, const RefineArguments& refine, Report& report) {
     RefineOptions options = refine.options(0, report);
     if (refine.levels) return refine_reported(mesh, options, Vertices::OnTheLimit, report);
@@ -73,7 +67,7 @@ InputKind kind_of(const std::string& input) {
     const std::vector<std::string> meshes = readable_mesh_extensions();
     if (input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end()) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
-    return extension == ".vdb" ? InputKind::Grid : InputKind::Picture;
+    return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;
 }
 
 FieldInput load_field(const std::string& input, const CommonOptions& options, const RefineArguments& refine, const char* key,

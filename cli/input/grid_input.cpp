@@ -10,8 +10,14 @@
 
 namespace subvol::cli {
 
+std::string extension_of(const std::string& file) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
 bool is_vdb_file(const std::string& input) {
-    return std::filesystem::path(input).extension() == ".vdb";
+    return extension_of(input) == ".vdb";
 }
 
 VdbGrid load_grid(const std::string& input, const CommonOptions& options, Report& report) {

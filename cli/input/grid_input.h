@@ -9,7 +9,10 @@
 
 namespace subvol::cli {
 
-/// Whether the input is a `.vdb` file; it may contain points instead of grids.
+/// A file's extension in small letters, with the dot.
+[[nodiscard]] std::string extension_of(const std::string& file);
+
+/// Whether the input is a `.vdb` file, also if that is written in capitals; it may contain points instead of grids.
 [[nodiscard]] bool is_vdb_file(const std::string& input);
 
 /// Reads the float grid of a `.vdb` file that --field names, else the first. Puts "input", "field", and the number and

@@ -39,9 +39,9 @@ SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
 
 CaseResult run_case(const StudyCase& of, const CasePlace& place) {
     const StudyKind kind = method_kind(of.text("method"));
-    if (kind == StudyKind::Picture) return run_picture_case(of, place);
+    if (kind == StudyKind::Pictures) return run_picture_case(of, place);
     const detail::Stopwatch watch;
-    CaseResult result = kind == StudyKind::Field ? run_field_case(of) : run_kernel_case(of, place);
+    CaseResult result = kind == StudyKind::Fields ? run_field_case(of) : run_kernel_case(of, place);
     const double seconds = watch.seconds();
     result.costs = {
         {"seconds", seconds}, {"cpu_seconds", cpu_seconds()}, {"peak_bytes", static_cast<double>(peak_memory_bytes())}};

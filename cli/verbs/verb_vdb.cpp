@@ -214,7 +214,7 @@ private:
         const HexMesh first = frames.mesh(range.first);
         RasterizeOptions options = set_up(first, report);
         std::optional<RefinementTables> tables;
-        const int levels = options.limit ? limit_.level + 1 : options.refine.levels;
+        const int levels = options.limit ? finest_level(limit_) : options.refine.levels;
         if (!refine_.crease_angle_deg &&
             std::ldexp(static_cast<double>(first.cells.size()), 3 * levels) <= kMostCellsOfTables) {
             tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
@@ -224,12 +224,14 @@ private:
             HexMesh mesh = frames.mesh(frame);
             const bool same = same_cells(first, mesh);
             options.tables = tables && same ? &*tables : nullptr;
-            LimitCells of_others;  // the first limit serves all meshes with the same cells
-            if (options.limit) {
-                if (!same) of_others = find_limit(mesh, options.refine, options.voxel_size_world, report);
-                options.limit = same ? &limit_ : &of_others;
-            }
             if (velocity_) add_velocity(frames.velocity(frame), mesh);
+            LimitCells of_frame;  // with tables the first limit serves all meshes with the same cells
+            if (options.limit && !options.tables && (velocity_ || frame > range.first)) {
+                of_frame = find_limit(mesh, options.refine, options.voxel_size_world, report);
+                options.limit = &of_frame;
+            } else if (options.limit) {
+                options.limit = &limit_;
+            }
             VdbOutput output = output_;
             output.path = with_number(output_.path, frame);
             std::vector<VdbGrid> grids = grids_of(mesh, options, report);
@@ -363,23 +365,13 @@ private:
         return std::max({size.x, size.y, size.z}) / resolution_;
     }
 
-    /// The finest level whose vertices count.
-    [[nodiscard]] static int finest_level(const LimitCells& limit) {
-        int levels = limit.level;
-        for (const int level : limit.cell_levels) levels = std::max(levels, level);
-        return levels;
-    }
-
-    /// The report's "levels" is the finest level, its "cells" the number of curved cells, 27 vertices each, or without any that
-    /// of the mesh's own cells.
+    /// The report's "levels" is the finest level, its "cells" the number of curved pieces, 27 vertices each.
     [[nodiscard]] static LimitCells find_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
                                                Report& report) {
         LimitCells limit = report.timed("limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
         const int levels = finest_level(limit);
-        std::size_t cells = limit.cell_levels.empty() ? mesh.cells.size() : 0;
-        for (const int level : limit.cell_levels) cells += std::size_t{1} << (3 * (level - 1));
         report["levels"] = levels;
-        report["cells"] = cells;
+        report["cells"] = limit.piece_count;
         report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};
         if (!limit.converged) {
             report.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",

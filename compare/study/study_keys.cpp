@@ -93,7 +93,7 @@ StudyValue read_value(const Json& json, const Key& key, const std::string& path)
         case KeyKind::Whole:
         case KeyKind::Number:
             return read_number(json, key, path);
-        case KeyKind::Kernel:
+        case KeyKind::KernelShape:
             return read_kernel(json, path);
         case KeyKind::Text:
             break;

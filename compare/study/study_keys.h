@@ -13,9 +13,9 @@ namespace subvol::detail {
 
 using Json = nlohmann::ordered_json;
 
-/// The type of a key's value. Whole: a whole number in [least, most]. Number: in (least, most]. Kernel: a kernel's name or
+/// The type of a key's value. Whole: a whole number in [least, most]. Number: in (least, most]. KernelShape: a kernel's name or
 /// JSON.
-enum class KeyKind { Switch, Whole, Number, Text, Kernel };
+enum class KeyKind { Switch, Whole, Number, Text, KernelShape };
 
 /// fallback: the value where the key is missing; none: the key stays absent
 /// choices:  of a text; empty: any text
@@ -33,8 +33,8 @@ struct StudyMethod {
     StudyKind kind;
     std::vector<Key> keys;
 
-    [[nodiscard]] bool needs_mesh() const { return kind != StudyKind::Kernel; }
-    [[nodiscard]] bool needs_view() const { return kind == StudyKind::Picture; }
+    [[nodiscard]] bool needs_mesh() const { return kind != StudyKind::Kernels; }
+    [[nodiscard]] bool needs_view() const { return kind == StudyKind::Pictures; }
 };
 
 [[nodiscard]] const std::vector<StudyMethod>& study_methods();

@@ -35,7 +35,7 @@ Key choice(const char* name, std::vector<std::string> choices) {
 }
 
 Key kernel(const std::optional<std::string>& fallback = {}) {
-    return {"kernel", KeyKind::Kernel, 0, 0, fallback ? std::optional<StudyValue>(*fallback) : std::nullopt};
+    return {"kernel", KeyKind::KernelShape, 0, 0, fallback ? std::optional<StudyValue>(*fallback) : std::nullopt};
 }
 
 std::vector<StudyMethod> make_methods() {
@@ -54,20 +54,20 @@ std::vector<StudyMethod> make_methods() {
                                     "separable_gaussian", "separable_table", "tucker", "radial_bound"}),
                    number("extent", 0, 3), flag("sign_slip"), whole("terms", 1, 6), whole("rank", 1, 16)};
     using enum StudyKind;
-    return {{"splat", Picture, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
-            {"sheets", Picture, splats},
-            {"tets", Picture, {level, samples, repeat}},
-            {"pt", Picture, {level, choice("order", {"topological", "centroid", "lists", "havs"}), repeat}},
-            {"dense", Picture, dense},
-            {"grid", Picture, {resolution, half, samples, repeat}},
-            {"field", Field, kernels + places + Keys{flag("every_second")}},
-            {"volume", Field, kernels + volume},
-            {"voxels", Field, Keys{resolution, half} + places},
-            {"values", Field, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
-            {"counts", Field, {whole("per_edge", 1, 64, 1.0)}},
-            {"errors", Kernel, {kernel("gaussian")}},
-            {"fit", Kernel, fit},
-            {"slice", Kernel, {kernel(), whole("pixels", 8, 2048, 385.0)}}};
+    return {{"splat", Pictures, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
+            {"sheets", Pictures, splats},
+            {"tets", Pictures, {level, samples, repeat}},
+            {"pt", Pictures, {level, choice("order", {"topological", "centroid", "lists", "havs"}), repeat}},
+            {"dense", Pictures, dense},
+            {"grid", Pictures, {resolution, half, samples, repeat}},
+            {"field", Fields, kernels + places + Keys{flag("every_second")}},
+            {"volume", Fields, kernels + volume},
+            {"voxels", Fields, Keys{resolution, half} + places},
+            {"values", Fields, {choice("rule", {"paper", "cubic", "samples"}), kernel("paper_bc")}},
+            {"counts", Fields, {whole("per_edge", 1, 64, 1.0)}},
+            {"errors", Kernels, {kernel("gaussian")}},
+            {"fit", Kernels, fit},
+            {"slice", Kernels, {kernel(), whole("pixels", 8, 2048, 385.0)}}};
 }
 
 }  // namespace

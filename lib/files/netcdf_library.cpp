@@ -4,17 +4,23 @@
 
 #ifdef SUBVOL_FOREIGN_NETCDF
 
-#include <netcdf.h>
-#include <netcdf_mem.h>
-
 #include <algorithm>
 #include <array>
 #include <mutex>
 #include <utility>
 
+#include "netcdf_functions.h"
+#include "subvol/detail/module.h"
+
 namespace subvol::detail {
 
 namespace {
+
+const NetcdfFunctions& library() {
+    using Entry = const NetcdfFunctions* (*)();
+    static const NetcdfFunctions& functions = *reinterpret_cast<Entry>(load_module("netcdf", "reading files of HDF5"))();
+    return functions;
+}
 
 constexpr std::size_t kMostOfDeflate = 1040;  // 1032, and some bytes for the blocks
 
@@ -41,15 +47,15 @@ public:
     Netcdf4(std::string_view bytes, std::string_view file) : lock_(library_mutex()), file_(file) {
         // The library takes a pointer to non-const, but does not change a file that is opened for reading.
         void* memory = const_cast<char*>(bytes.data());
-        check(nc_open_mem(std::string(file).c_str(), NC_NOWRITE, bytes.size(), memory, &id_));
+        check(library().open_mem(std::string(file).c_str(), NC_NOWRITE, bytes.size(), memory, &id_));
         try {
             read_catalog();
         } catch (...) {
-            nc_close(id_);
+            library().close(id_);
             throw;
         }
     }
-    ~Netcdf4() override { nc_close(id_); }
+    ~Netcdf4() override { library().close(id_); }
     Netcdf4(const Netcdf4&) = delete;
     Netcdf4& operator=(const Netcdf4&) = delete;
 
@@ -64,7 +70,7 @@ public:
             count *= counts[d];
         }
         std::string bytes(count, '\0');
-        if (count > 0) check(nc_get_vara(id_, variable.number, start.data(), counts.data(), bytes.data()));
+        if (count > 0) check(library().get_vara(id_, variable.number, start.data(), counts.data(), bytes.data()));
         return bytes;
     }
 
@@ -73,15 +79,15 @@ public:
 private:
     void read_catalog() {
         int count = 0;
-        check(nc_inq_nvars(id_, &count));
+        check(library().inq_nvars(id_, &count));
         for (int number = 0; number < count; ++number) read_variable(number);
-        check(nc_inq_ndims(id_, &count));
+        check(library().inq_ndims(id_, &count));
         std::vector<int> ids(static_cast<std::size_t>(count));
-        check(nc_inq_dimids(id_, &count, ids.data(), 0));
+        check(library().inq_dimids(id_, &count, ids.data(), 0));
         for (const int dimension : ids) {
             std::array<char, NC_MAX_NAME + 1> name{};
             std::size_t length = 0;
-            check(nc_inq_dim(id_, dimension, name.data(), &length));
+            check(library().inq_dim(id_, dimension, name.data(), &length));
             dimensions.emplace(name.data(), length);
         }
     }
@@ -92,12 +98,12 @@ private:
         nc_type type = NC_NAT;
         int rank = 0, attributes = 0;
         std::array<int, NC_MAX_VAR_DIMS> ids{};
-        check(nc_inq_var(id_, number, name.data(), &type, &rank, ids.data(), &attributes));
+        check(library().inq_var(id_, number, name.data(), &type, &rank, ids.data(), &attributes));
         const auto known = std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& pair) { return pair.first == type; });
         if (known == kTypes.end()) return;
         NetcdfVariable variable{.type = known->second, .characters = type == NC_CHAR, .number = number};
         for (int d = 0; d < rank; ++d) {
-            check(nc_inq_dimlen(id_, ids[static_cast<std::size_t>(d)], &variable.lengths.emplace_back()));
+            check(library().inq_dimlen(id_, ids[static_cast<std::size_t>(d)], &variable.lengths.emplace_back()));
         }
         for (int a = 0; a < attributes; ++a) read_attribute(variable, a);
         variables.emplace(name.data(), std::move(variable));
@@ -108,17 +114,17 @@ private:
         nc_type type = NC_NAT;
         std::size_t length = 0;
         constexpr std::size_t kLongest = 1 << 16;  // HDF5's own limit
-        check(nc_inq_attname(id_, variable.number, number, name.data()));
-        check(nc_inq_att(id_, variable.number, name.data(), &type, &length));
+        check(library().inq_attname(id_, variable.number, number, name.data()));
+        check(library().inq_att(id_, variable.number, name.data(), &type, &length));
         if (type != NC_CHAR || length > kLongest) return;
         std::string text(length, '\0');
-        check(nc_get_att_text(id_, variable.number, name.data(), text.data()));
+        check(library().get_att_text(id_, variable.number, name.data(), text.data()));
         variable.texts.emplace(name.data(), text);
     }
 
     void check(int status) const {
         if (status == NC_NOERR) return;
-        throw Error(ErrorCode::InvalidInput, "cannot be read: " + std::string(nc_strerror(status)), std::string(file_));
+        throw Error(ErrorCode::InvalidInput, "cannot be read: " + std::string(library().strerror(status)), std::string(file_));
     }
 
     std::scoped_lock<std::mutex> lock_;

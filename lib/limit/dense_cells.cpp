@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
+#include "cell_refiner.h"
 #include "dense_block.h"
 #include "patch.h"
 #include "refine_steps.h"
@@ -61,16 +63,21 @@ private:
 }  // namespace
 
 struct DenseCells::State {
-    State(const HexMesh& mesh, const RefineOptions& refinement, bool on_limit)
+    State(const HexMesh& mesh, const RefineOptions& refinement, bool on_limit, DenseBits bits)
         : control(detail::control_mesh(mesh, refinement.scheme, refinement.levels)),
-          source(control),
           options(refinement),
-          move(on_limit && !interpolates(refinement.scheme.kind)) {}
+          move(on_limit && !interpolates(refinement.scheme.kind)) {
+        if (bits == DenseBits::OfRefine) {
+            source.emplace(control);
+        } else {
+            refiner.emplace(control, refinement.scheme, on_limit);
+        }
+    }
 
     void refine_batch(std::span<const Index> cells, const detail::DenseBlock& block, int levels,
                       const std::function<void(const DenseCell&)>& visit) {
         const int last_layers = move ? 1 : 0;  // the limit of a vertex depends on the cells around it
-        detail::Patch patch = detail::refine_patch(source, cells, options.scheme, levels, last_layers);
+        detail::Patch patch = detail::refine_patch(*source, cells, options.scheme, levels, last_layers);
         if (move) patch.mesh = on_limit(std::move(patch.mesh), options.scheme.kind);
         Gather& gather = gathers.local();
         for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -81,14 +88,15 @@ struct DenseCells::State {
     }
 
     HexMesh control;
-    detail::PatchSource source;
+    std::optional<detail::PatchSource> source;   // of DenseBits::OfRefine
+    std::optional<detail::CellRefiner> refiner;  // of DenseBits::ToRounding
     RefineOptions options;
     bool move;
     tbb::enumerable_thread_specific<Gather> gathers;
 };
 
-DenseCells::DenseCells(const HexMesh& mesh, const RefineOptions& options, bool on_limit)
-    : state_(std::make_unique<State>(mesh, options, on_limit)) {
+DenseCells::DenseCells(const HexMesh& mesh, const RefineOptions& options, bool on_limit, DenseBits bits)
+    : state_(std::make_unique<State>(mesh, options, on_limit, bits)) {
 }
 DenseCells::~DenseCells() = default;
 DenseCells::DenseCells(DenseCells&&) noexcept = default;
@@ -106,6 +114,7 @@ void DenseCells::for_each(std::span<const Index> cells, int levels, const std::f
         throw Error(ErrorCode::InvalidInput, "there is no cell " + std::to_string(c), {},
                     "the mesh has " + std::to_string(count) + " cells");
     }
+    if (state_->refiner) return state_->refiner->for_each(cells, levels, state_->options.progress, visit);
     const detail::DenseBlock block(levels);
     const std::size_t most = batch_size(levels), at_least = std::max<std::size_t>(1, (cells.size() + most - 1) / most);
     const std::size_t batch = (cells.size() + at_least - 1) / at_least;  // of equal size, as they run side by side

@@ -237,6 +237,29 @@ void append_number(std::string& text, double value) {
     text += ' ';
 }
 
+// A section of entities that are lists of points, each followed by its reference.
+template <std::size_t N>
+void write_section(OutputFile& out, const std::string& keyword, const std::vector<std::array<Index, N>>& entities,
+                   const std::string& reference) {
+    out.write(keyword + "\n" + std::to_string(entities.size()) + "\n");
+    std::string line;
+    for (const auto& entity : entities) {
+        line.clear();
+        for (const Index p : entity) line += std::to_string(std::size_t{p} + 1) + ' ';
+        out.write(line += reference + "\n");
+    }
+}
+
+// Creases as ridges, as other programs have them, and sharp faces as a group: --sharp reads both.
+void write_sharp(OutputFile& out, const HexMesh& mesh) {
+    if (!mesh.creases.empty()) {
+        write_section(out, "Edges", mesh.creases, "1");
+        out.write("Ridges\n" + std::to_string(mesh.creases.size()) + "\n");
+        for (std::size_t r = 1; r <= mesh.creases.size(); ++r) out.write(std::to_string(r) + "\n");
+    }
+    if (!mesh.sharp_faces.empty()) write_section(out, "Quadrilaterals", mesh.sharp_faces, "1");
+}
+
 }  // namespace
 
 ReadResult read_medit(std::string_view text, std::string_view file, const ReadOptions& options) {
@@ -252,12 +275,8 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const He
         for (int i = 0; i < 3; ++i) append_number(line, x[i]);
         out.write(line += "0\n");
     }
-    out.write("Hexahedra\n" + std::to_string(mesh.cells.size()) + "\n");
-    for (const auto& cell : mesh.cells) {
-        line.clear();
-        for (const Index p : cell) line += std::to_string(std::size_t{p} + 1) + ' ';
-        out.write(line += "0\n");
-    }
+    write_section(out, "Hexahedra", mesh.cells, "0");
+    write_sharp(out, mesh);
     out.write("End\n");
     out.commit();
 
@@ -265,7 +284,9 @@ std::vector<std::string> write_medit(const std::filesystem::path& path, const He
     std::string names;
     for (const auto& attribute : mesh.attributes) names += (names.empty() ? "\"" : ", \"") + attribute.name + "\"";
     if (!names.empty()) warnings.push_back(".mesh cannot hold attributes: " + names + " not written");
-    if (!mesh.creases.empty()) warnings.push_back(counted(mesh.creases.size(), "crease", "creases") + " not written");
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {
+        warnings.push_back(sharp_counts(mesh) + " written as groups, which only --sharp 1 reads again");
+    }
     return warnings;
 }
 

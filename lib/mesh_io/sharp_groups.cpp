@@ -138,4 +138,10 @@ void add_sharp_tags(HexMesh& mesh, FileTags&& tags, const IndexRows* sources, st
     }
 }
 
+std::string sharp_counts(const HexMesh& mesh) {
+    const std::string creases = mesh.creases.empty() ? "" : counted(mesh.creases.size(), "crease", "creases");
+    const std::string faces = mesh.sharp_faces.empty() ? "" : counted(mesh.sharp_faces.size(), "sharp face", "sharp faces");
+    return creases + (creases.empty() || faces.empty() ? "" : " and ") + faces;
+}
+
 }  // namespace subvol::detail

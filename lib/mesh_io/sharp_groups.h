@@ -41,4 +41,7 @@ private:
 /// throws:  Error(InvalidInput) if a face is not one of a cell, or an edge is not on the boundary or on a sharp face
 void add_sharp_tags(HexMesh& mesh, FileTags&& tags, const IndexRows* sources, std::string_view file, const EntityNames& names);
 
+/// "2 creases and 1 sharp face"; for warnings of writers
+[[nodiscard]] std::string sharp_counts(const HexMesh& mesh);
+
 }  // namespace subvol::detail

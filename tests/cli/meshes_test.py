@@ -48,6 +48,41 @@ class Meshes(InFolder):
         refined = self.run_ok("subdivide", "a.mesh", "-o", "fine.mesh", "--weld", "--json").json()
         self.assertEqual((refined["points"], refined["cells"]), (45, 16))
 
+    def test_sharp_groups_divide_the_volume(self):
+        # Two cells with a bend between them, where the groups 4 (their common face) and 9 (an edge of it) are.
+        points = [(x, y, z + (x == 1)) for x in range(3) for z in (0, 1) for y in (0, 1)]
+        cells = ["1 5 6 2 3 7 8 4 0\n", "5 9 10 6 7 11 12 8 0\n"]
+
+        def mesh(count, cells, groups=""):
+            vertices = "".join(f"{x} {y} {z} 0\n" for x, y, z in points[:count])
+            return (f"MeshVersionFormatted 2\nDimension 3\nVertices {count}\n{vertices}Hexahedra {len(cells)}\n" + "".join(cells) +
+                    groups + "End\n")
+
+        (self.folder / "bar.mesh").write_text(mesh(12, cells, "Quadrilaterals 1\n5 6 8 7 4\nEdges 1\n7 8 9\n"))
+        (self.folder / "half.mesh").write_text(mesh(8, cells[:1]))
+
+        def refined(name, *options):
+            self.run_ok("subdivide", name, "-o", "fine.mesh", "--levels", 2, "--scheme", "cc", "--quiet", *options)
+            return self.info("fine.mesh")
+
+        def height(told):
+            return told["bounds"][1][2]
+
+        half = refined("half.mesh")
+        self.assertLess(height(refined("bar.mesh")), 1.9)  # the bend is round
+        creased = refined("bar.mesh", "--sharp", 9)
+        self.assertEqual(height(creased), 2)
+        # As if each side were a mesh of its own.
+        divided = refined("bar.mesh", "--sharp", 4)
+        self.assertAlmostEqual(divided["volume"], 2 * half["volume"], places=12)
+        self.assertEqual(height(divided), height(half))
+        # What is written is read again.
+        again = self.info("fine.mesh", "--sharp", 1)
+        self.assertEqual((again["volume"], again["points"]), (divided["volume"], divided["points"]))
+        refused = subvol("info", "bar.mesh", "--sharp", "wall", folder=self.folder)
+        self.assertEqual(refused.code, 2)
+        self.assertIn('bar.mesh: there is no group "wall" of faces or edges (it has: 4, 9)', refused.err)
+
     def test_other_cells_are_split_left_out_or_refused(self):
         (self.folder / "a.mesh").write_text(CUBE.format(last=8).replace("End", "Tetrahedra 1\n1 2 4 5 0\nEnd"))
         split = self.info("a.mesh")

@@ -20,7 +20,7 @@ SMALL = {
     "methods": [
         {"method": "splat", "per_edge": [1, 2]},
         {"method": "tets", "levels": [0, 1]},
-        {"method": "field", "seed": [1, 2, 3, 4], "places": 3000},
+        {"method": "field", "seed": [1, 2, 3, 4], "places": 500},
     ],
     "metrics": ["rmse", "psnr"],
     "reference": {"tolerance": 0.01, "max_levels": 2},
@@ -68,11 +68,15 @@ class Study(StudyFolder):
             self.assertEqual(done.err.count("\n"), 1, done.err)
 
     def test_table_2_of_the_paper(self):
-        result = self.run_ok("study", "table2", "-o", "out", "--json").json()
+        # Four of the seven models: the others have three times as many points.
+        study = json.loads(self.run_ok("study", "--print", "table2").out)
+        self.assertEqual(len(study["inputs"]), 7)
+        study["inputs"] = [given for given in study["inputs"] if given["given"]["paper_points"] < 1e6]
+        result = self.run_ok("study", self.write(study), "-o", "out", "--json").json()
         table = result["tables"][0]
-        self.assertEqual(len(list(csv.reader((self.folder / "out/table2/table2.csv").read_text().splitlines()))), 8)
-        self.assertEqual(len(list(csv.reader((self.folder / "out/table2/results.csv").read_text().splitlines()))), 1 + 7 * 5)
-        self.assertEqual(len(table["rows"]), 7)
+        self.assertEqual(len(list(csv.reader((self.folder / "out/table2/table2.csv").read_text().splitlines()))), 5)
+        self.assertEqual(len(list(csv.reader((self.folder / "out/table2/results.csv").read_text().splitlines()))), 1 + 4 * 5)
+        self.assertEqual(len(table["rows"]), 4)
         for _, points, papers, rendered, _, _, paper, mended, two, cubic, scheme in table["rows"]:
             self.assertLess(abs(points - papers), 0.05 * papers)
             self.assertLess(rendered, points)
@@ -83,7 +87,7 @@ class Study(StudyFolder):
             self.assertLess(scheme, 1e-7)  # exact but for the floats that points are stored as
 
         solid = result["tables"][1]["rows"]
-        self.assertEqual(len(solid), 7)
+        self.assertEqual(len(solid), 4)
         for name, papers, ours in solid:
             if papers is not None:  # the paper has none for the nozzle
                 self.assertTrue(papers / 2 <= ours <= papers * 2, name)  # similar, as the models only resemble the paper's
@@ -96,7 +100,7 @@ class Study(StudyFolder):
             self.assertAlmostEqual(our_mae, mae, delta=1e-6)
 
     def test_a_case_that_fails_loses_no_other(self):
-        study = SMALL | {"methods": [{"method": "field", "seed": [1, 2], "places": 3000}, {"method": "field", "every_second": True}]}
+        study = SMALL | {"methods": [{"method": "field", "seed": [1, 2], "places": 100}, {"method": "field", "every_second": True}]}
         done = subvol("study", self.write(study), "-o", "out", "--json", folder=self.folder)
         self.assertEqual(done.code, 1, done.err)
         (ran,) = done.json()["studies"]

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "boundary_triangles.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
+#include "fill_block.h"
 #include "refined_cells.h"
 #include "subvol/topology.h"
 
@@ -62,10 +66,11 @@ struct BoundaryCell {
     std::vector<std::size_t> sides;
 };
 
-std::vector<BoundaryCell> boundary_cells(const Topology& topology) {
+std::vector<BoundaryCell> boundary_cells(const Topology& topology, const std::function<bool(Index cell)>& wanted) {
     std::vector<BoundaryCell> cells;
     std::size_t first = 0;
     for (std::size_t c = 0; c < topology.cells.size(); ++c) {
+        if (wanted && !wanted(static_cast<Index>(c))) continue;
         BoundaryCell cell{static_cast<Index>(c), first, {}};
         for (std::size_t side = 0; side < 6; ++side) {
             if (topology.face_on_hull(topology.cell_faces[c][side])) cell.sides.push_back(side);
@@ -93,34 +98,132 @@ std::size_t lowest_corner(const Quad& quad) {
         quad.begin());
 }
 
-/// The steps² quads of one side of a refined cell.
-void put_side(const DenseCell& cell, std::size_t side, std::ptrdiff_t steps, const ToVoxels& to_voxels, bool turned,
-              VoxelTriangle* out) {
-    const std::size_t last = cell.side - 1;
-    const auto node = [&](int corner) {  // of the grid of nodes; corners in VTK order
-        const std::size_t u = corner % 4 == 1 || corner % 4 == 2, v = corner % 4 >= 2, w = corner >= 4;
-        return static_cast<std::ptrdiff_t>(last * (u + cell.side * (v + cell.side * w)));
+/// The steps² quads of one side of a cell. point: by u, v, w in parts 1/steps
+template <class PointAt>
+void put_quads(std::size_t side, int steps, bool turned, const PointAt& point, VoxelTriangle* out) {
+    using Place = std::array<int, 3>;
+    const auto corner = [&](std::size_t k) {
+        Place at;
+        for (std::size_t d = 0; d < 3; ++d) at[d] = steps * kCornerParameters[static_cast<std::size_t>(kCellFaces[side][k])][d];
+        return at;
     };
-    const auto& corners = kCellFaces[side];
-    const std::ptrdiff_t start = node(corners[0]);
-    const std::ptrdiff_t along = (node(corners[1]) - start) / steps, across = (node(corners[3]) - start) / steps;
-    for (std::ptrdiff_t i = 0; i < steps; ++i) {
-        for (std::ptrdiff_t j = 0; j < steps; ++j, out += 2) {
-            const std::ptrdiff_t n = start + i * along + j * across;
-            const auto p = [&](std::ptrdiff_t at) { return to_voxels(cell.points[static_cast<std::size_t>(at)]); };
-            const Quad quad{p(n), p(n + along), p(n + along + across), p(n + across)};
+    const Place start = corner(0), next = corner(1), last = corner(3);
+    const auto across = static_cast<std::size_t>(steps) + 1;
+    std::vector<Vec3> points;
+    points.reserve(across * across);
+    for (int i = 0; i <= steps; ++i) {
+        for (int j = 0; j <= steps; ++j) {
+            Place at;
+            for (std::size_t d = 0; d < 3; ++d) {
+                at[d] = start[d] + (next[d] - start[d]) / steps * i + (last[d] - start[d]) / steps * j;
+            }
+            points.push_back(point(at));
+        }
+    }
+    for (std::size_t i = 0; i + 1 < across; ++i) {
+        for (std::size_t j = 0; j + 1 < across; ++j, out += 2) {
+            const std::size_t n = i * across + j;
+            const Quad quad{points[n], points[n + across], points[n + across + 1], points[n + 1]};
             put(quad, lowest_corner(quad), turned, out);
         }
     }
 }
 
+/// Points on the boundary of curved pieces. A point that several cells share is taken from the first of them, so that the
+/// surface has no gaps, even where pieces of different levels meet.
+class PieceSurface {
+public:
+    PieceSurface(const CellRequest& request, const Topology& topology, int levels)
+        : request_(request), topology_(topology), levels_(levels) {
+        const std::vector<Index>& cells = request.pieces->cells;
+        first_.resize(topology.cells.size() + 1);
+        for (std::size_t c = 0; c < first_.size(); ++c) {
+            first_[c] = static_cast<std::size_t>(std::ranges::lower_bound(cells, static_cast<Index>(c)) - cells.begin());
+        }
+        points_.assign(topology.point_count, kNone);
+        edges_.assign(topology.edges.size(), kNone);
+        for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+            if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+            const Index cell = topology.face_cells[f][0];
+            for (const Index p : topology.faces[f]) points_[p] = std::min(points_[p], cell);
+            for (const Index e : topology.face_edges[f]) edges_[e] = std::min(edges_[e], cell);
+        }
+    }
+
+    /// at: u, v, w in parts 2^-levels, on the boundary
+    [[nodiscard]] Vec3 point(Index cell, const std::array<int, 3>& at) const {
+        const int steps = 1 << levels_;
+        const auto inside = std::ranges::count_if(at, [&](int x) { return x > 0 && x < steps; });
+        if (inside > 1) return evaluate(cell, at);
+        std::array<int, 3> low = at;  // the ends of the edge, or twice the corner
+        std::array<int, 3> high = at;
+        int along = 0;
+        for (std::size_t d = 0; d < 3; ++d) {
+            if (at[d] == 0 || at[d] == steps) continue;
+            along = at[d];
+            low[d] = 0;
+            high[d] = steps;
+        }
+        const auto corner_of = [&](const std::array<int, 3>& place) {
+            std::size_t octant = 0;
+            for (std::size_t d = 0; d < 3; ++d) octant |= (place[d] > 0 ? std::size_t{1} : 0) << d;
+            return topology_.cells[cell][kCornerOctants[octant]];
+        };
+        const Index a = corner_of(low), b = corner_of(high);
+        const Index owner = a == b ? points_[a] : edges_[*topology_.find_edge(a, b)];
+        const std::array<int, 3> from = place_of(owner, a), to = place_of(owner, b);
+        std::array<int, 3> there;
+        for (std::size_t d = 0; d < 3; ++d) there[d] = from[d] == to[d] ? from[d] : from[d] < to[d] ? along : steps - along;
+        return evaluate(owner, there);
+    }
+
+private:
+    /// Where a corner lies in a cell.
+    [[nodiscard]] std::array<int, 3> place_of(Index cell, Index point) const {
+        const auto& corners = topology_.cells[cell];
+        const auto k = static_cast<std::size_t>(std::ranges::find(corners, point) - corners.begin());
+        std::array<int, 3> at;
+        for (std::size_t d = 0; d < 3; ++d) at[d] = kCornerParameters[k][d] << levels_;
+        return at;
+    }
+
+    [[nodiscard]] Vec3 evaluate(Index cell, const std::array<int, 3>& at) const {
+        const LimitPieces& pieces = *request_.pieces;
+        std::array<double, 3> t{};
+        std::size_t piece = first_[cell];
+        for (; piece < first_[cell + 1]; ++piece) {
+            bool contains = true;
+            for (std::size_t d = 0; d < 3 && contains; ++d) {
+                t[d] = std::ldexp(static_cast<double>(at[d]), pieces.levels[piece] - levels_) - pieces.lowest[piece][d];
+                contains = t[d] >= 0 && t[d] <= 1;
+            }
+            if (contains) break;
+        }
+        std::array<std::array<double, 3>, 3> weights;
+        for (std::size_t d = 0; d < 3; ++d) {
+            weights[d] = {(1 - t[d]) * (1 - 2 * t[d]), 4 * t[d] * (1 - t[d]), t[d] * (2 * t[d] - 1)};
+        }
+        Vec3 sum(0.0);
+        for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+            sum += weights[0][n % 3] * weights[1][n / 3 % 3] * weights[2][n / 9] * pieces.position(piece, n);
+        }
+        return request_.to_voxels(sum);
+    }
+
+    const CellRequest& request_;
+    const Topology& topology_;
+    int levels_;
+    std::vector<std::size_t> first_;     // piece of each cell
+    std::vector<Index> points_, edges_;  // the first cell with a hull face there
+};
+
 }  // namespace
 
-std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request) {
+std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request, const std::function<bool(Index cell)>& wanted) {
     const HexMesh& mesh = *request.mesh;
     const Topology topology = build_topology(mesh);
     const std::vector<std::uint8_t> turned = turned_cells(topology);
-    const std::vector<BoundaryCell> cells = boundary_cells(topology);
+    const std::vector<BoundaryCell> cells = boundary_cells(topology, wanted);
     if (cells.empty()) return {};
     const std::size_t side_quads = std::size_t{1} << (2 * request.refine.levels);
     std::vector<VoxelTriangle> triangles(2 * side_quads * (cells.back().first + cells.back().sides.size()));
@@ -137,6 +240,19 @@ std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request) {
         }
         return triangles;
     }
+    const int steps = 1 << request.refine.levels;
+    if (request.pieces) {
+        const PieceSurface surface(request, topology, request.refine.levels);
+        tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+            const BoundaryCell& cell = cells[i];
+            for (std::size_t k = 0; k < cell.sides.size(); ++k) {
+                put_quads(
+                    cell.sides[k], steps, turned[cell.cell],
+                    [&](const std::array<int, 3>& at) { return surface.point(cell.cell, at); }, place(cell, k));
+            }
+        });
+        return triangles;
+    }
     std::vector<Index> numbers;
     std::vector<std::size_t> slots(mesh.cells.size());
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -151,8 +267,15 @@ std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request) {
     RefinedCells(without_fields).for_each(numbers, levels, [&](const DenseCell& dense) {
         const BoundaryCell& cell = cells[slots[dense.cell]];
         for (std::size_t k = 0; k < cell.sides.size(); ++k) {
-            put_side(dense, cell.sides[k], std::ptrdiff_t{1} << request.refine.levels, request.to_voxels, turned[cell.cell],
-                     place(cell, k));
+            const auto stride = (static_cast<int>(dense.side) - 1) / steps;
+            put_quads(
+                cell.sides[k], steps, turned[cell.cell],
+                [&](const std::array<int, 3>& at) {
+                    std::size_t node = 0;
+                    for (std::size_t d = 3; d-- > 0;) node = node * dense.side + static_cast<std::size_t>(at[d] * stride);
+                    return request.to_voxels(dense.points[node]);
+                },
+                place(cell, k));
         }
     });
     return triangles;

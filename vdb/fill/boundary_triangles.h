@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "cell_request.h"
@@ -15,6 +16,9 @@ using VoxelTriangle = std::array<Vec3, 3>;
 ///
 /// Triangles of a connected part are oriented consistently, even if some of its cells have the opposite corner order; but a
 /// whole part may be inside out.
-[[nodiscard]] std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request);
+///
+/// wanted: whether the sides of a cell are asked for; none: those of all cells
+[[nodiscard]] std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request,
+                                                            const std::function<bool(Index cell)>& wanted = {});
 
 }  // namespace subvol::detail

@@ -4,19 +4,23 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
+#include <set>
 
 #include "boundary_triangles.h"
 #include "check_voxels.h"
 #include "subvol/detail/flat_array.h"
+#include "subvol/topology.h"
 
 namespace subvol::detail {
 
 namespace {
 
+constexpr int kLeafBits = std::countr_zero(unsigned{kLeafSide});
 constexpr std::size_t kBatchNodes = 1 << 17;  // of an unrefined mesh
 constexpr std::size_t kBatchRefinedNodes =
-    1 << 20;  // smaller batches refine more surrounding cells, larger ones need more memory
+    1 << 22;  // smaller batches refine more surrounding cells, larger ones need more memory
 
 bool touch(const VoxelBox& a, const VoxelBox& b) {
     return !common(a, b).empty();
@@ -45,34 +49,51 @@ void drop_outside(const SurfaceColumns& surface, const VoxelBox& box, std::size_
     }
 }
 
+/// For each cell the sides on the hull: bit i is the side i of `kCellFaces`.
+std::vector<std::uint8_t> boundary_sides(const HexMesh& mesh) {
+    const Topology topology = build_topology(mesh);
+    std::vector<std::uint8_t> sides(mesh.cells.size());
+    for (std::size_t c = 0; c < sides.size(); ++c) {
+        for (std::size_t i = 0; i < 6; ++i) {
+            if (topology.face_on_hull(topology.cell_faces[c][i])) sides[c] |= static_cast<std::uint8_t>(1 << i);
+        }
+    }
+    return sides;
+}
+
 }  // namespace
 
-/// The blocks of some cells, one after the other.
+/// Some blocks, one after the other: cells, or pieces of cells.
 ///
+/// numbers: of the blocks
 /// first: the first node of each block, then the number of all nodes; boxes: the voxels of each block
 struct BrickFiller::Batch {
-    std::span<const Index> cells;
+    std::span<const Index> numbers;
     std::vector<std::size_t> first;
     FlatArray<Vec3> points;
     FlatArray<double> values;
     FlatArray<Index> ids;  // of the nodes of unrefined cells
     std::vector<VoxelBox> boxes;
+    std::vector<std::size_t> first_piece;  // of curved cells
+    std::vector<VoxelBox> piece_boxes;
 };
 
-BrickFiller::BrickFiller(CellRequest request) : request_(std::move(request)), refined_(request_) {
+BrickFiller::BrickFiller(CellRequest request)
+    : request_(std::move(request)), refined_(request_, request_.curved ? DenseBits::ToRounding : DenseBits::OfRefine) {
     for (const Attribute* field : request_.fields) channels_ += static_cast<std::size_t>(field->channels);
     orientation_ = check_voxel_count(*request_.mesh, request_.to_voxels) < 0 ? -1 : 1;
+    if (request_.curved) boundary_ = boundary_sides(*request_.mesh);
 }
 
 VoxelBricks BrickFiller::run(const std::optional<VoxelBox>& part) {
     VoxelBricks bricks(channels_ + (request_.cell_numbers ? 1 : 0));
-    const std::vector<Index> cells = cells_of(part);
+    const std::vector<Index> blocks = blocks_in(part);
     const bool first_run = boxes_.empty();
     std::vector<VoxelBox> boxes;
     Batch batch;
-    for (std::size_t first = 0; first < cells.size(); first += batch.cells.size()) {
-        report_progress(request_.progress, "rasterize", static_cast<double>(first) / static_cast<double>(cells.size()));
-        load(std::span(cells).subspan(first), batch);
+    for (std::size_t first = 0; first < blocks.size(); first += batch.numbers.size()) {
+        report_progress(request_.progress, "rasterize", static_cast<double>(first) / static_cast<double>(blocks.size()));
+        load(std::span(blocks).subspan(first), batch);
         fill(batch, part, bricks);
         if (first_run) boxes.insert(boxes.end(), batch.boxes.begin(), batch.boxes.end());
     }
@@ -82,55 +103,85 @@ VoxelBricks BrickFiller::run(const std::optional<VoxelBox>& part) {
     return bricks;
 }
 
-std::vector<Index> BrickFiller::cells_of(const std::optional<VoxelBox>& part) const {
-    std::vector<Index> cells;
-    for (std::size_t c = 0; c < request_.mesh->cells.size(); ++c) {
-        if (!part || boxes_.empty() || touch(boxes_[c], *part)) cells.push_back(static_cast<Index>(c));
+std::vector<Index> BrickFiller::blocks_in(const std::optional<VoxelBox>& part) const {
+    std::vector<Index> blocks;
+    for (std::size_t b = 0; b < request_.block_count(); ++b) {
+        if (!part || boxes_.empty() || touch(boxes_[b], *part)) blocks.push_back(static_cast<Index>(b));
     }
-    return cells;
+    return blocks;
+}
+
+/// The sides of a block that lie on the boundary.
+std::uint8_t BrickFiller::boundary_of(Index block) const {
+    if (!request_.curved) return 0;
+    std::uint8_t sides = boundary_[request_.cell_of(block)];
+    if (!request_.pieces || sides == 0) return sides;
+    const int last = (1 << request_.pieces->levels[block]) - 1;
+    for (std::size_t d = 0; d < 3; ++d) {
+        const int at = request_.pieces->lowest[block][d];
+        if (at > 0) sides &= static_cast<std::uint8_t>(~(1U << (2 * d)));
+        if (at < last) sides &= static_cast<std::uint8_t>(~(1U << (2 * d + 1)));
+    }
+    return sides;
 }
 
 CellBlock BrickFiller::block(const Batch& batch, std::size_t i) const {
     const std::size_t first = batch.first[i];
-    return {.cell = batch.cells[i],
-            .side = side(batch.cells[i]),
-            .step = request_.curved && request_.levels(batch.cells[i]) > request_.refine.levels ? std::size_t{2} : 1,
+    return {.cell = request_.cell_of(batch.numbers[i]),
+            .side = request_.side(batch.numbers[i]),
+            .step = 1,
             .curved = request_.curved,
             .channels = channels_,
             .cell_numbers = request_.cell_numbers,
             .orientation = orientation_,
+            .boundary = boundary_of(batch.numbers[i]),
+            .slack = request_.curved ? request_.slack_voxels : 0,
             .points = batch.points.data() + first,
             .values = batch.values.data() + first * channels_,
-            .ids = refines() ? nullptr : batch.ids.data() + first};
+            .ids = refines() ? nullptr : batch.ids.data() + first,
+            .piece_boxes = request_.curved ? batch.piece_boxes.data() + batch.first_piece[i] : nullptr};
 }
 
-/// Loads the first of the cells, as many as make a batch.
-void BrickFiller::load(std::span<const Index> cells, Batch& batch) {
+/// Loads the first of the blocks, as many as make a batch.
+void BrickFiller::load(std::span<const Index> blocks, Batch& batch) {
     const std::size_t most = refines() ? kBatchRefinedNodes : kBatchNodes;
     batch.first.assign(1, 0);
-    for (std::size_t i = 0; i < cells.size() && batch.first.back() < most; ++i) {
-        const std::size_t n = side(cells[i]);
+    for (std::size_t i = 0; i < blocks.size() && batch.first.back() < most; ++i) {
+        const std::size_t n = request_.side(blocks[i]);
         batch.first.push_back(batch.first.back() + n * n * n);
     }
-    batch.cells = cells.first(batch.first.size() - 1);
+    batch.numbers = blocks.first(batch.first.size() - 1);
     batch.points.resize(batch.first.back());
     batch.values.resize(batch.first.back() * channels_);
-    batch.boxes.resize(batch.cells.size());
-    if (refines()) {
+    batch.boxes.resize(batch.numbers.size());
+    if (request_.pieces) {
+        load_pieces(batch);
+    } else if (refines()) {
         load_refined(batch);
     } else {
         load_cells(batch);
     }
-    tbb::parallel_for(std::size_t{0}, batch.cells.size(), [&](std::size_t i) { batch.boxes[i] = voxels_of(block(batch, i)); });
+    batch.first_piece.assign(1, 0);
+    if (request_.curved) {
+        for (std::size_t i = 0; i < batch.numbers.size(); ++i) {
+            batch.first_piece.push_back(batch.first_piece.back() + block(batch, i).pieces());
+        }
+        batch.piece_boxes.resize(batch.first_piece.back());
+    }
+    tbb::parallel_for(std::size_t{0}, batch.numbers.size(), [&](std::size_t i) {
+        const CellBlock cell = block(batch, i);
+        if (cell.curved) set_piece_boxes(cell, &batch.piece_boxes[batch.first_piece[i]]);
+        batch.boxes[i] = voxels_of(cell);
+    });
     check_brick_count(batch.boxes, request_.to_voxels.voxel_size);
 }
 
 void BrickFiller::load_cells(Batch& batch) const {
     batch.ids.resize(batch.first.back());
     const HexMesh& mesh = *request_.mesh;
-    tbb::parallel_for(std::size_t{0}, batch.cells.size(), [&](std::size_t i) {
+    tbb::parallel_for(std::size_t{0}, batch.numbers.size(), [&](std::size_t i) {
         for (std::size_t k = 0; k < 8; ++k) {
-            const Index id = mesh.cells[batch.cells[i]][k];
+            const Index id = mesh.cells[batch.numbers[i]][k];
             const std::size_t node = 8 * i + kCornerOctants[k];
             batch.ids[node] = id;
             batch.points[node] = request_.to_voxels(mesh.points[id]);
@@ -143,12 +194,27 @@ void BrickFiller::load_cells(Batch& batch) const {
     });
 }
 
+void BrickFiller::load_pieces(Batch& batch) const {
+    const LimitPieces& pieces = *request_.pieces;
+    tbb::parallel_for(std::size_t{0}, batch.numbers.size(), [&](std::size_t i) {
+        const std::size_t piece = batch.numbers[i], first = batch.first[i];
+        for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+            batch.points[first + n] = request_.to_voxels(pieces.position(piece, n));
+            double* value = batch.values.data() + (first + n) * channels_;
+            for (std::size_t f = 0; f < request_.fields.size(); ++f) {
+                value = std::copy_n(pieces.node(piece, n) + request_.places_in_pieces[f], request_.fields[f]->channels, value);
+            }
+        }
+    });
+}
+
 void BrickFiller::load_refined(Batch& batch) const {
     std::map<int, std::vector<Index>> of_level;
-    for (const Index cell : batch.cells) of_level[request_.levels(cell)].push_back(cell);
+    for (const Index cell : batch.numbers) of_level[request_.levels(cell)].push_back(cell);
     for (const auto& [levels, cells] : of_level) {
         refined_.for_each(cells, levels, [&](const DenseCell& cell) {
-            const auto slot = static_cast<std::size_t>(std::ranges::lower_bound(batch.cells, cell.cell) - batch.cells.begin());
+            const auto slot =
+                static_cast<std::size_t>(std::ranges::lower_bound(batch.numbers, cell.cell) - batch.numbers.begin());
             const std::size_t nodes = cell.points.size(), first = batch.first[slot];
             for (std::size_t n = 0; n < nodes; ++n) {
                 batch.points[first + n] = request_.to_voxels(cell.points[n]);
@@ -163,20 +229,14 @@ void BrickFiller::load_refined(Batch& batch) const {
 }
 
 void BrickFiller::fill(const Batch& batch, const std::optional<VoxelBox>& part, VoxelBricks& bricks) {
-    for (std::size_t i = 0; i < batch.cells.size(); ++i) {
+    for (std::size_t i = 0; i < batch.numbers.size(); ++i) {
         bricks.enter(static_cast<Index>(i), part ? common(batch.boxes[i], *part) : batch.boxes[i]);
     }
     const std::vector<VoxelBrick*> entered = bricks.take_entered();
     tbb::parallel_for(std::size_t{0}, entered.size(), [&](std::size_t b) {
         CellShape shape;
         for (const Index i : entered[b]->cells) {
-            CellBlock cell = block(batch, i);
-            fill_block(cell, shape, *entered[b]);
-            // The cells of `refine.levels` bound the volume: they fill the gaps between their faces and those of finer cells.
-            const std::size_t coarsest = (cell.side - 1) >> request_.refine.levels;
-            if (cell.step == coarsest) continue;
-            cell.step = coarsest;
-            fill_block(cell, shape, *entered[b]);
+            fill_block(block(batch, i), shape, *entered[b]);
         }
         entered[b]->cells.clear();
         entered[b]->cells.shrink_to_fit();
@@ -186,15 +246,38 @@ void BrickFiller::fill(const Batch& batch, const std::optional<VoxelBox>& part, 
     }
 }
 
+/// The boundary's columns of voxels that go through the doubtful boxes of bricks.
+SurfaceColumns BrickFiller::columns_through(std::span<VoxelBrick* const> bricks) const {
+    std::set<std::pair<int, int>> tiles;  // of leaves' width, across the columns
+    const auto each_tile = [](const VoxelBox& box, const auto& visit) {
+        for (int x = box.lower[0] >> kLeafBits; x <= box.upper[0] >> kLeafBits; ++x) {
+            for (int y = box.lower[1] >> kLeafBits; y <= box.upper[1] >> kLeafBits; ++y) {
+                if (visit(std::pair(x, y))) return true;
+            }
+        }
+        return false;
+    };
+    for (const VoxelBrick* brick : bricks) {
+        for (const VoxelBox& box : brick->doubtful) each_tile(box, [&](const auto& tile) { return tiles.insert(tile), false; });
+    }
+    std::vector<std::uint8_t> wanted(request_.mesh->cells.size(), 0);
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+        auto& of_cell = wanted[request_.cell_of(static_cast<Index>(b))];
+        if (of_cell == 0 && each_tile(boxes_[b], [&](const auto& tile) { return tiles.contains(tile); })) of_cell = 1;
+    }
+    return SurfaceColumns(boundary_triangles(request_, [&](Index cell) { return wanted[cell] != 0; }));
+}
+
 /// Removes voxels that only folded cells filled. The signed number of tetrahedra around a centre is its winding number; where
 /// that is 0, turned tetrahedra cancel the others and the centre lies outside.
 void BrickFiller::drop_leaks(std::size_t leaf_channels) {
     std::ranges::sort(doubtful_);
     doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
-    if (!doubtful_.empty() && !columns_) columns_.emplace(boundary_triangles(request_));
+    if (doubtful_.empty()) return;
+    const SurfaceColumns columns = columns_through(doubtful_);
     tbb::parallel_for(std::size_t{0}, doubtful_.size(), [&](std::size_t i) {
         VoxelBrick& brick = *doubtful_[i];
-        for (const VoxelBox& box : brick.doubtful) drop_outside(*columns_, box, leaf_channels, brick);
+        for (const VoxelBox& box : brick.doubtful) drop_outside(columns, box, leaf_channels, brick);
         brick.doubtful = {};
     });
     doubtful_.clear();

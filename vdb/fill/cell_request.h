@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/limit_level.h"
 #include "subvol/progress.h"
 #include "subvol/refine.h"
 
@@ -24,10 +25,12 @@ struct ToVoxels {
 /// fields:      of the mesh; their channels become those of the voxels, one after the other
 /// refine:      levels 0: the mesh itself, unless on_limit or curved
 /// on_limit:    the refined vertices are moved to the limit
-/// curved:      positions and values are triquadratic between the vertices of the next level; the trilinear cells of
-///              `refine.levels` still decide which voxels lie inside
-/// cell_levels: null, or for each control cell the level of its vertices, which replaces the next one; at least
-///              refine.levels, and at least 1
+/// curved:      positions and values are triquadratic between the vertices of the next level
+/// cell_levels: null, or for each control cell the level of its vertices, which replaces the next one; at least 1
+/// pieces:      null, or the curved cells' pieces, with the values of the fields: then nothing is refined, and `cell_levels` is
+/// not
+///              used
+/// slack_voxels: of curved cells: what two neighbours' ideas of their shared side may differ by
 /// tables:      null, or tables that do to this mesh what `refine` (with one more level if curved) and `on_limit` do
 struct CellRequest {
     const HexMesh* mesh = nullptr;
@@ -36,16 +39,26 @@ struct CellRequest {
     RefineOptions refine{.levels = 0};
     bool on_limit = false;
     bool curved = false;
+    double slack_voxels = 0;
     const std::vector<std::uint8_t>* cell_levels = nullptr;
+    const LimitPieces* pieces = nullptr;
+    std::vector<std::size_t> places_in_pieces{};  // of each field
     const RefinementTables* tables = nullptr;
     bool cell_numbers = false;
     Progress* progress = nullptr;
 
     [[nodiscard]] bool refines() const { return refine.levels > 0 || on_limit || curved; }
 
+    /// How many blocks there are to be filled: cells or pieces.
+    [[nodiscard]] std::size_t block_count() const { return pieces ? pieces->cells.size() : mesh->cells.size(); }
+    /// The cell of a block.
+    [[nodiscard]] Index cell_of(Index block) const { return pieces ? pieces->cells[block] : block; }
+
     /// The level of the vertices that a cell is made of.
     [[nodiscard]] int levels() const { return refine.levels + (curved ? 1 : 0); }
     [[nodiscard]] int levels(Index cell) const { return cell_levels ? (*cell_levels)[cell] : levels(); }
+    /// Vertices along each axis of a block.
+    [[nodiscard]] std::size_t side(Index block) const { return pieces ? 3 : (std::size_t{1} << levels(block)) + 1; }
 };
 
 }  // namespace subvol::detail

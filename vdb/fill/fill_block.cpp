@@ -15,6 +15,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "fill_curved-inl.h"
 #include "fill_rows-inl.h"
 #include "fill_values-inl.h"
 
@@ -98,6 +99,18 @@ HWY_ATTR void fill_cell(const CellShape& shape, const VoxelBox& box, const CellB
     CellFiller(shape, block, brick).run(box);
 }
 
+/// The same for a curved piece; false if it is to be split into small cells.
+HWY_ATTR bool fill_piece(const CellShape& shape, const PieceBounds& bounds, const VoxelBox& box, const CellBlock& block,
+                         VoxelBrick& brick) {
+    return CurvedFiller(shape, bounds, block, brick).run(box);
+}
+
+/// After the small cells of such a piece.
+HWY_ATTR void fill_rest_of_piece(const CellShape& shape, const PieceBounds& bounds, const VoxelBox& box, const CellBlock& block,
+                                 VoxelBrick& brick) {
+    CurvedFiller(shape, bounds, block, brick).run_on_rest(box);
+}
+
 }  // namespace subvol::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -105,10 +118,13 @@ HWY_AFTER_NAMESPACE();
 namespace subvol::detail {
 
 HWY_EXPORT(fill_cell);
+HWY_EXPORT(fill_piece);
+HWY_EXPORT(fill_rest_of_piece);
 
 namespace {
 
-constexpr double kMargin = 3e-6;  // voxels; larger than kCentreStep and the rounding at 2³⁰
+constexpr double kMostSlack = 0.2;  // parameters
+constexpr double kMargin = 3e-6;    // voxels; larger than kCentreStep and the rounding at 2³⁰
 
 VoxelBox voxels_between(const Vec3& lower, const Vec3& upper) {
     VoxelBox box;
@@ -120,9 +136,9 @@ VoxelBox voxels_between(const Vec3& lower, const Vec3& upper) {
     return box;
 }
 
-/// The corners, in VTK order, of the small cell whose first corner is node `lowest` of a block.
-std::array<std::size_t, 8> corner_nodes(std::size_t lowest, const CellBlock& block) {
-    const std::size_t u = block.step, v = u * block.side, w = v * block.side;
+/// The corners, in VTK order, of the cell of step³ smaller ones whose first corner is node `lowest` of a block.
+std::array<std::size_t, 8> corner_nodes(std::size_t lowest, std::size_t step, const CellBlock& block) {
+    const std::size_t u = step, v = u * block.side, w = v * block.side;
     return {lowest, lowest + u, lowest + v + u, lowest + v, lowest + w, lowest + w + u, lowest + w + v + u, lowest + w + v};
 }
 
@@ -136,11 +152,11 @@ const CornerSplit& split_of(const CellBlock& block, const std::array<std::size_t
     });
 }
 
-/// Finds the 27 nodes of the curved cell that contains the small cell at `lowest`.
-void set_nodes(const CellBlock& block, std::size_t lowest, CellShape& shape) {
+/// Finds the 27 nodes of the curved piece that contains the cell at `lowest`, the piece itself or one of its eight small cells.
+void set_nodes(const CellBlock& block, std::size_t lowest, std::size_t step, CellShape& shape) {
     const std::size_t channels = block.channels;
-    const std::size_t across = std::max<std::size_t>(2, block.step);
-    shape.part = static_cast<double>(block.step) / static_cast<double>(across);
+    constexpr std::size_t across = 2;
+    shape.part = static_cast<double>(step) / static_cast<double>(across);
     std::size_t first = lowest, stride = 1;
     for (double& at : shape.first_part) {
         const std::size_t inside = lowest / stride % block.side % across;
@@ -159,7 +175,7 @@ void set_nodes(const CellBlock& block, std::size_t lowest, CellShape& shape) {
     }
 }
 
-void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, CellShape& shape) {
+void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, std::size_t step, CellShape& shape) {
     const std::size_t channels = block.channels;
     shape.origin = block.points[nodes[0]];
     shape.split = &split_of(block, nodes);
@@ -171,34 +187,121 @@ void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, 
     }
     shape.curved = block.curved;
     if (!block.curved) return;
-    set_nodes(block, nodes[0], shape);
+    set_nodes(block, nodes[0], step, shape);
+}
+
+/// Calls visit with the lowest node of every cell of step³ smaller ones.
+template <class Visit>
+void for_each_cell(const CellBlock& block, std::size_t step, const Visit& visit) {
+    for (std::size_t w = 0; w + 1 < block.side; w += step) {
+        for (std::size_t v = 0; v + 1 < block.side; v += step) {
+            for (std::size_t u = 0; u + 1 < block.side; u += step) visit((w * block.side + v) * block.side + u);
+        }
+    }
+}
+
+/// A box about a curved piece: about the control points of its Bézier form, whose middle ones are 2m − (a + b)/2.
+Box hull_of(const CellBlock& block, std::size_t lowest) {
+    std::array<Vec3, kCurvedNodes> p;
+    for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+        p[n] = block.points[lowest + n % 3 + block.side * (n / 3 % 3 + block.side * (n / 9))];
+    }
+    for (std::size_t stride = 1; stride < kCurvedNodes; stride *= 3) {
+        for (std::size_t n = 0; n < kCurvedNodes; ++n) {
+            if (n / stride % 3 == 1) p[n] = 2.0 * p[n] - 0.5 * (p[n - stride] + p[n + stride]);
+        }
+    }
+    Box box;
+    for (const Vec3& x : p) box.add(x);
+    return box;
+}
+
+/// Which parameters a piece contains.
+PieceBounds bounds_of(const CellBlock& block, std::size_t lowest) {
+    PieceBounds bounds;
+    std::size_t stride = 1;
+    for (std::size_t d = 0; d < 3; ++d, stride *= block.side) {
+        const std::size_t at = lowest / stride % block.side;
+        // Its length along the axis, through its middle.
+        const std::size_t middle = lowest + 1 + block.side * (1 + block.side);
+        const double length = glm::length(block.points[middle + stride] - block.points[middle - stride]);
+        const double slack = std::min(kMostSlack, length > 0 ? block.slack / length : 0.0);
+        const bool on_lower = at == 0 && (block.boundary >> (2 * d) & 1) != 0;
+        const bool on_upper = at + 3 == block.side && (block.boundary >> (2 * d + 1) & 1) != 0;
+        bounds.lower[d] = on_lower ? 0 : -slack;
+        bounds.upper[d] = on_upper ? 1 : 1 + slack;
+    }
+    return bounds;
+}
+
+void fill_small_cell(const CellBlock& block, std::size_t lowest, std::size_t step, const VoxelBox& within, CellShape& shape,
+                     VoxelBrick& brick) {
+    const auto nodes = corner_nodes(lowest, step, block);
+    Box box;
+    for (const std::size_t n : nodes) box.add(block.points[n]);
+    const VoxelBox voxels = common(voxels_between(box.lower, box.upper), within);
+    if (voxels.empty()) return;
+    set_shape(block, nodes, step, shape);
+    shape.size = std::max({box.size().x, box.size().y, box.size().z});
+    HWY_DYNAMIC_DISPATCH(fill_cell)(shape, voxels, block, brick);
 }
 
 }  // namespace
 
+void set_piece_boxes(const CellBlock& block, VoxelBox* boxes) {
+    for_each_cell(block, 2, [&](std::size_t lowest) {
+        const Box hull = hull_of(block, lowest);
+        *boxes++ = voxels_between(hull.lower - Vec3(block.slack), hull.upper + Vec3(block.slack));
+    });
+}
+
 VoxelBox voxels_of(const CellBlock& block) {
-    Box box;
-    for (std::size_t n = 0; n < block.side * block.side * block.side; ++n) box.add(block.points[n]);
-    return voxels_between(box.lower, box.upper);
+    if (!block.curved) {
+        Box box;
+        for (std::size_t n = 0; n < block.side * block.side * block.side; ++n) box.add(block.points[n]);
+        return voxels_between(box.lower, box.upper);
+    }
+    VoxelBox all = block.piece_boxes[0];
+    for (std::size_t i = 1; i < block.pieces(); ++i) {
+        for (std::size_t d = 0; d < 3; ++d) {
+            all.lower[d] = std::min(all.lower[d], block.piece_boxes[i].lower[d]);
+            all.upper[d] = std::max(all.upper[d], block.piece_boxes[i].upper[d]);
+        }
+    }
+    return all;
 }
 
 void fill_block(const CellBlock& block, CellShape& shape, VoxelBrick& brick) {
-    const auto fill_cell_here = HWY_DYNAMIC_DISPATCH(fill_cell);
     const VoxelBox within = brick.box();
-    for (std::size_t w = 0; w + 1 < block.side; w += block.step) {
-        for (std::size_t v = 0; v + 1 < block.side; v += block.step) {
-            for (std::size_t u = 0; u + 1 < block.side; u += block.step) {
-                const auto nodes = corner_nodes((w * block.side + v) * block.side + u, block);
-                Box box;
-                for (const std::size_t n : nodes) box.add(block.points[n]);
-                const VoxelBox voxels = common(voxels_between(box.lower, box.upper), within);
-                if (voxels.empty()) continue;
-                set_shape(block, nodes, shape);
-                shape.size = std::max({box.size().x, box.size().y, box.size().z});
-                fill_cell_here(shape, voxels, block, brick);
-            }
-        }
+    if (!block.curved) {
+        for_each_cell(block, block.step,
+                      [&](std::size_t lowest) { fill_small_cell(block, lowest, block.step, within, shape, brick); });
+        return;
     }
+    const auto fill_piece_here = HWY_DYNAMIC_DISPATCH(fill_piece);
+    const VoxelBox* piece = block.piece_boxes;
+    for_each_cell(block, 2, [&](std::size_t lowest) {
+        const VoxelBox voxels = common(*piece++, within);
+        if (voxels.empty()) return;
+        const auto nodes = corner_nodes(lowest, 2, block);
+        Box box;
+        for (const std::size_t n : nodes) box.add(block.points[n]);
+        const auto take_piece = [&] {
+            set_shape(block, nodes, 2, shape);
+            shape.size = std::max({box.size().x, box.size().y, box.size().z});
+        };
+        take_piece();
+        const PieceBounds bounds = bounds_of(block, lowest);
+        if (fill_piece_here(shape, bounds, voxels, block, brick)) return;
+        const std::size_t doubtful = brick.doubtful.size();
+        for (std::size_t k = 0; k < 8; ++k) {
+            const std::size_t part = lowest + (k & 1) + block.side * ((k >> 1 & 1) + block.side * (k >> 2));
+            fill_small_cell(block, part, 1, within, shape, brick);
+        }
+        if (brick.doubtful.size() > doubtful) brick.doubtful.push_back(voxels);
+        take_piece();
+        HWY_DYNAMIC_DISPATCH(fill_rest_of_piece)(shape, bounds, voxels, block, brick);
+    });
 }
 
 std::array<double, 8> linear_weights(const CellShape& shape, const Vec3& x) {

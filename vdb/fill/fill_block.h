@@ -15,16 +15,22 @@ namespace subvol::detail {
 //     +-----+-----+     3. Value:   the cell's trilinear or triquadratic interpolant at (u, v, w).
 //     |.  . |.  . |
 //     +-----+-----+
+//
+// A curved cell is a block of pieces of 27 nodes. Its pieces contain the centres for which Newton's method finds parameters
+// within [0,1]³, so that steps 1 and 2 are one: fill_curved-inl.h. Only pieces that are folded, flat or much bent are split.
 
 /// A control cell as a grid of smaller ones: side³ nodes, u fastest, then v, then w.
 ///
-/// step:         nodes from one corner of a smaller cell to the next: 1 or even
-/// curved:       positions and values are triquadratic through 27 nodes: the corners of a smaller cell and the nodes half way
-///               between them, or if the step is 1 the nodes of two cells along each axis
+/// step:         nodes from one corner of a smaller cell to the next; 1 if curved
+/// curved:       positions and values are triquadratic through 27 nodes, those of two smaller cells along each axis
 /// channels:     numbers per node; cell_numbers: leaves have one more channel, the number of the control cell
 /// orientation:  1, or -1 for a mesh of left-handed cells
+/// boundary:     of a curved block, bit 2d + e: the side where parameter d is e lies on the mesh's boundary
+/// slack:        voxels by which the other sides of a curved block may be exceeded: neighbours of other levels, or split into
+///               tetrahedra, have a slightly different shared side, and no centre between the two is to be missed
 /// points:       in voxels: centres have whole coordinates
 /// values:       node-major, `channels` numbers per node
+/// piece_boxes:  of a curved block: what set_piece_boxes has set
 /// ids:          of the nodes of a block of 8: they decide how the cell is split into tetrahedra; null: the positions decide
 struct CellBlock {
     Index cell = 0;
@@ -34,10 +40,15 @@ struct CellBlock {
     std::size_t channels = 1;
     bool cell_numbers = false;
     double orientation = 1;
+    std::uint8_t boundary = 0;
+    double slack = 0;
     const Vec3* points = nullptr;
     const double* values = nullptr;
     const Index* ids = nullptr;
+    const VoxelBox* piece_boxes = nullptr;
 
+    /// How many pieces of 27 nodes it has.
+    [[nodiscard]] std::size_t pieces() const { return (side - 1) / 2 * ((side - 1) / 2) * ((side - 1) / 2); }
     [[nodiscard]] std::size_t leaf_channels() const { return channels + (cell_numbers ? 1 : 0); }
 };
 
@@ -69,16 +80,20 @@ struct CellShape {
     const CornerSplit* split = nullptr;
 };
 
+/// Sets the voxels whose centres may lie in each piece of a curved block, u fastest, then v, then w.
+void set_piece_boxes(const CellBlock& block, VoxelBox* boxes);
+
 /// The voxels whose centres may lie in a block, slightly enlarged for rounding. Empty where there is none.
 [[nodiscard]] VoxelBox voxels_of(const CellBlock& block);
 
 /// Activates the voxels of a brick whose centres lie in the block and sets their values; voxels that are already active are
 /// left unchanged.
 ///
-/// The six tetrahedra of each small cell decide what is inside, so neighbours agree. Values are trilinear or triquadratic at
-/// the inverse of the cell's map; where the map has no clear inverse they are linear in the tetrahedron. Left-handed, folded
-/// and flat cells are allowed; tetrahedra without volume contain nothing. A tetrahedron that is oriented against `orientation`
-/// may contain centres that lie outside the mesh: the voxels of its cell are added to the brick's `doubtful` boxes.
+/// The six tetrahedra of each small cell decide what is inside, or the parameters in a curved piece, so neighbours agree.
+/// Values are trilinear or triquadratic at the inverse of the cell's map; where the map has no clear inverse they are linear in
+/// the tetrahedron. Left-handed, folded and flat cells are allowed; tetrahedra without volume contain nothing. A tetrahedron
+/// that is oriented against `orientation` may contain centres that lie outside the mesh: the voxels of its cell are added to
+/// the brick's `doubtful` boxes.
 ///
 /// shape: scratch memory, reused from one call to the next
 void fill_block(const CellBlock& block, CellShape& shape, VoxelBrick& brick);
@@ -91,6 +106,11 @@ struct FoundVoxels {
     alignas(64) std::array<std::array<double, kMost>, 3> places;
     std::array<float*, kMost> values;
     std::size_t count = 0;
+};
+
+/// The parameters that a piece contains, along each axis; at a side that is not on the boundary some more than [0,1].
+struct PieceBounds {
+    std::array<double, 3> lower{}, upper{1, 1, 1};
 };
 
 /// The weights of the corners at x, linear in the tetrahedron whose least barycentric coordinate there is largest: the one that

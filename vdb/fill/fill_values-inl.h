@@ -176,6 +176,13 @@ public:
         return {along(inverse_[0]), along(inverse_[1]), along(inverse_[2])};
     }
 
+    /// Parameter `a` at the place + (0, 0, z) is the first + z times the second.
+    [[nodiscard]] std::pair<double, double> along_z(std::size_t a, const Vec3& place) const {
+        const auto& row = inverse_[a];
+        const double at = row[0] * (place.x - place_[0]) + row[1] * (place.y - place_[1]) + row[2] * (place.z - place_[2]);
+        return {0.5 + at, row[2]};
+    }
+
     /// A Newton step of at most m ≤ 1 parameters that ends near the cell leaves a residual of at most bend·m². Infinite where
     /// the map is so bent or so flat that rounding might matter.
     [[nodiscard]] double bend() const { return bend_; }
@@ -230,12 +237,18 @@ public:
         found.count = 0;
     }
 
-private:
-    HWY_ATTR void fill(const FoundVoxels& found, std::size_t first, std::size_t count) {
+    /// The parameters of a vector of centres.
+    ///
+    /// returns: the lanes for which Newton's method has found some near the cell
+    HWY_ATTR hn::Mask<Lanes> find(const FoundVoxels& found, std::size_t first, Parameters& q) const {
         const Lanes d;
-        Parameters q;
-        const auto good = invert(hn::Load(d, &found.places[0][first]), hn::Load(d, &found.places[1][first]),
-                                 hn::Load(d, &found.places[2][first]), q);
+        return invert(hn::Load(d, &found.places[0][first]), hn::Load(d, &found.places[1][first]),
+                      hn::Load(d, &found.places[2][first]), q);
+    }
+
+    /// Stores the values at a vector of centres, except those whose place for a value is null.
+    HWY_ATTR void store(const FoundVoxels& found, std::size_t first, std::size_t count, const Parameters& q) const {
+        const Lanes d;
         for (std::size_t c = 0; c < block_.channels; ++c) {
             const std::span<const double> nodes = values_of<Map>(shape_, c);
             const auto [lowest, highest] = std::ranges::minmax(nodes);
@@ -247,14 +260,24 @@ private:
             HWY_ALIGN double values[kLanes];
             hn::Store(value, d, values);
             for (std::size_t i = 0; i < count; ++i) {
-                found.values[first + i][c * kLeafVoxels] = static_cast<float>(values[i]);
+                if (found.values[first + i]) found.values[first + i][c * kLeafVoxels] = static_cast<float>(values[i]);
             }
         }
-        if (!hn::AllTrue(d, good)) mend(found, first, count, good);
         if (!block_.cell_numbers) return;
         for (std::size_t i = 0; i < count; ++i) {
-            found.values[first + i][block_.channels * kLeafVoxels] = bits_of(block_.cell);
+            if (found.values[first + i]) found.values[first + i][block_.channels * kLeafVoxels] = bits_of(block_.cell);
         }
+    }
+
+    [[nodiscard]] const std::array<Map, 3>& map() const { return map_; }
+    [[nodiscard]] const MiddleOfCell& middle() const { return middle_; }
+
+private:
+    HWY_ATTR void fill(const FoundVoxels& found, std::size_t first, std::size_t count) {
+        Parameters q;
+        const auto good = find(found, first, q);
+        store(found, first, count, q);
+        if (!hn::AllTrue(Lanes(), good)) mend(found, first, count, good);
     }
 
     static float bits_of(Index cell) { return std::bit_cast<float>(static_cast<std::uint32_t>(cell)); }

@@ -45,9 +45,9 @@ RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, boo
     return tables;
 }
 
-RefinedCells::RefinedCells(const CellRequest& request)
+RefinedCells::RefinedCells(const CellRequest& request, DenseBits bits)
     : levels_(request.levels()), tables_(request.refines() ? request.tables : nullptr) {
-    if (!request.refines()) return;
+    if (!request.refines() || request.pieces) return;
     const HexMesh& mesh = *request.mesh;
     for (const Attribute* field : request.fields) mesh_.attributes.push_back(*field);
     mesh_.points = mesh.points;
@@ -61,7 +61,7 @@ RefinedCells::RefinedCells(const CellRequest& request)
         RefineOptions refine = request.refine;
         refine.levels = levels_;
         refine.progress = nullptr;
-        dense_.emplace(mesh_, refine, request.on_limit);
+        dense_.emplace(mesh_, refine, request.on_limit, bits);
         mesh_ = {};
     }
 }

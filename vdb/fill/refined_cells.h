@@ -18,8 +18,9 @@ namespace subvol::detail {
 /// tables, which give the same bits.
 class RefinedCells {
 public:
+    /// bits:   without tables
     /// throws: Error(InvalidInput) if the tables belong to another mesh or another level
-    explicit RefinedCells(const CellRequest& request);
+    explicit RefinedCells(const CellRequest& request, DenseBits bits = DenseBits::OfRefine);
 
     /// levels: of refinement; ignored with tables, which have one level
     /// visit:  called from several threads at once, in no order; its spans are valid during the call only

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "subvol/detail/printable.h"
+#include "subvol/detail/vdb_file.h"
 #include "vdb_data.h"
 
 namespace subvol {
@@ -52,6 +53,10 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
 
 VdbGrid detail::VdbData::wrap(VdbData data) {
     return VdbGrid(std::make_unique<VdbData>(std::move(data)));
+}
+
+void detail::free_vdb_data(VdbData* data) {
+    delete data;
 }
 
 VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {

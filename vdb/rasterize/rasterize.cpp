@@ -52,7 +52,9 @@ std::vector<GridOfChannels> grids_of(std::span<const Attribute* const> fields, b
 }
 
 /// How a mesh is refined.
-CellRequest refinement_of(const HexMesh& mesh, const RasterizeOptions& options) {
+///
+/// by_tables: all cells have nodes of one level
+CellRequest refinement_of(const HexMesh& mesh, const RasterizeOptions& options, bool by_tables) {
     CellRequest request{.mesh = &mesh,
                         .fields = {},
                         .to_voxels = {},
@@ -67,9 +69,22 @@ CellRequest refinement_of(const HexMesh& mesh, const RasterizeOptions& options) 
     }
     request.refine.levels = limit.level;
     request.curved = !limit.cell_levels.empty();
+    request.slack_voxels = kLimitTolerance_voxels;
     request.on_limit = request.curved || !interpolates(request.refine.scheme.kind);
-    if (request.curved && !options.tables) request.cell_levels = &limit.cell_levels;  // tables have nodes of one level
+    if (request.curved && !by_tables) request.cell_levels = &limit.cell_levels;
+    if (request.curved && by_tables) request.refine.levels = finest_level(limit) - 1;
     return request;
+}
+
+/// Takes the limit's pieces, if it has some, and they are those of the mesh and its fields.
+void take_pieces(const LimitCells& limit, CellRequest& request) {
+    if (!limit.pieces || !are_pieces_of(*limit.pieces, *request.mesh)) return;
+    for (const Attribute* field : request.fields) {
+        const auto place = place_in(*limit.pieces, *field);
+        if (!place) return;
+        request.places_in_pieces.push_back(*place);
+    }
+    request.pieces = limit.pieces.get();
 }
 
 /// Checks the arguments, and collects what is to be rasterized.
@@ -79,8 +94,9 @@ CellRequest make_request(const HexMesh& mesh, std::span<const std::string> field
     std::vector<const Attribute*> attributes;
     for (const auto& name : fields) attributes.push_back(&field_of(mesh, name, options.half));
     const ToVoxels to_voxels = to_voxels_of(bounds(mesh), options);
-    CellRequest request = refinement_of(mesh, options);
+    CellRequest request = refinement_of(mesh, options, options.tables != nullptr);
     request.fields = std::move(attributes);
+    if (options.limit && !options.tables) take_pieces(*options.limit, request);
     request.to_voxels = to_voxels;
     request.cell_numbers = options.cell_numbers;
     return request;
@@ -210,7 +226,7 @@ std::vector<VdbGrid> rasterize(const HexMesh& mesh, std::span<const std::string>
 }
 
 RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {
-    CellRequest request = refinement_of(mesh, options);
+    CellRequest request = refinement_of(mesh, options, true);
     request.refine.levels = request.levels();
     return tables_of(mesh, request.refine, request.on_limit);
 }

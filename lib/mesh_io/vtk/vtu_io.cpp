@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats.h"
 #include "output_file.h"
+#include "sharp_groups.h"
 #include "text_scanner.h"
 #include "vtk_xml_writer.h"
 
@@ -44,8 +45,8 @@ std::vector<std::string> write_vtu(const std::filesystem::path& path, const HexM
     write_piece(xml, mesh);
     xml.end();
     out.commit();
-    if (mesh.creases.empty()) return {};
-    return {counted(mesh.creases.size(), "crease", "creases") + " not written"};
+    if (mesh.creases.empty() && mesh.sharp_faces.empty()) return {};
+    return {sharp_counts(mesh) + " not written"};
 }
 
 }  // namespace subvol::detail

@@ -5,6 +5,8 @@
 #include <subvol/subvol.h>
 #include <subvol/vdb.h>
 
+#include <filesystem>
+
 static_assert(SUBVOL_VERSION_MAJOR == 0 && SUBVOL_VERSION_MINOR == 1);
 
 int main() {
@@ -15,7 +17,12 @@ int main() {
     const subvol::View view(subvol::parse_camera("iso", bounds(fine)), 16, 16);
     const subvol::Optics optics(subvol::transfer_function_preset("viridis", 0, 1), 0.1);
     const subvol::Image image = render_tets(fine, density.name, view, optics).image;
+    // Pictures are read and written by a module, which the program finds in the installation.
+    const auto file = std::filesystem::temp_directory_path() / "subvol_consumer.exr";
+    subvol::write_image(file, image);
+    const subvol::Image again = subvol::read_image(file);
+    std::filesystem::remove(file);
     const bool right = fine.cells.size() == 8 * mesh.cells.size() && grids.front().report().active_voxels > 0 &&
-                       compare_images(image, image).max == 0;
+                       compare_images(image, again).max == 0;
     return right ? 0 : 1;
 }

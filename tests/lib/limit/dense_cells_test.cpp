@@ -141,5 +141,34 @@ TEST(DenseCells, FollowTheParametersOfTheCell) {
     });
 }
 
+// Tables of weights change no more than the last bits: regular cells, cells on the boundary and at its edges, irregular ones.
+TEST(DenseCells, ByTablesAreTheSameToRounding) {
+    HexMesh mesh = test::make_nested_cubes(6);
+    test::jitter(mesh, .02, 3);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.y + std::sin(2 * p.z); });
+    std::vector<Index> cells(mesh.cells.size());
+    for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = static_cast<Index>(c);
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw}) {
+        for (const int levels : scheme == Scheme::Mcq ? std::vector{1, 2, 3} : std::vector{1, 2}) {
+            const RefineOptions options{.scheme = {scheme}, .levels = levels};
+            std::vector<std::vector<Vec3>> points(cells.size());
+            std::vector<std::vector<double>> values(cells.size());
+            DenseCells(mesh, options, true).for_each(cells, [&](const DenseCell& cell) {
+                points[cell.cell].assign(cell.points.begin(), cell.points.end());
+                values[cell.cell].assign(cell.values[0].begin(), cell.values[0].end());
+            });
+            std::vector<double> most(cells.size());
+            DenseCells(mesh, options, true, DenseBits::ToRounding).for_each(cells, [&](const DenseCell& cell) {
+                double& of_cell = most[cell.cell];
+                for (std::size_t n = 0; n < cell.points.size(); ++n) {
+                    of_cell = std::max({of_cell, glm::length(cell.points[n] - points[cell.cell][n]),
+                                        std::abs(cell.values[0][n] - values[cell.cell][n])});
+                }
+            });
+            EXPECT_LT(std::ranges::max(most), 1e-14) << "scheme " << static_cast<int>(scheme) << ", level " << levels;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace subvol

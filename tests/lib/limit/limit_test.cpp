@@ -365,7 +365,8 @@ TEST(LimitLevel, DoesNotLookAtUnusedPoints) {
     EXPECT_GT(level.level, 1);
     EXPECT_EQ(with_unused.level, level.level);
     EXPECT_EQ(with_unused.value_of_range, level.value_of_range);
-    const LimitCells cells = find_limit_cells(mesh, {}, options), cells_with_unused = find_limit_cells(filled, {}, options);
+    const LimitCellsOptions of_cells{.position_world = 1e-3};
+    const LimitCells cells = find_limit_cells(mesh, {}, of_cells), cells_with_unused = find_limit_cells(filled, {}, of_cells);
     EXPECT_GT(std::ranges::max(cells.cell_levels), 1);
     EXPECT_EQ(cells_with_unused.cell_levels, cells.cell_levels);
     EXPECT_EQ(cells_with_unused.value_of_range, cells.value_of_range);

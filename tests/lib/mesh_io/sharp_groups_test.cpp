@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <set>
 
 #include "lib/temp_folder.h"
@@ -110,6 +112,45 @@ std::string gmsh_4(bool v41) {
     return text + "$EndNodes\n$Elements\n5 " + total + (v41 ? " 1 " + total : "") + "\n" + blocks + "$EndElements\n";
 }
 
+template <class... Number>
+std::string bytes(const Number&... numbers) {
+    std::string result;
+    (result.append(reinterpret_cast<const char*>(&numbers), sizeof numbers), ...);
+    return result;
+}
+
+/// The same in binary, version 4.1: sizes and numbers of nodes are 64-bit, those of entities 32-bit.
+std::string gmsh_4_binary() {
+    using Size = std::uint64_t;
+    std::string text = "$MeshFormat\n4.1 1 8\n" + bytes(1) +
+                       "\n$EndMeshFormat\n$PhysicalNames\n2\n2 7 \"cut\"\n1 3 \"the rim\"\n$EndPhysicalNames\n$Entities\n";
+    const std::string box = bytes(0., 0., 0., 4., 2., 2.);
+    text += bytes(Size{1}, Size{1}, Size{2}, Size{1}) + bytes(1, 0., 0., 0., Size{1}, 3);
+    text += bytes(5) + box + bytes(Size{1}, 3, Size{2}, 1, -1);
+    text += bytes(5) + box + bytes(Size{2}, 12, -7, Size{1}, 5) + bytes(6) + box + bytes(Size{0}, Size{0});
+    text += bytes(1) + box + bytes(Size{1}, 1, Size{2}, 5, 6) + "\n$EndEntities\n$Nodes\n";
+    const Size points = kBox.points.size();
+    text += bytes(Size{1}, points, Size{1}, points) + bytes(3, 1, 0, points);
+    for (Size p = 1; p <= points; ++p) text += bytes(p);
+    for (const Vec3& x : kBox.points) text += bytes(x.x, x.y, x.z);
+    Size count = 0, groups = 0;
+    std::string blocks;
+    const auto block = [&](int dimension, int entity, int type, const auto& tags) {
+        ++groups;
+        blocks += bytes(dimension, entity, type, Size{tags.size()});
+        for (const auto& tag : tags) {
+            blocks += bytes(++count);
+            for (const Index p : tag) blocks += bytes(Size{p} + 1);
+        }
+    };
+    block(1, 5, 1, kTop);
+    block(1, 5, 1, kInPlane);
+    block(2, 5, 3, plane(2));
+    block(2, 6, 3, plane(1));
+    block(3, 1, 5, kBox.cells);
+    return text + "\n$EndNodes\n$Elements\n" + bytes(groups, count, Size{1}, count) + blocks + "\n$EndElements\n";
+}
+
 /// MEDIT: the plane has the reference 7, the line in it is a ridge, and the line on the top has the reference 3.
 std::string medit() {
     std::string tags = "Edges\n3\n";
@@ -139,6 +180,13 @@ TEST_F(SharpGroups, OfGmshAreNamedOrNumbered) {
         expect_plane_and_lines(read("a.msh", gmsh_4(v41), {"12", "3"}).mesh);
         EXPECT_EQ(read("a.msh", gmsh_4(v41), {"cut"}).mesh.creases.size(), 0u);
     }
+    expect_plane_and_lines(read("a.msh", gmsh_4_binary(), {"cut", "the rim"}).mesh);
+    expect_plane_and_lines(read("a.msh", gmsh_4_binary(), {"12", "3"}).mesh);
+    const std::string whole = gmsh_4_binary();
+    const std::size_t begin = whole.find("$Entities"), end = whole.find("\n$EndEntities");
+    for (std::size_t length = begin + 12; length < end; length += 7) {  // cut off in every entity
+        EXPECT_THAT(read_error("a.msh", whole.substr(0, length), "cut"), HasSubstr("a.msh"));
+    }
     const ReadResult plain = read("a.msh", gmsh_2(), {});
     EXPECT_TRUE(plain.mesh.sharp_faces.empty() && plain.mesh.creases.empty());
     EXPECT_THAT(plain.warnings, testing::ElementsAre("3 lines, 5 quads ignored"));
@@ -153,6 +201,46 @@ TEST_F(SharpGroups, OfMeditAreReferencesAndRidges) {
         replaced(text.substr(0, tags) + text.substr(hexes), "Vertices", text.substr(tags, hexes - tags) + "Vertices");
     expect_plane_and_lines(read("a.mesh", early, {"7", "3", "Ridges"}).mesh);
     EXPECT_EQ(read("a.mesh", medit(), {"8"}).mesh.sharp_faces.size(), 1u);
+}
+
+TEST_F(SharpGroups, AreWrittenAsMeditAndReadAgain) {
+    const HexMesh mesh = read("a.mesh", medit(), {"7", "3", "Ridges"}).mesh;
+    const auto file = path("b.mesh");
+    EXPECT_THAT(write_mesh(file, mesh), testing::ElementsAre(HasSubstr("3 creases and 4 sharp faces written as groups")));
+    expect_plane_and_lines(read_mesh(file, {.sharp = {"1"}}).mesh);
+    EXPECT_EQ(sets_of(read_mesh(file, {.sharp = {"Ridges", "1"}}).mesh.creases), sets_of(mesh.creases));
+    EXPECT_TRUE(read_mesh(file).mesh.creases.empty());
+    EXPECT_THAT(write_mesh(path("b.vtu"), mesh), testing::ElementsAre("3 creases and 4 sharp faces not written"));
+}
+
+TEST_F(SharpGroups, AreWeldedWithTheirCells) {
+    // The box as two halves with points of their own, which touch at the plane x = 2; the tags name the points of the first.
+    HexMesh apart = kBox;
+    for (const auto& quad : plane(2)) {
+        for (const Index p : quad) apart.points.push_back(kBox.points[p]);
+    }
+    const auto copy_of = [&](Index p) {
+        if (kBox.points[p].x != 2) return p;
+        const auto found = std::find(apart.points.begin() + static_cast<std::ptrdiff_t>(kBox.points.size()), apart.points.end(),
+                                     kBox.points[p]);
+        return static_cast<Index>(found - apart.points.begin());
+    };
+    for (auto& cell : apart.cells) {
+        if (kBox.points[cell[0]].x < 2) continue;
+        for (Index& p : cell) p = copy_of(p);
+    }
+    const std::string tags = medit().substr(medit().find("Edges"));
+    const std::string text = replaced(medit_text(apart), "Hexahedra", tags.substr(0, tags.find("Hexahedra")) + "Hexahedra");
+    const auto file = write("a.mesh", text);
+    const HexMesh welded = read_mesh(file, {.weld = 0, .sharp = {"7", "3", "Ridges"}}).mesh;
+    EXPECT_EQ(build_topology(welded).faces.size(), build_topology(kBox).faces.size());
+    EXPECT_EQ(welded.sharp_faces.size(), 4u);
+    EXPECT_EQ(welded.creases.size(), 3u);
+    for (const auto& quad : welded.sharp_faces) {
+        for (const Index p : quad) EXPECT_EQ(welded.points[p].x, 2);
+    }
+    // Apart, the plane is a part of the hull, where tags change nothing.
+    EXPECT_TRUE(read_mesh(file, {.sharp = {"7"}}).mesh.sharp_faces.empty());
 }
 
 TEST_F(SharpGroups, AreSplitWithTheirCells) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <random>
 
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
@@ -66,7 +67,7 @@ TEST(LimitCells, ApproximateADeepLevel) {
         const HexMesh mesh =
             with_field(ball_mesh(2), "f", [](const Vec3& p) { return std::sin(3 * p.x) * std::cos(2 * p.y) + p.z; });
         constexpr double kVoxel = 0.05, kRange = 4;
-        const LimitLevelOptions tolerance{.position_world = 0.1 * kVoxel, .value_of_range = 2e-3};
+        const LimitCellsOptions tolerance{.position_world = 0.1 * kVoxel, .value_of_range = 2e-3};
         const LimitCells limit = find_limit_cells(mesh, {.scheme = {scheme}}, tolerance);
         EXPECT_TRUE(limit.converged);
         EXPECT_LE(limit.position_world, tolerance.position_world);
@@ -117,13 +118,73 @@ TEST(LimitCells, OfSeveralLevelsFitTogether) {
     for_each_voxel(grid, [&](const Voxel& v, double value) { ASSERT_NEAR(value, v[0] / 50.0, 1e-6); });
 }
 
-// Too many cells for one more level: the cells are used as they are.
-TEST(LimitCells, OfAMeshThatIsFineAlready) {
+// Cells that are strongly bent inside a box: some pieces are split into small cells, whose flat faces do not meet the curved
+// sides of the pieces beside them. No centre is lost between the two.
+TEST(LimitCells, BentPiecesLeaveNoCentreOut) {
+    HexMesh mesh = box_mesh(5);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> step(-0.075, 0.075);
+    for (Vec3& p : mesh.points) {
+        const bool inside = std::min({p.x, p.y, p.z}) > 0.01 && std::max({p.x, p.y, p.z}) < 0.99;
+        if (inside) p += Vec3(step(random), step(random), step(random));
+    }
+    mesh = with_field(std::move(mesh), "f", [](const Vec3& p) { return p.y; });
+    for (const int n : {40, 90}) {
+        const LimitCells limit = limit_for_voxels(mesh, {}, 1.0 / n);
+        const VdbGrid grid = rasterized(mesh, 1.0 / n, limit);
+        EXPECT_EQ(grid.report().active_voxels, static_cast<std::size_t>(n) * n * n);
+        for_each_voxel(grid, [&](const Voxel& v, double value) { ASSERT_NEAR(value, static_cast<double>(v[1]) / n, 0.1 / n); });
+    }
+}
+
+// Without levels the cells are used as they are.
+TEST(LimitCells, WithoutLevelsAreTheCells) {
     const HexMesh mesh = with_field(jittered_box_mesh(4), "f", [](const Vec3& p) { return p.y * p.y; });
-    const LimitCells limit = find_limit_cells(mesh, {}, {.max_cells = 100});
+    const LimitCells limit = find_limit_cells(mesh, {}, {.max_levels = 0});
     EXPECT_FALSE(limit.converged);
     EXPECT_TRUE(limit.cell_levels.empty());
     EXPECT_EQ(values_of(rasterized(mesh, 0.04, limit)), values_of(rasterize(mesh, kField, {.voxel_size_world = 0.04}).front()));
+}
+
+TEST(LimitCells, SayWhatIsLeftAtTheLastLevel) {
+    const HexMesh mesh = with_field(box_mesh(4), "f", [](const Vec3& p) { return std::sin(1e4 * p.x * p.y); });
+    double before = HUGE_VAL;
+    for (const int levels : {1, 2, 3}) {
+        const LimitCells limit = find_limit_cells(mesh, {}, {.position_world = 1e-3, .max_levels = levels});
+        EXPECT_FALSE(limit.converged);
+        EXPECT_EQ(std::ranges::max(limit.cell_levels), levels);
+        EXPECT_GT(limit.value_of_range, 1e-3);
+        EXPECT_LT(limit.value_of_range, before / 2);
+        before = limit.value_of_range;
+    }
+}
+
+// Pieces that were not kept are refined again, each cell to the level of its finest piece: the same voxels, and the same values
+// within the tolerance, a thousandth of their range of 4. Pieces of a mesh that has moved since do not count.
+TEST(LimitCells, AreThoseOfTheMeshWithKeptPiecesOrWithout) {
+    const auto field = [](const Vec3& p) { return std::sin(5 * p.x) * p.y + p.z; };
+    const HexMesh mesh = with_field(make_model("ball", 4), "f", field);
+    const double voxel = bounds(mesh).size().x / 60;
+    const LimitCells kept = find_limit_cells(mesh, {}, {.position_world = 0.02 * voxel});
+    const LimitCells dropped = find_limit_cells(mesh, {}, {.position_world = 0.02 * voxel, .max_bytes = 1000});
+    ASSERT_TRUE(kept.pieces);
+    EXPECT_FALSE(dropped.pieces);
+    EXPECT_EQ(kept.cell_levels, dropped.cell_levels);
+    EXPECT_EQ(kept.piece_count, dropped.piece_count);
+    EXPECT_GT(std::ranges::max(kept.cell_levels), 1);
+    const auto got = values_of(rasterized(mesh, voxel, kept)), expected = values_of(rasterized(mesh, voxel, dropped));
+    std::size_t both = 0;
+    for (const auto& [place, value] : got) {
+        const auto there = expected.find(place);
+        if (there == expected.end()) continue;
+        ++both;
+        ASSERT_NEAR(value, there->second, 4e-3) << place[0] << " " << place[1] << " " << place[2];
+    }
+    EXPECT_LE(got.size() + expected.size() - 2 * both, expected.size() / 1000);
+
+    HexMesh moved = mesh;
+    for (Vec3& p : moved.points) p += Vec3(3 * voxel, 0, 0);
+    EXPECT_EQ(values_of(rasterized(moved, voxel, kept)), values_of(rasterized(moved, voxel, dropped)));
 }
 
 TEST(LimitCells, OfNothingAreNone) {

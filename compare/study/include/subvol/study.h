@@ -95,7 +95,7 @@ struct Study {
 
 /// What a method computes: a picture of a mesh, compared with a reference; numbers of a mesh's field; or numbers of a kernel,
 /// without a mesh.
-enum class StudyKind { Picture, Field, Kernel };
+enum class StudyKind { Pictures, Fields, Kernels };
 
 /// throws: Error(InvalidInput) if there is no such method; lists the known ones
 [[nodiscard]] StudyKind method_kind(const std::string& method);

@@ -43,11 +43,16 @@ struct DenseSelection {
 void for_each_dense_cell(const HexMesh& mesh, const RefineOptions& options, const DenseSelection& selection,
                          const std::function<void(const DenseCell&)>& visit);
 
+/// OfRefine:   the bits of `refine`, and so of neighbours where they meet
+/// ToRounding: the same up to some roundings of 1e-16 of the coordinates, several times faster: cells whose neighbourhoods meet
+///             in the same way share a table of weights
+enum class DenseBits { OfRefine, ToRounding };
+
 /// The same for several selections of cells of one mesh: what depends on the whole mesh is set up once.
 class DenseCells {
 public:
     /// throws: as `for_each_dense_cell`
-    DenseCells(const HexMesh& mesh, const RefineOptions& options, bool on_limit);
+    DenseCells(const HexMesh& mesh, const RefineOptions& options, bool on_limit, DenseBits bits = DenseBits::OfRefine);
     ~DenseCells();
     DenseCells(DenseCells&&) noexcept;
     DenseCells& operator=(DenseCells&&) noexcept;

@@ -32,7 +32,7 @@ struct LevelSetOptions {
 /// limit:            null, or the cells that approximate the limit; they replace refine.levels and on_limit
 /// tables:           null, or the result of `rasterization_tables` for a mesh of the same cells: nothing of the refinement is
 ///                   computed again, but the whole refined mesh is in memory. The grids are the same; with a limit, they are
-///                   those of cells whose nodes all have the level after `limit->level`
+///                   those of cells whose nodes all have the finest level of the limit
 /// half:             store floats in 16 bits
 /// cell_numbers:     adds a grid of integers named "cell": the control cell that contains the voxel's centre
 /// mask:             adds a grid of bits named "mask": where the volume is

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command's subvol::vdb: each call loads the module subvol_openvdb.so, if it is the first, and continues there. OpenVDB's
+// symbols take longer to resolve than the command takes to start.
+#include "subvol/detail/module.h"
+#include "vdb_functions.h"
+
+namespace {
+
+const subvol::cli::VdbFunctions& vdb() {
+    using Entry = const subvol::cli::VdbFunctions* (*)();
+    static const subvol::cli::VdbFunctions& functions =
+        *reinterpret_cast<Entry>(subvol::detail::load_module("openvdb", "reading, writing or computing grids"))();
+    return functions;
+}
+
+}  // namespace
+
+// Only the module knows what is freed.
+template <>
+void std::default_delete<subvol::detail::VdbData>::operator()(subvol::detail::VdbData* data) const {
+    vdb().free(data);
+}
+
+namespace subvol {
+
+using Path = std::filesystem::path;
+using Grids = std::vector<VdbGrid>;
+
+Grids rasterize(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options) {
+    return vdb().rasterize(mesh, fields, options);
+}
+
+RefinementTables rasterization_tables(const HexMesh& mesh, const RasterizeOptions& options) {
+    return vdb().rasterization_tables(mesh, options);
+}
+
+void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
+                     std::size_t memory_bytes, const std::function<void(GridPart)>& take) {
+    vdb().rasterize_parts(mesh, fields, options, memory_bytes, take);
+}
+
+Grids rasterize_points(const RbfVolume& volume, std::span<const std::size_t> channels, const RasterizeOptions& options) {
+    return vdb().rasterize_points(volume, channels, options);
+}
+
+VdbGrid sample_at_voxels(const VdbGrid& where, const std::string& name,
+                         const std::function<std::vector<double>(std::span<const Vec3>)>& field) {
+    return vdb().sample_at_voxels(where, name, field);
+}
+
+VdbGrid spread_vectors(const VdbGrid& grid, int layers) {
+    return vdb().spread_vectors(grid, layers);
+}
+
+void write_vdb(const Path& path, std::span<const VdbGrid> grids, VdbCompression compression) {
+    vdb().write_vdb(path, grids, compression);
+}
+
+void detail::write_vdb(const AtomicFile& file, const Path& path, std::span<const VdbGrid> grids, VdbCompression compression) {
+    vdb().write_vdb_file(file, path, grids, compression);
+}
+
+Grids read_vdb(const Path& path) {
+    return vdb().read_vdb(path);
+}
+
+bool has_nanovdb() {
+    return vdb().has_nanovdb();
+}
+
+void write_nanovdb(const Path& path, std::span<const VdbGrid> grids) {
+    vdb().write_nanovdb(path, grids);
+}
+
+void write_vdb_points(const Path& path, const RbfVolume& volume, const VdbPointsOptions& options) {
+    vdb().write_vdb_points(path, volume, options);
+}
+
+RbfVolume read_vdb_points(const Path& path) {
+    return vdb().read_vdb_points(path);
+}
+
+bool holds_vdb_points(const Path& path) {
+    return vdb().holds_vdb_points(path);
+}
+
+VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOptions& options) {
+    return vdb().sample_rbf_points(grid, options);
+}
+
+GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b) {
+    return vdb().compare_voxels(a, b);
+}
+
+VdbGrid::~VdbGrid() = default;
+VdbGrid::VdbGrid(VdbGrid&&) noexcept = default;
+VdbGrid& VdbGrid::operator=(VdbGrid&&) noexcept = default;
+
+const GridReport& VdbGrid::report() const {
+    return vdb().report(*this);
+}
+
+std::optional<double> VdbGrid::value(const Vec3& x) const {
+    return vdb().value(*this, x);
+}
+
+std::unique_ptr<Voxels> VdbGrid::voxels() const {
+    return vdb().voxels(*this);
+}
+
+}  // namespace subvol

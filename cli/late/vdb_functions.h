@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/detail/vdb_file.h"
+#include "subvol/nanovdb.h"
+#include "subvol/rasterize.h"
+#include "subvol/spread_vectors.h"
+#include "subvol/vdb_grid.h"
+#include "subvol/vdb_points.h"
+#include "subvol/vdb_sample.h"
+
+namespace subvol::cli {
+
+/// The calls of subvol::vdb that the command makes, as its module has them; their headers say what they do. They throw what
+/// those throw: the type `Error` exists twice, in the command and in the module, but with one name, and by that it is caught.
+struct VdbFunctions {
+    std::vector<VdbGrid> (*rasterize)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&);
+    RefinementTables (*rasterization_tables)(const HexMesh&, const RasterizeOptions&);
+    void (*rasterize_parts)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, std::size_t,
+                            const std::function<void(GridPart)>&);
+    std::vector<VdbGrid> (*rasterize_points)(const RbfVolume&, std::span<const std::size_t>, const RasterizeOptions&);
+    VdbGrid (*sample_at_voxels)(const VdbGrid&, const std::string&,
+                                const std::function<std::vector<double>(std::span<const Vec3>)>&);
+    VdbGrid (*spread_vectors)(const VdbGrid&, int);
+
+    void (*write_vdb)(const std::filesystem::path&, std::span<const VdbGrid>, VdbCompression);
+    void (*write_vdb_file)(const detail::AtomicFile&, const std::filesystem::path&, std::span<const VdbGrid>, VdbCompression);
+    std::vector<VdbGrid> (*read_vdb)(const std::filesystem::path&);
+    bool (*has_nanovdb)();
+    void (*write_nanovdb)(const std::filesystem::path&, std::span<const VdbGrid>);
+
+    void (*write_vdb_points)(const std::filesystem::path&, const RbfVolume&, const VdbPointsOptions&);
+    RbfVolume (*read_vdb_points)(const std::filesystem::path&);
+    bool (*holds_vdb_points)(const std::filesystem::path&);
+    VoxelSampleResult (*sample_rbf_points)(const VdbGrid&, const VoxelSampleOptions&);
+
+    GridDifference (*compare_voxels)(const VdbGrid&, const VdbGrid&);
+    const GridReport& (*report)(const VdbGrid&);
+    std::optional<double> (*value)(const VdbGrid&, const Vec3&);
+    std::unique_ptr<Voxels> (*voxels)(const VdbGrid&);
+    void (*free)(detail::VdbData*);
+};
+
+}  // namespace subvol::cli

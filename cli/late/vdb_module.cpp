@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module subvol_openvdb.so: subvol::vdb, and OpenVDB with it.
+#include "subvol/version.h"
+#include "vdb_functions.h"
+
+extern "C" {
+extern const char subvol_module_version[];
+const char subvol_module_version[] = SUBVOL_VERSION;
+
+const subvol::cli::VdbFunctions* subvol_openvdb() {
+    using namespace subvol;
+    static const cli::VdbFunctions functions{
+        .rasterize = &rasterize,
+        .rasterization_tables = &rasterization_tables,
+        .rasterize_parts = &rasterize_parts,
+        .rasterize_points = &rasterize_points,
+        .sample_at_voxels = &sample_at_voxels,
+        .spread_vectors = &spread_vectors,
+        .write_vdb = &write_vdb,
+        .write_vdb_file = &detail::write_vdb,
+        .read_vdb = &read_vdb,
+        .has_nanovdb = &has_nanovdb,
+        .write_nanovdb = &write_nanovdb,
+        .write_vdb_points = &write_vdb_points,
+        .read_vdb_points = &read_vdb_points,
+        .holds_vdb_points = &holds_vdb_points,
+        .sample_rbf_points = &sample_rbf_points,
+        .compare_voxels = &compare_voxels,
+        .report = [](const VdbGrid& grid) -> const GridReport& { return grid.report(); },
+        .value = [](const VdbGrid& grid, const Vec3& x) { return grid.value(x); },
+        .voxels = [](const VdbGrid& grid) { return grid.voxels(); },
+        .free = &detail::free_vdb_data,
+    };
+    return &functions;
+}
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/error.h"
+#include "subvol/image.h"
+#include "subvol/oiio_compare.h"
+
+namespace subvol::detail {
+
+/// A picture as its file has it, not yet linear.
+///
+/// values:       `channels` a pixel, at most the file's first four, integers as 0 to 1
+/// alpha:        which of the channels is alpha; -1: none
+/// integers:     the file has integers
+/// unassociated: colours are not premultiplied
+struct DecodedPicture {
+    int width = 0, height = 0, channels = 0;
+    int alpha = -1;
+    bool integers = false, unassociated = false;
+    std::vector<float> values;
+};
+
+/// Pixels for a file: 8-bit sRGB, or linear floats whose channels are R, G, B, A and, if there are five, Z.
+struct PictureValues {
+    int width = 0, height = 0, channels = 0;
+    bool bytes = false;
+    const void* values = nullptr;
+};
+
+struct PictureFault {
+    ErrorCode code;
+    std::string why;
+};
+
+/// The functions of the module that uses OpenImageIO. They throw nothing but std::bad_alloc: the module and the program may
+/// have different copies of the type `Error`.
+struct OpenImageIo {
+    std::optional<PictureFault> (*write)(const std::string& path, const PictureValues& picture);
+    std::optional<PictureFault> (*read)(const std::string& path, DecodedPicture& picture);
+    OiioMetrics (*compare)(const Image& a, const Image& b, const OiioOptions& options);
+    std::size_t (*compare_yee)(const Image& a, const Image& b, float luminance, float field_of_view_deg);
+};
+
+/// Loads the module when it is called first.
+///
+/// throws: Error(MissingCapability) if it is not there
+[[nodiscard]] const OpenImageIo& openimageio();
+
+}  // namespace subvol::detail

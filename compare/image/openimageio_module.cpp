@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module subvol_openimageio.so. OpenImageIO brings 250 libraries, which take a third of a second to load.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#include "openimageio.h"
+#include "subvol/version.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GB as float RGBA
+
+using Outcome = std::optional<PictureFault>;
+
+PictureFault io_fault(const std::string& why) {
+    return {ErrorCode::Io, "cannot be written: " + why};
+}
+
+std::string first_line(const std::string& text) {
+    return text.substr(0, text.find('\n'));
+}
+
+/// When memory is short, OpenImageIO may leave a picture unfinished without reporting an error.
+bool is_whole(const std::string& path, const OIIO::ImageSpec& spec) {
+    const auto input = OIIO::ImageInput::open(path);
+    std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
+    return input && input->read_scanline(spec.height - 1, 0, OIIO::TypeDesc::FLOAT, row.data());
+}
+
+OIIO::ImageSpec spec_of(const PictureValues& picture) {
+    OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
+                         picture.bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+    if (picture.bytes) {
+        spec.attribute("oiio:ColorSpace", "sRGB");
+        return spec;
+    }
+    spec.attribute("DateTime", "");  // otherwise the time of writing: the same picture must give the same file
+    if (picture.channels == 5) {
+        spec.channelnames = {"R", "G", "B", "A", "Z"};
+        spec.z_channel = 4;
+    }
+    return spec;
+}
+
+Outcome write(const std::string& path, const PictureValues& picture) {
+    const OIIO::ImageSpec spec = spec_of(picture);
+    // OpenImageIO does not report a full disk when it writes .png; the stream does.
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "wb"), &std::fclose);
+    if (!stream) return io_fault(std::generic_category().message(errno));
+    OIIO::Filesystem::IOFile proxy(stream.get(), OIIO::Filesystem::IOProxy::Write);
+    const auto output = OIIO::ImageOutput::create(path, &proxy);
+    if (!output) {
+        const std::string said = OIIO::geterror();
+        return PictureFault{ErrorCode::MissingCapability, said.empty() ? "cannot be written; memory may be short" : said};
+    }
+    const bool written = output->open(path, spec) && output->write_image(spec.format, picture.values) && output->close();
+    const bool failed = std::ferror(stream.get()) != 0;
+    if (!written && failed) return io_fault(first_line(output->geterror()));
+    if (!written) return PictureFault{ErrorCode::MissingCapability, "cannot be written: " + first_line(output->geterror())};
+    if (std::fclose(stream.release()) != 0) return io_fault(std::generic_category().message(errno));
+    if (failed) return io_fault("the disk is full, or the file is too large");
+    if (!is_whole(path, spec)) {
+        return PictureFault{ErrorCode::MissingCapability, "was not written completely; memory may be short"};
+    }
+    return {};
+}
+
+Outcome read(const std::string& path, DecodedPicture& picture) {
+    // Otherwise OpenImageIO premultiplies encoded values; alpha applies to linear light, after decoding.
+    OIIO::ImageSpec wish;
+    wish.attribute("oiio:UnassociatedAlpha", 1);
+    const auto input = OIIO::ImageInput::open(path, &wish);
+    if (!input) return PictureFault{ErrorCode::InvalidInput, "is not an image: " + OIIO::geterror()};
+    const OIIO::ImageSpec& spec = input->spec();
+    const bool proper = spec.width > 0 && spec.height > 0 && spec.depth <= 1 && spec.nchannels > 0 && !spec.deep &&
+                        static_cast<std::int64_t>(spec.width) * spec.height <= kMaxPixels;
+    if (!proper) return PictureFault{ErrorCode::InvalidInput, "is not a flat picture of at most 2^28 pixels"};
+    picture.width = spec.width;
+    picture.height = spec.height;
+    picture.channels = std::min(spec.nchannels, 4);
+    picture.alpha = spec.alpha_channel < picture.channels ? spec.alpha_channel : -1;
+    picture.integers = !spec.format.is_floating_point();
+    picture.unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
+    picture.values.resize(static_cast<std::size_t>(picture.channels) * static_cast<std::size_t>(spec.width) *
+                          static_cast<std::size_t>(spec.height));
+    if (!input->read_image(0, 0, 0, picture.channels, OIIO::TypeDesc::FLOAT, picture.values.data())) {
+        return PictureFault{ErrorCode::InvalidInput, "is not a complete image: " + input->geterror()};
+    }
+    return {};
+}
+
+OIIO::ImageBuf as_buffer(const Image& image) {
+    // The buffer refers to the pixels and only reads them; its constructor has no const variant in OpenImageIO 2.4.
+    OIIO::ImageSpec spec(image.width, image.height, 4, OIIO::TypeDesc::FLOAT);
+    return OIIO::ImageBuf(spec, const_cast<float*>(image.rgba.data()));
+}
+
+OiioMetrics compare(const Image& a, const Image& b, const OiioOptions& options) {
+    const auto result = OIIO::ImageBufAlgo::compare(as_buffer(a), as_buffer(b), options.fail, options.warn,
+                                                    options.fail_relative, options.warn_relative);
+    // `error` is also set by failures; for pictures of one size and format there are no other errors.
+    return {result.meanerror, result.rms_error, result.PSNR, result.maxerror, result.nwarn, result.nfail};
+}
+
+std::size_t compare_yee(const Image& a, const Image& b, float luminance, float field_of_view_deg) {
+    OIIO::ImageBufAlgo::CompareResults result{};
+    return static_cast<std::size_t>(
+        OIIO::ImageBufAlgo::compare_Yee(as_buffer(a), as_buffer(b), result, luminance, field_of_view_deg));
+}
+
+}  // namespace
+
+}  // namespace subvol::detail
+
+extern "C" {
+extern const char subvol_module_version[];
+const char subvol_module_version[] = SUBVOL_VERSION;
+
+const subvol::detail::OpenImageIo* subvol_openimageio() {
+    using namespace subvol::detail;
+    static constexpr OpenImageIo kFunctions{&write, &read, &compare, &compare_yee};
+    return &kFunctions;
+}
+}

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "class_tables.h"
+
+#include <algorithm>
+#include <cstring>
+#include <list>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include "dense_block.h"
+#include "run_nested.h"
+#include "subvol/cell.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// Of splitmix64: every bit of the input changes about half of the output's.
+std::uint64_t mixed(std::uint64_t x) {
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ULL;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebULL;
+    return x ^ x >> 31;
+}
+
+/// Refines the unit vectors of a neighbourhood's points: a vertex's values are then its weights.
+WeightTable make_table(const Neighborhood& neighborhood, const SchemeOptions& scheme, int level,
+                       const std::function<HexMesh(HexMesh)>& on_limit) {
+    Patch patch = patch_of(neighborhood);
+    const std::size_t points = patch.mesh.points.size();
+    Attribute& unit = patch.mesh.attributes.emplace_back(Attribute{"weights", static_cast<int>(points), {}});
+    unit.values.assign(points * points, 0.0);
+    for (std::size_t p = 0; p < points; ++p) unit.values[p * points + p] = 1;
+    const int last_layers = on_limit ? 1 : 0;
+    for (int l = 1; l <= level; ++l) patch = refine_patch(patch, scheme, std::min(level - l + last_layers, 2));
+    if (on_limit) patch.mesh = on_limit(std::move(patch.mesh));
+
+    std::vector<Index> nodes;
+    DenseBlock(level).nodes(patch.mesh, 0, nodes);
+    WeightTable table{.points = points, .offsets = {0}, .columns = {}, .weights = {}};
+    for (const Index node : nodes) {
+        const double* row = &patch.mesh.attributes.front().values[node * points];
+        for (std::size_t p = 0; p < points; ++p) {
+            if (row[p] == 0) continue;
+            table.columns.push_back(static_cast<std::uint16_t>(p));
+            table.weights.push_back(row[p]);
+        }
+        table.offsets.push_back(static_cast<std::uint32_t>(table.columns.size()));
+    }
+    table.columns.shrink_to_fit();
+    table.weights.shrink_to_fit();
+    return table;
+}
+
+}  // namespace
+
+ClassKey key_of(const Neighborhood& neighborhood) {
+    const auto& code = neighborhood.code;
+    std::uint64_t a = mixed(code.size()), b = mixed(code.size() + 0x9e3779b97f4a7c15ULL);
+    for (std::size_t i = 0; i < code.size(); i += 4) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, &code[i], std::min<std::size_t>(4, code.size() - i) * sizeof(code[0]));
+        a = mixed(a ^ word);
+        b = (b ^ word) * 0x9e3779b97f4a7c15ULL;
+        b ^= b >> 29;
+    }
+    return {a, mixed(b)};
+}
+
+Neighborhood regular_neighborhood() {
+    Neighborhood grid{.points = std::vector<Index>(216), .code = {}};
+    for (std::size_t p = 0; p < 216; ++p) grid.points[p] = static_cast<Index>(p);
+    std::vector<std::array<std::size_t, 3>> cells{{2, 2, 2}};
+    const auto add_layer = [&](std::size_t low, std::size_t high) {
+        for (std::size_t n = 0; n < 125; ++n) {
+            const std::array<std::size_t, 3> at{n % 5, n / 5 % 5, n / 25};
+            const bool inside = std::ranges::all_of(at, [&](std::size_t i) { return i >= low && i <= high; });
+            if (inside && std::ranges::find(cells, at) == cells.end()) cells.push_back(at);
+        }
+    };
+    add_layer(1, 3);
+    grid.code.push_back(static_cast<std::uint16_t>(cells.size()));
+    add_layer(0, 4);
+    for (const auto& at : cells) {
+        for (std::size_t octant = 0; octant < 8; ++octant) {
+            const std::size_t u = at[0] + (octant & 1), v = at[1] + (octant >> 1 & 1), w = at[2] + (octant >> 2);
+            grid.code.push_back(static_cast<std::uint16_t>(u + 6 * (v + 6 * w)));
+        }
+    }
+    return grid;
+}
+
+struct ClassTables::State {
+    using Name = std::pair<ClassKey, int>;
+    struct Entry {
+        std::once_flag made;
+        std::shared_ptr<const WeightTable> table;
+        std::list<Name>::iterator used;
+    };
+
+    SchemeOptions scheme;
+    std::function<HexMesh(HexMesh)> on_limit;
+    std::size_t most_bytes;
+    mutable std::mutex mutex;
+    std::map<Name, std::shared_ptr<Entry>> entries;
+    std::list<Name> by_use;  // the last one first
+    std::size_t bytes = 0, made = 0;
+
+    std::shared_ptr<Entry> find(const Name& name) {
+        const std::scoped_lock lock(mutex);
+        auto& entry = entries[name];
+        if (!entry) {
+            entry = std::make_shared<Entry>();
+            by_use.push_front(name);
+            entry->used = by_use.begin();
+        } else {
+            by_use.splice(by_use.begin(), by_use, entry->used);
+        }
+        return entry;
+    }
+
+    void count(std::size_t more) {
+        const std::scoped_lock lock(mutex);
+        bytes += more;
+        ++made;
+        while (bytes > most_bytes && by_use.size() > 1) {
+            const auto oldest = entries.find(by_use.back());
+            if (!oldest->second->table) break;  // is being made
+            bytes -= oldest->second->table->bytes();
+            entries.erase(oldest);
+            by_use.pop_back();
+        }
+    }
+};
+
+ClassTables::ClassTables(const SchemeOptions& scheme, std::function<HexMesh(HexMesh)> on_limit, std::size_t most_bytes)
+    : state_(std::make_unique<State>()) {
+    state_->scheme = scheme;
+    state_->on_limit = std::move(on_limit);
+    state_->most_bytes = most_bytes;
+}
+
+ClassTables::~ClassTables() = default;
+
+std::shared_ptr<const WeightTable> ClassTables::table(const ClassKey& key, int level,
+                                                      const std::function<const Neighborhood&()>& find) {
+    const auto entry = state_->find({key, level});
+    std::call_once(entry->made, [&] {
+        run_nested([&] {
+            auto table = std::make_shared<const WeightTable>(make_table(find(), state_->scheme, level, state_->on_limit));
+            const std::scoped_lock lock(state_->mutex);
+            entry->table = std::move(table);
+        });
+        state_->count(entry->table->bytes());
+    });
+    return entry->table;
+}
+
+std::size_t ClassTables::made() const {
+    const std::scoped_lock lock(state_->mutex);
+    return state_->made;
+}
+
+std::size_t ClassTables::bytes() const {
+    const std::scoped_lock lock(state_->mutex);
+    return state_->bytes;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "neighborhood.h"
+
+#include <algorithm>
+
+#include "subvol/cell.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kMostPoints = 1500, kMostCells = 1000;  // a vertex with 60 cells about it; more is left to refinement
+
+}  // namespace
+
+NeighborhoodWalk::NeighborhoodWalk(const HexMesh& mesh, const CellLinks& links)
+    : mesh_(mesh),
+      links_(links),
+      cell_marks_(mesh.cells.size(), 0),
+      point_marks_(mesh.points.size(), 0),
+      numbers_(mesh.points.size(), 0) {
+}
+
+void NeighborhoodWalk::start(Neighborhood& found) {
+    visited_.clear();
+    cells_found_.clear();
+    found.points.clear();
+    found.code.assign(1, 0);
+    if (++mark_ != 0) return;
+    std::ranges::fill(cell_marks_, 0);
+    std::ranges::fill(point_marks_, 0);
+    mark_ = 1;
+}
+
+std::uint16_t NeighborhoodWalk::number(Index point, Neighborhood& found) {
+    if (point_marks_[point] != mark_) {
+        point_marks_[point] = mark_;
+        numbers_[point] = static_cast<std::uint16_t>(found.points.size());
+        found.points.push_back(point);
+        cells_found_.push_back(0);
+    }
+    return numbers_[point];
+}
+
+/// The turn by which the colours of the corners come in the least order.
+std::uint8_t NeighborhoodWalk::first_turn(Index cell) const {
+    std::array<std::uint64_t, 8> colors;  // by the cell's octants
+    for (std::size_t octant = 0; octant < 8; ++octant)
+        colors[octant] = links_.colors[mesh_.cells[cell][kCornerOctants[octant]]];
+    std::uint8_t best = 0;
+    for (std::uint8_t turn = 1; turn < 48; ++turn) {
+        const auto& a = cell_turns()[turn].octants;
+        const auto& b = cell_turns()[best].octants;
+        std::size_t k = 0;
+        while (k < 8 && colors[a[k]] == colors[b[k]]) ++k;
+        if (k < 8 && colors[a[k]] < colors[b[k]]) best = turn;
+    }
+    return best;
+}
+
+void NeighborhoodWalk::add_first(Index cell, Neighborhood& found) {
+    cell_marks_[cell] = mark_;
+    found.turn = first_turn(cell);
+    visited_.push_back({cell, found.turn});
+    for (const std::size_t octant : cell_turns()[found.turn].octants) {
+        const std::uint16_t n = number(mesh_.cells[cell][kCornerOctants[octant]], found);
+        found.code.push_back(n);
+        ++cells_found_[n];
+    }
+}
+
+/// Adds the cell across a side of a visited one, if it is new; false if there are too many.
+bool NeighborhoodWalk::add(std::size_t from, std::size_t side, Neighborhood& found) {
+    const auto [cell, turn] = visited_[from];
+    const std::size_t own_side = cell_turns()[turn].sides[side];
+    const Index next = links_.neighbors[cell][own_side];
+    if (next == kNone || cell_marks_[next] == mark_) return true;
+    if (visited_.size() >= kMostCells || found.points.size() + 4 > kMostPoints) return false;
+    cell_marks_[next] = mark_;
+    const std::uint8_t next_turn = composed(turn, links_.turn(cell, own_side));
+    visited_.push_back({next, next_turn});
+    const std::size_t bit = std::size_t{1} << (side / 2), shared = (side & 1) != 0 ? 0 : bit;
+    const auto& octants = cell_turns()[next_turn].octants;
+    const auto& corners = mesh_.cells[next];
+    const std::size_t first = 1 + 8 * from;
+    for (std::size_t octant = 0; octant < 8; ++octant) {
+        const bool is_shared = (octant & bit) == shared;
+        const std::uint16_t n =
+            is_shared ? found.code[first + (octant ^ bit)] : number(corners[kCornerOctants[octants[octant]]], found);
+        found.code.push_back(n);
+        ++cells_found_[n];
+    }
+    return true;
+}
+
+/// Adds the cells about the first `points` points, from each such cell across the sides that have one of them; false if there
+/// are too many.
+bool NeighborhoodWalk::walk_layer(std::size_t points, Neighborhood& found) {
+    for (std::size_t i = 0; i < visited_.size(); ++i) {
+        unsigned near = 0;  // octants at one of the points
+        for (std::size_t octant = 0; octant < 8; ++octant) near |= unsigned{found.code[1 + 8 * i + octant] < points} << octant;
+        constexpr std::array<unsigned, 6> kOctantsOfSide{0x55, 0xaa, 0x33, 0xcc, 0x0f, 0xf0};
+        for (std::size_t side = 0; side < 6; ++side) {
+            if ((near & kOctantsOfSide[side]) != 0 && !add(i, side, found)) return false;
+        }
+    }
+    return true;
+}
+
+/// Whether all cells about the first `points` points have been found.
+bool NeighborhoodWalk::is_complete(std::size_t points, const Neighborhood& found) const {
+    for (std::size_t p = 0; p < points; ++p) {
+        if (cells_found_[p] != links_.cells_at[found.points[p]]) return false;
+    }
+    return true;
+}
+
+/// After the cells: for each tagged edge or face its points.
+void NeighborhoodWalk::add_tags(Neighborhood& found) const {
+    if (links_.creases.empty() && mesh_.sharp_faces.empty()) return;
+    const std::size_t cells = visited_.size();
+    found.code.push_back(0xffff);
+    for (std::size_t i = 0; i < cells; ++i) {
+        const CellTurn& turn = cell_turns()[visited_[i].turn];
+        std::uint16_t edges = 0, sides = 0;
+        for (std::size_t k = 0; k < 12 && !links_.creases.empty(); ++k) {
+            const auto [a, b] = kCellEdges[k];
+            // The walk's edge k is the cell's edge between the corners at which its ends lie.
+            const std::size_t own_a = kCornerOctants[turn.octants[kCornerOctants[static_cast<std::size_t>(a)]]];
+            const std::size_t own_b = kCornerOctants[turn.octants[kCornerOctants[static_cast<std::size_t>(b)]]];
+            for (std::size_t e = 0; e < 12; ++e) {
+                const auto c = static_cast<std::size_t>(kCellEdges[e][0]), d = static_cast<std::size_t>(kCellEdges[e][1]);
+                const bool same = (c == own_a && d == own_b) || (c == own_b && d == own_a);
+                if (same && (links_.creases[visited_[i].cell] >> e & 1) != 0) edges |= static_cast<std::uint16_t>(1U << k);
+            }
+        }
+        for (std::size_t side = 0; side < 6; ++side) {
+            if (links_.is_sharp(visited_[i].cell, turn.sides[side])) sides |= static_cast<std::uint16_t>(1U << side);
+        }
+        found.code.push_back(edges);
+        found.code.push_back(sides);
+    }
+}
+
+bool NeighborhoodWalk::find(Index cell, int layers, Neighborhood& found) {
+    start(found);
+    add_first(cell, found);
+    if (!walk_layer(8, found) || !is_complete(8, found)) return false;
+    found.code[0] = static_cast<std::uint16_t>(visited_.size());
+    const std::size_t near = found.points.size();
+    if (layers > 1 && (!walk_layer(near, found) || !is_complete(near, found))) return false;
+    add_tags(found);
+    return true;
+}
+
+bool NeighborhoodWalk::find_regular(Index cell, std::span<Index, 216> points) const {
+    const auto step = [&](Visited from, std::size_t side) -> Visited {
+        if (from.cell == kNone) return from;
+        const std::size_t own = cell_turns()[from.turn].sides[side];
+        return {links_.neighbors[from.cell][own], composed(from.turn, links_.turn(from.cell, own))};
+    };
+    // From the middle along u, then v, then w: cell i + 3j + 9k lies one step off along each axis where i, j, k is 0 or 2.
+    std::array<Visited, 27> near;
+    for (std::size_t n = 0; n < 27; ++n) {
+        const std::array<std::size_t, 3> at{n % 3, n / 3 % 3, n / 9};
+        Visited now{cell, kIdentityTurn};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!links_.regular[now.cell]) return false;
+            if (at[axis] != 1) now = step(now, 2 * axis + at[axis] / 2);
+        }
+        if (!links_.regular[now.cell]) return false;
+        near[n] = now;
+    }
+    for (std::size_t n = 0; n < 27; ++n) {
+        const std::array<std::size_t, 3> at{n % 3, n / 3 % 3, n / 9};
+        Visited now = near[n];
+        for (std::size_t axis = 0; axis < 3; ++axis) {  // two steps off
+            if (at[axis] != 1) now = step(now, 2 * axis + at[axis] / 2);
+            if (now.cell == kNone) return false;
+        }
+        const auto& octants = cell_turns()[now.turn].octants;
+        for (std::size_t octant = 0; octant < 8; ++octant) {
+            const std::size_t u = 2 * at[0] + (octant & 1), v = 2 * at[1] + (octant >> 1 & 1), w = 2 * at[2] + (octant >> 2);
+            points[u + 6 * (v + 6 * w)] = mesh_.cells[now.cell][kCornerOctants[octants[octant]]];
+        }
+    }
+    // Cells with four cells about each edge leave open how many meet at a corner that only one of them has.
+    for (std::size_t n = 0; n < 64; ++n) {
+        if (links_.cells_at[points[n % 4 + 1 + 6 * (n / 4 % 4 + 1) + 36 * (n / 16 + 1)]] != 8) return false;
+    }
+    return true;
+}
+
+Patch patch_of(const Neighborhood& neighborhood) {
+    const auto& code = neighborhood.code;
+    const auto tags = static_cast<std::size_t>(std::find(code.begin() + 1, code.end(), 0xffff) - code.begin());
+    Patch patch{.mesh = {}, .wanted = 1, .first_layer = code[0]};
+    patch.mesh.points.assign(neighborhood.points.size(), Vec3(0.0));
+    for (std::size_t first = 1; first < tags; first += 8) {
+        auto& cell = patch.mesh.cells.emplace_back();
+        for (std::size_t k = 0; k < 8; ++k) cell[k] = code[first + kCornerOctants[k]];
+    }
+    for (std::size_t i = 0; tags < code.size() && i < patch.mesh.cells.size(); ++i) {
+        const auto& cell = patch.mesh.cells[i];
+        for (std::size_t k = 0; k < 12; ++k) {
+            if ((code[tags + 1 + 2 * i] >> k & 1) == 0) continue;
+            const Index a = cell[static_cast<std::size_t>(kCellEdges[k][0])],
+                        b = cell[static_cast<std::size_t>(kCellEdges[k][1])];
+            patch.mesh.creases.push_back({std::min(a, b), std::max(a, b)});
+        }
+        for (std::size_t side = 0; side < 6; ++side) {
+            if ((code[tags + 2 + 2 * i] >> side & 1) == 0) continue;
+            auto& face = patch.mesh.sharp_faces.emplace_back();
+            for (std::size_t k = 0; k < 4; ++k) face[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
+        }
+    }
+    const auto unique = [](auto& list) {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+    };
+    unique(patch.mesh.creases);
+    return patch;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "node_steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace subvol::detail {
+
+Step larger(const Step& a, const Step& b) {
+    return {std::max(a.position, b.position), std::max(a.value, b.value)};
+}
+
+Step smaller(const Step& a, const Step& b) {
+    return {std::min(a.position, b.position), std::min(a.value, b.value)};
+}
+
+void NodeBlock::gather(const DenseCell& grid, const std::array<std::size_t, 3>& first, std::size_t step, std::size_t side) {
+    side_ = side;
+    channels_ = 3;
+    for (const auto& values : grid.values) channels_ += values.size() / grid.points.size();
+    nodes_.resize(side * side * side * channels_);
+    const auto place = [&](std::size_t u, std::size_t v, std::size_t w) {
+        return first[0] + step * u + grid.side * (first[1] + step * v + grid.side * (first[2] + step * w));
+    };
+    origin_ = grid.points[place(0, 0, 0)];
+    double* to = nodes_.data();
+    for (std::size_t w = 0; w < side; ++w) {
+        for (std::size_t v = 0; v < side; ++v) {
+            for (std::size_t u = 0; u < side; ++u) {
+                const std::size_t n = place(u, v, w);
+                const Vec3 p = grid.points[n] - origin_;
+                *to++ = p.x;
+                *to++ = p.y;
+                *to++ = p.z;
+                for (const auto& values : grid.values) {
+                    const std::size_t count = values.size() / grid.points.size();
+                    to = std::copy_n(&values[n * count], count, to);
+                }
+            }
+        }
+    }
+}
+
+/// Predicts the nodes at odd places along one axis.
+///
+/// stride: between nodes along the axis; across, outer: steps between the nodes from which lines start, along the other two
+///         axes in their order
+void NodeBlock::predict_along(std::size_t stride, std::size_t across, std::size_t outer, Prediction by) {
+    const std::size_t plane = side_ * side_;
+    const std::size_t first_axis = stride == 1 ? side_ : 1, second_axis = stride == plane ? side_ : plane;
+    const auto line = static_cast<std::ptrdiff_t>(stride * channels_);
+    for (std::size_t j = 0; j < side_; j += outer) {
+        for (std::size_t i = 0; i < side_; i += across) {
+            double* start = &predicted_[(i * first_axis + j * second_axis) * channels_];
+            for (std::size_t k = 1; k < side_; k += 2) {
+                double* to = start + static_cast<std::ptrdiff_t>(k) * line;
+                if (by == Prediction::Trilinear) {
+                    for (std::size_t c = 0; c < channels_; ++c, ++to) *to = 0.5 * (to[-line] + to[line]);
+                } else {
+                    const std::ptrdiff_t on = k % 4 == 1 ? line : -line;  // towards the middle of the three
+                    for (std::size_t c = 0; c < channels_; ++c, ++to) {
+                        *to = 0.375 * to[-on] + 0.75 * to[on] - 0.125 * to[3 * on];
+                    }
+                }
+            }
+        }
+    }
+}
+
+void NodeBlock::steps(Prediction by, const std::vector<double>& scales, std::vector<Step>& steps) {
+    predicted_ = nodes_;
+    predict_along(1, 2, 2, by);
+    predict_along(side_, 1, 2, by);
+    predict_along(side_ * side_, 1, 1, by);
+    steps.resize(nodes_.size() / channels_);
+    for (std::size_t n = 0; n < steps.size(); ++n) {
+        const double *a = &nodes_[n * channels_], *b = &predicted_[n * channels_];
+        double square = 0, value = 0;
+        for (std::size_t d = 0; d < 3; ++d) square += (a[d] - b[d]) * (a[d] - b[d]);
+        for (std::size_t c = 3; c < channels_; ++c) value = std::max(value, std::abs(a[c] - b[c]) * scales[c - 3]);
+        steps[n] = {std::sqrt(square), value};
+    }
+}
+
+Step NodeBlock::largest_step(Prediction by, const std::vector<double>& scales) {
+    steps(by, scales, steps_);
+    Step most;
+    for (const Step& step : steps_) most = larger(most, step);
+    return most;
+}
+
+double levels_between(double tolerance, double step) {
+    return std::ceil(std::log2(step / tolerance) / 2);
+}
+
+std::vector<double> value_scales(const HexMesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size(), 0);
+    for (const auto& cell : mesh.cells) {
+        for (const Index p : cell) used[p] = 1;
+    }
+    std::vector<double> scales;
+    for (const Attribute& attribute : mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        double min = HUGE_VAL, max = -HUGE_VAL;
+        for (std::size_t i = 0; i < attribute.values.size(); ++i) {
+            if (!used[i / channels]) continue;
+            min = std::min(min, attribute.values[i]);
+            max = std::max(max, attribute.values[i]);
+        }
+        constexpr double kRounding = 1e-12;  // relative: a field that varies less is constant
+        const bool varies = max - min > kRounding * std::max(std::abs(min), std::abs(max));
+        scales.insert(scales.end(), channels, varies ? 1 / (max - min) : 0.0);
+    }
+    return scales;
+}
+
+}  // namespace subvol::detail
