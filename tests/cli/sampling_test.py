@@ -43,7 +43,7 @@ class Sampling(InFolder):
         by_map = self.points("--threshold", "--tf", "surface", model="model:pawn:32")
         self.assertEqual(by_map["points"], kept["points"])
         for name, options in ("all.exr", []), ("kept.exr", ["--threshold"]):
-            self.run_ok("render", "model:pawn:32", "-o", name, "--tf", "surface", "--size", 96, "--quiet", *options)
+            self.run_ok("render", "model:pawn:32", "-o", name, "--tf", "surface", "--size", 96, "--sheets", 128, "--quiet", *options)
         self.assertEqual(self.run_ok("compare", "all.exr", "kept.exr", "--json").json()["max"], 0)
 
     def test_mistakes_have_a_sentence(self):
