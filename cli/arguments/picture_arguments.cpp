@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "choices.h"
 #include "outputs.h"
 #include "subvol/camera_fit.h"
 #include "subvol/detail/near_name.h"
@@ -114,6 +115,7 @@ void PictureArguments::add_camera_to(CLI::App& app) {
     place->type_name("CAMERA");
     app.add_option("--view", view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
         ->type_name("SIDE")
+        ->check(offered({"+x", "-x", "+y", "-y", "+z", "-z", "iso"}))
         ->excludes(place);
     app.add_option("--views", views, "4: one picture of four, from the front, the side, above and iso")
         ->type_name("N")
@@ -138,12 +140,15 @@ void PictureArguments::add_light_to(CLI::App& app) {
                    "solid (opaque and lit; the default for meshes without --tf, --opacity and --opacity-unit), volume "
                    "(opacity 0 to .5 over the range, black behind; otherwise the default), xray (on white) or isosurface (five "
                    "lit surfaces)")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->check(offered({"solid", "volume", "xray", "isosurface"}));
     app.add_option(
            "--tf", transfer_function,
            "colour map: viridis (default), plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface "
            "or constant over the field's range, or a ParaView colour-map JSON file (FILE.json:NAME for one of several in it)")
-        ->type_name("FILE|NAME");
+        ->type_name("FILE|NAME")
+        ->check(offered({"viridis", "plasma", "inferno", "cividis", "turbo", "coolwarm", "grey", "bone", "xray", "isosurface",
+                         "surface", "constant"}));
     app.add_option(
            "--tf-range", transfer_range,
            "the range that the colour map and the percentages of --opacity cover: MIN,MAX or field (default: the field's "

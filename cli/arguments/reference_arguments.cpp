@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "choices.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -17,9 +18,10 @@ void ReferenceArguments::add_to(CLI::App& app) {
         ->type_name("RMS")
         ->check(CLI::PositiveNumber);
     app.add_option("--order", order,
-                   "pt: how the tetrahedra are sorted: topological (by shared faces, the default), centroid,\n"
+                   "pt: how the tetrahedra are sorted: topological (by shared faces, the default), centroid, "
                    "lists (one per pixel) or havs (faces by centroid, then a k-buffer per pixel)")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->check(offered({"topological", "centroid", "lists", "havs"}));
     app.add_option("--kbuffer", kbuffer, "havs: entries of the k-buffer (default 6)")
         ->type_name("K")
         ->check(CLI::Range(1, 65536));

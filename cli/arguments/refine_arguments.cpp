@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "choices.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "text.h"
@@ -42,7 +43,8 @@ void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
            "--scheme", scheme,
            "mcq (smooth, through the control points; the default), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), "
            "linear")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->check(offered({"mcq", "cc", "bsxw", "linear"}));
     app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
         ->type_name("W")
         ->check(CLI::Range(0.0, 0.125));

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "choices.h"
 #include "picture_arguments.h"
 #include "subvol/error.h"
 #include "text.h"
@@ -57,7 +58,8 @@ void SampleArguments::add_to(CLI::App& app) {
     app.add_option("--footprint-size", footprint_size, "the size of that camera's picture (default 512x512)")->type_name("WxH");
     app.add_option("--values", values,
                    "values between control points: scheme (exact, default), cubic (Catmull-Rom), paper (weighted mean)")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->check(offered({"scheme", "cubic", "paper"}));
     app.add_option("--kernel", kernel, "the kernel of the points (default compact); see subvol fit --kernels")
         ->type_name("NAME|JSON");
     app.add_option("--value-kernel", value_kernel, "the kernel of --values paper (default paper_bc)")->type_name("NAME|JSON");
@@ -68,7 +70,8 @@ void SampleArguments::add_to(CLI::App& app) {
                             ->expected(0, 1);
     app.add_option("--correction", correction,
                    "the derivatives of the field that kernels carry: none, gradient, second (default), full")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->check(offered({"none", "gradient", "second", "full"}));
     auto* reduce = app.add_option("--reduce", reduce_rmse,
                                   "instead: as few kernels as a root mean square error of RMSE needs, in the field's unit");
     reduce->type_name("RMSE")

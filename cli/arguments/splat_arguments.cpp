@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "choices.h"
 #include "subvol/error.h"
 #include "text.h"
 
@@ -14,7 +15,9 @@ SplatMethod splat_method(const std::string& backend, bool by_sheets) {
 }
 
 void SplatArguments::add_to(CLI::App& app) {
-    app.add_option("--backend", backend, "where to splat: auto (default: a GPU, else the CPU), gl, cpu")->type_name("NAME");
+    app.add_option("--backend", backend, "where to splat: auto (default: a GPU, else the CPU), gl, cpu")
+        ->type_name("NAME")
+        ->check(offered({"auto", "gl", "cpu"}));
     app.add_option("--device", device, "the OpenGL device's number in `info --gl` (default: the first GPU)")
         ->type_name("N")
         ->check(CLI::NonNegativeNumber);
@@ -26,7 +29,7 @@ void SplatArguments::add_to(CLI::App& app) {
         ->type_name("NAME");
     app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
     app.add_option("--seconds", seconds,
-                   "the best picture within this time; splat: first coarse, then with the mesh sampled for the view;\n"
+                   "the best picture within this time; splat: first coarse, then with the mesh sampled for the view; "
                    "pt: first the faces of the boundary, then more and more of those inside")
         ->type_name("S")
         ->check(CLI::PositiveNumber)

@@ -83,6 +83,7 @@ ChildResult run_self(const std::vector<std::string>& arguments) {
     }
     out.close_end(1);
     err.close_end(1);
+    const WaitsForChild waits;
     ChildResult result;
     drain(out, err, child, result);
     int status = 0;

@@ -3,28 +3,23 @@
 
 #include <CLI/CLI.hpp>
 
+#include "choices.h"
 #include "subvol/error.h"
 
 namespace subvol::cli {
 
-void add_common_options(CLI::App& app, CommonOptions& options) {
-    const std::string group = "Common options";
-    auto* field =
-        app.add_option("--field", options.field,
-                       "the field to use; of a vector its length, with NAME.k its component k (default: the first scalar, "
-                       "else the length of the first vector, else density 1)");
-    field->group(group)->type_name("NAME");
-    app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
-        ->group(group)
-        ->type_name("EXPR")
-        ->excludes(field);
+namespace {
+
+void add_mesh_options(CLI::App& app, CommonOptions& options) {
+    const std::string group = "Reading meshes";
     app.add_option("--other-cells", options.other_cells,
                    "what to do with tetrahedra, prisms and pyramids: split (all cells, into hexahedra), ignore, refuse")
         ->group(group)
         ->type_name("WHAT")
-        ->check(CLI::IsMember({"split", "ignore", "refuse"}));
-    app.add_flag("--weld", options.weld, "join points of a file that are at the same place");
+        ->check(one_of({"split", "ignore", "refuse"}));
+    app.add_flag("--weld", options.weld, "join points of a file that are at the same place")->group(group);
     app.add_option("--weld-distance", options.weld_distance_world, "join points of a file that are no farther apart than this")
+        ->group(group)
         ->type_name("D")
         ->check(CLI::PositiveNumber);
     app.add_option("--sharp", options.sharp,
@@ -33,16 +28,33 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
         ->group(group)
         ->type_name("NAME")
         ->allow_extra_args(false);
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& app, CommonOptions& options, Reads reads) {
+    const std::string group = "Common options";
+    const std::string of_meshes = reads == Reads::Meshes ? "Reading meshes" : "";
+    auto* field =
+        app.add_option("--field", options.field,
+                       "the field to use; of a vector its length, with NAME.k its component k (default: a physical scalar, "
+                       "else the length of the first vector, else density 1)");
+    field->group(of_meshes)->type_name("NAME");
+    app.add_option("--density", options.density, "an expression in x, y, z to use as the field, e.g. \"sin(3*x)+z\"")
+        ->group(of_meshes)
+        ->type_name("EXPR")
+        ->excludes(field);
+    if (reads == Reads::Meshes) add_mesh_options(app, options);
     app.add_option("--threads", options.threads, "number of threads (0: all); results do not depend on it")
         ->group(group)
         ->type_name("N")
         ->check(CLI::Range(0, 4096));
-    app.add_flag("--json", options.json, "print one JSON object on standard output")->group(group);
+    app.add_flag("--json", options.json, "print one JSON object on standard output, also if there is an error")->group(group);
     app.add_flag("--quiet", options.quiet, "print nothing but errors (and the JSON object)")->group(group);
     app.add_option("--progress", options.progress, "show a progress bar on standard error: auto (on a terminal), on, off")
         ->group(group)
         ->type_name("WHEN")
-        ->check(CLI::IsMember({"auto", "on", "off"}));
+        ->check(one_of({"auto", "on", "off"}));
     app.add_option("--seed", options.seed, "seed of the random numbers that place samples")->group(group)->type_name("N");
 }
 

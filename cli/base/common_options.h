@@ -13,6 +13,9 @@ class App;
 
 namespace subvol::cli {
 
+/// Whether a verb reads meshes; the options for reading them make no sense for others.
+enum class Reads { Meshes, NoMesh };
+
 /// The options that every verb has.
 struct CommonOptions {
     std::optional<std::string> field;
@@ -28,7 +31,9 @@ struct CommonOptions {
     std::uint64_t seed = 0;
 };
 
-void add_common_options(CLI::App& app, CommonOptions& options);
+/// Of a verb that reads no mesh, --field and --density are accepted, because scripts may give them to any verb, but no help
+/// shows them; the other options for reading meshes are unknown to it.
+void add_common_options(CLI::App& app, CommonOptions& options, Reads reads);
 
 /// Refuses options that do not apply to an input.
 ///

@@ -13,6 +13,7 @@ namespace subvol::cli {
 class Figures {
 public:
     void put(const std::string& name, double value) { all_.emplace_back(name, value); }
+    [[nodiscard]] const std::vector<std::pair<std::string, double>>& all() const { return all_; }
     [[nodiscard]] double at(const std::string& name) const;
 
     /// "srgb8.psnr" becomes the key "psnr" of the object "srgb8".

@@ -1,25 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "interrupt.h"
 
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <csignal>
-#include <initializer_list>
+#include <string_view>
+
+#include "subvol/detail/unfinished_files.h"
 
 namespace subvol::cli {
 namespace {
 
+constexpr int kBySignal = 128;  // as shells count
+
 volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t extensions = 0;
+volatile std::sig_atomic_t silent = 0;
+std::atomic<int> children = 0;
+
+struct LastWords {
+    int signal;
+    std::array<char, 512> words{};
+};
+std::array<LastWords, 3> last_words{{{SIGINT}, {SIGTERM}, {SIGHUP}}};
+
+void start_timer() {
+    const itimerval grace{.it_interval = {}, .it_value = {.tv_sec = 0, .tv_usec = 1000 * kGrace_ms}};
+    setitimer(ITIMER_REAL, &grace, nullptr);
+}
+
+void write_all(int stream, std::string_view words) {
+    (void)!write(stream, words.data(), words.size());
+}
+
+/// Some stages cannot stop in time: libraries that read and write files, a mesh of millions of cells that is freed.
+void on_timer(int /*signal*/) {
+    constexpr int kMostExtensions = 4;
+    if (children > 0 && extensions < kMostExtensions) {
+        extensions = extensions + 1;
+        return start_timer();
+    }
+    detail::remove_unfinished_files();
+    if (silent != 0) _exit(kBySignal + interrupted);
+    write_all(STDERR_FILENO, isatty(STDERR_FILENO) != 0 ? "\r\033[Ksubvol: cancelled\n" : "subvol: cancelled\n");
+    for (const LastWords& last : last_words) {
+        if (last.signal == interrupted) write_all(STDOUT_FILENO, last.words.data());
+    }
+    _exit(kBySignal + interrupted);
+}
 
 void on_interrupt(int signal) {
     interrupted = signal;
     std::signal(signal, SIG_DFL);
+    start_timer();
 }
 
 }  // namespace
 
 void catch_interrupts() {
+    std::signal(SIGALRM, on_timer);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
     }
+}
+
+void say_when_interrupted(const std::function<std::string(int code)>& json) {
+    for (LastWords& last : last_words) {
+        const std::string words = json(kBySignal + last.signal);
+        if (words.size() < last.words.size()) *std::ranges::copy(words, last.words.begin()).out = '\0';
+    }
+}
+
+void all_said() {
+    silent = 1;
+}
+
+WaitsForChild::WaitsForChild() {
+    ++children;
+}
+
+WaitsForChild::~WaitsForChild() {
+    --children;
 }
 
 int interrupt_signal() {

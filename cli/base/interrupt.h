@@ -1,11 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <string>
+
 namespace subvol::cli {
 
 /// After this call SIGINT (Ctrl-C), SIGTERM and SIGHUP ask the running work to stop; a second signal of the same kind ends the
 /// program at once. A signal that was ignored, as under nohup, stays ignored.
 void catch_interrupts();
+
+/// After an interrupt the work has this long to stop by itself. Then the program ends in the midst of it, without its
+/// unfinished files.
+inline constexpr int kGrace_ms = 300;
+
+/// What standard output gets if the program ends in the midst of its work: the object of --json, for its exit code.
+void say_when_interrupted(const std::function<std::string(int code)>& json);
+
+/// After this call an interrupt ends the program without words.
+void all_said();
+
+/// While it exists, the program waits for a child that was told to stop: twice the time.
+class WaitsForChild {
+public:
+    WaitsForChild();
+    ~WaitsForChild();
+    WaitsForChild(const WaitsForChild&) = delete;
+    WaitsForChild& operator=(const WaitsForChild&) = delete;
+};
 
 /// The signal that asked the work to stop; 0: none.
 [[nodiscard]] int interrupt_signal();

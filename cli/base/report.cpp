@@ -8,6 +8,8 @@
 #include <iomanip>
 #include <iostream>
 
+#include "interrupt.h"
+#include "quantities.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text.h"
@@ -33,12 +35,26 @@ std::string for_people(const Json& value) {
     return value.is_array() ? "(" + join(parts) + ")" : join(parts);
 }
 
+std::string stages(const Json& seconds) {
+    std::vector<std::string> parts;
+    for (const auto& [stage, value] : seconds.items()) parts.push_back(stage + " " + seconds_text(value.get<double>()));
+    return join(parts);
+}
+
 void print_table(const Json& json) {
+    Lines lines;
     for (const auto& [key, value] : json.items()) {
         const bool list = value.is_array() && !value.empty() && value.front().is_object();
         const Json rows = list ? value : Json::array({value});
-        for (const Json& row : rows) std::cout << std::left << std::setw(24) << key << for_people(row) << '\n';
+        for (const Json& row : rows) {
+            const bool bytes = key.ends_with("bytes") && row.is_number();
+            const std::string name = key.ends_with("_bytes") ? key.substr(0, key.size() - 6) + "_memory" : key;
+            lines.emplace_back(name, key == "seconds" && row.is_object() ? stages(row)
+                                     : bytes                             ? bytes_text(row.get<double>())
+                                                                         : for_people(row));
+        }
     }
+    std::cout << aligned(lines);
 }
 
 }  // namespace
@@ -75,6 +91,11 @@ void Report::add_seconds(const std::string& stage, double seconds) {
     all[stage] = all.is_null() ? seconds : all.value(stage, 0.0) + seconds;
 }
 
+void Report::if_long(const std::string& quicker) {
+    if (print_json_ || quiet_) return;
+    progress_.hint_at(quicker, [](const std::string& words) { std::cerr << "subvol: " << words << std::endl; });
+}
+
 void Report::say(const std::string& line) {
     if (print_json_ || quiet_) return;
     progress_.clear();
@@ -83,6 +104,7 @@ void Report::say(const std::string& line) {
 
 void Report::finish() {
     progress_.clear();
+    cli::all_said();  // not a second object
     if (json_.contains("seconds")) json_["peak_bytes"] = peak_memory_bytes();
     if (print_json_) {
         if (!json_.contains("warnings")) json_["warnings"] = Json::array();

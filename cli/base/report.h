@@ -37,6 +37,13 @@ public:
     /// A line for people; not printed with --json or --quiet.
     void say(const std::string& line);
 
+    /// Stages are from now on those of "frame 3 of 8"; an empty name: no longer.
+    void begin_part(const std::string& name, std::size_t index, std::size_t count) { progress_.begin_part(name, index, count); }
+
+    /// What makes the work quicker, for people who would have to wait: said once, if a stage turns out to take more than ten
+    /// seconds.
+    void if_long(const std::string& quicker);
+
     /// Adds to a stage's seconds, which go under "seconds".
     void add_seconds(const std::string& stage, double seconds);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/near_name.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
@@ -37,7 +38,8 @@ double parse_number(const std::string& option, const std::string& value) {
 
 void check_choice(const std::string& option, const std::string& value, const std::vector<std::string>& supported) {
     if (std::ranges::find(supported, value) != supported.end()) return;
-    throw Error(ErrorCode::InvalidInput, "'" + value + "' is unknown", option, "supported: " + join(supported));
+    throw Error(ErrorCode::InvalidInput, "'" + value + "' is unknown" + detail::did_you_mean(value, supported), option,
+                "supported: " + join(supported));
 }
 
 }  // namespace subvol::cli

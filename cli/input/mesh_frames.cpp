@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "subvol/error.h"
 #include "subvol/mesh_motion.h"
@@ -49,6 +50,23 @@ std::string with_number(const std::string& pattern, int number) {
     const std::size_t width = last + 1 - first;
     const std::string zeros(width > digits.size() ? width - digits.size() : 0, '0');
     return pattern.substr(0, first) + zeros + digits + pattern.substr(last + 1);
+}
+
+void check_frames(const std::string& pattern, const FrameRange& range) {
+    constexpr std::size_t kMostNamed = 3;
+    if (pattern.starts_with("model:")) return;
+    std::vector<std::string> missing;
+    for (int frame = range.first; frame <= range.last; ++frame) {
+        const std::string name = with_number(pattern, frame);
+        std::error_code ignored;
+        if (!std::filesystem::exists(name, ignored)) missing.push_back(name);
+    }
+    if (missing.empty()) return;
+    std::string names =
+        join({missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kMostNamed))});
+    if (missing.size() > kMostNamed) names += text(" and ", missing.size() - kMostNamed, " more");
+    throw Error(ErrorCode::Io, text(missing.size(), " of ", range.count(), " frames are missing: ", names), "--frames",
+                "nothing was written");
 }
 
 MeshFrames::MeshFrames(std::string input, const std::optional<std::string>& to, FrameRange range, Load load)

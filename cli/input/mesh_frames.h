@@ -25,6 +25,11 @@ struct FrameRange {
 /// Whether a file's name has a place for the number of a frame: one or more #.
 [[nodiscard]] bool has_number(const std::string& pattern);
 
+/// Checks before any work is done that all files of a sequence are there.
+///
+/// throws: Error(Io) that names those that are missing
+void check_frames(const std::string& pattern, const FrameRange& range);
+
 /// The name with the number in place of its last row of #, padded with zeros to that many digits.
 [[nodiscard]] std::string with_number(const std::string& pattern, int number);
 

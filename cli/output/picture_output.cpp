@@ -19,15 +19,21 @@ public:
     FrameProgress(Progress* whole, std::size_t frame, std::size_t frames)
         : whole_(whole),
           stage_(text("frame ", frame + 1, " of ", frames)),
-          fraction_(static_cast<double>(frame) / static_cast<double>(frames)) {}
+          first_(static_cast<double>(frame) / static_cast<double>(frames)),
+          part_(1.0 / static_cast<double>(frames)) {}
 
-    void report(std::string_view, double) override { whole_->report(stage_, fraction_); }
+    /// A frame may have several stages; its part of the whole grows with the longest of them, and never shrinks.
+    void report(std::string_view, double fraction) override {
+        done_ = std::max(done_, std::min(fraction, 1.0));
+        whole_->report(stage_, first_ + part_ * done_);
+    }
     [[nodiscard]] bool cancelled() const override { return whole_->cancelled(); }
 
 private:
     Progress* whole_;
     std::string stage_;
-    double fraction_;
+    double first_, part_;
+    double done_ = 0;
 };
 
 /// The largest opacity of a pixel.
@@ -35,6 +41,21 @@ float most_opaque(const Image& image) {
     float most = 0;
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) most = std::max(most, image.rgba[i]);
     return most;
+}
+
+/// Whether a .png shows anything in front of its background.
+bool is_blank(const Image& image, const Vec3& background) {
+    const auto behind = srgb_bytes(Image(1, 1), background);
+    const auto bytes = srgb_bytes(image, background);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        if (bytes[i] != behind[i % behind.size()]) return false;
+    }
+    return true;
+}
+
+void warn_if_blank(const Image& image, const Vec3& background, Report& report) {
+    if (most_opaque(image) == 0 || !is_blank(image, background)) return;
+    report.warn("the picture is blank: what is drawn has the colour of the background (--background black, or another --tf)");
 }
 
 void warn_if_empty(float opacity, Report& report) {
@@ -81,6 +102,7 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
         }
     }
     warn_if_empty(most_opaque(sheet.image), report);
+    if (path_.extension() == ".png") warn_if_blank(sheet.image, background_, report);
     const detail::Stopwatch watch;
     write_frame(0, sheet);
     report.add_seconds("write", watch.seconds());
@@ -97,6 +119,7 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
         report_progress(progress, "draw", 0);
         const Picture picture = draw(views[i], progress);
         opacity = std::max(opacity, most_opaque(picture.image));
+        if (i == 0 && path_.extension() == ".png") warn_if_blank(picture.image, background_, report);
         const detail::Stopwatch watch;
         write_frame(i, picture);
         report.add_seconds("write", watch.seconds());

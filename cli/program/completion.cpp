@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <ostream>
 
 #include "manual.h"
@@ -25,6 +26,13 @@ bool names_a_file(const Argument& argument) {
     return argument.value.find("FILE") != std::string::npos || argument.value == "IMAGE";
 }
 
+/// Fields are completed from the file that is named before on the line.
+bool names_a_field(const Argument& argument) {
+    return std::ranges::any_of(argument.names, [](const std::string& name) {
+        return name == "--field" || name == "--fields" || name == "--color-field";
+    });
+}
+
 /// Inside '…' of a shell; zsh's _arguments also wants [, ] and : escaped.
 std::string quoted(const std::string& text, const std::string& escaped) {
     std::string out;
@@ -40,6 +48,7 @@ std::string zsh_argument(const Argument& argument, const CLI::App& verb) {
     std::string action = argument.choices.empty() ? "" : "(" + with_spaces(argument.choices) + ")";
     if (names_a_file(argument)) action = "_files";
     if (argument.value == "DIR") action = "_files -/";
+    if (names_a_field(argument)) action = "_subvol_fields";
     if (argument.positional) {
         const bool model = verb.get_name() == "model";
         if (model) action = "(" + model_names() + ")";
@@ -66,6 +75,14 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
     std::vector<std::string> verbs;
     for (const CLI::App* verb : verbs_of(program)) verbs.push_back(verb->get_name());
     out << "# Made by the build: subvol --generate bash\n"
+           "_subvol_fields() { # of the first file on the line\n"
+           "    local word\n"
+           "    for word in \"${COMP_WORDS[@]:2}\"; do\n"
+           "        [ -f \"$word\" ] || continue\n"
+           "        \"${COMP_WORDS[0]}\" info \"$word\" --list-fields 2> /dev/null | grep -v ' '\n"
+           "        return\n"
+           "    done\n"
+           "}\n"
            "_subvol() {\n"
            "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} words=\n"
            "    COMPREPLY=() # the rest is left to bash, which completes files\n"
@@ -75,7 +92,11 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
            "    if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
            "        words='"
         << with_spaces(verbs)
-        << " --help --version'\n"
+        << " help --help --version'\n"
+           "    elif [ \"${COMP_WORDS[1]}\" = help ]; then\n"
+           "        words='"
+        << with_spaces(verbs)
+        << "'\n"
            "    elif [ \"$before\" = : ] || [ \"$word\" = : ]; then # model:NAME, which bash splits into three words\n"
            "        words=$models\n"
            "        word=${word#:}\n"
@@ -85,7 +106,9 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
         for (const Argument& argument : arguments_of(*verb)) {
             if (argument.positional || argument.value.empty()) continue;
             const std::string choices = with_spaces(argument.choices);
-            const std::string action = choices.empty() ? "return" : "words='" + choices + "'";
+            const std::string action = names_a_field(argument) ? "words=$(_subvol_fields)"
+                                       : choices.empty()       ? "return"
+                                                               : "words='" + choices + "'";
             for (const std::string& name : argument.names)
                 out << "            '" << verb->get_name() << ' ' << name << "') " << action << " ;;\n";
         }
@@ -114,6 +137,8 @@ void write_bash_completion(std::ostream& out, const CLI::App& program) {
 }
 
 void write_zsh_completion(std::ostream& out, const CLI::App& program) {
+    std::vector<std::string> verbs;
+    for (const CLI::App* verb : verbs_of(program)) verbs.push_back(verb->get_name());
     out << "#compdef subvol\n"
            "# Made by the build: subvol --generate zsh\n"
            "_subvol_input() {\n"
@@ -125,6 +150,14 @@ void write_zsh_completion(std::ostream& out, const CLI::App& program) {
            "        _files\n"
            "    fi\n"
            "}\n"
+           "_subvol_fields() { # of the first file on the line\n"
+           "    local word\n"
+           "    for word in ${words[2,-1]}; do\n"
+           "        [[ -f $word ]] || continue\n"
+           "        compadd -- ${(f)\"$(subvol info $word --list-fields 2> /dev/null)\"}\n"
+           "        return\n"
+           "    done\n"
+           "}\n"
            "_subvol() {\n"
            "    local curcontext=$curcontext state line\n"
            "    local -a verbs\n"
@@ -135,7 +168,8 @@ void write_zsh_completion(std::ostream& out, const CLI::App& program) {
            "            verbs=(\n";
     for (const CLI::App* verb : verbs_of(program))
         out << "                '" << verb->get_name() << ":" << quoted(verb->get_description(), ":") << "'\n";
-    out << "            )\n"
+    out << "                'help:Everything about a verb'\n"
+           "            )\n"
            "            _describe verb verbs\n"
            "            ;;\n"
            "        argument)\n"
@@ -146,7 +180,9 @@ void write_zsh_completion(std::ostream& out, const CLI::App& program) {
             out << " \\\n                        " << zsh_argument(argument, *verb);
         out << "\n                    ;;\n";
     }
-    out << "            esac\n"
+    out << "                help)\n                    _arguments '1:verb:(" << with_spaces(verbs)
+        << ")'\n                    ;;\n"
+           "            esac\n"
            "            ;;\n"
            "    esac\n"
            "}\n"

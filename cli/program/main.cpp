@@ -13,8 +13,11 @@
 #include <iostream>
 #include <new>
 
+#include "choices.h"
+#include "help.h"
 #include "interrupt.h"
 #include "manual.h"
+#include "mistakes.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
@@ -37,7 +40,7 @@ constexpr const char* kFooter = R"(Start here:
   subvol info part.vtk                   what is in a mesh, is it sound
   subvol render model:ball -o ball.png   a picture of a model (or of part.vtk)
   subvol vdb part.vtk -o part.vdb        an OpenVDB grid
-  subvol VERB --help                     everything about a verb
+  subvol help render                     a verb's options; --help-all: all
 
 Exit codes: 0 done, 1 a comparison failed, 2 bad input, 3 the environment lacks something, 130 interrupted (143 by SIGTERM).)";
 
@@ -54,20 +57,12 @@ int exit_code(ErrorCode code) {
     return kBadInput;
 }
 
-int complain(const std::string& message, int code) {
-    std::cerr << "subvol: " << message << '\n';
+/// Says what is wrong on standard error; with --json an object on standard output says it, too.
+int complain(const Error& error, int code, bool json) {
+    subvol::cli::all_said();
+    std::cerr << "subvol: " << printable(error.what()) << '\n';
+    if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
     return code;
-}
-
-/// For a mistyped verb the list of verbs is more helpful than the parser's "argument was not expected".
-void check_verb(const CLI::App& program, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-') return;
-    std::vector<std::string> known;
-    for (const CLI::App* verb : program.get_subcommands([](const CLI::App*) { return true; }))
-        known.push_back(verb->get_name());
-    if (std::ranges::find(known, argv[1]) == known.end()) {
-        throw Error(ErrorCode::InvalidInput, std::string("'") + argv[1] + "' is not a verb", {}, subvol::cli::join(known));
-    }
 }
 
 /// The library's messages name cells and points. This adds the name of the input where it is missing.
@@ -75,15 +70,26 @@ int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
     try {
         return verb.run(report);
     } catch (const Error& error) {
-        const std::string message = error.what();
         const std::string input = report.json().value("input", "");
-        if (error.code() != ErrorCode::InvalidInput || message.find(input) != std::string::npos) throw;
-        throw Error(error.code(), message, input);
+        if (error.code() != ErrorCode::InvalidInput || std::string(error.what()).find(input) != std::string::npos) throw;
+        const std::string where = error.where().empty() ? input : input + ": " + error.where();
+        throw Error(error.code(), error.message(), where, error.allowed());
     }
 }
 
-int run(CLI::App& program, int argc, char** argv) {
-    program.set_version_flag("--version", SUBVOL_VERSION);
+/// "help VERB" is "VERB --help", "help" alone "--help".
+std::vector<std::string> asked(int argc, char** argv) {
+    std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+    if (arguments.empty() || arguments.front() != "help") return arguments;
+    arguments.erase(arguments.begin());
+    arguments.emplace_back("--help");
+    return arguments;
+}
+
+int run(CLI::App& program, std::vector<std::string> arguments) {
+    program.set_help_flag("-h,--help", "print this help, or that of a verb");
+    program.set_help_all_flag("--help-all", "print all options of a verb");
+    program.set_version_flag("--version", SUBVOL_VERSION, "print the version");
     const auto generate = [&program](const std::string& kind) {
         subvol::cli::write_manual(std::cout, kind, program);
         if (!std::cout.flush()) throw Error(ErrorCode::Io, "could not be written", "standard output");
@@ -91,21 +97,34 @@ int run(CLI::App& program, int argc, char** argv) {
     };
     program.add_option_function<std::string>("--generate", generate, "the manual page or a shell's completion")
         ->group("")  // for the build: no help shows it
-        ->check(CLI::IsMember(subvol::cli::kManuals))
+        ->check(subvol::cli::one_of(subvol::cli::kManuals))
         ->trigger_on_parse();
     program.require_subcommand(1);
     program.footer(kFooter);
-    program.get_formatter()->column_width(36);
+    const auto help = std::make_shared<subvol::cli::Help>();
+    program.formatter(help);
     const auto verbs = subvol::cli::make_verbs(program);
+    for (const auto& verb : verbs) help->set_essentials(verb->name(), verb->essentials());
 
-    check_verb(program, argc, argv);
-    program.parse(argc, argv);
+    subvol::cli::check_verb(program, arguments);
+    std::ranges::reverse(arguments);  // as the parser wants them
+    try {
+        program.parse(std::move(arguments));
+    } catch (const CLI::Success&) {
+        throw;
+    } catch (const CLI::ParseError& error) {
+        throw subvol::cli::explained(program, error);
+    }
     for (const auto& verb : verbs) {
         if (!verb->chosen()) continue;
         const auto threads = static_cast<std::size_t>(verb->common().threads);
         const tbb::global_control limit(
             tbb::global_control::max_allowed_parallelism,
             threads > 0 ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+        if (verb->common().json) {
+            subvol::cli::say_when_interrupted(
+                [](int code) { return subvol::cli::error_json(Error(ErrorCode::Cancelled, "cancelled"), code) + "\n"; });
+        }
         subvol::cli::catch_interrupts();
         subvol::cli::Report report(verb->common());
         const int code = run_naming_input(*verb, report);
@@ -137,19 +156,22 @@ int main(int argc, char** argv) {
     setenv("EGL_LOG_LEVEL", "fatal", 0);  // we report a lack of OpenGL ourselves, in one sentence
     std::signal(SIGXFSZ, SIG_IGN);        // when a file gets too long, the write fails
     CLI::App program(kDescription, "subvol");
+    const std::vector<std::string> arguments = asked(argc, argv);
+    const bool json = std::ranges::find(arguments, "--json") != arguments.end();
+    const auto fail = [json](const std::string& what, int code) {
+        return complain(Error(ErrorCode::InvalidInput, what), code, json);
+    };
     try {
-        return run(program, argc, argv);
+        return run(program, arguments);
     } catch (const CLI::Success& wanted) {  // --help, --version
         return program.exit(wanted);
-    } catch (const CLI::ParseError& error) {
-        return complain(std::string(error.what()) + " (see subvol --help)", kBadInput);
     } catch (const Error& error) {
-        return complain(printable(error.what()), exit_code(error.code()));
+        return complain(error, exit_code(error.code()), json);
     } catch (const std::bad_alloc&) {
-        return complain("not enough memory for this; try a lower resolution or fewer levels", kEnvironment);
+        return fail("not enough memory for this; try a lower resolution or fewer levels", kEnvironment);
     } catch (const std::filesystem::filesystem_error& error) {
-        return complain(printable(error.what()), kBadInput);
+        return fail(error.what(), kBadInput);
     } catch (const std::exception& error) {  // thrown unexpectedly by a library
-        return complain(printable(error.what()), kEnvironment);
+        return fail(error.what(), kEnvironment);
     }
 }

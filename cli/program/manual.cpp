@@ -11,6 +11,7 @@
 #include <ostream>
 #include <sstream>
 
+#include "manual_chapters.h"
 #include "subvol/version.h"
 
 namespace subvol::cli {
@@ -115,7 +116,7 @@ void write_argument(std::ostream& out, const Argument& argument) {
         }
     }
     out << '\n'
-        << roff(argument.description) << roff(argument.range.empty() ? "" : "; " + argument.range)
+        << roff(argument.description) << roff(argument.range.empty() || !argument.choices.empty() ? "" : "; " + argument.range)
         << roff(sentence("not with", argument.excludes)) << roff(sentence("with", argument.needs))
         << (argument.required ? "; required" : "") << '\n';
 }
@@ -143,17 +144,26 @@ void write_footer(std::ostream& out, const CLI::App& app, const char* heading) {
     }
 }
 
-const char* const kCommon = "Common options";
-
-/// In the help's order: the verb's own first, those of all verbs last.
-std::vector<std::string> groups_of(const CLI::App& verb) {
-    std::vector<std::string> groups{"Options"};
-    for (const std::string& group : verb.get_groups()) {
-        if (!group.empty() && group != "Options" && group != kCommon) groups.push_back(group);
+void write_chapter(std::ostream& out, const Chapter& chapter) {
+    out << ".SH " << roff(chapter.title) << '\n';
+    std::string rest = chapter.text;
+    for (bool first = true; !rest.empty(); first = false) {
+        const std::size_t end = rest.find("\n\n");
+        const std::string paragraph = rest.substr(0, end);
+        const std::size_t equals = paragraph.find(" = ");
+        if (paragraph.starts_with("  ")) {
+            out << ".PP\n.EX\n" << roff(paragraph) << "\n.EE\n";
+        } else if (equals < paragraph.find(' ') + 8) {
+            out << ".TP\n\\fB" << roff(paragraph.substr(0, equals)) << "\\fR\n" << roff(paragraph.substr(equals + 3)) << '\n';
+        } else {
+            out << (first ? "" : ".PP\n") << roff(paragraph) << '\n';
+        }
+        rest = end == std::string::npos ? "" : rest.substr(end + 2);
     }
-    groups.emplace_back(kCommon);
-    return groups;
 }
+
+const char* const kCommon = "Common options";
+const char* const kReading = "Reading meshes";
 
 void write_verb(std::ostream& out, const CLI::App& verb) {
     out << ".SS subvol " << roff(verb.get_name());
@@ -163,13 +173,24 @@ void write_verb(std::ostream& out, const CLI::App& verb) {
     out << " [options]\n" << roff(verb.get_description()) << '\n';
     for (const Argument& argument : arguments) write_argument(out, argument);
     for (const std::string& group : groups_of(verb)) {
-        if (group == kCommon) continue;
+        if (group == kCommon || group == kReading || arguments_of(verb, group).empty()) continue;
+        if (group != "Options") out << ".PP\n\\fI" << roff(group) << "\\fR\n";
         for (const Argument& option : arguments_of(verb, group)) write_argument(out, option);
     }
     write_footer(out, verb, ".PP");
 }
 
 }  // namespace
+
+std::vector<std::string> groups_of(const CLI::App& verb) {
+    std::vector<std::string> groups{"Options"};
+    for (const std::string& group : verb.get_groups()) {
+        if (!group.empty() && group != "Options" && group != kReading && group != kCommon) groups.push_back(group);
+    }
+    groups.emplace_back(kReading);
+    groups.emplace_back(kCommon);
+    return groups;
+}
 
 std::vector<const CLI::App*> verbs_of(const CLI::App& program) {
     return program.get_subcommands([](const CLI::App* verb) { return !verb->get_group().empty(); });
@@ -202,11 +223,18 @@ void write_man_page(std::ostream& out, const CLI::App& program) {
         << ".SH DESCRIPTION\n"
         << roff(summary) << '\n';
     for (const Argument& argument : arguments_of(program)) write_argument(out, argument);
+    for (const Chapter& chapter : kFirstChapters) write_chapter(out, chapter);
     out << ".SH VERBS\n";
     for (const CLI::App* verb : verbs) write_verb(out, *verb);
+    out << ".SH OPTIONS FOR READING MESHES\nThese can be given to every verb that reads meshes.\n";
+    for (const CLI::App* verb : verbs) {
+        if (verb->get_name() != "info") continue;
+        for (const Argument& argument : arguments_of(*verb, kReading)) write_argument(out, argument);
+    }
     out << ".SH COMMON OPTIONS\nThese can be given to every verb.\n";
     for (const Argument& argument : arguments_of(*verbs.front(), kCommon)) write_argument(out, argument);
     write_footer(out, program, ".SH");
+    for (const Chapter& chapter : kLastChapters) write_chapter(out, chapter);
 }
 
 void write_manual(std::ostream& out, const std::string& kind, const CLI::App& program) {

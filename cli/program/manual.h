@@ -43,6 +43,9 @@ struct Argument {
 /// Those of all groups.
 [[nodiscard]] std::vector<Argument> arguments_of(const CLI::App& verb);
 
+/// The headings of a verb's options, its own "Options" first, those of all verbs last.
+[[nodiscard]] std::vector<std::string> groups_of(const CLI::App& verb);
+
 [[nodiscard]] std::vector<const CLI::App*> verbs_of(const CLI::App& program);
 
 }  // namespace subvol::cli

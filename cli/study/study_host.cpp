@@ -6,10 +6,14 @@
 #include <tbb/version.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <set>
 
+#include "commit.h"
 #include "subvol/gl_device.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -25,6 +29,15 @@ std::string processor() {
         if (colon != std::string::npos) return line.substr(colon + 2);
     }
     return "unknown";
+}
+
+/// Of the report; SOURCE_DATE_EPOCH sets it.
+std::string today() {
+    const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+    const std::time_t now = epoch ? std::strtoll(epoch, nullptr, 10) : std::time(nullptr);
+    std::array<char, 16> text{};
+    std::strftime(text.data(), text.size(), "%Y-%m-%d", std::gmtime(&now));
+    return text.data();
 }
 
 std::string opengl() {
@@ -48,7 +61,11 @@ ReportFacts study_host() {
 }
 
 ReportFacts study_versions() {
-    return {{"subvol", SUBVOL_VERSION}, {"oneTBB", TBB_runtime_version()}, {"compiler", __VERSION__}};
+    return {{"subvol", SUBVOL_VERSION},
+            {"commit", SUBVOL_COMMIT},
+            {"date", today()},
+            {"oneTBB", TBB_runtime_version()},
+            {"compiler", __VERSION__}};
 }
 
 }  // namespace subvol::cli

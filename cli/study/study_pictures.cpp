@@ -174,6 +174,13 @@ CaseResult run_picture_case(const StudyCase& of, const CasePlace& place) {
     const Image reference = read_image(place.references / (reference_case->id + ".exr"));
     for (const auto& [name, value] : picture_metrics(image, reference, of.text("metrics"))) result.metrics[name] = value;
 
+    if (const auto made =
+            read_finished_case(place.references / (reference_case->id + ".json"), *reference_case, place.references)) {
+        for (const auto& [own, its] : {std::pair{"reference_level", "levels_drawn"}, {"reference_change", "last_change"}}) {
+            if (const auto found = made->metrics.find(its); found != made->metrics.end()) result.metrics[own] = found->second;
+        }
+    }
+
     const fs::path folder = place.folder / "pictures";
     fs::create_directories(folder);
     result.files["picture"] = "pictures/" + case_file(of, ".png");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "choices.h"
 #include "input.h"
 #include "outputs.h"
 #include "subvol/error.h"
@@ -55,7 +56,8 @@ void PictureComparison::add_to(CLI::App& app) {
     app.add_option("--heatmap-of", heatmap_of,
                    "what it shows: abs (the largest channel's difference; default), flip, ssim (1 - ssim)")
         ->group(group)
-        ->type_name("METRIC");
+        ->type_name("METRIC")
+        ->check(offered({"abs", "flip", "ssim"}));
     app.add_option("--heatmap-scale", heatmap_scale, "the value of the last colour (default: the largest value)")
         ->group(group)
         ->type_name("V")
@@ -69,7 +71,7 @@ void PictureComparison::add_to(CLI::App& app) {
         ->group(group);
     app.add_flag(
            "--optical-depth", optical_depth,
-           "also the relative error of the summed optical depth -ln(1-alpha), which with --ortho is the volume's integral\n"
+           "also the relative error of the summed optical depth -ln(1-alpha), which with --ortho is the volume's integral "
            "(optical_depth_error)")
         ->group(group);
     app.add_option("--edge-band", edge_band_px,

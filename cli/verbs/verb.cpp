@@ -5,10 +5,14 @@
 
 namespace subvol::cli {
 
-Verb::Verb(CLI::App& program, const std::string& name, const std::string& description, const std::string& examples)
-    : app_(*program.add_subcommand(name, description)) {
+Verb::Verb(CLI::App& program, const std::string& name, const std::string& description, const std::string& examples, Reads reads)
+    : app_(*program.add_subcommand(name, description)), name_(name) {
     app_.footer("Examples:\n" + examples);
-    add_common_options(app_, common_);
+    add_common_options(app_, common_, reads);
+}
+
+void Verb::group(const std::string& heading, std::initializer_list<const char*> options) {
+    for (const char* option : options) app_.get_option(option)->group(heading);
 }
 
 bool Verb::chosen() const {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common_options.h"
@@ -18,13 +20,18 @@ namespace subvol::cli {
 class Verb {
 public:
     /// examples: shown below the help, one command a line
-    Verb(CLI::App& program, const std::string& name, const std::string& description, const std::string& examples);
+    Verb(CLI::App& program, const std::string& name, const std::string& description, const std::string& examples,
+         Reads reads = Reads::Meshes);
     virtual ~Verb() = default;
     Verb(const Verb&) = delete;
     Verb& operator=(const Verb&) = delete;
 
     [[nodiscard]] bool chosen() const;
     [[nodiscard]] const CommonOptions& common() const { return common_; }
+    [[nodiscard]] const std::string& name() const { return name_; }
+
+    /// The options that --help shows; --help-all shows all. None: all of the verb's own.
+    [[nodiscard]] const std::vector<std::string>& essentials() const { return essentials_; }
 
     /// returns: the exit code
     virtual int run(Report& report) = 0;
@@ -32,9 +39,16 @@ public:
 protected:
     [[nodiscard]] CLI::App& app() { return app_; }
 
+    void set_essentials(std::vector<std::string> options) { essentials_ = std::move(options); }
+
+    /// Puts options under a heading of --help-all and of the manual page.
+    void group(const std::string& heading, std::initializer_list<const char*> options);
+
 private:
     CLI::App& app_;
     CommonOptions common_;
+    std::string name_;
+    std::vector<std::string> essentials_;
 };
 
 [[nodiscard]] std::unique_ptr<Verb> make_model_verb(CLI::App& program);

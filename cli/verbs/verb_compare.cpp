@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iomanip>
 
 #include "field_comparison.h"
 #include "field_input.h"
 #include "picture_comparison.h"
+#include "quantities.h"
 #include "subvol/error.h"
+#include "text.h"
 #include "verb.h"
 
 namespace subvol::cli {
@@ -18,17 +21,15 @@ public:
     explicit CompareVerb(CLI::App& program)
         : Verb(program, "compare", "Measure how much two pictures, or two fields, differ; the second is the reference.",
                "  subvol compare splat.exr reference.exr --heatmap difference.png\n"
-               "  subvol compare a.png b.png --fail-under psnr=40 --fail-under flip=.02 --heatmap flip.png --heatmap-of flip\n"
-               "  subvol compare splat.exr reference.exr --edge-band 2 --fail-under interior.rmse=.001\n"
+               "  subvol compare a.png b.png --fail-under psnr=40 --fail-under flip=.02\n"
+               "  subvol compare a.png b.png --heatmap flip.png --heatmap-of flip\n"
+               "  subvol compare a.exr b.exr --edge-band 2 --fail-under interior.rmse=.001\n"
                "  subvol compare points.ply mesh.vtu --iso .5 --fail-under l2=.01\n"
                "\n"
                "Pictures (any that OpenImageIO reads) are compared in linear light, peak 1: mse, rmse, mae, max, psnr (dB), "
-               "ssim,\n"
-               "flip; under srgb8 the same for 8-bit sRGB. Fields are meshes, points or .vdb grids: l1, l2 (root mean "
-               "square),\n"
-               "linf, gradient_rmse, mass (relative), hausdorff (with --iso); new_vertex_rmse against a mesh: at the vertices "
-               "that\n"
-               "its first refinement adds. Exit code 1 if a --fail-under is not met.") {
+               "ssim, flip; under srgb8 the same for 8-bit sRGB. Fields are meshes, points or .vdb grids: l1, l2 (root mean "
+               "square), linf, gradient_rmse, mass (relative), hausdorff (with --iso); new_vertex_rmse against a mesh: at the "
+               "vertices that its first refinement adds. Exit code 1 if a --fail-under is not met.") {
         app().add_option("A", a_, "a picture or a field")->required();
         app().add_option("B", b_, "the reference: a picture of the same size, or a field")->required();
         app()
@@ -39,6 +40,8 @@ public:
             ->allow_extra_args(false);
         pictures_.add_to(app());
         fields_.add_to(app());
+        set_essentials({"--fail-under", "--heatmap", "--heatmap-of", "--edge-band", "--samples", "--iso", "--levels", "--field",
+                        "--json"});
     }
 
     int run(Report& report) override {
@@ -53,6 +56,7 @@ public:
         std::vector<Demand> demands;
         const auto names = pictures ? pictures_.names() : fields_.names(b == InputKind::Mesh);
         for (const std::string& demand : demands_) demands.push_back(parse_demand(demand, names));
+        if (!pictures) report.if_long("--samples 10000, --resolution 64, or --levels 1");
         check_there(a_);
         check_there(b_);
 
@@ -60,13 +64,39 @@ public:
         figures.into(report);
         report["input"] = a_;
         report["reference"] = b_;
-        bool passed = true;
-        for (const Demand& demand : demands) passed = passed && demand.met_by(figures);
-        report["passed"] = passed;
-        return passed ? 0 : kComparisonFailed;
+        std::vector<std::string> unmet;
+        for (std::size_t i = 0; i < demands.size(); ++i) {
+            if (!demands[i].met_by(figures)) unmet.push_back(demands_[i]);
+        }
+        report["passed"] = unmet.empty();
+        say(figures, pictures, unmet, report);
+        return unmet.empty() ? 0 : kComparisonFailed;
     }
 
 private:
+    /// For people: the figure that is asked for most first, then the others, then the demands.
+    void say(const Figures& figures, bool pictures, const std::vector<std::string>& unmet, Report& report) const {
+        const std::string first = pictures ? "psnr" : "l2";
+        Lines lines{{first, text(std::setprecision(6), figures.at(first), pictures ? " dB" : "")}};
+        for (const auto& [name, value] : figures.all()) {
+            if (name != first) lines.emplace_back(name, text(std::setprecision(6), value, name.ends_with("psnr") ? " dB" : ""));
+        }
+        if (report.json().contains("heatmap")) lines.emplace_back("heatmap", report.json().at("heatmap").get<std::string>());
+        if (!demands_.empty()) {
+            std::string words = unmet.empty() ? "passed: " + join(demands_) : "failed: ";
+            for (const std::string& demand : unmet) {
+                const std::string metric = demand.substr(0, demand.find('='));
+                words += text(&demand == &unmet.front() ? "" : ", ", demand, " is not met by ", std::setprecision(6),
+                              figures.at(metric));
+            }
+            lines.emplace_back("verdict", words);
+        }
+        std::string all = aligned(lines);
+        all.pop_back();
+        report.say(all);
+        report.all_said();
+    }
+
     /// Checks both inputs before a long time is spent on one of them.
     static void check_there(const std::string& input) {
         std::error_code ignored;

@@ -87,7 +87,8 @@ public:
         : Verb(program, "demo",
                "Run the whole chain on generated models: grid, splats, a reference by rays, their difference, a summary.",
                "  subvol demo -o out\n"
-               "  subvol demo -o out --size 256") {
+               "  subvol demo -o out --size 256",
+               Reads::NoMesh) {
         app()
             .add_option("-o,--output", folder_, "the folder for the files (created if it does not exist)")
             ->type_name("DIR")

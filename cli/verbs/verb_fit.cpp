@@ -2,9 +2,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "choices.h"
 #include "fit_tables.h"
 #include "kernel_shapes.h"
 #include "refine_arguments.h"
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "text.h"
 #include "verb.h"
@@ -17,10 +19,10 @@ constexpr int kPaperLevel = 5;
 /// Kernels with a name but no parameters to fit; only their errors are reported.
 const std::vector<std::string> kFixed{"compact", "paper_bc", "cubic"};
 
-std::string kernel_choices() {
+std::vector<std::string> kernel_names() {
     std::vector<std::string> names = shape_names();
     names.insert(names.end(), kFixed.begin(), kFixed.end());
-    return join(names);
+    return names;
 }
 
 class FitVerb : public Verb {
@@ -30,16 +32,21 @@ public:
                "  subvol fit --table1\n"
                "  subvol fit --kernels\n"
                "  subvol fit --kernel bc --scheme cc --json\n"
-               "  subvol fit --kernel '{\"type\": \"gaussian\", \"sigma\": 0.5}'") {
+               "  subvol fit --kernel '{\"type\": \"gaussian\", \"sigma\": 0.5}'",
+               Reads::NoMesh) {
         app().add_flag("--table1", table1_, "table 1 of the EuroVis 2007 paper: its figures, ours, and the difference");
         app().add_flag("--kernels", kernels_, "fit every kind of kernel: parameters and errors");
         app()
             .add_option("--kernel", kernel_,
-                        text("fit this one: ", kernel_choices(),
+                        text("fit this one: ", join(kernel_names()),
                              " (the last three have nothing to fit); or the errors of a "
                              "kernel given as JSON"))
-            ->type_name("NAME|JSON");
-        app().add_option("--scheme", scheme_, "mcq (the default), cc, bsxw, linear")->type_name("NAME");
+            ->type_name("NAME|JSON")
+            ->check(offered(kernel_names()));
+        app()
+            .add_option("--scheme", scheme_, "mcq (the default), cc, bsxw, linear")
+            ->type_name("NAME")
+            ->check(offered({"mcq", "cc", "bsxw", "linear"}));
         app()
             .add_option("--level", level_, "samples of the basis function: 2^L per unit (default 5)")
             ->type_name("L")
@@ -87,7 +94,8 @@ private:
         if (kernel_.front() == '{') return known(kernel_from_json(kernel_));
         if (std::ranges::find(kFixed, kernel_) != kFixed.end()) return known(named_kernel(kernel_));
         if (const auto shape = shape_named(kernel_)) return fit_shape(basis, *shape, options_);
-        throw Error(ErrorCode::InvalidInput, "'" + kernel_ + "' is unknown", "--kernel", "supported: " + kernel_choices());
+        throw Error(ErrorCode::InvalidInput, "'" + kernel_ + "' is unknown" + detail::did_you_mean(kernel_, kernel_names()),
+                    "--kernel", "supported: " + join(kernel_names()));
     }
 
     bool table1_ = false;

@@ -4,7 +4,9 @@
 
 #include "grid_input.h"
 #include "input.h"
+#include "mesh_lines.h"
 #include "points_input.h"
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "subvol/points_io.h"
@@ -62,6 +64,7 @@ public:
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
                "  subvol info --gl") {
         app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp)"));
+        app().add_flag("--list-fields", list_fields_, "print the names of a mesh's fields only, one a line");
         app().add_flag("--gl", gl_, "list the OpenGL devices that can splat");
         app()
             .add_option("--at", points_, "print the value of a .vdb file's grid there (repeatable)")
@@ -70,6 +73,7 @@ public:
     }
 
     int run(Report& report) override {
+        if (list_fields_) return list_fields(report);
         if (gl_) describe_gl(report);
         if (input_.empty()) {
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
@@ -92,6 +96,24 @@ private:
         for (const GlDevice& device : devices) report["gl_devices"].push_back(to_json(device));
     }
 
+    int list_fields(Report& report) {
+        if (input_.empty()) throw Error(ErrorCode::InvalidInput, "a FILE is needed", "--list-fields");
+        report["fields"] = Json::array();
+        const auto list = [&](const std::string& name) {
+            report["fields"].push_back({{"name", name}});
+            report.say(name);
+        };
+        if (holds_points(input_)) {
+            for (const RbfChannel& channel : read_points_input(input_, report).channels) list(channel.name);
+        } else if (is_vdb_file(input_)) {
+            for (const VdbGrid& grid : read_vdb(input_)) list(grid.report().name);
+        } else {
+            for (const FieldInfo& field : read_input(input_, common(), report).fields) list(field.name);
+        }
+        report.all_said();
+        return 0;
+    }
+
     void refuse_at(const std::string& what) const {
         if (points_.empty()) return;
         throw Error(ErrorCode::InvalidInput, "reads values from grids in .vdb files only, not from " + what, "--at");
@@ -100,7 +122,8 @@ private:
     void describe_mesh(Report& report) {
         refuse_at("a mesh");
         const ReadResult read = read_input(input_, common(), report);
-        put_mesh_report(report, report.timed("inspect", [&] { return inspect(read.mesh); }));
+        const MeshReport about = report.timed("inspect", [&] { return inspect(read.mesh); });
+        put_mesh_report(report, about);
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
             report["fields"].push_back({{"name", field.name},
@@ -109,6 +132,12 @@ private:
                                         {"min", field.min},
                                         {"max", field.max}});
         }
+        report["verdict"] = verdict(read.mesh, about);
+        if (gl_) return;  // the table has all
+        std::string lines = mesh_lines(read, about, report.json().at("seconds"));
+        lines.pop_back();
+        report.say(lines);
+        report.all_said();
     }
 
     void describe_points(Report& report) {
@@ -153,11 +182,14 @@ private:
             if (grid.report().name == *common().field) return grid;
             names.push_back(grid.report().name);
         }
-        throw Error(ErrorCode::InvalidInput, "no grid is named '" + *common().field + "'", input_, "it has: " + join(names));
+        throw Error(ErrorCode::InvalidInput,
+                    "no grid is named '" + *common().field + "'" + detail::did_you_mean(*common().field, names), input_,
+                    "it has: " + join(names));
     }
 
     std::string input_;
     bool gl_ = false;
+    bool list_fields_ = false;
     std::vector<std::string> points_;
 };
 

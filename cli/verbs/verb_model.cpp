@@ -18,7 +18,8 @@ public:
     explicit ModelVerb(CLI::App& program)
         : Verb(program, "model", "Generate a model.",
                "  subvol model --list\n"
-               "  subvol model twist --resolution 40 -o twist.vtu") {
+               "  subvol model twist --resolution 40 -o twist.vtu",
+               Reads::NoMesh) {
         app().add_option("NAME", name_, "the model's name");
         app().add_option("-o,--output", output_, "the mesh to write (.vtu with its field, .mesh without)")->type_name("FILE");
         app()

@@ -21,10 +21,12 @@ public:
     explicit PointsVerb(CLI::App& program)
         : Verb(program, "points", "Turn a mesh or a .vdb grid into radial basis functions.",
                "  subvol points model:ball -o ball.ply\n"
-               "  subvol points model:ball -o ball.vtp                (ParaView; the boundary is in ball.boundary.vtp)\n"
-               "  subvol points model:ball -o ball.vdb                (Houdini; the boundary likewise)\n"
+               "  subvol points model:ball -o ball.vtp                 for ParaView\n"
+               "  subvol points model:ball -o ball.vdb                 for Houdini\n"
                "  subvol points model:ball -o dense.ply --per-edge 2 --splats\n"
-               "  subvol points smoke.vdb -o smoke.ply --threshold 0  (one kernel per voxel; --spacing for fewer)") {
+               "  subvol points smoke.vdb -o smoke.ply --threshold 0   one kernel per voxel\n"
+               "\n"
+               "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
         app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb)")->type_name("FILE")->required();
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
@@ -33,6 +35,12 @@ public:
         sample_.add_to(app());
         app().add_option("--tf", transfer_function_, "the colour map for --threshold, as for `render`")->type_name("FILE|NAME");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
+        set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
+                        "--reduce", "--levels", "--scheme"});
+        group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
+                                    "--footprint-size", "--threshold", "--tf", "--reduce", "--refine"});
+        group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction"});
+        group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
 
     int run(Report& report) override {
@@ -41,6 +49,7 @@ public:
         if (extension != ".ply" && (ascii_ || splats_)) {
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
+        report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
         const RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(report);
         report.timed("write", [&] {
             if (extension == ".vdb") {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#include "choices.h"
 #include "grid_input.h"
 #include "input.h"
 #include "picture_arguments.h"
@@ -46,7 +47,7 @@ public:
                "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2\n"
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
-               "  subvol render smoke.vdb -o smoke.png                    (the voxels as kernels)") {
+               "  subvol render smoke.vdb -o smoke.png                   the voxels as kernels") {
         app()
             .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
             ->required();
@@ -56,16 +57,20 @@ public:
             ->required();
         app()
             .add_option("--method", method_,
-                        "splat (kernels, the default), sheets (the same by OpenGL sheet buffers),\n"
-                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL),\n"
-                        "dense (rays through the dense grids of the limit) or\n"
+                        "splat (kernels, the default), sheets (the same by OpenGL sheet buffers), "
+                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL), "
+                        "dense (rays through the dense grids of the limit) or "
                         "grid (rays through a .vdb file's voxels)")
-            ->type_name("NAME");
+            ->type_name("NAME")
+            ->check(offered({"splat", "sheets", "tets", "pt", "dense", "grid"}));
         picture_.add_to(app());
         reference_.add_to(app());
         sample_.add_to(app());
         refine_.add_to(app(), "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
         splat_.add_to(app());
+        set_essentials({"--output", "--field", "--look", "--tf", "--opacity", "--background", "--size", "--view", "--views",
+                        "--camera", "--turntable", "--legend", "--per-edge", "--method", "--levels", "--json"});
+        set_groups();
     }
 
     int run(Report& report) override {
@@ -77,6 +82,9 @@ public:
         if (picture_.lit()) options_.shading = Shading{};
         check_reference();
         picture_.check();
+        report.if_long(method_ == "dense"  ? "--levels 2, a smaller --size, or --method splat"
+                       : drawn_by_splats() ? "a smaller --size, a larger --spacing, or fewer --sheets"
+                                           : "a smaller --size, fewer --samples, or --method splat");
         PictureOutput output(output_, picture_.turntable_frames, picture_);
         if (method_ == "grid") {
             draw_voxels(output, report);
@@ -91,6 +99,17 @@ public:
     }
 
 private:
+    void set_groups() {
+        group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps"});
+        group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--background",
+                                    "--shade", "--color-field"});
+        group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
+                          "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
+        group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
+        group("Methods", {"--method", "--samples", "--seconds", "--backend", "--device", "--sheets", "--plain-sums",
+                          "--tolerance-image", "--order", "--kbuffer", "--lod"});
+    }
+
     [[nodiscard]] bool drawn_by_splats() const { return method_ == "splat" || method_ == "sheets"; }
 
     /// Refuses options of splatting for the other methods.

@@ -3,10 +3,15 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <fstream>
+#include <iomanip>
 #include <iostream>
+#include <set>
 
 #include "input.h"
+#include "kept_studies.h"
 #include "outputs.h"
+#include "quantities.h"
 #include "study_host.h"
 #include "study_runner.h"
 #include "subvol/detail/atomic_file.h"
@@ -23,7 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCaseFailed = 1;
+constexpr int kCaseFailed = 1;  // or a demand is not met
+constexpr double kLong_s = 10;
 
 /// A number that is not known becomes null.
 Json to_json(const StudyTable& table) {
@@ -44,7 +50,8 @@ public:
                "  subvol study --list\n"
                "  subvol study table2 figure7 -o out\n"
                "  subvol study mine.json -o out --jobs 4\n"
-               "  subvol study order spacing -o out --mesh part.vtu") {
+               "  subvol study order spacing -o out --mesh part.vtu",
+               Reads::NoMesh) {
         app().add_option("NAME|FILE", names_, "studies: names from --list, or JSON files (docs/studies.md)")->type_name("");
         app()
             .add_option("-o,--output", output_,
@@ -84,19 +91,37 @@ public:
 private:
     static std::string to_json_text(const CaseResult& result) { return subvol::to_json(result); }
 
+    /// "about 2 min"; a duration on another machine has one digit.
+    static std::string about(double seconds) {
+        if (seconds <= 0) return "";
+        return seconds < 60 ? text("about ", std::lround(seconds), " s") : text("about ", std::lround(seconds / 60), " min");
+    }
+
     static int list(Report& report) {
         for (const StudyInfo& info : list_studies()) {
-            report["studies"].push_back({{"name", info.name}, {"description", info.title}});
-            report.say(text(info.name, ": ", info.title));
+            report["studies"].push_back({{"name", info.name}, {"description", info.title}, {"seconds", info.seconds}});
+            report.say(
+                text(std::left, std::setw(9), info.name, std::right, std::setw(13), about(info.seconds), "  ", info.title));
         }
         return 0;
     }
 
-    [[nodiscard]] Study load(const std::string& name) const {
-        const bool file = fs::path(name).extension() == ".json";
-        if (file && meshes_.empty()) return read_study(name);
-        if (file) throw Error(ErrorCode::InvalidInput, "is for studies by name: a file lists its own inputs", "--mesh");
-        Json json = Json::parse(built_in_study_json(name));
+    [[nodiscard]] StudySource load(const std::string& name) const {
+        StudySource source{.json = {}, .file = name, .command = command({name})};
+        if (fs::path(name).extension() == ".json") {
+            if (!meshes_.empty())
+                throw Error(ErrorCode::InvalidInput, "is for studies by name: a file lists its own inputs", "--mesh");
+            (void)read_study(name);  // says what is wrong with the file
+            std::ifstream in(name);
+            source.json.assign(std::istreambuf_iterator<char>(in), {});
+            source.file = fs::absolute(name);
+        } else {
+            source.json = with_meshes(name, Json::parse(built_in_study_json(name))).dump();
+        }
+        return source;
+    }
+
+    [[nodiscard]] Json with_meshes(const std::string& name, Json json) const {
         for (const std::string& mesh : meshes_) {
             if (!json.contains("inputs"))
                 throw Error(ErrorCode::InvalidInput, "the study '" + name + "' takes no mesh", "--mesh");
@@ -106,7 +131,7 @@ private:
             input["name"] = plain_name(fs::path(mesh).stem().string());
             json["inputs"].push_back(std::move(input));
         }
-        return parse_study(json.dump(), name);
+        return json;
     }
 
     static std::string plain_name(std::string name) {
@@ -116,30 +141,77 @@ private:
 
     int run_studies(Report& report) {
         if (names_.empty()) throw Error(ErrorCode::InvalidInput, "needs the name of a study", "study", "see --list");
+        std::vector<StudySource> sources;
         std::vector<Study> studies;
-        for (const std::string& name : names_) studies.push_back(load(name));
+        for (const std::string& name : names_) {
+            sources.push_back(load(name));
+            studies.push_back(parse_study(sources.back().json, name));
+        }
         check_names(studies);
         make_folder(output_);
         const FolderLock alone(output_);
+        for (const Study& study : studies) {
+            if (study.seconds > kLong_s) report.note(text(study.name, " takes ", about(study.seconds), " on two cores"));
+        }
         std::size_t failed = 0;
         std::vector<StudyResults> all;
-        for (const Study& study : studies) {
+        for (std::size_t i = 0; i < studies.size(); ++i) {
+            const Study& study = studies[i];
             all.push_back(report.timed(study.name.c_str(), [&] { return run_one(study, report); }));
+            keep_study(sources[i], fs::path(output_) / study.name);
             failed += all.back().failed;
             report_results(all.back(), report);
         }
+        const std::size_t unmet = report_demands(all, report);
+        write_page(std::move(all), report);
+        return failed > 0 || unmet > 0 ? kCaseFailed : 0;
+    }
+
+    /// returns: how many are not met
+    static std::size_t report_demands(const std::vector<StudyResults>& all, Report& report) {
+        std::size_t unmet = 0;
+        report["demands"] = Json::array();
+        for (const StudyResults& results : all) {
+            for (const Judgement& judgement : judge(results)) {
+                report["demands"].push_back({{"study", results.study.name},
+                                             {"demand", judgement.words},
+                                             {"cases", judgement.cases},
+                                             {"met", judgement.met}});
+                if (judgement.all_met()) continue;
+                ++unmet;
+                report.warn(text(results.study.name, ": a demand is not met: ", judgement.words));
+            }
+        }
+        return unmet;
+    }
+
+    /// The page has what earlier runs left in the folder, too.
+    void write_page(std::vector<StudyResults> all, Report& report) const {
+        std::set<std::string> names, commands;
+        std::string lines;
+        const auto add_command = [&](const std::string& words) {
+            if (commands.insert(words).second) lines += (lines.empty() ? "" : "\n") + words;
+        };
+        for (const StudyResults& results : all) names.insert(results.study.name);
+        std::vector<StudyResults> shown;
+        for (KeptStudy& kept : kept_studies(output_, names, report)) {
+            report["kept"].push_back(kept.results.study.name);
+            add_command(kept.command);
+            shown.push_back(std::move(kept.results));
+        }
+        add_command(command(names_));
+        std::ranges::move(all, std::back_inserter(shown));
         const fs::path page = fs::path(output_) / "report.html";
-        detail::write_text_file(page, report_html(all, output_, {study_host(), study_versions(), command()}));
+        detail::write_text_file(page, report_html(shown, output_, {study_host(), study_versions(), lines}));
         report["output"] = output_;
         report["report"] = page.string();
         report.say("\n" + text("The report is ", page.string()));
-        return failed > 0 ? kCaseFailed : 0;
     }
 
     /// The command that runs the same studies again.
-    [[nodiscard]] std::string command() const {
+    [[nodiscard]] std::string command(const std::vector<std::string>& names) const {
         std::string words = "subvol study";
-        for (const std::string& name : names_) words += " " + name;
+        for (const std::string& name : names) words += " " + name;
         for (const std::string& mesh : meshes_) words += " --mesh " + mesh;
         return words + " -o " + output_;
     }
@@ -180,8 +252,16 @@ private:
         for (const StudyTable& table : make_tables(results)) {
             detail::write_text_file(folder / (table.name + ".txt"), as_text(table));
             detail::write_text_file(folder / (table.name + ".csv"), as_csv(table));
+            detail::write_text_file(folder / (table.name + ".tex"), as_tex(table));
             report["tables"].push_back(to_json(table));
             report.say("\n" + as_text(table));
+        }
+        if (const auto setup = setup_table(results)) {
+            detail::write_text_file(folder / (setup->name + ".csv"), as_csv(*setup));
+            detail::write_text_file(folder / (setup->name + ".tex"), as_tex(*setup));
+        }
+        for (const StudyPlot& plot : make_plots(results)) {
+            detail::write_text_file(folder / (plot.name + ".svg"), plot_svg_file(plot.plot));
         }
     }
 

@@ -31,6 +31,7 @@ public:
     int run(Report& report) override {
         const RefineOptions options = refine_.options(1, report);
         check_output(output_, {".vtu", ".mesh"});
+        report.if_long("fewer --levels");
         const HexMesh mesh = load_mesh(input_, common(), report);
         const HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
         for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine); }))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "choices.h"
 #include "input.h"
 #include "mesh_frames.h"
 #include "outputs.h"
@@ -63,6 +64,13 @@ public:
         add_grid_options();
         add_file_options();
         add_frame_options();
+        set_essentials({"--output", "--resolution", "--voxel-size", "--fields", "--levels", "--sdf", "--half", "--frames",
+                        "--to", "--velocity", "--memory", "--nano"});
+        group("Voxels", {"--voxel-size", "--resolution", "--like", "--budget"});
+        group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle", "--from", "--per-edge"});
+        group("Grids", {"--fields", "--cell-ids", "--mask", "--coverage", "--sdf", "--half-width", "--half"});
+        group("Files", {"--compression", "--memory", "--nano"});
+        group("Sequences", {"--frames", "--to", "--velocity", "--fps"});
     }
 
     int run(Report& report) override {
@@ -72,6 +80,7 @@ public:
                         "configure again where libnanovdb-dev is installed");
         }
         output_.compression = compression_named(compression_);
+        report.if_long("a lower --resolution, or --levels 1");
         check_output(output_.path, {".vdb"});
         if (!like_.empty()) like_grids_ = read_vdb(like_);
         if (!frames_.empty() || !to_.empty() || has_number(input_)) {
@@ -128,7 +137,8 @@ private:
                 "--from", from_,
                 "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; not needed "
                 "for a FILE of points (.ply, .vtp, .vdb)")
-            ->type_name("WHAT");
+            ->type_name("WHAT")
+            ->check(offered({"mesh", "points"}));
         app()
             .add_option("--per-edge", per_edge_, "with --from points: sample intervals per edge")
             ->type_name("N")
@@ -139,7 +149,7 @@ private:
         app()
             .add_option("--compression", compression_, "blosc (the default), zip, none")
             ->type_name("NAME")
-            ->check(CLI::IsMember({"blosc", "zip", "none"}));
+            ->check(one_of({"blosc", "zip", "none"}));
         app()
             .add_option("--memory", output_.memory_bytes,
                         "write parts whose grids take no more than this, e.g. 2G: NAME_0000.vdb and so on, and NAME.json, "
@@ -209,6 +219,7 @@ private:
             throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
         check_frame_names();
         const FrameRange range = parse_frames(frames_);
+        if (to_.empty()) check_frames(input_, range);
         MeshFrames frames(input_, to_.empty() ? std::nullopt : std::optional(to_), range,
                           [&](const std::string& name) { return load(name, report); });
         const HexMesh first = frames.mesh(range.first);
@@ -221,6 +232,8 @@ private:
         }
         std::size_t active_voxels = 0;
         for (int frame = range.first; frame <= range.last; ++frame) {
+            report.begin_part(text("frame ", frame - range.first + 1, " of ", range.count()),
+                              static_cast<std::size_t>(frame - range.first), static_cast<std::size_t>(range.count()));
             HexMesh mesh = frames.mesh(frame);
             const bool same = same_cells(first, mesh);
             options.tables = tables && same ? &*tables : nullptr;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "canvas.h"
 #include "html_text.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
@@ -18,15 +19,12 @@ namespace {
 
 // All lengths are in units of the view box, which is scaled to the page.
 constexpr double kWidth = 480, kPlotHeight = 300;
-constexpr double kLeft = 62, kRight = 14, kTop = 12, kBottom = 46;
-constexpr double kLegendLine = 18, kFont = 12;
+constexpr double kLeft = 80, kRight = 16, kTop = 12, kBottom = 46;
+constexpr double kLegendLine = 18, kLegendMargin = 14, kLegendText = 26;
+constexpr double kGap = 6;  // between labels
 
 /// Okabe and Ito's colours, which colour-blind people can distinguish; without the yellow, which is too pale on white.
 constexpr std::array<const char*, 7> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#56b4e9", "#e69f00"};
-
-std::string number(double value) {
-    return fixed_text(value, 2);
-}
 
 std::string superscript(int value) {
     static constexpr std::array<const char*, 10> kDigits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
@@ -119,87 +117,113 @@ std::optional<Axis> axis_of(const Plot& plot, bool x, double begin, double end) 
     return axis;
 }
 
-std::string text_at(double x, double y, const std::string& anchor, const std::string& words, const std::string& more = {}) {
-    return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\" text-anchor=\"" + anchor + "\"" + more + ">" +
-           escaped(words) + "</text>\n";
+/// A label that would be wider than its place gets a smaller font.
+double font_for(const std::string& label, double room) {
+    return std::min(kPlotFont, kPlotFont * room / std::max(text_width(label, kPlotFont), 1.));
 }
 
-std::string line_at(double x0, double y0, double x1, double y1, const char* name) {
-    return "<line class=\"" + std::string(name) + "\" x1=\"" + number(x0) + "\" y1=\"" + number(y0) + "\" x2=\"" + number(x1) +
-           "\" y2=\"" + number(y1) + "\"/>\n";
-}
-
-/// A smaller font for a label that would be wider than its place.
-std::string fitting(const std::string& label) {
-    constexpr std::size_t kFits = 8;
-    return label.size() <= kFits ? "" : " font-size=\"" + number(kFont * kFits / static_cast<double>(label.size())) + '"';
-}
-
-std::string frame(const Plot& plot, const Axis& x, const Axis& y) {
-    std::string svg;
-    for (const auto& [tick, label] : labelled_ticks(x.min, x.max, x.log)) {
-        svg += line_at(x.at(tick), kTop, x.at(tick), kPlotHeight - kBottom, "grid");
-        svg += text_at(x.at(tick), kPlotHeight - kBottom + 16, "middle", label, fitting(label));
+/// Leaves out every second label, or more, until none touches the next.
+std::vector<Tick> apart(std::vector<Tick> all, const Axis& axis, const auto& extent) {
+    const auto touch = [&](const Tick& a, const Tick& b) {
+        return std::abs(axis.at(b.value) - axis.at(a.value)) < (extent(a) + extent(b)) / 2 + kGap;
+    };
+    while (all.size() > 2 && std::ranges::adjacent_find(all, touch) != all.end()) {
+        std::vector<Tick> fewer;
+        for (std::size_t i = 0; i < all.size(); i += 2) fewer.push_back(all[i]);
+        if (fewer.size() < 2) break;
+        all = std::move(fewer);
     }
-    for (const auto& [tick, label] : labelled_ticks(y.min, y.max, y.log)) {
-        svg += line_at(kLeft, y.at(tick), kWidth - kRight, y.at(tick), "grid");
-        svg += text_at(kLeft - 6, y.at(tick) + 4, "end", label, fitting(label));
+    return all;
+}
+
+void draw_axes(const Plot& plot, const Axis& x, const Axis& y, Canvas& canvas) {
+    using enum Canvas::Anchor;
+    constexpr double kRoomX = 64, kRoomY = kLeft - 6 - 24;  // the title of the axis takes 24
+    const double bottom = kPlotHeight - kBottom, right = kWidth - kRight;
+    const auto width = [&](const Tick& tick) { return text_width(tick.label, font_for(tick.label, kRoomX)); };
+    for (const auto& [tick, label] : apart(labelled_ticks(x.min, x.max, x.log), x, width)) {
+        canvas.grid({x.at(tick), kTop}, {x.at(tick), bottom});
+        // The outermost labels must not leave the picture.
+        const double size = font_for(label, kRoomX), half = text_width(label, size) / 2;
+        canvas.text({std::clamp(x.at(tick), half, kWidth - half), bottom + 16}, Middle, label, size);
     }
-    svg += "<rect class=\"frame\" x=\"" + number(kLeft) + "\" y=\"" + number(kTop) + "\" width=\"" +
-           number(kWidth - kLeft - kRight) + "\" height=\"" + number(kPlotHeight - kTop - kBottom) + "\"/>\n";
-    svg += text_at((kLeft + kWidth - kRight) / 2, kPlotHeight - 10, "middle", plot.x_label);
-    const double middle = (kTop + kPlotHeight - kBottom) / 2;
-    svg += text_at(14, middle, "middle", plot.y_label, " transform=\"rotate(-90 14 " + number(middle) + ")\"");
-    return svg;
-}
-
-std::string marker(std::size_t which, double x, double y) {
-    const auto path = [&](const std::string& d) { return "<path d=\"M" + number(x) + " " + number(y) + d + "z\"/>"; };
-    switch (which % 4) {
-        case 0:
-            return "<circle cx=\"" + number(x) + "\" cy=\"" + number(y) + "\" r=\"3.4\"/>";
-        case 1:
-            return path("m-3.2-3.2h6.4v6.4h-6.4");
-        case 2:
-            return path("m0-4.2l4 7h-8");
-        default:
-            return path("m0-4.4l4.2 4.4l-4.2 4.4l-4.2-4.4");
+    const auto height = [](const Tick&) { return kPlotFont; };
+    for (const auto& [tick, label] : apart(labelled_ticks(y.min, y.max, y.log), y, height)) {
+        canvas.grid({kLeft, y.at(tick)}, {right, y.at(tick)});
+        canvas.text({kLeft - 6, y.at(tick) + 4}, End, label, font_for(label, kRoomY));
     }
+    canvas.frame({kLeft, kTop}, {right - kLeft, bottom - kTop});
+    canvas.text({(kLeft + right) / 2, kPlotHeight - 10}, Middle, plot.x_label, font_for(plot.x_label, right - kLeft));
+    canvas.text({14, (kTop + bottom) / 2}, Middle, plot.y_label, font_for(plot.y_label, bottom - kTop), true);
 }
 
-// Lines beyond the number of colours are dashed.
-std::string colored_line(std::size_t index, const std::string& path, const std::string& markers) {
-    const std::string color = kColors[index % kColors.size()];
-    const std::string dash = index < kColors.size() ? "" : " stroke-dasharray=\"5 3\"";
-    return "<g stroke=\"" + color + "\" fill=\"" + color + "\"><path class=\"line\" fill=\"none\" d=\"" + path + "\"" + dash +
-           "/>" + markers + "</g>\n";
+/// Lines beyond the number of colours are dashed.
+Canvas::Series series_of(std::size_t index) {
+    return {.color = kColors[index % kColors.size()],
+            .dashed = index >= kColors.size(),
+            .strands = {},
+            .markers = {},
+            .shape = index};
 }
 
-std::string line_svg(const Plot& plot, std::size_t index, const Axis& x, const Axis& y) {
+void draw_line(const Plot& plot, std::size_t index, const Axis& x, const Axis& y, Canvas& canvas) {
     const PlotLine& line = plot.lines[index];
-    std::string path, points;
+    Canvas::Series series = series_of(index);
     for (std::size_t i = 0; i < std::min(line.x.size(), line.y.size()); ++i) {
+        if (series.strands.empty() || std::ranges::find(line.breaks, i) != line.breaks.end()) series.strands.emplace_back();
         if (!shown(line.x[i], plot.log_x) || !shown(line.y[i], plot.log_y)) continue;
-        const double px = x.at(line.x[i]), py = y.at(line.y[i]);
-        path += (path.empty() ? "M" : "L") + number(px) + " " + number(py);
-        points += marker(index, px, py);
+        series.strands.back().emplace_back(x.at(line.x[i]), y.at(line.y[i]));
+        series.markers.push_back(series.strands.back().back());
     }
-    return path.empty() ? std::string() : colored_line(index, path, points);
+    if (!series.markers.empty()) canvas.series(series);
 }
 
-std::string legend(const Plot& plot, std::size_t columns) {
-    std::string svg;
+std::string legend_words(const Plot& plot, const PlotLine& line) {
+    const auto order = plot.fit ? fitted_order(line) : std::nullopt;
+    return line.name + (order ? " (" + coordinate(*order) + ")" : "");
+}
+
+/// As many columns as the longest entry leaves room for, at most three.
+std::size_t legend_columns(const Plot& plot) {
+    double longest = 0;
+    for (const PlotLine& line : plot.lines) longest = std::max(longest, text_width(legend_words(plot, line), kPlotFont));
+    const double entry = kLegendText + longest + kGap;
+    return static_cast<std::size_t>(std::clamp(std::floor((kWidth - kLegendMargin) / entry), 1., 3.));
+}
+
+void draw_legend(const Plot& plot, std::size_t columns, Canvas& canvas) {
+    const double width = (kWidth - kLegendMargin) / static_cast<double>(columns);
     for (std::size_t i = 0; i < plot.lines.size(); ++i) {
-        const std::size_t row = i / columns;
-        const double x = 14 + (kWidth - 14) / static_cast<double>(columns) * static_cast<double>(i % columns);
-        const double y = kPlotHeight + 8 + kLegendLine * static_cast<double>(row);
-        svg += colored_line(i, "M" + number(x) + " " + number(y) + "h20", marker(i, x + 10, y));
-        std::string words = plot.lines[i].name;
-        const auto order = plot.fit ? fitted_order(plot.lines[i]) : std::nullopt;
-        if (order) words += " (" + number(*order) + ")";
-        svg += text_at(x + 26, y + 4, "start", words);
+        const double x = kLegendMargin + width * static_cast<double>(i % columns);
+        const double y = kPlotHeight + 8 + kLegendLine * static_cast<double>(i / columns);
+        Canvas::Series series = series_of(i);
+        series.strands = {{{x, y}, {x + 20, y}}};
+        series.markers = {{x + 10, y}};
+        canvas.series(series);
+        const std::string words = legend_words(plot, plot.lines[i]);
+        canvas.text({x + kLegendText, y + 4}, Canvas::Anchor::Start, words, font_for(words, width - kLegendText));
     }
-    return svg;
+}
+
+double height_of(const Plot& plot) {
+    const std::size_t columns = legend_columns(plot);
+    return kPlotHeight + kLegendLine * static_cast<double>((plot.lines.size() + columns - 1) / columns) + 4;
+}
+
+void draw(const Plot& plot, Canvas& canvas) {
+    const auto x = axis_of(plot, true, kLeft, kWidth - kRight), y = axis_of(plot, false, kPlotHeight - kBottom, kTop);
+    if (!x || !y) return canvas.text({kWidth / 2, kPlotHeight / 2}, Canvas::Anchor::Middle, "no data", kPlotFont);
+    draw_axes(plot, *x, *y, canvas);
+    for (std::size_t i = 0; i < plot.lines.size(); ++i) draw_line(plot, i, *x, *y, canvas);
+    draw_legend(plot, legend_columns(plot), canvas);
+}
+
+std::string svg_element(const Plot& plot, const std::string& attributes, const std::string& style) {
+    SvgCanvas canvas;
+    draw(plot, canvas);
+    return "<svg " + attributes + " viewBox=\"0 0 " + coordinate(kWidth) + " " + coordinate(height_of(plot)) +
+           "\" role=\"img\" font-size=\"" + coordinate(kPlotFont) + "\"><title>" + escaped(plot.title) + "</title>\n" + style +
+           canvas.elements() + "</svg>\n";
 }
 
 }  // namespace
@@ -227,18 +251,16 @@ std::vector<double> ticks(double min, double max, bool log) {
 }
 
 std::string plot_svg(const Plot& plot) {
-    const auto x = axis_of(plot, true, kLeft, kWidth - kRight), y = axis_of(plot, false, kPlotHeight - kBottom, kTop);
-    std::size_t longest = 0;
-    for (const PlotLine& line : plot.lines) longest = std::max(longest, line.name.size());
-    const std::size_t columns = longest > 30 ? 1 : 2;
-    const double rows = std::ceil(static_cast<double>(plot.lines.size()) / static_cast<double>(columns));
-    const double height = kPlotHeight + kLegendLine * rows + 4;
-    std::string svg = "<svg class=\"plot\" viewBox=\"0 0 " + number(kWidth) + " " + number(height) +
-                      "\" role=\"img\" font-size=\"" + number(kFont) + "\"><title>" + escaped(plot.title) + "</title>\n";
-    if (!x || !y) return svg + text_at(kWidth / 2, kPlotHeight / 2, "middle", "no data") + "</svg>\n";
-    svg += frame(plot, *x, *y);
-    for (std::size_t i = 0; i < plot.lines.size(); ++i) svg += line_svg(plot, i, *x, *y);
-    return svg + legend(plot, columns) + "</svg>\n";
+    return svg_element(plot, "class=\"plot\"", "");
+}
+
+std::string plot_svg_file(const Plot& plot) {
+    const std::string size = "width=\"" + coordinate(kWidth) + "\" height=\"" + coordinate(height_of(plot)) + "\"";
+    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
+           svg_element(plot, "xmlns=\"http://www.w3.org/2000/svg\" " + size,
+                       "<style>text { fill: #1c1c1c; font-family: Helvetica, Arial, 'DejaVu Sans', sans-serif; stroke: none } "
+                       ".grid { stroke: #e2e2e2 } .frame { fill: none; stroke: #777 } .line { stroke-width: 1.8 }</style>\n"
+                       "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
 }
 
 }  // namespace subvol

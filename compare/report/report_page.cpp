@@ -17,6 +17,11 @@ std::string_view embedded(std::string_view name) {
     return std::ranges::find(kTexts, name, &EmbeddedText::name)->text;
 }
 
+/// As of tables: NAME_plot, NAME_plot_2 and so on.
+std::string plot_name(const Study& study, std::size_t number) {
+    return study.name + "_plot" + (number == 1 ? "" : "_" + std::to_string(number));
+}
+
 std::string heading(const Study& study, const std::string& key) {
     for (const StudyTableSpec& table : study.tables) {
         if (const auto found = table.headings.find(key); found != table.headings.end()) return found->second;
@@ -99,13 +104,53 @@ std::string summary_html(std::span<const StudyResults> studies) {
            rows + "</tbody></table></div>\n";
 }
 
-std::string study_html(const StudyResults& results, const std::filesystem::path& folder) {
+/// The value of a fact; "" if there is none.
+std::string fact(const ReportFacts& facts, const std::string& name) {
+    const auto found = std::ranges::find(facts, name, &std::pair<std::string, std::string>::first);
+    return found == facts.end() ? "" : found->second;
+}
+
+std::string program_words(const ReportOptions& options) {
+    std::string words = "OpenSubVol " + fact(options.versions, "subvol");
+    if (const std::string commit = fact(options.versions, "commit"); !commit.empty()) words += ", commit " + commit;
+    return words;
+}
+
+std::string setup_html(const StudyResults& results, const ReportOptions& options) {
+    const auto setup = setup_table(results);
+    if (!setup) return {};
+    const std::string methods = methods_text(results, program_words(options), fact(options.host, "processor"));
+    return table_html(*setup) +
+           (methods.empty() ? "" : "<h3>Methods, for a paper</h3>\n<p class=\"methods\">" + escaped(methods) + "</p>\n");
+}
+
+std::string citation_html(const ReportOptions& options) {
+    const std::string date = fact(options.versions, "date");
+    std::string entry =
+        "@software{opensubvol,\n  title   = {OpenSubVol: subdivision volumes},\n  author  = {{The OpenSubVol developers}},\n  "
+        "version = {" +
+        fact(options.versions, "subvol") + "}";
+    if (date.size() >= 4) entry += ",\n  year    = {" + date.substr(0, 4) + "}";
+    entry += ",\n  note    = {" + program_words(options) + "}\n}";
+    return "<h3>How to cite</h3>\n<pre>" + escaped(entry) +
+           "</pre>\n<p class=\"soft\">The method: McDonnell, Neophytou, Mueller and Qin, <em>Subdivision Volume "
+           "Splatting</em>, EuroVis "
+           "2007. The sources contain <code>CITATION.cff</code>.</p>\n";
+}
+
+std::string study_html(const StudyResults& results, const std::filesystem::path& folder, const ReportOptions& options) {
     const Study& study = results.study;
     std::string html = "<section id=\"" + escaped(study.name) + "\">\n<h2>" + escaped(study.title) + "</h2>\n";
     if (!study.about.empty()) html += "<p>" + escaped(study.about) + "</p>\n";
     html += demands_html(results) + failures_html(results);
     for (const StudyTable& table : make_tables(results)) html += table_html(table);
-    for (const StudyPlotSpec& plot : study.plots) html += plots_html(results, plot);
+    std::size_t plots = 0;
+    for (const StudyPlotSpec& plot : study.plots) {
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < plot_panels(results, plot).size(); ++i) names.push_back(plot_name(study, ++plots));
+        html += plots_html(results, plot, names);
+    }
+    html += setup_html(results, options);
     if (study.pictures) html += pictures_html(results, folder);
     return html + "<p class=\"soft\">All numbers: <code>" + escaped(study.name) + "/results.csv</code>, <code>" +
            escaped(study.name) + "/costs.csv</code>.</p>\n</section>\n";
@@ -118,6 +163,16 @@ std::string facts_html(const ReportFacts& facts) {
 }
 
 }  // namespace
+
+std::vector<StudyPlot> make_plots(const StudyResults& results) {
+    std::vector<StudyPlot> all;
+    for (const StudyPlotSpec& spec : results.study.plots) {
+        for (PlotPanel& panel : plot_panels(results, spec)) {
+            all.push_back({plot_name(results.study, all.size() + 1), std::move(panel.plot)});
+        }
+    }
+    return all;
+}
 
 std::vector<Judgement> judge(const StudyResults& results) {
     std::vector<Judgement> all;
@@ -134,9 +189,9 @@ std::string report_html(std::span<const StudyResults> studies, const std::filesy
     html +=
         std::string(embedded("style")) + "</style>\n</head>\n<body>\n<header>\n<h1>Error studies of subdivision volumes</h1>\n";
     html += summary_html(studies) + "</header>\n<main>\n";
-    for (const StudyResults& results : studies) html += study_html(results, folder);
+    for (const StudyResults& results : studies) html += study_html(results, folder, options);
     html += "<section id=\"machine\">\n<h2>Machine, versions, and how to reproduce this report</h2>\n<h3>Machine</h3>\n";
-    html += facts_html(options.host) + "<h3>Versions</h3>\n" + facts_html(options.versions);
+    html += facts_html(options.host) + "<h3>Versions</h3>\n" + facts_html(options.versions) + citation_html(options);
     html += "<h3>Command</h3>\n<pre>" + escaped(options.command) +
             "</pre>\n<p class=\"soft\">In the same folder, only unfinished cases are run; <code>--fresh</code> runs all "
             "cases.</p>\n";

@@ -7,6 +7,7 @@
 #include "html_text.h"
 #include "subvol/error.h"
 #include "subvol/plot.h"
+#include "sweep.h"
 
 namespace subvol::detail {
 
@@ -35,12 +36,9 @@ T& named(std::vector<std::pair<std::string, T>>& all, const std::string& name) {
     return all.emplace_back(name, T{}).second;
 }
 
-struct Point {
-    double x, y;
-};
-using Series = std::vector<std::pair<std::string, std::vector<Point>>>;
+using Series = std::vector<std::pair<std::string, std::vector<std::size_t>>>;  // names and cases
 
-Plot plot_of(const StudyPlotSpec& spec, const std::string& panel, const Series& series) {
+Plot plot_of(const StudyResults& results, const StudyPlotSpec& spec, const std::string& panel, const Series& series) {
     Plot plot{.title = spec.title + (panel.empty() ? "" : ": " + panel),
               .x_label = heading(spec, spec.x),
               .y_label = heading(spec, spec.y),
@@ -48,14 +46,15 @@ Plot plot_of(const StudyPlotSpec& spec, const std::string& panel, const Series& 
               .log_y = spec.log_y,
               .fit = spec.fit,
               .lines = {}};
-    for (const auto& [name, points] : series) {
-        auto sorted = points;
-        std::ranges::stable_sort(sorted, {}, &Point::x);
+    for (const auto& [name, cases] : series) {
         PlotLine& line = plot.lines.emplace_back();
         line.name = name;
-        for (const Point& point : sorted) {
-            line.x.push_back(point.x);
-            line.y.push_back(point.y);
+        for (const auto& strand : strands_of(results.study, cases, spec.x)) {
+            if (!line.x.empty()) line.breaks.push_back(line.x.size());
+            for (const std::size_t c : strand) {
+                line.x.push_back(*number_of(results.study.cases[c], results.results[c], spec.x));
+                line.y.push_back(*number_of(results.study.cases[c], results.results[c], spec.y));
+            }
         }
     }
     return plot;
@@ -121,15 +120,16 @@ std::string table_html(const StudyTable& table) {
     html += "<div class=\"wide\"><table>\n<thead><tr>";
     for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell("th", c, table.columns[c]);
     html += "</tr></thead>\n<tbody>\n";
-    for (const auto& row : table.rows) {
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
         html += "<tr>";
-        for (std::size_t c = 0; c < row.size(); ++c) html += cell("td", c, readable(row[c], table.digits));
+        for (std::size_t c = 0; c < table.rows[r].size(); ++c) html += cell("td", c, shown(table, r, c));
         html += "</tr>\n";
     }
-    return html + "</tbody></table></div>\n";
+    return html + "</tbody></table></div>\n<p class=\"files\"><code>" + escaped(table.name) +
+           ".csv</code>, <code>.tex</code></p>\n";
 }
 
-std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec) {
+std::vector<PlotPanel> plot_panels(const StudyResults& results, const StudyPlotSpec& spec) {
     std::vector<std::pair<std::string, Series>> panels;
     for (std::size_t i = 0; i < results.results.size(); ++i) {
         const StudyCase& of = results.study.cases[i];
@@ -139,15 +139,22 @@ std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec) {
         std::string name;
         for (const std::string& key : spec.series) name += (name.empty() ? "" : ", ") + value_text(of, result, key);
         Series& series = named(panels, spec.panels.empty() ? "" : spaced(value_text(of, result, spec.panels)));
-        named(series, name).push_back({*x, *y});
+        named(series, name).push_back(i);
     }
+    std::vector<PlotPanel> all;
+    for (const auto& [panel, series] : panels) all.push_back({panel, plot_of(results, spec, panel, series)});
+    return all;
+}
+
+std::string plots_html(const StudyResults& results, const StudyPlotSpec& spec, const std::vector<std::string>& files) {
     std::string html = "<h3>" + escaped(spec.title) + "</h3>\n";
     if (!spec.caption.empty()) html += "<p class=\"soft\">" + escaped(spec.caption) + "</p>\n";
     html += "<div class=\"plots\">\n";
-    for (const auto& [panel, series] : panels) {
-        html += "<figure>" + plot_svg(plot_of(spec, panel, series));
-        if (!panel.empty()) html += "<figcaption>" + escaped(panel) + "</figcaption>";
-        html += "</figure>\n";
+    const auto panels = plot_panels(results, spec);
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        html += "<figure>" + plot_svg(panels[i].plot) + "<figcaption>";
+        if (!panels[i].name.empty()) html += escaped(panels[i].name) + " · ";
+        html += "<code>" + escaped(files[i]) + ".svg</code>, <code>.pdf</code></figcaption></figure>\n";
     }
     return html + "</div>\n";
 }

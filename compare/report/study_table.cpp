@@ -30,6 +30,16 @@ StudyTable::Cell cell_of(const StudyCase& of, const CaseResult& result, const st
     return key == "input" ? spaced(as_text(*value)) : as_text(*value);
 }
 
+/// "≤ 0.0002" for an error below what is known, "≥ 73.9" for such a PSNR.
+std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits) {
+    const auto known = accuracy(result, key);
+    const auto found = result.metrics.find(key);
+    if (!known || found == result.metrics.end()) return {};
+    const bool psnr = key == "psnr";
+    if (psnr ? found->second <= *known : found->second >= *known) return {};
+    return (psnr ? "≥ " : "≤ ") + readable(*known, std::min(digits, 2 + (psnr ? 1 : 0)));
+}
+
 /// The index of a text among those found so far; new ones are appended.
 std::size_t place_in(std::vector<std::string>& all, const std::string& one) {
     const auto found = std::ranges::find(all, one);
@@ -64,6 +74,10 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
             table.columns.push_back(spec.values.size() == 1 ? label : label + ": " + heading(spec, value));
         }
     }
+    const auto put = [&](std::size_t r, std::size_t c, std::size_t i, const std::string& key) {
+        table.rows[r][c] = cell_of(results.study.cases[i], results.results[i], key);
+        if (const auto mark = mark_of(results.results[i], key, table.digits)) table.marks[{r, c}] = *mark;
+    };
     for (const std::size_t i : chosen) {
         const StudyCase& of = results.study.cases[i];
         const CaseResult& result = results.results[i];
@@ -74,17 +88,17 @@ StudyTable make_table(const StudyResults& results, const StudyTableSpec& spec) {
             auto& row = table.rows.emplace_back(table.columns.size(), std::nan(""));
             for (std::size_t k = 0; k < spec.rows.size(); ++k) row[k] = cell_of(of, result, spec.rows[k]);
         }
-        auto& row = table.rows[r];
+        const auto& row = table.rows[r];
         for (std::size_t k = 0; k < spec.columns.size(); ++k) {  // from the first case that has the value
-            auto& cell = row[spec.rows.size() + k];
+            const auto& cell = row[spec.rows.size() + k];
             const auto* number = std::get_if<double>(&cell);
-            if (number != nullptr && std::isnan(*number)) cell = cell_of(of, result, spec.columns[k]);
+            if (number != nullptr && std::isnan(*number)) put(r, spec.rows.size() + k, i, spec.columns[k]);
         }
         const auto which = spec.across.empty() ? "" : value_text(of, result, spec.across);
         if (which.empty()) continue;
         const std::size_t a = place_in(across, which);
         for (std::size_t v = 0; v < spec.values.size(); ++v) {
-            row[fixed + a * spec.values.size() + v] = cell_of(of, result, spec.values[v]);
+            put(r, fixed + a * spec.values.size() + v, i, spec.values[v]);
         }
     }
     return table;
@@ -134,11 +148,26 @@ std::string readable(const StudyTable::Cell& cell, int digits) {
     return count ? fixed_text(number, 0) : number_text(number, digits);
 }
 
+std::string shown(const StudyTable& table, std::size_t row, std::size_t column) {
+    const auto mark = table.marks.find({row, column});
+    return mark != table.marks.end() ? mark->second : readable(table.rows[row][column], table.digits);
+}
+
+std::optional<double> accuracy(const CaseResult& result, const std::string& metric) {
+    const auto change = result.metrics.find("reference_change");
+    if (change == result.metrics.end() || !(change->second > 0)) return {};
+    const double rms = change->second;
+    if (metric == "rmse" || metric == "mae") return rms;  // a mean of sizes is at most the root of the mean square
+    if (metric == "mse") return rms * rms;
+    if (metric == "psnr") return -20 * std::log10(rms);
+    return {};
+}
+
 std::string as_text(const StudyTable& table) {
     std::vector<std::vector<std::string>> lines{table.columns};
-    for (const auto& row : table.rows) {
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
         auto& line = lines.emplace_back();
-        for (const auto& cell : row) line.push_back(readable(cell, table.digits));
+        for (std::size_t c = 0; c < table.rows[r].size(); ++c) line.push_back(shown(table, r, c));
     }
     std::vector<std::size_t> widths(table.columns.size());
     for (const auto& line : lines) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "subvol/detail/near_name.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/kernel.h"
@@ -74,7 +75,8 @@ void check_object(const Json& json, const std::string& path, std::span<const std
     if (!json.is_object()) refuse(path, must_be("an object", json));
     for (const auto& [key, value] : json.items()) {
         if (std::ranges::find(known, key) == known.end())
-            refuse(in(path, shortened(key)), "this key is unknown", joined(known));
+            refuse(in(path, shortened(key)), "this key is unknown" + did_you_mean(key, {known.begin(), known.end()}),
+                   joined(known));
     }
 }
 
@@ -100,7 +102,7 @@ StudyValue read_value(const Json& json, const Key& key, const std::string& path)
     }
     const std::string text = read_text(json, path);
     if (!key.choices.empty() && std::ranges::find(key.choices, text) == key.choices.end()) {
-        refuse(path, "'" + shortened(text) + "' is unknown", joined(key.choices));
+        refuse(path, "'" + shortened(text) + "' is unknown" + did_you_mean(text, key.choices), joined(key.choices));
     }
     return text;
 }

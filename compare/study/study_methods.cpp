@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study_keys.h"
+#include "subvol/detail/near_name.h"
 
 namespace subvol {
 
@@ -79,11 +80,13 @@ const std::vector<StudyMethod>& study_methods() {
 
 const StudyMethod& find_method(const std::string& name, const std::string& path) {
     std::string known;
+    std::vector<std::string> names;
     for (const StudyMethod& method : study_methods()) {
         if (name == method.name) return method;
+        names.emplace_back(method.name);
         known += (known.empty() ? "" : ", ") + std::string(method.name);
     }
-    refuse(path, "there is no method '" + name + "'", known);
+    refuse(path, "there is no method '" + name + "'" + did_you_mean(name, names), known);
 }
 
 }  // namespace detail

@@ -20,8 +20,8 @@ namespace {
 constexpr std::uintmax_t kMaxFileBytes = 1 << 20;
 
 const std::vector<std::string> kStudyKeys{
-    "name",  "title",    "about",  "inputs", "methods", "cameras", "transfer_functions", "size", "metrics", "reference",
-    "timed", "pictures", "tables", "plots",  "demands", "headings"};
+    "name",      "title", "about",    "inputs", "methods", "cameras", "transfer_functions", "size",   "metrics",
+    "reference", "timed", "pictures", "tables", "plots",   "demands", "headings",           "seconds"};
 
 const std::vector<std::string> kMetrics{"mse",           "rmse",      "mae",          "max",           "psnr",
                                         "ssim",          "flip",      "flip_hdr",     "psnr_interior", "psnr_edge",
@@ -67,6 +67,11 @@ public:
         result.title = json_.contains("title") ? read_text(json_["title"], in(root_, "title")) : result.name;
         if (json_.contains("about")) result.about = read_text(json_["about"], in(root_, "about"));
         result.timed = flag("timed");
+        if (json_.contains("seconds")) {
+            constexpr double kMost = 1e7;
+            result.seconds =
+                std::get<double>(read_value(json_["seconds"], {"seconds", KeyKind::Number, 0, kMost}, in(root_, "seconds")));
+        }
         if (!json_.contains("pictures") || !json_["pictures"].is_object()) result.pictures = flag("pictures");
         read_presentation(json_, root_, result);
         expand(result);

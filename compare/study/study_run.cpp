@@ -24,6 +24,10 @@ void make_folder(const fs::path& folder) {
     if (error || !fs::is_directory(folder)) throw Error(ErrorCode::Io, "the folder cannot be created", folder.string());
 }
 
+fs::path case_file(const fs::path& folder, const StudyCase& of) {
+    return folder / "cases" / (of.id + ".json");
+}
+
 /// The state that threads share.
 class Run {
 public:
@@ -43,12 +47,11 @@ public:
     }
 
 private:
-    [[nodiscard]] fs::path file_of(const StudyCase& of) const { return options_.folder / "cases" / (of.id + ".json"); }
-
     void take_over() {
         for (std::size_t i = 0; i < all_.study.cases.size(); ++i) {
             const StudyCase& of = all_.study.cases[i];
-            auto known = options_.fresh ? std::nullopt : read_finished_case(file_of(of), of, options_.folder);
+            auto known =
+                options_.fresh ? std::nullopt : read_finished_case(case_file(options_.folder, of), of, options_.folder);
             if (!known) {
                 open_.push_back(i);
                 continue;
@@ -74,7 +77,7 @@ private:
             try {
                 report_done();
                 const CaseResult result = outcome(of);
-                write_case(file_of(of), of, result);
+                write_case(case_file(options_.folder, of), of, result);
                 done(open_[next], result);
             } catch (...) {  // cancelled, or the folder cannot be written to: not the failure of a case
                 const std::lock_guard lock(mutex_);
@@ -99,7 +102,9 @@ private:
     void report_done() {
         const std::lock_guard lock(mutex_);
         const std::size_t done = all_.results.size() - open_.size() + all_.ran;
-        report_progress(options_.progress, all_.study.name,
+        report_progress(options_.progress,
+                        all_.study.name + ", case " + std::to_string(std::min(done + 1, all_.results.size())) + " of " +
+                            std::to_string(all_.results.size()),
                         static_cast<double>(done) / static_cast<double>(all_.results.size()));
     }
 
@@ -126,6 +131,18 @@ StudyResults run_study(const Study& study, const CaseWork& work, const StudyRunO
     StudyResults results = Run(study, work, options).finish();
     write_text_file(options.folder / "results.csv", results_csv(results));
     write_text_file(options.folder / "costs.csv", costs_csv(results));
+    return results;
+}
+
+StudyResults finished_results(const Study& study, const fs::path& folder) {
+    StudyResults results{.study = study, .results = {}};
+    results.study.cases.clear();
+    for (const StudyCase& of : study.cases) {
+        auto known = read_finished_case(case_file(folder, of), of, folder);
+        if (!known) continue;
+        results.study.cases.push_back(of);
+        results.results.push_back(std::move(*known));
+    }
     return results;
 }
 

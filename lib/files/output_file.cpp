@@ -89,6 +89,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), place_(out
     }
     // The extension is that of the name that the user chose: it decides the format.
     temporary_ = folder / ("." + place_.file.stem().string() + "." + std::to_string(::getpid()) + target_.extension().string());
+    unfinished_.emplace(temporary_, place_.stream);
 }
 
 AtomicFile::~AtomicFile() {

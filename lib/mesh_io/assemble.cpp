@@ -127,6 +127,20 @@ public:
         result_.mesh.attributes.push_back(std::move(attribute));
     }
 
+    /// After the last array: one warning for all arrays of cells.
+    void finish() {
+        if (averaged_.empty()) return;
+        constexpr std::size_t kMostNamed = 6;
+        const bool one = averaged_.size() == 1;
+        std::string names;
+        for (std::size_t i = 0; i < std::min(averaged_.size(), kMostNamed); ++i) names += (i > 0 ? ", " : "") + averaged_[i];
+        if (averaged_.size() > kMostNamed) names += " and " + std::to_string(averaged_.size() - kMostNamed) + " more";
+        result_.warnings.push_back((one ? "cell array " + names + " became a point array: the volume-weighted mean"
+                                        : std::to_string(averaged_.size()) + " cell arrays became point arrays (" + names +
+                                              "): volume-weighted means") +
+                                   " over the cells at each point");
+    }
+
 private:
     [[noreturn]] void refuse(const std::string& array, const std::string& entity) const {
         throw Error(ErrorCode::InvalidInput, "the value at " + entity + " is not finite",
@@ -142,7 +156,7 @@ private:
         return origin_.sources ? means(*origin_.sources, array.values, components) : std::move(array.values);
     }
 
-    std::vector<double> from_cells(const FileArray& array) const {
+    std::vector<double> from_cells(const FileArray& array) {
         const auto components = static_cast<std::size_t>(array.components);
         const auto& numbers = origin_.cell_numbers;
         std::vector<double> of_hexes;
@@ -154,8 +168,7 @@ private:
                 if (!std::isfinite(of_hexes.back())) refuse(array.name, names_.cell(number));
             }
         }
-        result_.warnings.push_back("cell array " + in_quotes(array.name) +
-                                   " became a point array: the volume-weighted mean over the cells at each point");
+        averaged_.push_back(in_quotes(array.name));
         return mean_over_cells(result_.mesh, of_hexes, components);
     }
 
@@ -173,6 +186,7 @@ private:
     const Origin& origin_;
     std::string_view file_;
     const EntityNames& names_;
+    std::vector<std::string> averaged_;
 };
 
 MixedCells take_others(MeshFile& found) {
@@ -243,6 +257,7 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
         warn_of_folded(result);
         ArrayConversion conversion(result, origin, file, names);
         for (auto& array : found.arrays) conversion.take(std::move(array));
+        conversion.finish();
         validate(result.mesh);
         if (!found.sharp.empty()) {
             add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);

@@ -5,6 +5,7 @@
 
 #include "model_block.h"
 #include "model_solid.h"
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -69,7 +70,10 @@ HexMesh make_model(const std::string& name, int resolution) {
         }
         return entry.make(static_cast<Index>(n));
     }
-    throw Error(ErrorCode::InvalidInput, "there is no model '" + name + "'", {}, known_names());
+    std::vector<std::string> names;
+    for (const Entry& entry : kModels) names.emplace_back(entry.name);
+    throw Error(ErrorCode::InvalidInput, "there is no model '" + name + "'" + detail::did_you_mean(name, names), {},
+                known_names());
 }
 
 }  // namespace subvol

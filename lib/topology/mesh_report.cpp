@@ -36,6 +36,12 @@ CellQuality measure(const std::array<Vec3, 8>& corners) {
     return quality;
 }
 
+CellQuality quality_of(const HexMesh& mesh, std::size_t c) {
+    std::array<Vec3, 8> corners;
+    for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[mesh.cells[c][k]];
+    return measure(corners);
+}
+
 void add(ShapeReport& report, const CellQuality& cell) {
     report.volume += cell.volume;
     report.inverted_cells += cell.inverted;
@@ -88,9 +94,7 @@ ShapeReport measure_cells(const HexMesh& mesh) {
     std::vector<ShapeReport> parts((mesh.cells.size() + kPart - 1) / kPart);
     tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
         for (std::size_t c = i * kPart; c < std::min(mesh.cells.size(), (i + 1) * kPart); ++c) {
-            std::array<Vec3, 8> corners;
-            for (std::size_t k = 0; k < 8; ++k) corners[k] = mesh.points[mesh.cells[c][k]];
-            add(parts[i], measure(corners));
+            add(parts[i], quality_of(mesh, c));
         }
     });
     ShapeReport report;
@@ -101,6 +105,14 @@ ShapeReport measure_cells(const HexMesh& mesh) {
         report.min_scaled_jacobian = std::min(report.min_scaled_jacobian, part.min_scaled_jacobian);
     }
     return report;
+}
+
+std::vector<std::size_t> inverted_cells(const HexMesh& mesh, std::size_t at_most) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t c = 0; c < mesh.cells.size() && numbers.size() < at_most; ++c) {
+        if (quality_of(mesh, c).inverted) numbers.push_back(c);
+    }
+    return numbers;
 }
 
 MeshReport inspect(const HexMesh& mesh) {

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a user sees first: help, exit codes, one sentence for a mistake, no files left behind, repeatable results."""
 
+import json
 import os
+import pty
 import signal
 import subprocess
 import unittest
@@ -114,6 +116,28 @@ class Interrupt(InFolder):
         self.assertEqual(process.wait(HANGS_AFTER), 130)
         os.close(terminal)
         self.assertEqual(self.files(), [])
+
+
+    def test_programs_read_that_it_was_interrupted(self):
+        terminal, end = pty.openpty()
+        process = subprocess.Popen([COMMAND, "vdb", "model:twist", "-o", "a.vdb", "--resolution", "1500", "--json", "--progress", "on"],
+                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=end, text=True)
+        os.close(end)
+        os.read(terminal, 1)
+        process.send_signal(signal.SIGTERM)
+        out, _ = process.communicate(timeout=HANGS_AFTER)
+        os.close(terminal)
+        self.assertIn(process.returncode, (130, 143))
+        self.assertIn(json.loads(out)["error"]["code"], (130, 143))
+        self.assertEqual(self.files(), [])
+
+    def test_progress_says_the_frame(self):
+        made = subvol("vdb", "model:ball:2", "--to", "model:ball:2", "-o", "a_#.vdb", "--frames", "3", "--resolution", "8", "--progress", "on",
+                      folder=self.folder)
+        self.assertEqual(made.code, 0, made.err)
+        for frame in (1, 2, 3):
+            self.assertIn(f"frame {frame} of 3", made.err)
+        self.assertTrue(made.err.endswith("\r\033[K"))  # nothing is left of the bar
 
 
 class SameForAnyNumberOfThreads(InFolder):

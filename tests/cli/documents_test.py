@@ -3,9 +3,12 @@
 
 import os
 import re
+import shlex
 import subprocess
 import unittest
 from pathlib import Path
+
+from command import InFolder
 
 TOP = Path(__file__).resolve().parents[2]
 DOCUMENTS = [*TOP.glob("*.md"), *(TOP / "docs").rglob("*.md")]
@@ -35,6 +38,50 @@ def calls():
         cells = line.strip("| ").split(" | ")
         if component and len(cells) == 4 and cells[1].endswith(".h`"):
             yield component, cells[0], cells[1].strip("`"), re.findall(r"`(\w+)`", cells[2]), cells[3].strip("`")
+
+
+# Where the gallery's meshes are in the collection of meshes that SUBVOL_DATA names.
+COLLECTED = {"disk_out_ref.vtu": "trame_disk_out_ref.vtu", "can.vtu": "vtkdata_can.vtu", "igea_hex_improve.vtk": "hexdom_igea_improve.vtk",
+             "bunny_conforming.mesh": "sibl_bunny_conforming.mesh", "Figure_28.14.vtk": "ansys_td28_fig14.vtk", "post.vtk": "vtkdata_post_tet.vtk",
+             "smoke.vdb": "arnold_smoke.vdb", "cylinder_Hexa.msh": "sofa_cylinder_hexa.msh",
+             "crackInPlane_benchmark.vtu": "geos_crackInPlane_benchmark.vtu"}
+
+
+def captioned(document):
+    """The pictures that a document shows with the command that draws them: (picture, words of the command)."""
+    text = (TOP / document).read_text()
+    for command in re.findall(r"`(subvol render [^`]*)`", text):
+        words = shlex.split(" ".join(command.split()))
+        picture = TOP / ("docs" if document == "README.md" else "docs/gallery") / words[words.index("-o") + 1]
+        if picture.exists():
+            yield picture, words[1:]
+
+
+class Captions(InFolder):
+    """Pictures are exactly what their captions draw, but for what machines differ in."""
+
+    def assert_drawn_by(self, picture, words):
+        done = self.run_ok(*words)
+        self.assertNotIn("warning", done.err)
+        self.run_ok("compare", words[words.index("-o") + 1], picture, "--fail-under", "psnr=50")
+
+    def test_of_the_readme(self):
+        pictures = list(captioned("README.md"))
+        self.assertEqual({picture.name for picture, _ in pictures},
+                         set(re.findall(r"!\[[^]]*\]\(docs/([^)]*)\)", (TOP / "README.md").read_text())))
+        for picture, words in pictures:
+            self.assert_drawn_by(picture, words)
+
+    def test_of_the_gallery(self):
+        pictures = list(captioned("docs/gallery.md"))
+        self.assertEqual({f"gallery/{picture.name}" for picture, _ in pictures},
+                         set(re.findall(r"!\[[^]]*\]\(([^)]*)\)", (TOP / "docs/gallery.md").read_text())))
+        data = os.environ.get("SUBVOL_DATA")
+        if not data:
+            self.skipTest("SUBVOL_DATA names no folder")
+        for picture, words in pictures:
+            os.symlink(Path(data) / COLLECTED[words[1]], self.folder / words[1])
+            self.assert_drawn_by(picture, words)
 
 
 class Documents(unittest.TestCase):

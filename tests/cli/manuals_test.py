@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The manual page and the completions name every verb and option, and the programs that read them report no errors."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -11,13 +12,13 @@ from command import COMMAND, HANGS_AFTER, InFolder, subvol
 
 def verbs():
     help_text = subvol("--help").out
-    return re.findall(r"^  (\w+) ", help_text.split("Subcommands:")[1].split("Start here")[0], re.M)
+    return [verb for verb in re.findall(r"^  (\w+) ", help_text.split("Verbs:")[1].split("Options:")[0], re.M) if verb != "help"]
 
 
 def options(verb):
-    """Of a verb's help: the first columns of its lines, as "-o,--output IMAGE REQUIRED"."""
-    lines = re.findall(r"^  (-\S+)", subvol(verb, "--help").out.split("Examples:")[0], re.M)
-    return [name for line in lines for name in line.split(",")]
+    """Of a verb's full help: the first columns of its lines, as "-o, --output IMAGE"."""
+    lines = re.findall(r"^  (-[^ ,]+)(?:, (-[^ ,]+))?", subvol(verb, "--help-all").out.split("Examples:")[0], re.M)
+    return [name for line in lines for name in line if name]
 
 
 def needs(program):
@@ -50,7 +51,7 @@ class Manuals(InFolder):
 
     def test_every_verb_and_option_is_in_the_page(self):
         sections = self.text["man"].replace("\\-", "-").split(".SS subvol ")
-        common = sections[-1].split(".SH COMMON OPTIONS")[1]
+        common = sections[-1].split(".SH OPTIONS FOR READING MESHES")[1]
         self.assertEqual([section.split()[0] for section in sections[1:]], verbs())
         for section in sections[1:]:
             for option in options(section.split()[0]):
@@ -64,6 +65,8 @@ class Manuals(InFolder):
     def test_the_page_is_read(self):
         page = self.run_shell("man", "--warnings", "-l", "man")
         self.assertIn("--opacity-unit D", page)
+        for chapter in ("THE VOLUME", "FIELDS", "OUTPUT FOR PROGRAMS", "A FIRST SESSION", "HOW LONG THINGS TAKE"):
+            self.assertIn(chapter, page)
 
     def test_the_day_can_be_set(self):
         done = subprocess.run(["env", "SOURCE_DATE_EPOCH=86400", COMMAND, "--generate", "man"],
@@ -72,7 +75,7 @@ class Manuals(InFolder):
 
     def test_bash_completes_verbs(self):
         self.run_shell("bash", "-n", "bash")
-        self.assertEqual(self.complete_in_bash("subvol", ""), [*verbs(), "--help", "--version"])
+        self.assertEqual(self.complete_in_bash("subvol", ""), [*verbs(), "help", "--help", "--version"])
         self.assertEqual(self.complete_in_bash("subvol", "re"), ["render"])
 
     def test_bash_completes_every_option(self):
@@ -84,6 +87,22 @@ class Manuals(InFolder):
         self.assertEqual(self.complete_in_bash("subvol", "model", "tw"), ["twist"])
         self.assertEqual(self.complete_in_bash("subvol", "info", "model", ":", "pa"), ["pawn"])
         self.assertEqual(self.complete_in_bash("subvol", "render", "-o", ""), [])  # a file: left to bash
+        self.assertEqual(self.complete_in_bash("subvol", "help", "re"), ["render"])
+        for verb, option, some in (("render", "--method", {"splat", "dense"}), ("render", "--tf", {"viridis", "turbo", "xray"}),
+                                   ("render", "--view", {"+x", "iso"}), ("points", "--scheme", {"mcq", "cc", "bsxw", "linear"}),
+                                   ("render", "--look", {"solid", "isosurface"})):
+            offered = self.complete_in_bash("subvol", verb, option, "")
+            self.assertLessEqual(some, set(offered))
+
+    def test_offered_values_are_accepted(self):
+        for option, more in (("--tf", []), ("--view", []), ("--look", ["--method", "splat"]), ("--scheme", []), ("--correction", []), ("--values", [])):
+            for value in self.complete_in_bash("subvol", "render", option, ""):
+                self.run_ok("render", "model:ball:2", "-o", "a.png", "--size", 8, option, value, *more)
+
+    def test_bash_completes_the_fields_of_the_file(self):
+        self.run_ok("model", "ball", "-o", "ball.vtu", "--resolution", 2)
+        os.symlink(COMMAND, self.folder / "subvol")
+        self.assertEqual(self.complete_in_bash("./subvol", "render", "ball.vtu", "--field", "d"), ["density"])
 
     @needs("zsh")
     def test_zsh_completes_verbs_and_options(self):

@@ -48,6 +48,48 @@ class Study(StudyFolder):
             self.assertIn(name, names)
             self.assertEqual(json.loads(self.run_ok("study", "--print", name).out)["name"], name)
 
+    def test_the_list_says_how_long_studies_take(self):
+        for study in self.run_ok("study", "--list", "--json").json()["studies"]:
+            self.assertGreater(study["seconds"], 0, study["name"])
+        for line in self.run_ok("study", "--list").out.splitlines():
+            self.assertRegex(line, r"^\w+ +about \d+ (s|min)  \S")
+
+    def test_an_unmet_demand_is_said(self):
+        few = {"methods": [{"method": "field", "seed": [1, 2], "places": 100}], "pictures": False}
+        self.write(SMALL | few | {"demands": [{"metric": "rmse", "most": 1}, {"metric": "rmse", "most": 1e-30}]})
+        done = subvol("study", "s.json", "-o", "out", "--json", folder=self.folder)
+        self.assertEqual(done.code, 1)
+        result = done.json()
+        self.assertEqual([(demand["study"], demand["cases"], demand["met"]) for demand in result["demands"]], [("small", 2, 2), ("small", 2, 0)])
+        self.assertIn("small: a demand is not met: rmse at most 1e-30: 0 of 2", result["warnings"][0])
+        self.assertIn("a demand is not met", subvol("study", "s.json", "-o", "out", folder=self.folder).err)
+
+    def test_a_second_study_keeps_the_first_in_the_report(self):
+        few = {"methods": [{"method": "field", "seed": [1, 2], "places": 100}], "pictures": False}
+        self.write(SMALL | few | {"title": "The first one"})
+        self.write(SMALL | few | {"name": "other", "title": "The other one"}, "o.json")
+        self.run_ok("study", "s.json", "-o", "out")
+        second = self.run_ok("study", "o.json", "-o", "out", "--json").json()
+        self.assertEqual(second["kept"], ["small"])
+        page = (self.folder / "out/report.html").read_text()
+        for words in ("<h2>The first one</h2>", "<h2>The other one</h2>", "subvol study s.json -o out\nsubvol study o.json -o out"):
+            self.assertIn(words, page)
+        again = self.run_ok("study", "s.json", "-o", "out", "--json").json()  # each is there once
+        self.assertEqual((again["kept"], again["studies"][0]["ran"]), (["other"], 0))
+        self.assertEqual((self.folder / "out/report.html").read_text().count("<h2>The first one</h2>"), 1)
+        (self.folder / "out/small/study.json").write_text("{")
+        self.assertIn("leaves out the study in out/small", subvol("study", "o.json", "-o", "out", folder=self.folder).err)
+
+    def test_figures_say_how_well_they_are_known(self):
+        self.run_ok("study", self.write(SMALL | {"plots": [{"x": "seconds", "y": "rmse", "series": "label"}]}), "-o", "out")
+        for row in csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines()):
+            if row["method"] != "field":
+                self.assertGreater(float(row["reference_change"]), 0)
+                self.assertGreaterEqual(float(row["reference_level"]), 1)
+        self.assertEqual(len((self.folder / "out/small/small_setup.csv").read_text().splitlines()), 1 + 2)  # two views
+        for name in ("small.tex", "small_setup.tex", "small_plot.svg"):
+            self.assertGreater((self.folder / "out/small" / name).stat().st_size, 100)
+
     def test_mistakes_have_a_sentence(self):
         (self.folder / "file").write_text("")
         bad = self.write(SMALL | {"size": 1})

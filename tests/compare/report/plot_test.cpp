@@ -149,5 +149,58 @@ TEST(Plot, WithoutFiguresSaysSo) {
         std::string::npos);
 }
 
+TEST(Plot, AFileStandsAlone) {
+    const Plot plot{.title = "t", .x_label = "x", .y_label = "y", .lines = {{.name = "l", .x = {1, 10}, .y = {1, 10}}}};
+    const std::string svg = plot_svg_file(plot);
+    EXPECT_TRUE(svg.starts_with("<?xml"));
+    for (const char* part : {"xmlns=\"http://www.w3.org/2000/svg\"", " width=\"480.00\"", "<style>", "class=\"frame\""})
+        EXPECT_NE(svg.find(part), std::string::npos) << part;
+    EXPECT_EQ(count(svg, "http"), 1U);  // nothing but the name of the format
+}
+
+TEST(Plot, PensLiftAtBreaks) {
+    Plot plot{.title = "t", .x_label = "x", .y_label = "y", .lines = {{.name = "l", .x = {1, 2, 3, 4}, .y = {1, 2, 3, 4}}}};
+    const auto strokes = [&] {
+        const std::string svg = plot_svg(plot);
+        const std::size_t begin = svg.find("d=\"M", svg.find("class=\"line\""));
+        return count(svg.substr(begin, svg.find('"', begin + 3) - begin), "M");
+    };
+    EXPECT_EQ(strokes(), 1U);
+    plot.lines[0].breaks = {2};
+    EXPECT_EQ(strokes(), 2U);
+}
+
+/// The numbers of an attribute of all elements of a kind.
+std::vector<double> numbers(const std::string& svg, const std::string& element, const std::string& attribute) {
+    std::vector<double> all;
+    for (std::size_t at = svg.find(element); at != std::string::npos; at = svg.find(element, at + 1)) {
+        all.push_back(std::stod(svg.substr(svg.find(attribute + "=\"", at) + attribute.size() + 2)));
+    }
+    return all;
+}
+
+TEST(Plot, LabelsDoNotTouch) {
+    for (const auto& [low, high] : {std::pair{1e-9, 1e9}, {123456.0, 123999.0}, {1e-3, 2e-3}, {0.001, 9000.}}) {
+        Plot plot{.title = "t", .x_label = "x", .y_label = "y", .lines = {{.name = "l", .x = {low, high}, .y = {low, high}}}};
+        const std::string svg = plot_svg(plot);
+        const auto labels = x_labels(svg);
+        auto x = numbers(svg, "<text", "x");
+        ASSERT_GE(labels.size(), 2U);
+        constexpr double kLetter = 7;  // about .58 of the font's 12
+        const auto letters = [](const std::string& words) {
+            return static_cast<double>(std::ranges::count_if(words, [](char c) { return (c & 0xC0) != 0x80; }));
+        };
+        for (std::size_t i = 1; i < labels.size(); ++i) {
+            EXPECT_GT(x[i] - x[i - 1], kLetter * (letters(labels[i - 1]) + letters(labels[i])) / 2 * .8) << labels[i] << low;
+        }
+    }
+    // Entries of the legend: long ones have a line each.
+    Plot plot{.title = "t", .x_label = "x", .y_label = "y", .fit = true, .lines = {}};
+    for (const char* name : {"a name of about thirty letters", "another of about thirty letters"})
+        plot.lines.push_back({.name = name, .x = {1, 2}, .y = {1, 2}});
+    const std::string svg = plot_svg(plot);
+    EXPECT_NE(svg.find("y=\"330.00\" text-anchor=\"start\""), std::string::npos) << svg;  // the second line
+}
+
 }  // namespace
 }  // namespace subvol

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/study_report.h"
+#include "subvol/study_table.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +64,89 @@ TEST_F(ReportFolder, PicturesAreInIt) {
     EXPECT_NE(html.find("data:image/png;base64,iVBORw=="), std::string::npos);  // RFC 4648 of the four bytes
     EXPECT_NE(html.find("missing: gone.png"), std::string::npos);
     EXPECT_NE(html.find("type=\"range\""), std::string::npos);
+}
+
+/// A picture study with a reference that last changed by 1e-3.
+StudyResults known_to_a_thousandth() {
+    StudyResults all{.study = parse_study(R"({"name": "s", "inputs": [{"model": "ball"}], "cameras": ["iso"], "size": [64, 48],
+        "methods": [{"method": "splat", "per_edge": [1, 2]}], "metrics": ["rmse", "psnr"],
+        "tables": [{"rows": "per_edge", "columns": ["rmse", "psnr", "seconds"], "headings": {"rmse": "RMSE & more"}}],
+        "plots": [{"x": "kernels", "y": "rmse", "series": "label"}]})",
+                                          "s.json"),
+                     .results = {}};
+    for (const double rmse : {1e-2, 1e-4}) {
+        all.results.push_back({.metrics = {{"rmse", rmse},
+                                           {"psnr", -20 * std::log10(rmse)},
+                                           {"reference_change", 1e-3},
+                                           {"reference_level", 4},
+                                           {"cells", 512},
+                                           {"points", 729},
+                                           {"kernels", rmse < 1e-3 ? 10. : 100.}},
+                               .costs = {{"seconds", .5}},
+                               .notes = {{"reference", "abc"}}});
+    }
+    return all;
+}
+
+TEST(Report, MarksWhatTheReferenceCannotTell) {
+    const StudyTable table = make_tables(known_to_a_thousandth()).at(0);
+    EXPECT_EQ(shown(table, 0, 1), "0.01");
+    EXPECT_EQ(shown(table, 1, 1), "≤ 0.001");
+    EXPECT_EQ(shown(table, 0, 2), "40");
+    EXPECT_EQ(shown(table, 1, 2), "≥ 60");
+    EXPECT_EQ(shown(table, 1, 3), "0.5");                 // a time has no such bound
+    EXPECT_EQ(std::get<double>(table.rows[1][1]), 1e-4);  // programs get the number
+    EXPECT_NE(as_csv(table).find("\"0.0001\",\"80\""), std::string::npos) << as_csv(table);
+    EXPECT_NE(as_text(table).find("≤ 0.001"), std::string::npos);
+    EXPECT_FALSE(accuracy({.metrics = {{"rmse", 1}}}, "rmse"));  // a reference of a fixed level
+}
+
+TEST(Report, SaysHowThePicturesWereMade) {
+    const auto setup = setup_table(known_to_a_thousandth());
+    ASSERT_TRUE(setup);
+    ASSERT_EQ(setup->rows.size(), 1U);  // one reference for both cases
+    const std::string row = as_csv(*setup);
+    for (const char* part :
+         {"\"ball\"", "\"512\"", "\"729\"", "\"iso\"", "\"viridis\"", "\"64 × 48\"", "\"4\"", "\"0.001\"", "\"60\""})
+        EXPECT_NE(row.find(part), std::string::npos) << part << row;
+    EXPECT_FALSE(setup_table(results()));
+    const std::vector<StudyResults> all{known_to_a_thousandth()};
+    const std::string page = report_html(
+        all, "nowhere", {{{"processor", "a CPU"}}, {{"subvol", "1.2.3"}, {"commit", "abcdef"}, {"date", "2026-01-02"}}, "c"});
+    for (const char* said : {"Methods, for a paper", "512 hexahedra", "64 × 48 pixels", "OpenSubVol 1.2.3, commit abcdef",
+                             "@software{", "{2026}", "last changes 0.001", "s_plot.svg</code>", "s.csv</code>", "≤ 0.001"}) {
+        EXPECT_NE(page.find(said), std::string::npos) << said;
+    }
+}
+
+TEST(Report, TablesOfLatexHaveItsSignsEscaped) {
+    const std::string tex = as_tex(make_tables(known_to_a_thousandth()).at(0));
+    for (const char* part :
+         {"\\begin{tabular}{rrrr}", "RMSE \\& more", "2 & $\\leq$ 0.001 & $\\geq$ 60 & 0.5 \\\\", "\\bottomrule"})
+        EXPECT_NE(tex.find(part), std::string::npos) << part << tex;
+    StudyTable words{.columns = {"a_b", "50 %"}, .rows = {{std::string("x{y}\\z"), 1e300}}};
+    const std::string escaped = as_tex(words);
+    for (const char* part : {"a\\_b", "50 \\%", "x\\{y\\}\\textbackslash{}z", "{lr}"})
+        EXPECT_NE(escaped.find(part), std::string::npos) << part << escaped;
+}
+
+TEST(Report, LinesJoinWhatIsSwept) {
+    // Finer kernels in half the time: in the order of the sweep the line goes back; it does not join other meshes.
+    StudyResults all{.study = parse_study(R"({"name": "s", "inputs": [{"model": "ball"}, {"model": "pawn"}],
+        "methods": [{"method": "field", "per_edge": [1, 2, 4], "label": "l"}],
+        "plots": [{"x": "seconds", "y": "rmse", "series": "label"}]})",
+                                          "s.json"),
+                     .results = {}};
+    for (const StudyCase& of : all.study.cases) {
+        all.results.push_back(
+            {.metrics = {{"rmse", 1 / of.number("per_edge")}}, .costs = {{"seconds", 8 / of.number("per_edge")}}});
+    }
+    const auto plots = make_plots(all);
+    ASSERT_EQ(plots.size(), 1U);
+    EXPECT_EQ(plots[0].name, "s_plot");
+    const PlotLine& line = plots[0].plot.lines.at(0);
+    EXPECT_EQ(line.x, (std::vector<double>{8, 4, 2, 8, 4, 2}));
+    EXPECT_EQ(line.breaks, (std::vector<std::size_t>{3}));
 }
 
 }  // namespace

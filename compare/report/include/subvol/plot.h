@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace subvol {
 
+/// breaks: the points, by their indices, that no line joins with the one before
 struct PlotLine {
     std::string name;
     std::vector<double> x, y;
+    std::vector<std::size_t> breaks{};
 };
 
 /// log_x, log_y: logarithmic axes; values that are not positive are left out
@@ -25,6 +28,9 @@ struct Plot {
 /// The plot as one SVG element that fills the width of its container, without fonts, scripts or links. Points that are not
 /// finite are left out; lines differ in colour and in the shape of their points.
 [[nodiscard]] std::string plot_svg(const Plot& plot);
+
+/// The same as a file of its own, with its size and styles.
+[[nodiscard]] std::string plot_svg_file(const Plot& plot);
 
 /// The slope of log y over log x by least squares: the order of convergence. Nothing with fewer than two positive points at
 /// different x.

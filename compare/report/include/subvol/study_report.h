@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "subvol/plot.h"
 #include "subvol/study_run.h"
 
 namespace subvol {
@@ -14,7 +15,9 @@ namespace subvol {
 /// Facts under their names, in the order in which they are shown.
 using ReportFacts = std::vector<std::pair<std::string, std::string>>;
 
-/// host, versions: the machine and the programs that the studies ran with; command: runs them again
+/// host, versions: the machine and the programs that the studies ran with, by names such as "processor", "subvol", "commit",
+///                 "date"
+/// command:        runs them again
 struct ReportOptions {
     ReportFacts host, versions;
     std::string command;
@@ -31,6 +34,15 @@ struct Judgement {
 };
 
 [[nodiscard]] std::vector<Judgement> judge(const StudyResults& results);
+
+/// name: of its files, without ending
+struct StudyPlot {
+    std::string name;
+    Plot plot;
+};
+
+/// The plots of a study, each with the cases that its specification selects; as many as it has panels.
+[[nodiscard]] std::vector<StudyPlot> make_plots(const StudyResults& results);
 
 /// The report on studies as one HTML page that needs no other file and no network: summary, tables, plots, pictures beside
 /// their references with a slider, hardware and versions. Only the slider needs scripts.

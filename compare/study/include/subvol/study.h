@@ -79,12 +79,14 @@ struct StudyDemand {
 };
 
 /// timed:    costs are measured, so cases run one after the other
+/// seconds:  about how long it takes on two cores; 0: not known
 /// pictures: the report shows pictures beside their reference, for the cases of `pictures_where`
 struct Study {
     std::string name;
     std::string title;
     std::string about;
     bool timed = false;
+    double seconds = 0;
     bool pictures = false;
     StudyFilter pictures_where;
     std::vector<StudyCase> cases;
@@ -111,9 +113,11 @@ inline constexpr std::size_t kMaxStudyCases = 10'000;
 [[nodiscard]] Study parse_study(std::string_view json, const std::filesystem::path& file);
 [[nodiscard]] Study read_study(const std::filesystem::path& file);
 
+/// seconds: as of Study
 struct StudyInfo {
     std::string name;
     std::string title;
+    double seconds = 0;
 };
 
 /// The built-in studies, and the text of their files.

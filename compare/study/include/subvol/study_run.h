@@ -60,6 +60,9 @@ struct StudyResults {
 /// throws: Error(Io) if the folder cannot be written to, Error(Cancelled)
 [[nodiscard]] StudyResults run_study(const Study& study, const CaseWork& work, const StudyRunOptions& options);
 
+/// What earlier runs of this version have finished in a study's folder. The study of the result has only these cases.
+[[nodiscard]] StudyResults finished_results(const Study& study, const std::filesystem::path& folder);
+
 /// Writes the file of a case, and reads it again.
 ///
 /// returns: nothing if there is no such file, it is damaged, belongs to another case or was written by another version of this

@@ -13,17 +13,26 @@ enum class ErrorCode { InvalidInput, Io, MissingCapability, Cancelled };
 ///
 /// where:   the file and line, or the entity, that is wrong; may be empty
 /// allowed: what would be right; may be empty
-/// what():  one sentence for users, "where: message (allowed)"
+/// what():  one sentence for users, "where: message (allowed)", of which message(), where() and allowed() are the parts
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, const std::string& message, const std::string& where = {}, const std::string& allowed = {})
         : std::runtime_error((where.empty() ? "" : where + ": ") + message + (allowed.empty() ? "" : " (" + allowed + ")")),
-          code_(code) {}
+          code_(code),
+          message_(message),
+          where_(where),
+          allowed_(allowed) {}
 
     [[nodiscard]] ErrorCode code() const noexcept { return code_; }
+    [[nodiscard]] const std::string& message() const noexcept { return message_; }
+    [[nodiscard]] const std::string& where() const noexcept { return where_; }
+    [[nodiscard]] const std::string& allowed() const noexcept { return allowed_; }
 
 private:
     ErrorCode code_;
+    std::string message_;
+    std::string where_;
+    std::string allowed_;
 };
 
 }  // namespace subvol

@@ -42,6 +42,9 @@ struct ShapeReport {
     double volume = 0;
 };
 
+/// The numbers of the first cells with a negative Jacobian at a corner, ascending.
+[[nodiscard]] std::vector<std::size_t> inverted_cells(const HexMesh& mesh, std::size_t at_most);
+
 /// cost: parallel; the same for any number of threads
 [[nodiscard]] ShapeReport measure_cells(const HexMesh& mesh);
 

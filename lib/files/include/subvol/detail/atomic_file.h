@@ -2,7 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
+
+#include "subvol/detail/unfinished_files.h"
 
 namespace subvol::detail {
 
@@ -41,6 +44,7 @@ private:
     std::filesystem::path target_;
     OutputPlace place_;
     std::filesystem::path temporary_;
+    std::optional<UnfinishedFile> unfinished_;
     bool committed_ = false;
 };
 

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mistakes.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "manual.h"
+#include "subvol/detail/near_name.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+const CLI::App* parsed_verb(const CLI::App& program) {
+    for (const CLI::App* verb : verbs_of(program)) {
+        if (verb->parsed()) return verb;
+    }
+    return nullptr;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const Argument& argument : arguments_of(app)) {
+        if (argument.positional) continue;
+        names.insert(names.end(), argument.names.begin(), argument.names.end());
+    }
+    return names;
+}
+
+std::string help_hint(const CLI::App* verb) {
+    return verb ? "see subvol " + verb->get_name() + " --help" : "see subvol --help";
+}
+
+/// The verbs that have the option; else near names; else the options that begin as the given one does.
+std::string proposal(const CLI::App& program, const CLI::App& verb, const std::string& given) {
+    constexpr std::size_t kMostOffered = 4;
+    const std::vector<std::string> names = option_names(verb);
+    std::vector<std::string> longer, elsewhere;
+    for (const CLI::App* other : verbs_of(program)) {
+        const std::vector<std::string> its = option_names(*other);
+        if (std::ranges::find(its, given) != its.end()) elsewhere.push_back(other->get_name());
+    }
+    if (!elsewhere.empty()) return "; it is one of " + join(elsewhere);
+    if (const std::string near = detail::did_you_mean(given, names); !near.empty()) return near;
+    std::ranges::copy_if(names, std::back_inserter(longer), [&](const auto& name) { return name.starts_with(given); });
+    if (given.size() > 3 && !longer.empty() && longer.size() <= kMostOffered) return ": did you mean " + join(longer) + "?";
+    return {};
+}
+
+/// What the parser could not place: an unknown option, or a word too many. That says more than what is missing because of it.
+void check_extras(const CLI::App& program, const CLI::App& verb) {
+    const std::vector<std::string> extras = verb.remaining();
+    const auto option = std::ranges::find_if(extras, [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+    if (option != extras.end()) {
+        const std::string name = option->substr(0, option->find('='));
+        throw Error(ErrorCode::InvalidInput, verb.get_name() + " has no such option" + proposal(program, verb, name), name,
+                    help_hint(&verb));
+    }
+    if (!extras.empty()) {
+        throw Error(ErrorCode::InvalidInput, "'" + extras.front() + "' is one argument too many", verb.get_name(),
+                    help_hint(&verb));
+    }
+}
+
+/// "-o IMAGE" of "--output"; "FILE" of a positional argument.
+std::string usage_name(const CLI::App& verb, const std::string& name) {
+    for (const Argument& argument : arguments_of(verb)) {
+        if (std::ranges::find(argument.names, name) == argument.names.end()) continue;
+        return argument.positional ? argument.value : argument.names.front() + " " + argument.value;
+    }
+    return name;
+}
+
+/// The parser's words about a number, which read "Value two not in range 0 to 10" or "Number less or equal to 0: -1".
+std::optional<Error> of_a_number(const std::string& option, const std::string& words) {
+    const std::string begin = "Value ", middle = " not in range ", few = "Number less ";
+    if (const std::size_t at = words.find(middle); words.starts_with(begin) && at != std::string::npos) {
+        return Error(ErrorCode::InvalidInput, "'" + words.substr(begin.size(), at - begin.size()) + "' is out of range", option,
+                     words.substr(at + middle.size()));
+    }
+    if (!words.starts_with(few)) return std::nullopt;
+    std::string value = words.substr(words.rfind(": ") + 2);
+    std::erase_if(value, [](char c) { return c == '(' || c == ')'; });
+    const bool zero = words.find("than 0") != std::string::npos;
+    return Error(ErrorCode::InvalidInput, "'" + value + "' is out of range", option, zero ? "0 or more" : "more than 0");
+}
+
+/// "OPTION: words (allowed)" in its parts.
+Error of_an_option(const std::string& message) {
+    const std::size_t colon = message.find(": "), open = message.rfind(" (");
+    if (colon == std::string::npos) return {ErrorCode::InvalidInput, message};
+    const std::string option = message.substr(0, colon);
+    if (const auto number = of_a_number(option, message.substr(colon + 2))) return *number;
+    if (open == std::string::npos || open < colon || message.back() != ')')
+        return {ErrorCode::InvalidInput, message.substr(colon + 2), option};
+    return {ErrorCode::InvalidInput, message.substr(colon + 2, open - colon - 2), option,
+            message.substr(open + 2, message.size() - open - 3)};
+}
+
+/// "--levels = abc", or "-1" for one that must not be negative, of a value that is no number.
+Error of_a_value(const std::string& message) {
+    const std::string begin = "Could not convert: ";
+    const std::size_t equals = message.find(" = ");
+    if (!message.starts_with(begin) || equals == std::string::npos) return {ErrorCode::InvalidInput, message};
+    return {ErrorCode::InvalidInput, "'" + message.substr(equals + 3) + "' is not a number of the right kind",
+            message.substr(begin.size(), equals - begin.size())};
+}
+
+}  // namespace
+
+void check_verb(const CLI::App& program, const std::vector<std::string>& arguments) {
+    std::vector<std::string> known;
+    for (const CLI::App* verb : verbs_of(program)) known.push_back(verb->get_name());
+    if (arguments.empty()) throw Error(ErrorCode::InvalidInput, "a verb is needed: " + join(known), {}, "see subvol --help");
+    const std::string& given = arguments.front();
+    if (given.starts_with('-') || std::ranges::find(known, given) != known.end()) return;
+    throw Error(ErrorCode::InvalidInput, "'" + given + "' is not a verb" + detail::did_you_mean(given, known), {}, join(known));
+}
+
+Error explained(const CLI::App& program, const CLI::ParseError& error) {
+    const CLI::App* verb = parsed_verb(program);
+    const std::string message = error.what();
+    if (!verb) {
+        const auto extras = program.remaining();
+        if (extras.empty()) return {ErrorCode::InvalidInput, message, {}, help_hint(nullptr)};
+        const std::string near = detail::did_you_mean(extras.front(), option_names(program));
+        return {ErrorCode::InvalidInput, "there is no such option" + near, extras.front(), help_hint(nullptr)};
+    }
+    try {
+        check_extras(program, *verb);
+    } catch (const Error& extra) {
+        return extra;
+    }
+    const auto* required = dynamic_cast<const CLI::RequiredError*>(&error);
+    if (required != nullptr && message.ends_with(" is required")) {
+        const std::string name = usage_name(*verb, message.substr(0, message.find(' ')));
+        return {ErrorCode::InvalidInput, name + " is needed", verb->get_name(), help_hint(verb)};
+    }
+    if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) return of_an_option(message);
+    if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return of_a_value(message);
+    return {ErrorCode::InvalidInput, message, {}, help_hint(verb)};
+}
+
+std::string error_json(const Error& error, int code) {
+    nlohmann::ordered_json json;
+    json["error"] = {{"code", code}, {"what", error.message()}, {"where", error.where()}, {"allowed", error.allowed()}};
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "subvol/vec.h"
+
+namespace subvol::detail {
+
+/// What plots are drawn on. Lengths are in units of the view box, y is down; a unit of a printed plot is a PostScript point.
+class Canvas {
+public:
+    enum class Anchor { Start, Middle, End };
+
+    /// A line of a plot: pen lifts between strands. Its markers have the shape of number `shape`.
+    struct Series {
+        std::string color;
+        bool dashed = false;
+        std::vector<std::vector<Vec2>> strands;
+        std::vector<Vec2> markers;
+        std::size_t shape = 0;
+    };
+
+    virtual ~Canvas() = default;
+
+    /// The thin line of a grid.
+    virtual void grid(const Vec2& from, const Vec2& to) = 0;
+    virtual void frame(const Vec2& corner, const Vec2& size) = 0;
+    virtual void series(const Series& series) = 0;
+    /// size: of the font; upward: turned by 90 degrees about its place
+    virtual void text(const Vec2& place, Anchor anchor, const std::string& words, double size, bool upward = false) = 0;
+};
+
+inline constexpr double kPlotFont = 12;
+
+/// The width of a text in a common sans-serif font, somewhat too much rather than too little.
+[[nodiscard]] double text_width(const std::string& words, double size);
+
+class SvgCanvas : public Canvas {
+public:
+    void grid(const Vec2& from, const Vec2& to) override;
+    void frame(const Vec2& corner, const Vec2& size) override;
+    void series(const Series& series) override;
+    void text(const Vec2& place, Anchor anchor, const std::string& words, double size, bool upward) override;
+
+    /// The elements, without the svg element around them.
+    [[nodiscard]] const std::string& elements() const { return svg_; }
+
+private:
+    std::string svg_;
+};
+
+/// A coordinate, with two decimals.
+[[nodiscard]] std::string coordinate(double value);
+
+}  // namespace subvol::detail

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "canvas.h"
+#include "subvol/detail/glyphs.h"
+
+namespace subvol::detail {
+
+/// A page of PDF that needs no font: letters are outlines, each kept once.
+class PdfCanvas : public Canvas {
+public:
+    explicit PdfCanvas(const Vec2& size) : size_(size) {}
+
+    void grid(const Vec2& from, const Vec2& to) override;
+    void frame(const Vec2& corner, const Vec2& size) override;
+    void series(const Series& series) override;
+    void text(const Vec2& place, Anchor anchor, const std::string& words, double size, bool upward) override;
+
+    /// The whole file.
+    [[nodiscard]] std::string file(const std::string& title) const;
+
+private:
+    [[nodiscard]] std::string at(const Vec2& place) const;
+    [[nodiscard]] std::string marker(std::size_t shape, const Vec2& place) const;
+
+    Vec2 size_;
+    std::string page_;
+    std::map<const Glyph*, std::size_t> letters_;
+};
+
+}  // namespace subvol::detail

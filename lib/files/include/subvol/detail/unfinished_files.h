@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+
+namespace subvol::detail {
+
+/// Remembers a temporary file while it exists, so that a program that must end at once can remove it.
+///
+/// with_folder: its folder was made for it alone
+class UnfinishedFile {
+public:
+    UnfinishedFile(const std::filesystem::path& file, bool with_folder);
+    ~UnfinishedFile();
+    UnfinishedFile(const UnfinishedFile&) = delete;
+    UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+private:
+    std::optional<std::size_t> place_;  // none: all places were taken, or the name is too long
+};
+
+/// Removes all files that are remembered. May be called by a signal's handler; the program should end after it.
+void remove_unfinished_files() noexcept;
+
+}  // namespace subvol::detail
