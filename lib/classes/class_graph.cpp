@@ -135,6 +135,7 @@ struct ClassGraph::State {
 
     void make_entry(const Neighborhood& about, ClassEntry& entry) {
         RefinedNeighborhood refined(about, about.code[0]);
+        entry.on_grid = regular_grid(refined.parent(), 0, entry.grid);
         std::vector<ClassEntry::Corner> corner_of(refined.child().points.size());
         for (std::size_t c = 0; c < refined.child().cells.size(); ++c) {
             for (std::size_t k = 0; k < 8; ++k) {
@@ -170,6 +171,12 @@ ClassGraph::~ClassGraph() = default;
 
 const DescentClass& ClassGraph::regular() const {
     return state_->regular;
+}
+
+const DescentClass& ClassGraph::class_of(const Neighborhood& about) {
+    const DescentClass* found = nullptr;
+    run_nested([&] { found = state_->class_of(about); });
+    return *found;
 }
 
 const std::array<ClassChild, 8>& ClassGraph::children(const DescentClass& parent) {

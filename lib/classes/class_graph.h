@@ -46,7 +46,8 @@ struct DescentClass {
 /// The children of a cell whose neighbourhood of one layer is known: the way into the classes of the next level, whose weights
 /// would depend on two layers.
 ///
-/// points: of the child's neighbourhood, as corners of children of the cells that the walk about the parent visits
+/// on_grid: whether the cell's surroundings are regular_grid, whose numbers among the walk's points `grid` has
+/// points:  of the child's neighbourhood, as corners of children of the cells that the walk about the parent visits
 struct ClassEntry {
     struct Corner {
         std::uint16_t cell;  // in the order of the walk
@@ -57,6 +58,8 @@ struct ClassEntry {
         std::uint8_t turn = kIdentityTurn;  // from the axes of the child's walk to those of the parent's
         std::vector<Corner> points{};
     };
+    bool on_grid = false;
+    GridPoints grid{};
     std::array<Child, 8> children{};  // by octants
 };
 
@@ -74,6 +77,8 @@ public:
     ClassGraph& operator=(const ClassGraph&) = delete;
 
     [[nodiscard]] const DescentClass& regular() const;
+    /// The class of a neighbourhood of two layers.
+    [[nodiscard]] const DescentClass& class_of(const Neighborhood& about);
     /// By octants along the axes of the class's walk.
     [[nodiscard]] const std::array<ClassChild, 8>& children(const DescentClass& parent);
     /// about: of one layer

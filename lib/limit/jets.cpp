@@ -46,15 +46,15 @@ CellJets::CellJets(Scheme scheme, std::size_t stride) : spline_(!interpolates(sc
 
 void CellJets::load_grid(const double* points, const GridPoints& grid) {
     linear_ = false;
-    bool whole = true;
+    points_ = points;
+    grid_ = grid;
+    if (std::ranges::find(grid, kNone) == grid.end()) return;
     for (std::size_t n = 0; n < 64; ++n) {
-        if (grid[n] == kNone) {
-            whole = false;
-        } else {
-            std::copy_n(points + grid[n] * stride_, stride_, &data_[n * stride_]);
-        }
+        if (grid[n] != kNone) std::copy_n(points + grid[n] * stride_, stride_, &data_[n * stride_]);
+        grid_[n] = static_cast<Index>(n);
     }
-    for (std::size_t along = 1; along <= 16 && !whole; along *= 4) fill_missing(grid, along);
+    points_ = data_.data();
+    for (std::size_t along = 1; along <= 16; along *= 4) fill_missing(grid, along);
 }
 
 void CellJets::load_corners(const double* points, std::span<const Index, 8> corners) {
@@ -66,7 +66,7 @@ void CellJets::evaluate(const Vec3& uvw, double scale, double* jet) const {
     if (!linear_) {
         std::array<CubicWeights, 3> weights;
         for (int a = 0; a < 3; ++a) weights[static_cast<std::size_t>(a)] = spline_ ? spline(uvw[a]) : lagrange(uvw[a]);
-        return sum_tricubic(data_.data(), stride_, weights, scale, jet);
+        return sum_tricubic(points_, grid_, stride_, weights, scale, jet);
     }
     std::fill_n(jet, 4 * stride_, 0.0);
     for (std::size_t k = 0; k < 8; ++k) {

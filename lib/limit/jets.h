@@ -35,7 +35,7 @@ public:
 
     /// By a cubic through the points of the cell's regular grid, or the spline that they control.
     ///
-    /// points: rows of channels; grid: numbers of the rows, kNone beyond a flat boundary
+    /// points: rows of channels, kept by reference; grid: numbers of the rows, kNone beyond a flat boundary
     void load_grid(const double* points, const GridPoints& grid);
     /// By trilinear interpolation between the cell's corners, octant by octant.
     void load_corners(const double* points, std::span<const Index, 8> corners);
@@ -48,7 +48,9 @@ private:
 
     bool spline_, linear_ = false;
     std::size_t stride_;
-    std::vector<double> data_;
+    const double* points_ = nullptr;
+    GridPoints grid_{};
+    std::vector<double> data_;  // a grid with missing points filled in, or the corners
 };
 
 /// A query that has not converged yet.

@@ -63,16 +63,21 @@ struct LimitDescents::State {
         std::vector<std::size_t> left;
     };
 
+    /// A cell of level 1 that has places, with the walk about it. entry: null if there is none
+    struct Parent {
+        const ClassEntry* entry = nullptr;
+        std::uint8_t turn = kIdentityTurn;
+        std::vector<Index> points{};
+        std::vector<NeighborhoodWalk::Visited> visited{};
+    };
+
     /// A batch of control cells, refined twice where places need it.
     struct Batch {
         Patch first;  // level 1
-        Topology topology;
-        CellLinks links;
         std::vector<double> first_rows, second_rows;
-        std::vector<std::uint8_t> wanted;
+        std::vector<Parent> parents;
         std::vector<Index> slots;  // of cells of level 1 among the refined ones
         HexMesh second;
-        mutable std::optional<tbb::enumerable_thread_specific<NeighborhoodWalk>> walks;
     };
 
     State(const HexMesh& mesh, std::span<const LimitQuery> list, std::span<const std::size_t> sorted, const LimitOptions& wanted,
@@ -191,21 +196,17 @@ struct LimitDescents::State {
         });
     }
 
-    /// Loads a cell of a mesh, by its regular grid if it has one. Returns whether it has.
-    bool load(const HexMesh* mesh, const std::vector<double>* rows, const Topology& of, Index cell, Worker& with) const {
+    /// Loads a control cell, by its regular grid if it has one. Returns whether it has.
+    bool load(Index cell, Worker& with) const {
         GridPoints grid;
-        const bool regular = options.scheme.kind != Scheme::Linear && regular_grid(of, cell, grid);
-        std::array<Index, 8> corners = by_octants(of.cells[cell]);
-        if (rows != nullptr) {
-            regular ? with.jets.load_grid(rows->data(), grid) : with.jets.load_corners(rows->data(), corners);
-            return regular;
-        }
+        const bool regular = options.scheme.kind != Scheme::Linear && regular_grid(topology, cell, grid);
+        std::array<Index, 8> corners = by_octants(control.cells[cell]);
         auto& values = with.values[0];
         values.resize(std::max(values.size(), 216 * channels.stride()));
         const auto copy = [&](std::span<Index> points) {
             for (std::size_t n = 0; n < points.size(); ++n) {
                 if (points[n] == kNone) continue;
-                Channels::read(*mesh, points[n], &values[n * channels.stride()]);
+                Channels::read(control, points[n], &values[n * channels.stride()]);
                 points[n] = static_cast<Index>(n);
             }
         };
@@ -222,7 +223,7 @@ struct LimitDescents::State {
     /// The places of a control cell, if no refined mesh is needed for them; false if it is.
     bool run_at_once(const CellPlaces& in, ClassGraph& classes, Worker& with) {
         if (options.scheme.kind == Scheme::Linear) {
-            load(&control, nullptr, topology, in.cell, with);
+            load(in.cell, with);
             (void)evaluate(open(in, with), kIdentityTurn, 0, false, with);
             return true;
         }
@@ -234,56 +235,95 @@ struct LimitDescents::State {
             descend(classes.regular(), kIdentityTurn, 0, nullptr, open(in, with), classes, with);
             return true;
         }
-        if (!is_spline() || !load(&control, nullptr, topology, in.cell, with)) return false;
+        if (!is_spline() || !load(in.cell, with)) return false;
         (void)evaluate(open(in, with), kIdentityTurn, 0, true, with);
         return true;
     }
 
-    /// Whether a cell of level 1 has places that need level 2.
-    [[nodiscard]] bool goes_on(const Batch& batch, Index cell) const {
-        GridPoints grid;
-        return !is_spline() || !regular_grid(batch.topology, cell, grid);
+    /// The classes of control cells that occur so often that their tables pay, as far as a sample of the mesh shows.
+    void find_common() {
+        constexpr std::size_t kMost = 8192, kLeast = 4;
+        const std::size_t count = control.cells.size(), seen = std::min(count, kMost);
+        std::vector<ClassKey> keys(seen);
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seen, 16), [&](const auto& range) {
+            Worker& with = workers.local();
+            NeighborhoodWalk& walk = walks.local();
+            std::array<Index, 216> points;
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const auto cell = static_cast<Index>(i * count / seen);
+                if (!walk.find_regular(cell, points) && walk.find(cell, 2, with.about)) keys[i] = key_of(with.about);
+            }
+        });
+        std::ranges::sort(keys);
+        for (std::size_t first = 0, last = 0; first < seen; first = last) {
+            while (last < seen && keys[last] == keys[first]) ++last;
+            if (last - first >= kLeast && keys[first] != ClassKey{}) common.push_back(keys[first]);
+        }
+    }
+
+    /// The places of a control cell of a common class; false if it is not of one.
+    bool run_common(const CellPlaces& in, ClassGraph& classes, Worker& with) {
+        NeighborhoodWalk& walk = walks.local();
+        if (!walk.find(in.cell, 2, with.about) || !std::ranges::binary_search(common, key_of(with.about))) return false;
+        auto& values = with.values[0];
+        const auto& points = with.about.points;
+        values.resize(std::max(values.size(), points.size() * channels.stride()));
+        for (std::size_t n = 0; n < points.size(); ++n) Channels::read(control, points[n], &values[n * channels.stride()]);
+        descend(classes.class_of(with.about), with.about.turn, 0, nullptr, open(in, with), classes, with);
+        return true;
+    }
+
+    /// The walk about a cell of level 1 of a batch.
+    void find_parent(NeighborhoodWalk& walk, Index cell, ClassGraph& classes, Worker& with, Parent& found) const {
+        if (!walk.find(cell, 1, with.about)) return;
+        found.entry = &classes.entry(with.about);
+        found.turn = with.about.turn;
+        found.points = with.about.points;
+        found.visited.assign(walk.visited().begin(), walk.visited().end());
     }
 
     void run_batch(std::span<const CellPlaces> cells, ClassGraph& classes) {
         Batch batch;
+        std::vector<Index> numbers;
+        for (const CellPlaces& in : cells) numbers.push_back(in.cell);
+        const Patch first = refine_patch(source->cut(numbers, 2), options.scheme, 2);
+        const Topology first_topology = build_topology(first.mesh, InteriorCreases::Ignore);
+        batch.first_rows = rows_of(first.mesh, channels.stride());
+        batch.parents.resize(8 * cells.size());
+        std::vector<std::uint8_t> wanted(first.first_layer, 0);
         {
-            std::vector<Index> numbers;
-            for (const CellPlaces& in : cells) numbers.push_back(in.cell);
-            batch.first = refine_patch(source->cut(numbers, 2), options.scheme, 2);
-        }
-        batch.topology = build_topology(batch.first.mesh, InteriorCreases::Ignore);
-        // The second layer ends the patch: colours of one round see no further.
-        batch.links = build_links(batch.first.mesh, batch.topology, 1);
-        batch.walks.emplace([&] { return NeighborhoodWalk(batch.first.mesh, batch.links); });
-        batch.first_rows = rows_of(batch.first.mesh, channels.stride());
-        batch.wanted.assign(batch.first.first_layer, 0);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 16), [&](const auto& range) {
-            Worker& with = workers.local();
-            NeighborhoodWalk& walk = batch.walks->local();
-            for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                unsigned has_places = 0;
-                for (std::size_t n = cells[i].first; n < cells[i].last; ++n) {
-                    Vec3 uvw = queries[order[n]].uvw;
-                    has_places |= 1U << step_into_octant(uvw);
-                }
-                for (std::size_t octant = 0; octant < 8; ++octant) {
-                    const auto cell = static_cast<Index>(8 * i + kCornerOctants[octant]);
-                    if ((has_places >> octant & 1) == 0 || !goes_on(batch, cell) || !walk.find(cell, 1, with.about)) continue;
-                    for (const auto& visited : walk.visited()) {
-                        std::atomic_ref(batch.wanted[visited.cell]).store(1, std::memory_order_relaxed);
+            // The second layer ends the patch: colours of one round see no further.
+            const CellLinks first_links = build_links(first.mesh, first_topology, 1);
+            tbb::enumerable_thread_specific<NeighborhoodWalk> first_walks(
+                [&] { return NeighborhoodWalk(first.mesh, first_links); });
+            tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 16), [&](const auto& range) {
+                for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                    unsigned has_places = 0;
+                    for (std::size_t n = cells[i].first; n < cells[i].last; ++n) {
+                        Vec3 uvw = queries[order[n]].uvw;
+                        has_places |= 1U << step_into_octant(uvw);
+                    }
+                    for (std::size_t octant = 0; octant < 8; ++octant) {
+                        if ((has_places >> octant & 1) == 0) continue;
+                        const std::size_t cell = 8 * i + kCornerOctants[octant];
+                        Parent& parent = batch.parents[cell];
+                        find_parent(first_walks.local(), static_cast<Index>(cell), classes, workers.local(), parent);
+                        if (parent.entry == nullptr || (is_spline() && parent.entry->on_grid)) continue;
+                        for (const auto& visited : parent.visited) {
+                            std::atomic_ref(wanted[visited.cell]).store(1, std::memory_order_relaxed);
+                        }
                     }
                 }
-            }
-        });
+            });
+        }
         std::vector<Index> refined;
-        batch.slots.assign(batch.wanted.size(), kNone);
-        for (std::size_t c = 0; c < batch.wanted.size(); ++c) {
-            if (batch.wanted[c] == 0) continue;
+        batch.slots.assign(wanted.size(), kNone);
+        for (std::size_t c = 0; c < wanted.size(); ++c) {
+            if (wanted[c] == 0) continue;
             batch.slots[c] = static_cast<Index>(refined.size());
             refined.push_back(static_cast<Index>(c));
         }
-        if (!refined.empty()) batch.second = refine_cells(batch.first, batch.topology, options.scheme, refined);
+        if (!refined.empty()) batch.second = refine_cells(first, first_topology, options.scheme, refined);
         batch.second_rows = rows_of(batch.second, channels.stride());
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells.size(), 4), [&](const auto& range) {
             for (std::size_t i = range.begin(); i != range.end(); ++i) run_cell(cells[i], i, batch, classes, workers.local());
@@ -291,37 +331,41 @@ struct LimitDescents::State {
     }
 
     /// The places of a control cell whose refinement is in a batch.
-    void run_cell(const CellPlaces& in, std::size_t number, const Batch& batch, ClassGraph& classes, Worker& with) {
-        const bool regular = load(&control, nullptr, topology, in.cell, with);
+    void run_cell(const CellPlaces& in, std::size_t number, const Batch& batch, ClassGraph& classes, Worker& with) const {
+        const bool regular = load(in.cell, with);
         const auto places = evaluate(open(in, with), kIdentityTurn, 0, regular, with);
         each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
-            const auto cell = static_cast<Index>(8 * number + kCornerOctants[octant]);
-            const bool on_grid = load(nullptr, &batch.first_rows, batch.topology, cell, with);
-            inside = evaluate(inside, kIdentityTurn, 1, on_grid, with);
-            if (!inside.empty()) enter(cell, inside, batch, classes, with);
+            const Parent& parent = batch.parents[8 * number + kCornerOctants[octant]];
+            if (parent.entry == nullptr) return leave(inside, with);
+            if (parent.entry->on_grid) {
+                GridPoints grid = parent.entry->grid;
+                for (Index& p : grid) p = p == kNone ? kNone : parent.points[p];
+                with.jets.load_grid(batch.first_rows.data(), grid);
+            } else {
+                with.jets.load_corners(batch.first_rows.data(), std::span(parent.points).first<8>());
+            }
+            inside = evaluate(inside, parent.turn, 1, parent.entry->on_grid, with);
+            if (!inside.empty()) enter(parent, inside, batch, classes, with);
         });
     }
 
     /// From a cell of level 1 to the classes of its children.
-    void enter(Index cell, std::span<OpenPlace> places, const Batch& batch, ClassGraph& classes, Worker& with) const {
-        NeighborhoodWalk& walk = batch.walks->local();
-        if (!walk.find(cell, 1, with.about)) return leave(places, with);
-        const ClassEntry& entry = classes.entry(with.about);
-        const std::uint8_t turn = with.about.turn;
+    void enter(const Parent& parent, std::span<OpenPlace> places, const Batch& batch, ClassGraph& classes, Worker& with) const {
         const std::size_t stride = channels.stride();
         each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
-            const ClassEntry::Child& child = entry.children[walk_octant(turn, octant)];
+            const ClassEntry::Child& child = parent.entry->children[walk_octant(parent.turn, octant)];
             if (child.to == nullptr) return leave(inside, with);
             auto& values = with.values[2];
             values.resize(std::max(values.size(), child.points.size() * stride));
-            for (std::size_t p = 0; p < child.points.size(); ++p) {
-                const auto& [number, of, corner] = child.points[p];
-                const auto& [from, from_turn] = walk.visited()[number];
+            double* to = values.data();
+            for (const auto& [number, of, corner] : child.points) {
+                const auto& [from, from_turn] = parent.visited[number];
                 const auto& octants = cell_turns()[from_turn].octants;
                 const auto& corners = batch.second.cells[8 * batch.slots[from] + kCornerOctants[octants[of]]];
-                std::copy_n(&batch.second_rows[corners[kCornerOctants[octants[corner]]] * stride], stride, &values[p * stride]);
+                const double* row = &batch.second_rows[corners[kCornerOctants[octants[corner]]] * stride];
+                for (std::size_t c = 0; c < stride; ++c) *to++ = row[c];
             }
-            descend(*child.to, composed(child.turn, turn), 2, nullptr, inside, classes, with);
+            descend(*child.to, composed(child.turn, parent.turn), 2, nullptr, inside, classes, with);
         });
     }
 
@@ -334,6 +378,7 @@ struct LimitDescents::State {
     Topology topology;
     CellLinks links;
     std::optional<PatchSource> source;
+    std::vector<ClassKey> common;  // sorted
     std::mutex mutex;
     std::shared_ptr<ClassGraph> graph;
     LimitSamples& samples;
@@ -351,18 +396,23 @@ std::vector<std::size_t> LimitDescents::run(std::span<const CellPlaces> cells) {
     State& state = *state_;
     Progress* progress = state.options.progress;
     std::vector<std::uint8_t> done(cells.size());
-    {
+    const auto run_each = [&](double from, const auto& run_one) {
         const auto classes = state.classes();
         constexpr std::size_t kTurn = 1U << 16;  // cells between two reports of progress
         for (std::size_t turn = 0; turn < cells.size(); turn += kTurn) {
-            report_progress(progress, "limit", 0.5 * static_cast<double>(turn) / static_cast<double>(cells.size()));
+            report_progress(progress, "limit", from + 0.3 * static_cast<double>(turn) / static_cast<double>(cells.size()));
             const tbb::blocked_range<std::size_t> range(turn, std::min(cells.size(), turn + kTurn), 4);
             tbb::parallel_for(range, [&](const auto& part) {
                 for (std::size_t i = part.begin(); i != part.end(); ++i) {
-                    done[i] = state.run_at_once(cells[i], *classes, state.workers.local()) ? 1 : 0;
+                    if (done[i] == 0) done[i] = run_one(cells[i], *classes, state.workers.local()) ? 1 : 0;
                 }
             });
         }
+    };
+    run_each(0, [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_at_once(in, classes, with); });
+    if (std::ranges::find(done, 0) != done.end()) state.find_common();
+    if (!state.common.empty()) {
+        run_each(0.3, [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_common(in, classes, with); });
     }
     std::vector<CellPlaces> rest;
     std::vector<Vec3> centers;
@@ -394,7 +444,7 @@ std::vector<std::size_t> LimitDescents::run(std::span<const CellPlaces> cells) {
         std::atomic<std::size_t> finished{0};
         tbb::parallel_for(std::size_t{0}, starts.size() - 1, [&](std::size_t b) {
             const double part = static_cast<double>(finished) / static_cast<double>(starts.size());
-            report_progress(progress, "limit", 0.5 + 0.5 * part);
+            report_progress(progress, "limit", 0.6 + 0.4 * part);
             run_nested([&] {
                 const auto classes = state.classes();
                 state.run_batch(std::span(ordered).subspan(starts[b], starts[b + 1] - starts[b]), *classes);

@@ -20,6 +20,7 @@ struct CellPlaces {
 /// Evaluates the limit at places, from class to class (`ClassGraph`).
 ///
 ///     level 0   cells inside a grid ────────────────► the regular class, level by level
+///               cells of a class that is common ────► that class, level by level
 ///               splines on a grid, linear cells: exact at once
 ///               the others: refined twice, batch by batch
 ///     level 2   the class of the neighbourhood of the descendant that has the place, and of its children …

@@ -13,20 +13,21 @@ namespace subvol::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void sum(const double* HWY_RESTRICT points, std::size_t stride, const std::array<CubicWeights, 3>& weights, double scale,
-         double* HWY_RESTRICT jet) {
+void sum(const double* HWY_RESTRICT points, const GridPoints& grid, std::size_t stride,
+         const std::array<CubicWeights, 3>& weights, double scale, double* HWY_RESTRICT jet) {
     const hn::CappedTag<double, 4> d;
     const std::size_t step = hn::Lanes(d);
     const auto& [u, v, w] = weights;
     for (std::size_t block = 0; block < stride; block += step) {
         auto f = hn::Zero(d), fu = hn::Zero(d), fv = hn::Zero(d), fw = hn::Zero(d);
-        const double* HWY_RESTRICT point = points + block;
+        const double* HWY_RESTRICT from = points + block;
+        const Index* HWY_RESTRICT number = grid.data();
         for (std::size_t k = 0; k < 4; ++k) {
             auto g = hn::Zero(d), gu = hn::Zero(d), gv = hn::Zero(d);  // of a plane
             for (std::size_t j = 0; j < 4; ++j) {
                 auto h = hn::Zero(d), hu = hn::Zero(d);  // of a line
-                for (std::size_t i = 0; i < 4; ++i, point += stride) {
-                    const auto x = hn::LoadU(d, point);
+                for (std::size_t i = 0; i < 4; ++i, ++number) {
+                    const auto x = hn::LoadU(d, from + *number * stride);
                     h = hn::MulAdd(hn::Set(d, u.value[i]), x, h);
                     hu = hn::MulAdd(hn::Set(d, u.first[i]), x, hu);
                 }
@@ -57,9 +58,9 @@ namespace subvol::detail {
 
 HWY_EXPORT(sum);
 
-void sum_tricubic(const double* points, std::size_t stride, const std::array<CubicWeights, 3>& weights, double scale,
-                  double* jet) {
-    HWY_DYNAMIC_DISPATCH(sum)(points, stride, weights, scale, jet);
+void sum_tricubic(const double* points, const GridPoints& grid, std::size_t stride, const std::array<CubicWeights, 3>& weights,
+                  double scale, double* jet) {
+    HWY_DYNAMIC_DISPATCH(sum)(points, grid, stride, weights, scale, jet);
 }
 
 }  // namespace subvol::detail
