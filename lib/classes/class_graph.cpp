@@ -64,16 +64,6 @@ struct Made {
 
 }  // namespace
 
-std::vector<Index> DescentClass::near() const {
-    std::vector<Index> points;
-    if (on_grid) {
-        std::ranges::copy_if(grid, std::back_inserter(points), [](Index p) { return p != kNone; });
-    } else {
-        for (Index p = 0; p < 8; ++p) points.push_back(p);
-    }
-    return points;
-}
-
 struct ClassGraph::State {
     explicit State(const SchemeOptions& wanted) : scheme(wanted) {
         regular.about = regular_neighborhood();
@@ -103,34 +93,40 @@ struct ClassGraph::State {
         return &made.value;
     }
 
-    void make_children(const DescentClass& parent, std::array<ClassChild, 8>& children) {
+    void make_children(const DescentClass& parent, ClassChildren& made) {
         RefinedNeighborhood refined(parent.about, parent.about.code[0]);
         const SchemeRows rows(refined.parent(), scheme);
         StencilBuilder row;
         Neighborhood found;
+        std::vector<Index> row_of(refined.child().points.size(), kNone);
         for (std::size_t octant = 0; octant < 8; ++octant) {
-            ClassChild& child = children[octant];
             bool is_regular = false;
             if (!refined.find(octant, found, is_regular)) continue;
+            ClassChildren::Child& child = made.children[octant];
             child.to = is_regular ? &regular : class_of(found);
             child.turn = found.turn;
-            std::vector<Index> order = child.to->near();
-            std::ranges::sort(order);
-            order.erase(std::unique(order.begin(), order.end()), order.end());
-            child.table.near = order.size();
-            std::vector<std::uint8_t> listed(found.points.size(), 0);
-            for (const Index p : order) listed[p] = 1;
-            for (std::size_t p = 0; p < listed.size(); ++p) {
-                if (listed[p] == 0) order.push_back(static_cast<Index>(p));
+            for (const Index point : found.points) {
+                if (row_of[point] == kNone) {
+                    row_of[point] = static_cast<Index>(made.table.rows());
+                    row.clear();
+                    point < rows.kept() ? row.add(point, 1) : rows.write_row(point, row);
+                    made.table.add(row.finish());
+                }
+                child.rows.push_back(static_cast<std::uint16_t>(row_of[point]));
             }
-            for (const Index p : order) {
-                const Index point = found.points[p];
-                row.clear();
-                point < rows.kept() ? row.add(point, 1) : rows.write_row(point, row);
-                child.table.add(p, row.finish());
+            if (child.to->on_grid) {
+                for (std::size_t n = 0; n < 64; ++n) {
+                    const Index p = child.to->grid[n];
+                    child.grid[n] = p == kNone ? kNone : child.rows[p];
+                    if (p != kNone) child.near.push_back(child.rows[p]);
+                }
+            } else {
+                std::copy_n(child.rows.begin(), 8, child.corners.begin());
+                child.near.assign(child.rows.begin(), child.rows.begin() + 8);
             }
-            bytes += child.table.bytes();
+            bytes += sizeof(child) + 2 * (child.rows.size() + child.near.size());
         }
+        bytes += made.table.bytes();
     }
 
     void make_entry(const Neighborhood& about, ClassEntry& entry) {
@@ -160,7 +156,7 @@ struct ClassGraph::State {
     DescentClass regular;
     std::mutex mutex;
     std::map<ClassKey, Made<DescentClass>> classes;
-    std::map<const DescentClass*, Made<std::array<ClassChild, 8>>> children_of;
+    std::map<const DescentClass*, Made<ClassChildren>> children_of;
     std::map<ClassKey, Made<ClassEntry>> entries;
     std::atomic<std::size_t> bytes{0};
 };
@@ -179,7 +175,7 @@ const DescentClass& ClassGraph::class_of(const Neighborhood& about) {
     return *found;
 }
 
-const std::array<ClassChild, 8>& ClassGraph::children(const DescentClass& parent) {
+const ClassChildren& ClassGraph::children(const DescentClass& parent) {
     if (const auto* children = parent.children.load(std::memory_order_acquire)) return *children;
     auto& made = state_->slot(state_->children_of, &parent);
     std::call_once(made.once, [&] { run_nested([&] { state_->make_children(parent, made.value); }); });

@@ -18,14 +18,23 @@ namespace subvol::detail {
 
 struct DescentClass;
 
-/// How the neighbourhood of a child follows from that of its parent.
+/// How the neighbourhoods of a cell's children follow from that of the cell.
 ///
-/// to:   the child's class; null if its neighbourhood has none (see NeighborhoodWalk::find)
-/// turn: from the axes of the child's walk to those of the parent's
-struct ClassChild {
-    const DescentClass* to = nullptr;
-    std::uint8_t turn = kIdentityTurn;
+/// table: all their points, each once
+struct ClassChildren {
+    /// to:   the child's class; null if its neighbourhood has none (see NeighborhoodWalk::find)
+    /// turn: from the axes of the child's walk to those of the parent's
+    /// rows: the child's points
+    /// near: those that a place in it is evaluated from; grid: the same as its regular grid, or in `corners`
+    struct Child {
+        const DescentClass* to = nullptr;
+        std::uint8_t turn = kIdentityTurn;
+        std::vector<std::uint16_t> rows{}, near{};
+        GridPoints grid{};
+        std::array<Index, 8> corners{};
+    };
     StepTable table{};
+    std::array<Child, 8> children{};  // by octants along the axes of the parent's walk
 };
 
 /// A class of neighbourhoods of two layers. Its points are numbered by the walk; the first eight are the cell's own, at octants
@@ -36,11 +45,9 @@ struct DescentClass {
     Neighborhood about{};
     bool on_grid = false;
     GridPoints grid{};
-    mutable std::atomic<const std::array<ClassChild, 8>*> children{nullptr};  // once they are made
+    mutable std::atomic<const ClassChildren*> children{nullptr};  // once they are made
 
     [[nodiscard]] std::size_t point_count() const { return about.points.size(); }
-    /// The points that a place in the cell is evaluated from.
-    [[nodiscard]] std::vector<Index> near() const;
 };
 
 /// The children of a cell whose neighbourhood of one layer is known: the way into the classes of the next level, whose weights
@@ -79,8 +86,7 @@ public:
     [[nodiscard]] const DescentClass& regular() const;
     /// The class of a neighbourhood of two layers.
     [[nodiscard]] const DescentClass& class_of(const Neighborhood& about);
-    /// By octants along the axes of the class's walk.
-    [[nodiscard]] const std::array<ClassChild, 8>& children(const DescentClass& parent);
+    [[nodiscard]] const ClassChildren& children(const DescentClass& parent);
     /// about: of one layer
     [[nodiscard]] const ClassEntry& entry(const Neighborhood& about);
 

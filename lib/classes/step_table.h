@@ -10,26 +10,35 @@
 
 namespace subvol::detail {
 
-/// The points of a child's neighbourhood as sums over those of its parent's. Rows come in the order in which they are asked
-/// for; terms of one weight are added up before they are multiplied.
+/// The points of a cell's refinement as sums over those of its neighbourhood. Terms of one weight are added up before they are
+/// multiplied.
 ///
-///     row i is the child's point points[i] = Σ weights[r] · (columns of run r),   runs run_ends[i − 1] .. run_ends[i]
+///     row i is Σ weights[r] · (the next counts[r] columns),   r = run_begins[i] .. run_begins[i + 1],
+///     and its columns begin at column_begins[i]
 struct StepTable {
-    std::vector<std::uint16_t> points;
-    std::vector<std::uint32_t> run_ends;
+    std::vector<std::uint32_t> run_begins{0}, column_begins{0};
     std::vector<double> weights;
-    std::vector<std::uint16_t> counts;  // columns of each run
-    std::vector<std::uint32_t> column_ends;  // of each row
-    std::vector<std::uint16_t> columns;
-    std::size_t near = 0;  // so many rows come first: those of the points that the child is evaluated from
+    std::vector<std::uint16_t> counts, columns;
 
-    void add(std::size_t point, const StencilRuns& row);
+    [[nodiscard]] std::size_t rows() const { return run_begins.size() - 1; }
+    void add(const StencilRuns& row);
     [[nodiscard]] std::size_t bytes() const;
 };
 
-/// Applies rows [first, last) to all channels of one neighbourhood: channel c of point p is at p·stride + c, in `in` and `out`.
+/// Rows of a table that have been computed for one neighbourhood.
+struct StepRows {
+    std::vector<double> values;        // channel c of row i at i·stride + c
+    std::vector<std::uint32_t> marks;  // of the rows that are there: mark
+    std::uint32_t mark = 0;
+
+    /// Forgets all rows.
+    void begin(const StepTable& table, std::size_t stride);
+};
+
+/// Computes those of the rows that are not there yet.
 ///
-/// stride: a multiple of 4
-void apply_step(const StepTable& table, std::size_t first, std::size_t last, std::size_t stride, const double* in, double* out);
+/// stride: of `in` and of the rows, a multiple of 4
+void apply_step(const StepTable& table, std::span<const std::uint16_t> rows, std::size_t stride, const double* in,
+                StepRows& to);
 
 }  // namespace subvol::detail

@@ -51,10 +51,12 @@ struct LimitDescents::State {
         Worker(const State& state, LimitSamples& samples)
             : settling(state.options, state.scales, state.channels.stride(), samples),
               jets(state.options.scheme.kind, state.channels.stride()),
-              values(kMostLevels) {}
+              values(kMostLevels),
+              rows(kMostLevels) {}
         Settling settling;
         CellJets jets;
         std::vector<std::vector<double>> values;  // of the neighbourhoods on the way down
+        std::vector<StepRows> rows;               // of the children of these
         std::vector<OpenPlace> places;
         std::vector<double> lasts;
         std::vector<double> jet, turned;
@@ -170,29 +172,44 @@ struct LimitDescents::State {
         for (const OpenPlace& at : places) with.left.push_back(at.query);
     }
 
-    /// From a class to those of its children, as deep as places ask for it.
-    ///
-    /// values: those of the neighbourhood, if there is no table; else they follow from the parent's
-    void descend(const DescentClass& is, std::uint8_t turn, int level, const StepTable* table, std::span<OpenPlace> places,
-                 ClassGraph& classes, Worker& with) const {
-        const std::size_t stride = channels.stride();
-        auto& values = with.values[static_cast<std::size_t>(level)];
-        const double* parent = level > 0 ? with.values[static_cast<std::size_t>(level) - 1].data() : nullptr;
-        if (values.size() < is.point_count() * stride) values.resize(is.point_count() * stride);
-        if (table != nullptr) apply_step(*table, 0, table->near, stride, parent, values.data());
-        if (is.on_grid) {
-            with.jets.load_grid(values.data(), is.grid);
-        } else {
-            with.jets.load_corners(values.data(), kFirstEight);
-        }
+    /// Places in a cell of a class, the values of whose neighbourhood are there, and in its children as deep as they ask for it.
+    void begin(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes,
+               Worker& with) const {
+        const double* values = with.values[static_cast<std::size_t>(level)].data();
+        is.on_grid ? with.jets.load_grid(values, is.grid) : with.jets.load_corners(values, kFirstEight);
         places = evaluate(places, turn, level, is.on_grid, with);
-        if (places.empty()) return;
-        if (table != nullptr) apply_step(*table, table->near, table->points.size(), stride, parent, values.data());
-        const auto& children = classes.children(is);
+        if (!places.empty()) descend(is, turn, level, places, classes, with);
+    }
+
+    /// Only those points are computed that a place is evaluated from; the rest of a child's neighbourhood if it goes on.
+    void descend(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes,
+                 Worker& with) const {
+        const std::size_t stride = channels.stride();
+        const double* values = with.values[static_cast<std::size_t>(level)].data();
+        auto& below = with.values[static_cast<std::size_t>(level) + 1];
+        StepRows& rows = with.rows[static_cast<std::size_t>(level)];
+        const auto& [table, children] = classes.children(is);
+        rows.begin(table, stride);
         each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
-            const ClassChild& child = children[walk_octant(turn, octant)];
+            const ClassChildren::Child& child = children[walk_octant(turn, octant)];
             if (child.to == nullptr) return leave(inside, with);
-            descend(*child.to, composed(child.turn, turn), level + 1, &child.table, inside, classes, with);
+            apply_step(table, child.near, stride, values, rows);
+            if (child.to->on_grid) {
+                with.jets.load_grid(rows.values.data(), child.grid);
+            } else {
+                with.jets.load_corners(rows.values.data(), child.corners);
+            }
+            const std::uint8_t child_turn = composed(child.turn, turn);
+            inside = evaluate(inside, child_turn, level + 1, child.to->on_grid, with);
+            if (inside.empty()) return;
+            apply_step(table, child.rows, stride, values, rows);
+            below.resize(std::max(below.size(), child.rows.size() * stride));
+            double* to = below.data();
+            for (const std::uint16_t row : child.rows) {
+                const double* from = &rows.values[row * stride];
+                for (std::size_t c = 0; c < stride; ++c) *to++ = from[c];
+            }
+            descend(*child.to, child_turn, level + 1, inside, classes, with);
         });
     }
 
@@ -232,7 +249,7 @@ struct LimitDescents::State {
             auto& values = with.values[0];
             values.resize(std::max(values.size(), 216 * channels.stride()));
             for (std::size_t n = 0; n < 216; ++n) Channels::read(control, with.points[n], &values[n * channels.stride()]);
-            descend(classes.regular(), kIdentityTurn, 0, nullptr, open(in, with), classes, with);
+            begin(classes.regular(), kIdentityTurn, 0, open(in, with), classes, with);
             return true;
         }
         if (!is_spline() || !load(in.cell, with)) return false;
@@ -269,7 +286,7 @@ struct LimitDescents::State {
         const auto& points = with.about.points;
         values.resize(std::max(values.size(), points.size() * channels.stride()));
         for (std::size_t n = 0; n < points.size(); ++n) Channels::read(control, points[n], &values[n * channels.stride()]);
-        descend(classes.class_of(with.about), with.about.turn, 0, nullptr, open(in, with), classes, with);
+        begin(classes.class_of(with.about), with.about.turn, 0, open(in, with), classes, with);
         return true;
     }
 
@@ -365,7 +382,7 @@ struct LimitDescents::State {
                 const double* row = &batch.second_rows[corners[kCornerOctants[octants[corner]]] * stride];
                 for (std::size_t c = 0; c < stride; ++c) *to++ = row[c];
             }
-            descend(*child.to, composed(child.turn, parent.turn), 2, nullptr, inside, classes, with);
+            begin(*child.to, composed(child.turn, parent.turn), 2, inside, classes, with);
         });
     }
 
