@@ -3,6 +3,7 @@
 #include "step_table.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -15,32 +16,42 @@ namespace subvol::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void apply_rows(const StepTable& table, std::span<const std::uint16_t> rows, std::size_t stride, const double* HWY_RESTRICT in,
+/// Stride: a number, or a constant that the compiler knows.
+template <class Stride>
+void apply_rows(const StepTable& table, std::span<const std::uint16_t> rows, Stride stride, const double* HWY_RESTRICT in,
                 StepRows& to) {
     const hn::CappedTag<double, 4> d;
     const std::size_t step = hn::Lanes(d);
-    for (const std::uint16_t row : rows) {
-        if (to.marks[row] == to.mark) continue;
-        to.marks[row] = to.mark;
+    const double* HWY_RESTRICT weights = table.weights.data();
+    const std::uint16_t* HWY_RESTRICT columns = table.columns.data();
+    const std::uint32_t* HWY_RESTRICT begins = table.begins.data();
+    std::uint32_t* HWY_RESTRICT marks = to.marks.data();
+    double* HWY_RESTRICT values = to.values.data();
+    const std::uint32_t mark = to.mark;
+    for (const std::size_t row : rows) {
+        if (marks[row] == mark) continue;
+        marks[row] = mark;
+        const std::size_t begin = begins[row], end = begins[row + 1];
         for (std::size_t block = 0; block < stride; block += step) {
             const double* HWY_RESTRICT from = in + block;
-            const std::uint16_t* HWY_RESTRICT column = table.columns.data() + table.column_begins[row];
-            auto sum = hn::Zero(d);
-            for (std::size_t run = table.run_begins[row]; run < table.run_begins[row + 1U]; ++run) {
-                const std::size_t count = table.counts[run];
-                auto terms = hn::LoadU(d, from + stride * column[0]);
-                auto others = hn::Zero(d);  // a second sum, as each addition waits for the one before
-                std::size_t i = 1;
-                for (; i + 1 < count; i += 2) {
-                    terms = hn::Add(terms, hn::LoadU(d, from + stride * column[i]));
-                    others = hn::Add(others, hn::LoadU(d, from + stride * column[i + 1]));
-                }
-                if (i < count) terms = hn::Add(terms, hn::LoadU(d, from + stride * column[i]));
-                sum = hn::MulAdd(hn::Set(d, table.weights[run]), hn::Add(terms, others), sum);
-                column += count;
+            // Four sums, as each addition waits for the one before.
+            auto a = hn::Zero(d), b = hn::Zero(d), c = hn::Zero(d), e = hn::Zero(d);
+            for (std::size_t n = begin; n < end; n += StepTable::kTerms) {
+                a = hn::MulAdd(hn::Set(d, weights[n]), hn::LoadU(d, from + stride * columns[n]), a);
+                b = hn::MulAdd(hn::Set(d, weights[n + 1]), hn::LoadU(d, from + stride * columns[n + 1]), b);
+                c = hn::MulAdd(hn::Set(d, weights[n + 2]), hn::LoadU(d, from + stride * columns[n + 2]), c);
+                e = hn::MulAdd(hn::Set(d, weights[n + 3]), hn::LoadU(d, from + stride * columns[n + 3]), e);
             }
-            hn::StoreU(sum, d, &to.values[row * stride + block]);
+            hn::StoreU(hn::Add(hn::Add(a, b), hn::Add(c, e)), d, values + row * stride + block);
         }
+    }
+}
+
+void apply(const StepTable& table, std::span<const std::uint16_t> rows, std::size_t stride, const double* in, StepRows& to) {
+    if (stride == 4) {  // positions and one value
+        apply_rows(table, rows, std::integral_constant<std::size_t, 4>(), in, to);
+    } else {
+        apply_rows(table, rows, stride, in, to);
     }
 }
 
@@ -50,20 +61,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace subvol::detail {
 
-HWY_EXPORT(apply_rows);
+HWY_EXPORT(apply);
 
 void StepTable::add(const StencilRuns& row) {
+    auto point = row.points.begin();
     for (const auto& [weight, count] : row.runs) {
-        weights.push_back(weight);
-        counts.push_back(static_cast<std::uint16_t>(count));
+        weights.insert(weights.end(), count, weight);
+        for (std::uint32_t i = 0; i < count; ++i) columns.push_back(static_cast<std::uint16_t>(*point++));
     }
-    for (const Index p : row.points) columns.push_back(static_cast<std::uint16_t>(p));
-    run_begins.push_back(static_cast<std::uint32_t>(weights.size()));
-    column_begins.push_back(static_cast<std::uint32_t>(columns.size()));
+    while (weights.size() % kTerms != 0) {
+        weights.push_back(0);
+        columns.push_back(columns.back());
+    }
+    begins.push_back(static_cast<std::uint32_t>(weights.size()));
 }
 
 std::size_t StepTable::bytes() const {
-    return 8 * (run_begins.size() + weights.size()) + 2 * (counts.size() + columns.size());
+    return begins.size() * sizeof(begins[0]) + weights.size() * (sizeof(weights[0]) + sizeof(columns[0]));
 }
 
 void StepRows::begin(const StepTable& table, std::size_t stride) {
@@ -77,7 +91,7 @@ void StepRows::begin(const StepTable& table, std::size_t stride) {
 
 void apply_step(const StepTable& table, std::span<const std::uint16_t> rows, std::size_t stride, const double* in,
                 StepRows& to) {
-    HWY_DYNAMIC_DISPATCH(apply_rows)(table, rows, stride, in, to);
+    HWY_DYNAMIC_DISPATCH(apply)(table, rows, stride, in, to);
 }
 
 }  // namespace subvol::detail

@@ -10,17 +10,17 @@
 
 namespace subvol::detail {
 
-/// The points of a cell's refinement as sums over those of its neighbourhood. Terms of one weight are added up before they are
-/// multiplied.
+/// The points of a cell's refinement as sums over those of its neighbourhood.
 ///
-///     row i is Σ weights[r] · (the next counts[r] columns),   r = run_begins[i] .. run_begins[i + 1],
-///     and its columns begin at column_begins[i]
+///     row i is Σ weights[n] · (point columns[n]),   n = begins[i] .. begins[i + 1],
+///     a multiple of 4 terms: the last ones may have no weight
 struct StepTable {
-    std::vector<std::uint32_t> run_begins{0}, column_begins{0};
+    static constexpr std::size_t kTerms = 4;
+    std::vector<std::uint32_t> begins{0};
     std::vector<double> weights;
-    std::vector<std::uint16_t> counts, columns;
+    std::vector<std::uint16_t> columns;
 
-    [[nodiscard]] std::size_t rows() const { return run_begins.size() - 1; }
+    [[nodiscard]] std::size_t rows() const { return begins.size() - 1; }
     void add(const StencilRuns& row);
     [[nodiscard]] std::size_t bytes() const;
 };
