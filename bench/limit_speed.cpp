@@ -1,31 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits at random places of a generated model. Arguments: model, resolution, queries.
+// Limits at random places of meshes. Arguments: mesh files, or models as NAME:RESOLUTION; options before them: --places N a mesh
+// (1,000,000), --tolerance T (1e-6), --scheme mcq|cc|bsxw|linear (mcq).
 #include <cstdio>
 #include <cstdlib>
 #include <random>
+#include <string>
 
 #include "measure.h"
 #include "subvol/limit.h"
+#include "subvol/mesh_io.h"
 #include "subvol/model.h"
 
+namespace {
+
+using namespace subvol;
+
+HexMesh load(const std::string& name) {
+    const auto colon = name.find(':');
+    HexMesh mesh = colon == std::string::npos ? read_mesh(name).mesh
+                                              : make_model(name.substr(0, colon), std::atoi(name.c_str() + colon + 1));
+    mesh = without_unused_points(std::move(mesh));
+    std::erase_if(mesh.attributes, [](const Attribute& a) { return a.channels != 1; });
+    if (mesh.attributes.size() > 1) mesh.attributes.resize(1);
+    return mesh;
+}
+
+Scheme scheme_of(const std::string& name) {
+    return name == "cc" ? Scheme::CatmullClark : name == "bsxw" ? Scheme::Bsxw : name == "linear" ? Scheme::Linear : Scheme::Mcq;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-    using namespace subvol;
-    const HexMesh mesh = make_model(argc > 1 ? argv[1] : "ball", argc > 2 ? std::atoi(argv[2]) : 16);
-    const std::size_t count = argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 20000;
-    std::mt19937 random(1);
-    std::uniform_real_distribution<double> t(0, 1);
-    std::vector<LimitQuery> queries;
-    for (std::size_t i = 0; i < count; ++i) {
-        queries.push_back({static_cast<Index>(random() % mesh.cells.size()), {t(random), t(random), t(random)}});
-    }
-    const std::pair<const char*, Scheme> schemes[] = {
-        {"mcq", Scheme::Mcq}, {"cc", Scheme::CatmullClark}, {"bsxw", Scheme::Bsxw}, {"linear", Scheme::Linear}};
-    for (const auto& [name, scheme] : schemes) {
-        const LimitOptions options{.scheme = {scheme}};
+    std::size_t count = 1000000;
+    LimitOptions options;
+    for (int i = 1; i < argc; ++i) {
+        const std::string name = argv[i];
+        if (name == "--places") {
+            count = std::strtoul(argv[++i], nullptr, 10);
+            continue;
+        }
+        if (name == "--tolerance") {
+            options.tolerance = std::atof(argv[++i]);
+            continue;
+        }
+        if (name == "--scheme") {
+            options.scheme.kind = scheme_of(argv[++i]);
+            continue;
+        }
+        const HexMesh mesh = load(name);
+        std::mt19937 random(1);
+        std::uniform_real_distribution<double> t(0, 1);
+        std::vector<LimitQuery> queries;
+        for (std::size_t n = 0; n < count; ++n) {
+            queries.push_back({static_cast<Index>(random() % mesh.cells.size()), {t(random), t(random), t(random)}});
+        }
         LimitReport report;
         const double seconds = bench::seconds_of([&] { report = evaluate_limit(mesh, queries, options).report; }, 1);
-        std::printf("%-6s %8.0f queries/s  exact %zu, refined %zu, not converged %zu, deepest level %d\n", name,
-                    static_cast<double>(count) / seconds, report.exact, report.refined, report.unconverged,
-                    report.deepest_level);
+        std::printf("%-34s %8zu cells %10.0f places/s  exact %zu, refined %zu, not converged %zu, deepest level %d\n",
+                    name.substr(name.rfind('/') + 1).c_str(), mesh.cells.size(), static_cast<double>(count) / seconds,
+                    report.exact, report.refined, report.unconverged, report.deepest_level);
+        std::fflush(stdout);
     }
+    std::printf("peak memory %.0f MB\n", bench::peak_bytes() / 1e6);
 }

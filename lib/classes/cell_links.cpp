@@ -180,11 +180,10 @@ std::uint64_t mixed(std::uint64_t x) {
 
 /// Colour refinement: cells are coloured by their sides and tags, then cells by their points and points by their cells,
 /// whatever their order.
-void color_points(const HexMesh& mesh, CellLinks& links) {
-    constexpr int kRounds = 3;
+void color_points(const HexMesh& mesh, int rounds, CellLinks& links) {
     std::vector<std::uint64_t> next(mesh.points.size());
     links.colors.assign(mesh.points.size(), 1);
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < rounds; ++round) {
         std::ranges::fill(next, 0);
         parallel_each(mesh.cells.size(), [&](std::size_t c) {
             std::uint64_t color = 0;
@@ -218,6 +217,10 @@ CellLinks build_links(const HexMesh& mesh) {
     faces.point_count = mesh.points.size();
     faces.cells = mesh.cells;
     build_faces(faces);
+    return build_links(mesh, faces);
+}
+
+CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_rounds) {
     CellLinks links;
     link_cells(faces, links);
     links.cells_at.assign(mesh.points.size(), 0);
@@ -226,7 +229,7 @@ CellLinks build_links(const HexMesh& mesh) {
     });
     mark_tags(mesh, links);
     mark_regular(links);
-    color_points(mesh, links);
+    color_points(mesh, color_rounds, links);
     return links;
 }
 

@@ -7,6 +7,7 @@
 
 #include "subvol/detail/flat_array.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/topology.h"
 
 namespace subvol::detail {
 
@@ -55,5 +56,10 @@ struct CellLinks {
 /// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners
 /// cost:   parallel, O(n log n)
 [[nodiscard]] CellLinks build_links(const HexMesh& mesh);
+
+/// The same from the faces of a topology that is there already.
+///
+/// color_rounds: so many layers of cells about a point decide its colour
+[[nodiscard]] CellLinks build_links(const HexMesh& mesh, const Topology& faces, int color_rounds = 3);
 
 }  // namespace subvol::detail

@@ -41,12 +41,14 @@ public:
     /// The points of a regular neighbourhood, 6×6×6, u fastest, the cell's own in the middle; false if it is not regular.
     [[nodiscard]] bool find_regular(Index cell, std::span<Index, 216> points) const;
 
-private:
     struct Visited {
         Index cell;
         std::uint8_t turn;  // from the axes of the walk to those of the cell
     };
+    /// The cells of the neighbourhood that was found last, in the order of the walk.
+    [[nodiscard]] std::span<const Visited> visited() const { return visited_; }
 
+private:
     void start(Neighborhood& found);
     [[nodiscard]] std::uint16_t number(Index point, Neighborhood& found);
     void add_first(Index cell, Neighborhood& found);

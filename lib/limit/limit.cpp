@@ -2,12 +2,14 @@
 #include "subvol/limit.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "limit_batch.h"
+#include "limit_descents.h"
 #include "refine_steps.h"
 #include "run_nested.h"
 #include "subvol/error.h"
@@ -15,7 +17,7 @@
 namespace subvol {
 
 using detail::BatchEvaluator;
-using detail::OpenQuery;
+using detail::CellPlaces;
 
 namespace {
 
@@ -59,33 +61,32 @@ LimitSamples make_samples(const HexMesh& mesh, std::size_t count) {
     return samples;
 }
 
-constexpr std::size_t kBatch = 64;  // queries
-
-std::size_t batch_count(std::size_t queries) {
-    return (queries + kBatch - 1) / kBatch;
+/// The queries of each cell, by their places in `order`.
+std::vector<CellPlaces> places_of_cells(std::span<const LimitQuery> queries, std::span<const std::size_t> order) {
+    std::vector<CellPlaces> cells;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const Index cell = queries[order[i]].cell;
+        if (cells.empty() || cells.back().cell != cell) cells.push_back({cell, i, i});
+        cells.back().last = i + 1;
+    }
+    return cells;
 }
 
-/// Calls run(number, queries) for every batch, in parallel, and adds up the reports.
-template <class Run>
-void run_batches(const std::vector<OpenQuery>& open, Progress* progress, LimitReport& total, const Run& run) {
-    const std::size_t batches = batch_count(open.size());
-    std::vector<LimitReport> reports(batches);
-    constexpr std::size_t kTurn = 256;  // batches between two reports of progress
-    for (std::size_t turn = 0; turn < batches; turn += kTurn) {
-        report_progress(progress, "limit", static_cast<double>(turn) / static_cast<double>(batches));
-        tbb::parallel_for(turn, std::min(batches, turn + kTurn), [&](std::size_t b) {
-            const auto begin = open.begin() + static_cast<std::ptrdiff_t>(b * kBatch);
-            const auto end = open.begin() + static_cast<std::ptrdiff_t>(std::min(open.size(), (b + 1) * kBatch));
-            detail::run_nested([&] { reports[b] = run(b, std::vector<OpenQuery>(begin, end)); });
+/// Queries whose surroundings have no class.
+void refine_rest(const HexMesh& control, std::span<const LimitQuery> queries, std::span<const std::size_t> rest,
+                 const LimitOptions& options, std::span<const double> scales, LimitSamples& samples) {
+    constexpr std::size_t kBatch = 64;  // queries
+    const detail::PatchSource source(control);
+    const detail::Channels channels(control);
+    std::vector<LimitReport> reports((rest.size() + kBatch - 1) / kBatch);
+    tbb::parallel_for(std::size_t{0}, reports.size(), [&](std::size_t b) {
+        detail::run_nested([&] {
+            BatchEvaluator evaluator(options, scales, channels, samples);
+            evaluator.run(source, queries, rest.subspan(b * kBatch, std::min(kBatch, rest.size() - b * kBatch)));
+            reports[b] = evaluator.report();
         });
-    }
-    report_progress(progress, "limit", 1);
-    for (const LimitReport& report : reports) {
-        total.exact += report.exact;
-        total.refined += report.refined;
-        total.unconverged += report.unconverged;
-        total.deepest_level = std::max(total.deepest_level, report.deepest_level);
-    }
+    });
+    for (const LimitReport& report : reports) detail::add_report(report, samples.report);
 }
 
 }  // namespace
@@ -96,29 +97,14 @@ LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> que
     const auto scales = channel_scales(control);
     LimitSamples samples = make_samples(control, queries.size());
 
-    // First the queries that can be answered with the topology of the whole mesh, then those that need refined patches.
-    std::vector<OpenQuery> open;
-    for (std::size_t i = 0; i < queries.size(); ++i) open.push_back({i, queries[i].cell, queries[i].uvw, {}});
-    std::stable_sort(open.begin(), open.end(), [](const OpenQuery& a, const OpenQuery& b) { return a.cell < b.cell; });
-    {
-        const Topology topology = build_topology(control);
-        std::vector<std::vector<OpenQuery>> left(batch_count(open.size()));
-        run_batches(open, options.progress, samples.report, [&](std::size_t b, std::vector<OpenQuery> batch) {
-            BatchEvaluator evaluator(options, scales, samples);
-            evaluator.begin(control, topology, batch);
-            left[b] = std::move(batch);
-            return evaluator.report();
-        });
-        open.clear();
-        for (auto& batch : left) std::move(batch.begin(), batch.end(), std::back_inserter(open));
-    }
-    if (open.empty()) return samples;
-    const detail::PatchSource source(control);
-    run_batches(open, options.progress, samples.report, [&](std::size_t, std::vector<OpenQuery> batch) {
-        BatchEvaluator evaluator(options, scales, samples);
-        evaluator.finish(source, std::move(batch));
-        return evaluator.report();
+    std::vector<std::size_t> order(queries.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    tbb::parallel_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return std::pair(queries[a].cell, a) < std::pair(queries[b].cell, b);
     });
+    const auto cells = places_of_cells(queries, order);
+    const auto rest = detail::LimitDescents(control, queries, order, options, scales, samples).run(cells);
+    if (!rest.empty()) refine_rest(control, queries, rest, options, scales, samples);
     return samples;
 }
 

@@ -246,7 +246,24 @@ Patch PatchSource::cut(std::span<const Index> cells, int layers) const {
 }
 
 Patch refine_patch(const Patch& patch, const SchemeOptions& scheme, int layers) {
-    const Topology topology = build_topology(patch.mesh, InteriorCreases::Ignore);
+    return refine_patch(patch, build_topology(patch.mesh, InteriorCreases::Ignore), scheme, layers);
+}
+
+HexMesh refine_cells(const Patch& patch, const Topology& topology, const SchemeOptions& scheme, std::span<const Index> cells) {
+    const SchemeRows rows(topology, scheme);
+    HexMesh child;
+    child.cells.reserve(8 * cells.size());
+    for (const Index c : cells) {
+        const auto children = split_lattice(lattice_points(topology, c));
+        child.cells.insert(child.cells.end(), children.begin(), children.end());
+    }
+    const PointSelection selection(child.cells, rows.rows());
+    refine_data(patch.mesh, rows, selection.points(), child);
+    selection.renumber(child.cells);
+    return child;
+}
+
+Patch refine_patch(const Patch& patch, const Topology& topology, const SchemeOptions& scheme, int layers) {
     const SchemeRows rows(topology, scheme);
     const std::size_t parents = layers == 0 ? patch.wanted : patch.first_layer;
     std::vector<std::array<Index, 8>> cells;

@@ -44,6 +44,13 @@ private:
 /// layers: of the child: 0 if it is not refined further, 1 if once, else 2
 [[nodiscard]] Patch refine_patch(const Patch& patch, const SchemeOptions& scheme, int layers);
 
+/// The same with the topology of the patch, interior creases ignored.
+[[nodiscard]] Patch refine_patch(const Patch& patch, const Topology& topology, const SchemeOptions& scheme, int layers);
+
+/// The children of some cells of a patch, wanted ones or of the first layer: child 8i + j of cells[i], without tags.
+[[nodiscard]] HexMesh refine_cells(const Patch& patch, const Topology& topology, const SchemeOptions& scheme,
+                                   std::span<const Index> cells);
+
 /// The level-`levels` patch of some cells. Its wanted cells are the descendants of cells[0], then those of cells[1], and so on.
 ///
 /// layers: of the result, as above

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "regular_grid.h"
+#include "subvol/limit.h"
+
+namespace subvol::detail {
+
+/// The channels of a mesh, position first, as rows of doubles that vectors of four can read.
+///
+/// count: of the channels; stride: the same, rounded up to a multiple of 4
+class Channels {
+public:
+    explicit Channels(const HexMesh& mesh);
+    [[nodiscard]] std::size_t count() const { return count_; }
+    [[nodiscard]] std::size_t stride() const { return stride_; }
+    /// The channels of a point; the rest of the row is left as it is.
+    static void read(const HexMesh& mesh, Index point, double* to);
+
+private:
+    std::size_t count_, stride_;
+};
+
+// A *jet* is the values of all channels at one place, then their derivatives by u, by v and by w: 4 × stride numbers.
+
+/// Evaluates places in a cell from the points about it.
+class CellJets {
+public:
+    CellJets(Scheme scheme, std::size_t stride);
+
+    /// By a cubic through the points of the cell's regular grid, or the spline that they control.
+    ///
+    /// points: rows of channels, kept by reference; grid: numbers of the rows, kNone beyond a flat boundary
+    void load_grid(const double* points, const GridPoints& grid);
+    /// By trilinear interpolation between the cell's corners, octant by octant.
+    void load_corners(const double* points, std::span<const Index, 8> corners);
+
+    /// scale: of the derivatives, 2^level
+    void evaluate(const Vec3& uvw, double scale, double* jet) const;
+
+private:
+    void fill_missing(const GridPoints& grid, std::size_t axis_stride);
+
+    bool spline_, linear_ = false;
+    std::size_t stride_;
+    const double* points_ = nullptr;
+    GridPoints grid_{};
+    std::vector<double> data_;  // a grid with missing points filled in, or the corners
+};
+
+/// A query that has not converged yet.
+///
+/// uvw:    its place in the cell that is looked at
+/// last:   its jet at the level before
+/// agreed: number of consecutive levels whose jets agreed within the tolerance
+struct OpenPlace {
+    std::size_t query;
+    Vec3 uvw;
+    double* last;
+    std::uint8_t agreed = 0;
+    std::uint8_t octant = 0;  // of the child that it is in
+};
+
+/// Decides when a place has converged, and writes it down.
+class Settling {
+public:
+    /// scales: of each channel, what tolerances are relative to. All references are kept.
+    Settling(const LimitOptions& options, std::span<const double> scales, std::size_t stride, LimitSamples& samples)
+        : options_(options), scales_(scales), stride_(stride), samples_(samples) {}
+
+    /// Writes the place if it has converged with this level's jet, else keeps the jet. Returns whether it has.
+    ///
+    /// jet: along the axes of the control cell
+    [[nodiscard]] bool settle(OpenPlace& at, const double* jet, int level, bool regular, bool exact);
+
+    [[nodiscard]] LimitReport& report() { return report_; }
+
+private:
+    [[nodiscard]] bool is_close(const double* a, const double* b, int level) const;
+    void write(std::size_t query, const double* jet);
+
+    const LimitOptions& options_;
+    std::span<const double> scales_;
+    std::size_t stride_;
+    LimitSamples& samples_;
+    LimitReport report_;
+};
+
+/// Which of the eight children a place is in, u + 2v + 4w. The place becomes that in the child.
+[[nodiscard]] std::size_t step_into_octant(Vec3& uvw);
+
+/// Adds up the queries of several.
+void add_report(const LimitReport& more, LimitReport& total);
+
+}  // namespace subvol::detail

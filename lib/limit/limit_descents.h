@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "class_graph.h"
+#include "jets.h"
+#include "patch.h"
+
+namespace subvol::detail {
+
+/// The places of one control cell: queries[first .. last) of a list that is sorted by cells.
+struct CellPlaces {
+    Index cell;
+    std::size_t first, last;
+};
+
+/// Evaluates the limit at places, from class to class (`ClassGraph`).
+///
+///     level 0   cells inside a grid ────────────────► the regular class, level by level
+///               cells of a class that is common ────► that class, level by level
+///               splines on a grid, linear cells: exact at once
+///               the others: refined twice, batch by batch
+///     level 2   the class of the neighbourhood of the descendant that has the place, and of its children …
+///
+/// A descendant is evaluated by a cubic through its regular grid, or trilinearly where there is none, until two levels agree.
+/// Places in one cell share its descendants; the arithmetic of a place does not depend on the others.
+class LimitDescents {
+public:
+    /// scales: of each channel, what tolerances are relative to. All references are kept.
+    LimitDescents(const HexMesh& control, std::span<const LimitQuery> queries, std::span<const std::size_t> order,
+                  const LimitOptions& options, std::span<const double> scales, LimitSamples& samples);
+    ~LimitDescents();
+    LimitDescents(const LimitDescents&) = delete;
+    LimitDescents& operator=(const LimitDescents&) = delete;
+
+    /// Fills the samples. Returns the queries, by their numbers, whose surroundings have no class: those are left to the caller.
+    [[nodiscard]] std::vector<std::size_t> run(std::span<const CellPlaces> cells);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace subvol::detail
