@@ -27,6 +27,18 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
     app.add_option("--weld-distance", options.weld_distance_world, "join points of a file that are no farther apart than this")
         ->type_name("D")
         ->check(CLI::PositiveNumber);
+    app.add_option("--curved", options.curved,
+                   "what to do with curved hexahedra: shape (split them into smaller ones on their true shape), corners (use "
+                   "nothing but their corners)")
+        ->group(group)
+        ->type_name("WHAT")
+        ->check(CLI::IsMember({"shape", "corners"}));
+    app.add_option("--curved-tolerance", options.curved_tolerance,
+                   "split curved hexahedra to within this part of the mesh's size, and fields to 40 times this part of their "
+                   "range (default 5e-6)")
+        ->group(group)
+        ->type_name("T")
+        ->check(CLI::PositiveNumber);
     app.add_option("--sharp", options.sharp,
                    "a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its "
                    "name or number, a reference of MEDIT, or Ridges (repeatable)")

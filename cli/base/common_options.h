@@ -20,6 +20,8 @@ struct CommonOptions {
     std::string other_cells = "split";   // "ignore", "refuse"
     bool weld = false;                   // join points at the same place
     std::optional<double> weld_distance_world;
+    std::string curved = "shape";    // or "corners"
+    double curved_tolerance = 5e-6;  // of the mesh's size
     std::vector<std::string> sharp;  // groups of faces and edges
     int threads = 0;                 // 0: all
     bool json = false;

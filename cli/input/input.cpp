@@ -48,6 +48,10 @@ std::optional<double> weld_distance(const CommonOptions& options) {
     return options.weld ? std::optional<double>(0) : std::nullopt;
 }
 
+std::optional<double> curved_tolerance(const CommonOptions& options) {
+    return options.curved == "corners" ? std::nullopt : std::optional(options.curved_tolerance);
+}
+
 }  // namespace
 
 std::string input_help() {
@@ -62,7 +66,8 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
         return model ? generate(input.substr(kModelPrefix.size()))
                      : read_mesh(input, {.other_cells = other_cells(options.other_cells),
                                          .weld = weld_distance(options),
-                                         .sharp = options.sharp});
+                                         .sharp = options.sharp,
+                                         .curved_tolerance = curved_tolerance(options)});
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;

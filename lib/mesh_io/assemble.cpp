@@ -200,11 +200,11 @@ std::string list_of(std::size_t hexes, const MixedCells& others) {
     return last == std::string::npos ? list : list.replace(last, 2, " and ");
 }
 
-void split_all(ReadResult& result, MixedCells&& others, Origin& origin) {
+void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin) {
     HexMesh& mesh = result.mesh;
     const bool hexes_too = !mesh.cells.empty();
     std::string warning = list_of(mesh.cells.size(), others);
-    HexSplit split = plan_split(mesh.points, std::move(mesh.cells), std::move(others));
+    HexSplit split = plan_split(mesh.points, std::move(mesh.cells), std::move(others), cut);
     mesh.points = means(split.sources, mesh.points);
     mesh.cells = std::move(split.cells);
     if (!origin.cell_numbers.empty()) {
@@ -221,11 +221,15 @@ void split_all(ReadResult& result, MixedCells&& others, Origin& origin) {
 
 }  // namespace
 
-ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names,
+ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names_in_file,
                     const ReadOptions& options) {
     drop_ghosts(found);
-    refuse_not_finite(found, in, names);
-    if (options.weld) weld_points(found, *options.weld, file, names);
+    refuse_not_finite(found, in, names_in_file);
+    if (options.weld) weld_points(found, *options.weld, file, names_in_file);
+    EntityNames names = names_in_file;
+    if (options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names)) names.point_numbers = {};
+    found.curved = {};
+    const bool cut = take_collapsed(found, options.other_cells, file, names);
     Origin origin{used_points(found), {}, {}};
     ReadResult result;
     result.mesh.points = std::move(found.points);
@@ -239,7 +243,7 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
     origin.cell_numbers = take_numbers(found);
     turn_hexes(result);
     try {
-        if (!others.empty()) split_all(result, std::move(others), origin);
+        if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
         ArrayConversion conversion(result, origin, file, names);
         for (auto& array : found.arrays) conversion.take(std::move(array));

@@ -59,6 +59,11 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
         throw Error(ErrorCode::InvalidInput, "points cannot be welded within " + number_text(*options.weld), path.string(),
                     "0 or a length");
     }
+    if (options.curved_tolerance && !(*options.curved_tolerance > 0 && std::isfinite(*options.curved_tolerance))) {
+        throw Error(ErrorCode::InvalidInput,
+                    "curved cells cannot be followed to within " + number_text(*options.curved_tolerance), path.string(),
+                    "a positive part of the mesh's size, such as 1e-4");
+    }
     const MeshFormat* format = format_of(path);
     if (!format) refuse_format(path, "read", list_formats(false));
     if (!options.sharp.empty() && !format->groups) {

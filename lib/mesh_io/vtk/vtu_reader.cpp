@@ -27,6 +27,7 @@ public:
 
     ReadResult read() {
         const pugi::xml_node grid = xml_.data_set();
+        if (xml_.is_older_than(2, 1)) sorter_.set_old_order();
         std::size_t pieces = 0;
         for (const auto& piece : grid.children("Piece")) {
             read_piece(piece);
