@@ -5,8 +5,8 @@
 #include <atomic>
 #include <bit>
 
-#include "bucket_sort.h"
 #include "subvol/cell.h"
+#include "subvol/detail/bucket_sort.h"
 #include "topology_parts.h"
 
 namespace subvol::detail {

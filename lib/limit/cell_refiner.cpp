@@ -11,12 +11,12 @@
 #include <mutex>
 #include <numeric>
 
-#include "bucket_sort.h"
 #include "class_tables.h"
 #include "dense_block.h"
 #include "run_nested.h"
 #include "space_order.h"
 #include "subvol/cell.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/limit.h"
 
 namespace subvol::detail {

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <string>
 
-#include "bucket_sort.h"
 #include "cell_shapes.h"
 #include "cut_cells.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

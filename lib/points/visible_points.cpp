@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
 namespace subvol {

@@ -18,8 +18,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bucket_sort.h"
 #include "kernel_weight.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/rbf_field.h"
 
 namespace subvol::detail {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bucket_sort.h"
 #include "field_fit.h"
 #include "kernel_weight.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 #include "subvol/rbf_field.h"
 

@@ -8,9 +8,9 @@
 #include <numeric>
 #include <string>
 
-#include "bucket_sort.h"
 #include "field_fit.h"
 #include "sample_parts.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"

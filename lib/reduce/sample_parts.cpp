@@ -8,9 +8,9 @@
 #include <array>
 #include <cmath>
 
-#include "bucket_sort.h"
 #include "kernel_tree.h"
 #include "space_order.h"
+#include "subvol/detail/bucket_sort.h"
 
 namespace subvol::detail {
 namespace {

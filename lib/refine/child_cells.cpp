@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "child_topology.h"
 
-#include "bucket_sort.h"
 #include "subvol/cell.h"
+#include "subvol/detail/bucket_sort.h"
 
 namespace subvol::detail {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "boundary_rings.h"
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 
 namespace subvol::detail {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "boundary_rings.h"
-#include "bucket_sort.h"
 #include "child_numbers.h"
+#include "subvol/detail/bucket_sort.h"
 #include "topology_parts.h"
 
 namespace subvol::detail {

@@ -19,8 +19,8 @@
 #include <utility>
 
 #include "boundary_rings.h"
-#include "bucket_sort.h"
 #include "child_numbers.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

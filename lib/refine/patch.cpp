@@ -12,9 +12,9 @@
 
 #include <algorithm>
 
-#include "bucket_sort.h"
 #include "child_topology.h"
 #include "scheme_rows.h"
+#include "subvol/detail/bucket_sort.h"
 #include "topology_parts.h"
 
 namespace subvol::detail {

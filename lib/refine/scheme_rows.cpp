@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scheme_rows.h"
 
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Dense>
 
-#include "bucket_sort.h"
 #include "direction_sums.h"
+#include "subvol/detail/bucket_sort.h"
 
 namespace subvol::detail {
 

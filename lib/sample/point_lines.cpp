@@ -5,8 +5,8 @@
 #include <bit>
 
 #include "boundary_rings.h"
-#include "bucket_sort.h"
 #include "child_topology.h"
+#include "subvol/detail/bucket_sort.h"
 
 namespace subvol::detail {
 

@@ -24,12 +24,12 @@
 #include <cmath>
 
 #include "boundary_rings.h"
-#include "bucket_sort.h"
 #include "cell_block.h"
 #include "direction_sums.h"
 #include "sample_counts.h"
 #include "sample_ways.h"
 #include "subvol/cell.h"
+#include "subvol/detail/bucket_sort.h"
 #include "value_rules.h"
 
 namespace subvol::detail {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bucket_sort.h"
 #include "sample_ways.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/rbf_field.h"
 
 namespace subvol::detail {

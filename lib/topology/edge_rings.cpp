@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 
 namespace subvol::detail {
 
@@ -12,7 +12,9 @@ namespace {
 /// A walk over the faces around one edge, from cell to cell.
 class RingWalk {
 public:
-    RingWalk(const Topology& topology, std::span<const Index> faces) : topology_(topology), left_(faces.begin(), faces.end()) {}
+    /// faces: kept by reference
+    RingWalk(const Topology& topology, std::span<const Index> faces)
+        : topology_(topology), all_(faces), more_taken_(faces.size() / 64) {}
 
     /// Walks fans from hull face to hull face, then closed rings; appends to `faces` and `cells`. Returns the number of closed
     /// rings.
@@ -27,9 +29,9 @@ public:
     }
 
 private:
-    [[nodiscard]] std::optional<Index> next_start(bool on_hull) const {
-        for (const Index f : left_) {
-            if (f != kNone && topology_.face_on_hull(f) == on_hull) return f;
+    [[nodiscard]] std::optional<Index> next_start(bool on_hull) {
+        for (std::size_t i = 0; i < all_.size(); ++i) {
+            if ((word(i) >> i % 64 & 1) == 0 && topology_.face_on_hull(all_[i]) == on_hull) return all_[i];
         }
         return std::nullopt;
     }
@@ -49,7 +51,12 @@ private:
         return f0 <= f1 ? c0 : c1;
     }
 
-    void take(Index face) { *std::find(left_.begin(), left_.end(), face) = kNone; }
+    [[nodiscard]] std::uint64_t& word(std::size_t face) { return face < 64 ? taken_ : more_taken_[face / 64 - 1]; }
+
+    void take(Index face) {
+        const auto i = static_cast<std::size_t>(std::find(all_.begin(), all_.end(), face) - all_.begin());
+        word(i) |= std::uint64_t{1} << i % 64;
+    }
 
     void walk(Index start, Index cell, std::vector<Index>& faces, std::vector<Index>& cells) {
         Index face = start;
@@ -66,8 +73,9 @@ private:
     }
 
     const Topology& topology_;
-    std::vector<Index> left_;
-    std::vector<Index> all_ = left_;
+    std::span<const Index> all_;
+    std::uint64_t taken_ = 0;                // a bit for each face; no memory is allocated for an edge of less than 64 faces
+    std::vector<std::uint64_t> more_taken_;  // of the faces beyond
 };
 
 }  // namespace

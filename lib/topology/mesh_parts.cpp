@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/surface.h"
 #include "subvol/topology.h"
 

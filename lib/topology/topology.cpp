@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "bucket_sort.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 #include "topology_parts.h"
 

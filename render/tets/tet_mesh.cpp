@@ -2,6 +2,7 @@
 #include "tet_mesh.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
@@ -10,6 +11,7 @@
 #include <tuple>
 
 #include "subvol/cell.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
@@ -42,22 +44,63 @@ TetLink& link_of(TetMesh& mesh, TetFace face) {
     return mesh.links[face / 4][mesh.rank(face / 4, face % 4)];
 }
 
-void connect(TetMesh& mesh) {
-    mesh.links.resize(mesh.tets.size());
-    std::vector<FaceRecord> faces(4 * mesh.tets.size());
-    parallel_each(faces.size(), [&](std::size_t i) { faces[i] = record_of(mesh, static_cast<TetFace>(i)); });
-    tbb::parallel_sort(faces.begin(), faces.end());
-    for (std::size_t i = 0, end; i < faces.size(); i = end) {
-        for (end = i + 1; end < faces.size() && faces[end].ids == faces[i].ids;) ++end;
-        if (end - i == 2) {
-            const TetFace one = faces[i].face, other = faces[i + 1].face;
-            link_of(mesh, one) = {other / 4, mesh.tets[other / 4].corner[other % 4]};
-            link_of(mesh, other) = {one / 4, mesh.tets[one / 4].corner[one % 4]};
-        } else {
-            for (std::size_t k = i; k < end; ++k) mesh.boundary.push_back(faces[k].face);
+void link(TetMesh& mesh, TetFace one, TetFace other) {
+    link_of(mesh, one) = {other / 4, mesh.tets[other / 4].corner[other % 4]};
+    link_of(mesh, other) = {one / 4, mesh.tets[one / 4].corner[one % 4]};
+}
+
+constexpr std::size_t kFacesPerCell = 4 * kTetsPerCell;
+
+/// The faces of a cell's tetrahedra, sorted, and which of them lie inside the cell, two at the same place.
+struct CellFaces {
+    CellFaces(const TetMesh& mesh, std::size_t cell) {
+        for (std::size_t k = 0; k < kFacesPerCell; ++k) {
+            records[k] = record_of(mesh, static_cast<TetFace>(kFacesPerCell * cell + k));
+        }
+        std::sort(records.begin(), records.end());
+        for (std::size_t k = 0; k + 1 < kFacesPerCell; ++k) {
+            if (records[k].ids == records[k + 1].ids) inside[k] = inside[k + 1] = true;
         }
     }
-    std::sort(mesh.boundary.begin(), mesh.boundary.end());  // in the order of cells: neighbours in the list are near in space
+    std::array<FaceRecord, kFacesPerCell> records;
+    std::array<bool, kFacesPerCell> inside{};
+};
+
+/// Half of the faces lie inside a cell and find each other there. The others, on the cells' sides, are sorted.
+void connect(TetMesh& mesh) {
+    mesh.links.resize(mesh.tets.size());
+    const std::size_t cells = mesh.tets.size() / kTetsPerCell;
+    parallel_each(cells, [&](std::size_t c) {
+        const CellFaces faces(mesh, c);
+        for (std::size_t k = 0; k + 1 < kFacesPerCell; ++k) {
+            if (faces.records[k].ids != faces.records[k + 1].ids) continue;
+            link(mesh, faces.records[k].face, faces.records[k + 1].face);
+            ++k;
+        }
+    });
+    const auto sides = bucket_sort<FaceRecord>(
+        cells, mesh.points.size(),
+        [&](std::size_t c, const auto& sink) {
+            const CellFaces faces(mesh, c);
+            for (std::size_t k = 0; k < kFacesPerCell; ++k) {
+                if (!faces.inside[k]) sink(faces.records[k]);
+            }
+        },
+        [](const FaceRecord& face) { return face.ids[0]; });
+    tbb::enumerable_thread_specific<std::vector<TetFace>> boundaries;
+    parallel_each(mesh.points.size(), [&](std::size_t p) {
+        const std::size_t last = sides.offsets[p + 1];
+        for (std::size_t i = sides.offsets[p], end; i < last; i = end) {
+            for (end = i + 1; end < last && sides.records[end].ids == sides.records[i].ids;) ++end;
+            if (end - i == 2) {
+                link(mesh, sides.records[i].face, sides.records[i + 1].face);
+            } else {
+                for (std::size_t k = i; k < end; ++k) boundaries.local().push_back(sides.records[k].face);
+            }
+        }
+    });
+    for (const auto& boundary : boundaries) mesh.boundary.insert(mesh.boundary.end(), boundary.begin(), boundary.end());
+    tbb::parallel_sort(mesh.boundary.begin(), mesh.boundary.end());  // in the order of cells: near in the list, near in space
 }
 
 enum class Shape { Regular, Degenerate, Inverted };

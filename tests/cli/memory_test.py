@@ -26,10 +26,10 @@ class BytesACell(InFolder):
 
     def test_as_documented(self):
         cells = self.run_ok("model", "twist", "--resolution", RESOLUTION, "-o", "a.vtu", "--json").json()["cells"]
-        alone = self.peak_bytes("info", "model:twist:2")  # the program and its libraries
         for verb, *options in (["info"], ["points", "-o", "a.ply"],
                                ["vdb", "-o", "a.vdb", "--levels", 0, "--resolution", 50]):
             with self.subTest(verb):
+                alone = self.peak_bytes(verb, "model:twist:2", *options)  # the program and the libraries that it loads
                 self.assertLess((self.peak_bytes(verb, "a.vtu", *options) - alone) / cells, documented(verb))
 
 

@@ -105,6 +105,12 @@ HWY_ATTR bool fill_piece(const CellShape& shape, const PieceBounds& bounds, cons
     return CurvedFiller(shape, bounds, block, brick).run(box);
 }
 
+/// After the small cells of such a piece.
+HWY_ATTR void fill_rest_of_piece(const CellShape& shape, const PieceBounds& bounds, const VoxelBox& box, const CellBlock& block,
+                                 VoxelBrick& brick) {
+    CurvedFiller(shape, bounds, block, brick).run_on_rest(box);
+}
+
 }  // namespace subvol::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -113,6 +119,7 @@ namespace subvol::detail {
 
 HWY_EXPORT(fill_cell);
 HWY_EXPORT(fill_piece);
+HWY_EXPORT(fill_rest_of_piece);
 
 namespace {
 
@@ -279,13 +286,21 @@ void fill_block(const CellBlock& block, CellShape& shape, VoxelBrick& brick) {
         const auto nodes = corner_nodes(lowest, 2, block);
         Box box;
         for (const std::size_t n : nodes) box.add(block.points[n]);
-        set_shape(block, nodes, 2, shape);
-        shape.size = std::max({box.size().x, box.size().y, box.size().z});
-        if (fill_piece_here(shape, bounds_of(block, lowest), voxels, block, brick)) return;
+        const auto take_piece = [&] {
+            set_shape(block, nodes, 2, shape);
+            shape.size = std::max({box.size().x, box.size().y, box.size().z});
+        };
+        take_piece();
+        const PieceBounds bounds = bounds_of(block, lowest);
+        if (fill_piece_here(shape, bounds, voxels, block, brick)) return;
+        const std::size_t doubtful = brick.doubtful.size();
         for (std::size_t k = 0; k < 8; ++k) {
             const std::size_t part = lowest + (k & 1) + block.side * ((k >> 1 & 1) + block.side * (k >> 2));
             fill_small_cell(block, part, 1, within, shape, brick);
         }
+        if (brick.doubtful.size() > doubtful) brick.doubtful.push_back(voxels);
+        take_piece();
+        HWY_DYNAMIC_DISPATCH(fill_rest_of_piece)(shape, bounds, voxels, block, brick);
     });
 }
 

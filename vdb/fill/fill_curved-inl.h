@@ -41,6 +41,19 @@ public:
     /// returns: false, and fills nothing, if the piece is folded, flat or too much bent
     HWY_ATTR bool run(const VoxelBox& box) {
         if (!set_margins()) return false;
+        fill(box);
+        return true;
+    }
+
+    /// The voxels that the small cells of such a piece have left out, as far as Newton's method finds them: between their flat
+    /// faces and the curved sides of its neighbours.
+    HWY_ATTR void run_on_rest(const VoxelBox& box) {
+        margins_.fill(HUGE_VAL);
+        fill(box);
+    }
+
+private:
+    HWY_ATTR void fill(const VoxelBox& box) {
         for (int x = box.lower[0]; x <= box.upper[0]; ++x) {
             for (int y = box.lower[1]; y <= box.upper[1]; ++y) {
                 const auto [first, last] = interval(x, y, box.lower[2], box.upper[2]);
@@ -48,10 +61,8 @@ public:
             }
         }
         flush();
-        return true;
     }
 
-private:
     /// Where the map has the same orientation at all nodes, how far the linear map is from the parameters of the nodes.
     HWY_ATTR bool set_margins() {
         const Lanes d;

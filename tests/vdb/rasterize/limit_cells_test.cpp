@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <random>
 
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
@@ -115,6 +116,25 @@ TEST(LimitCells, OfSeveralLevelsFitTogether) {
     const VdbGrid grid = rasterized(mesh, 1.0 / 50, limit);
     EXPECT_EQ(grid.report().active_voxels, 50u * 50 * 50);
     for_each_voxel(grid, [&](const Voxel& v, double value) { ASSERT_NEAR(value, v[0] / 50.0, 1e-6); });
+}
+
+// Cells that are strongly bent inside a box: some pieces are split into small cells, whose flat faces do not meet the curved
+// sides of the pieces beside them. No centre is lost between the two.
+TEST(LimitCells, BentPiecesLeaveNoCentreOut) {
+    HexMesh mesh = box_mesh(5);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> step(-0.075, 0.075);
+    for (Vec3& p : mesh.points) {
+        const bool inside = std::min({p.x, p.y, p.z}) > 0.01 && std::max({p.x, p.y, p.z}) < 0.99;
+        if (inside) p += Vec3(step(random), step(random), step(random));
+    }
+    mesh = with_field(std::move(mesh), "f", [](const Vec3& p) { return p.y; });
+    for (const int n : {40, 90}) {
+        const LimitCells limit = limit_for_voxels(mesh, {}, 1.0 / n);
+        const VdbGrid grid = rasterized(mesh, 1.0 / n, limit);
+        EXPECT_EQ(grid.report().active_voxels, static_cast<std::size_t>(n) * n * n);
+        for_each_voxel(grid, [&](const Voxel& v, double value) { ASSERT_NEAR(value, static_cast<double>(v[1]) / n, 0.1 / n); });
+    }
 }
 
 // Without levels the cells are used as they are.
