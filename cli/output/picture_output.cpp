@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mesh_frames.h"
 #include "outputs.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
@@ -38,12 +39,13 @@ float most_opaque(const Image& image) {
 
 }  // namespace
 
-PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments)
-    : path_(path), frames_(frames), background_(parse_vector("--background", arguments.background)) {
+PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments, int first)
+    : path_(path), frames_(frames), first_(first), background_(parse_vector("--background", arguments.background)) {
     if (!is_video(path_)) {
         check_output(path_, {".png", ".exr"});
     } else if (!frames_) {
-        throw Error(ErrorCode::InvalidInput, "only a turntable makes a video", path, "--turntable N, or .png or .exr");
+        throw Error(ErrorCode::InvalidInput, "only a turntable or steps make a video", path,
+                    "--turntable N, --step all, or .png or .exr");
     } else {
         video_.emplace(path_, parse_size("--size", arguments.size), arguments.frames_per_second);
     }
@@ -51,22 +53,24 @@ PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames,
 
 void PictureOutput::write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
                           Report& report) {
-    float opacity = 0;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        FrameProgress of_frame(report.progress(), i, views.size());
+    for (const View& view : views) {
+        FrameProgress of_frame(report.progress(), written_, static_cast<std::size_t>(frames_.value_or(1)));
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
-        const Picture picture = draw(views[i], progress);
-        opacity = std::max(opacity, most_opaque(picture.image));
+        const Picture picture = draw(view, progress);
+        opacity_ = std::max(opacity_, most_opaque(picture.image));
         const detail::Stopwatch watch;
-        write_frame(i, picture);
+        write_frame(written_++, picture);
         report.add_seconds("write", watch.seconds());
     }
+}
+
+void PictureOutput::finish(Report& report) {
     constexpr float kLeastByte = 0.5F / 255;  // what is less is 0 in a .png
-    if (opacity == 0) {
+    if (opacity_ == 0) {
         report.warn("the picture is empty: no pixel is hit where the volume is opaque (--fit, --view, --opacity, --samples)");
-    } else if (opacity < kLeastByte) {
-        report.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity,
+    } else if (opacity_ < kLeastByte) {
+        report.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity_,
                          " (a shorter --opacity-unit makes the volume more opaque)"));
     }
     report["output"] = frame_path(0).string();
@@ -75,14 +79,16 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
     if (video_) {
         report.timed("write", [&] { video_->finish(); });
     } else {
-        for (std::size_t i = 0; i < views.size(); ++i) report["outputs"].push_back(frame_path(i).string());
+        for (std::size_t i = 0; i < written_; ++i) report["outputs"].push_back(frame_path(i).string());
     }
 }
 
 std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {
     if (!frames_ || video_) return path_;
-    const std::string number = std::to_string(frame);
-    const std::size_t digits = std::max<std::size_t>(4, std::to_string(*frames_ - 1).size());
+    const int numbered = first_ + static_cast<int>(frame);
+    if (has_number(path_.string())) return with_number(path_.string(), numbered);
+    const std::string number = std::to_string(numbered);
+    const std::size_t digits = std::max<std::size_t>(4, std::to_string(first_ + *frames_ - 1).size());
     return path_.parent_path() /
            (path_.stem().string() + "_" + std::string(digits - number.size(), '0') + number + path_.extension().string());
 }

@@ -5,6 +5,7 @@
 #include "grid_input.h"
 #include "input.h"
 #include "points_input.h"
+#include "steps.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "subvol/points_io.h"
@@ -100,6 +101,7 @@ private:
     void describe_mesh(Report& report) {
         refuse_at("a mesh");
         const ReadResult read = read_input(input_, common(), report);
+        if (!is_model(input_)) put_steps(read, report);
         put_mesh_report(report, report.timed("inspect", [&] { return inspect(read.mesh); }));
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
@@ -109,6 +111,16 @@ private:
                                         {"min", field.min},
                                         {"max", field.max}});
         }
+    }
+
+    void put_steps(const ReadResult& read, Report& report) const {
+        const MeshSeries series = open_series(input_);
+        const std::size_t step = one_step(input_, common()).value_or(series.size() - 1);
+        report["steps"] = series.size();
+        report["times"] = series.times;
+        report["step"] = step;
+        report["blocks"] = Json::array();
+        for (const MeshBlock& block : read.blocks) report["blocks"].push_back({{"name", block.name}, {"cells", block.cells}});
     }
 
     void describe_points(Report& report) {

@@ -45,14 +45,6 @@ void warn_of_folded(ReadResult& result) {
                               (folded == 1 ? " has" : " have") + " a negative Jacobian at a corner");
 }
 
-void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names) {
-    if (found.not_finite.empty()) return;
-    const auto used = used_points(found);
-    for (const auto& [point, position] : found.not_finite) {
-        if (used[point]) in.fail_at(position, "non-finite coordinate at " + names.point(point));
-    }
-}
-
 FieldInfo describe(const FileArray& array) {
     FieldInfo info{array.name, array.at_cells ? "cell" : "point", array.components, 0, 0};
     const auto components = static_cast<std::size_t>(array.components);
@@ -221,10 +213,23 @@ void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin
 
 }  // namespace
 
-ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names_in_file,
+void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names) {
+    if (found.not_finite.empty()) return;
+    const auto used = used_points(found);
+    for (const auto& [point, position] : found.not_finite) {
+        if (used[point]) in.fail_at(position, "non-finite coordinate at " + names.point(point));
+    }
+}
+
+ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names,
                     const ReadOptions& options) {
     drop_ghosts(found);
-    refuse_not_finite(found, in, names_in_file);
+    refuse_not_finite(found, in, names);
+    return assemble(std::move(found), file, names, options);
+}
+
+ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& names_in_file, const ReadOptions& options) {
+    drop_ghosts(found);
     if (options.weld) weld_points(found, *options.weld, file, names_in_file);
     EntityNames names = names_in_file;
     if (options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names)) names.point_numbers = {};
@@ -235,6 +240,7 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
     result.mesh.points = std::move(found.points);
     result.mesh.cells = std::move(found.hexes.corners);
     result.warnings = std::move(found.warnings);
+    result.blocks = std::move(found.blocks);
     MixedCells others = take_others(found);
     if (!others.empty() && options.other_cells == OtherCells::Refuse) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(result.mesh.cells.size(), others), std::string(file),

@@ -15,6 +15,13 @@ namespace subvol::detail {
 [[nodiscard]] ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names,
                                   const ReadOptions& options);
 
+/// The same for what was put together from several files, whose points are known to be finite.
+[[nodiscard]] ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& names,
+                                  const ReadOptions& options);
+
+/// Refuses points that are not finite and that a cell uses.
+void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names);
+
 /// VTK's array of ghosts, at the cells or at the points: a sum of bits for each.
 inline constexpr std::string_view kGhostArray = "vtkGhostType";
 inline constexpr unsigned kDuplicateCell = 1, kRefinedCell = 8, kHiddenCell = 32;
@@ -35,9 +42,9 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
 /// at the points there. Opposite edges of a cell are split alike, so that neighbours share their points. Adds a warning with
 /// the estimated error, which is the sum of h² f''/8 over the three directions.
 ///
-/// tolerance: of the shape, in parts of the mesh's diagonal; of the fields 40 times that, in parts of their ranges
-/// returns:   whether points were replaced. Not beside other kinds of cells, cells that repeat points and sharp groups: then a
-///            warning says that only the corners are used
+/// tolerance: of the shape, in parts of the mesh's diagonal; of the fields 400 times that, in parts of their ranges
+/// returns:   whether points were replaced. Not if no cell is bent, beside other kinds of cells, cells that repeat points and
+///            sharp groups: then a warning says that only the corners are used
 /// throws:    Error(InvalidInput) if the degrees do not fit to the number of nodes, a rational weight is not positive, or a
 ///            value at a node is not finite
 bool split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names);

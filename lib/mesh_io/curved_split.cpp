@@ -24,11 +24,12 @@ using Sizes = std::array<std::size_t, 3>;
 constexpr std::string_view kDegrees = "HigherOrderDegrees";
 constexpr std::string_view kWeights = "RationalWeights";
 
-// Volumes add up the error of the shape, and nothing adds up that of the fields.
-constexpr double kFieldsPerShape = 40;
+// Volumes add up the error of the shape, and nothing adds up that of the fields. The limit is nearer to the fields than the
+// straight lines whose error is measured.
+constexpr double kFieldsPerShape = 400;
 
 // No more hexahedra than this are made, or than this for each cell where that is more.
-constexpr std::size_t kMostHexes = std::size_t{1} << 20, kMostPerCell = 8;
+constexpr std::size_t kMostHexes = std::size_t{1} << 15, kMostPerCell = 4;
 
 // A direction is never split more often than this.
 constexpr double kMostPieces = 1e4;
@@ -92,16 +93,22 @@ public:
     CurvedSplit(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names)
         : found_(found), tolerance_(tolerance), file_(file), names_(names), cells_(found.hexes.corners), edges_(cells_) {}
 
-    void run() {
+    /// returns: whether the cells were split; they are not if none is bent
+    bool run() {
         find_channels();
         find_layouts();
         refuse_not_finite();
         find_ranges();
         measure();
         choose_pieces();
+        if (std::ranges::all_of(pieces_, [](std::size_t n) { return n == 1; })) {
+            report_straight();
+            return false;
+        }
         number_points();
         fill();
         report();
+        return true;
     }
 
 private:
@@ -191,27 +198,32 @@ private:
 
     [[nodiscard]] bool is_rational(std::size_t c) const { return layout_of_[c]->bezier && !weights_.empty(); }
 
-    // The size of the mesh, and for each array the length of the vector of its components' ranges; 0 for a constant.
+    // The size of the mesh, and for each array the length of the vector of its components' ranges; 0 for a constant, and for
+    // whole numbers: they are the numbers of nodes or parts, and no smooth field that more cells would come nearer to.
     void find_ranges() {
         std::vector<double> low(channels_, std::numeric_limits<double>::infinity()), high(channels_, -low[0]);
+        std::vector<std::uint8_t> whole(channels_, 1);
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             for (const Index p : nodes_of(c)) {
                 values_of_node(p);
                 for (std::size_t k = 0; k < channels_; ++k) {
                     low[k] = std::min(low[k], node_[k]);
                     high[k] = std::max(high[k], node_[k]);
+                    if (node_[k] != std::floor(node_[k])) whole[k] = 0;
                 }
             }
         }
         std::size_t first = 0;
         const auto add = [&](std::size_t count) {
             double sum = 0, largest = 0;
+            bool counts = first == 0;
             for (std::size_t k = first; k < first + count; ++k) {
+                counts = counts || whole[k] == 0;
                 sum += (high[k] - low[k]) * (high[k] - low[k]);
                 largest = std::max({largest, std::abs(low[k]), std::abs(high[k])});
             }
             const double range = std::sqrt(sum);
-            groups_.push_back({first, count, range > 1e-9 * largest ? range : 0});
+            groups_.push_back({first, count, counts && range > 1e-9 * largest ? range : 0});
             first += count;
         };
         add(3);
@@ -260,34 +272,45 @@ private:
         }
     }
 
-    // Splits all edges of a class alike, as the cell that needs it most. Three directions share the tolerance.
+    // Splits all edges of a class alike, as the cell that needs it most. Three directions share the tolerance. Where there
+    // would be too many pieces, the fields give way first.
     void choose_pieces() {
-        std::vector<double> needed(edges_.size());
+        std::vector<double> of_shape(edges_.size()), of_fields(edges_.size());
         class_of_.resize(cells_.size());
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                class_of_[c][axis] = edges_.class_of(edges_.edge(cells_[c], 4 * axis));
-                double& most = needed[class_of_[c][axis]];
-                most = std::max({most, 3. * bends_[c].shape[axis] / tolerance_,
-                                 3. * bends_[c].fields[axis] / (kFieldsPerShape * tolerance_)});
+                const std::size_t e = class_of_[c][axis] = edges_.class_of(edges_.edge(cells_[c], 4 * axis));
+                of_shape[e] = std::max(of_shape[e], 3. * bends_[c].shape[axis] / tolerance_);
+                of_fields[e] = std::max(of_fields[e], 3. * bends_[c].fields[axis] / (kFieldsPerShape * tolerance_));
             }
         }
-        const auto most = static_cast<double>(std::max(kMostHexes, kMostPerCell * cells_.size()));
         pieces_.resize(edges_.size());
-        for (double part = 1;; part /= 2) {
-            for (std::size_t e = 0; e < needed.size(); ++e) {
-                pieces_[e] = static_cast<std::size_t>(
-                    std::clamp(std::ceil(std::sqrt(needed[e] * part) - 1e-6), 1., std::max(1., kMostPieces * std::sqrt(part))));
+        const double most = most_hexes();
+        const auto fits = [&](double shape_part, double fields_part) {
+            for (std::size_t e = 0; e < pieces_.size(); ++e) {
+                const double needed = std::max(of_shape[e] * shape_part, of_fields[e] * fields_part);
+                pieces_[e] = static_cast<std::size_t>(std::clamp(std::ceil(std::sqrt(needed) - 1e-6), 1., kMostPieces));
             }
             double count = 0;
             for (std::size_t c = 0; c < cells_.size(); ++c) {
                 const Sizes n = pieces_of(c);
                 count += static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
             }
-            if (count <= most) break;
-            limited_ = true;
+            return count <= most;
+        };
+        constexpr double kLess = .8;
+        const bool shape_fits = fits(1, 0);
+        limited_ = !shape_fits || !fits(1, 1);
+        if (!limited_) return;
+        double part = 1;
+        if (shape_fits) {
+            while (!fits(1, part)) part = part < 1e-12 ? 0 : part * kLess;
+        } else {
+            while (!fits(part, part)) part = part < 1e-12 ? 0 : part * kLess;
         }
     }
+
+    [[nodiscard]] double most_hexes() const { return static_cast<double>(std::max(kMostHexes, kMostPerCell * cells_.size())); }
 
     [[nodiscard]] Sizes pieces_of(std::size_t c) const {
         return {pieces_[class_of_[c][0]], pieces_[class_of_[c][1]], pieces_[class_of_[c][2]]};
@@ -446,6 +469,18 @@ private:
         }
     }
 
+    static std::string short_text(double value) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.1e", value);
+        return text;
+    }
+
+    void report_straight() {
+        found_.warnings.push_back(counted(curved_count_, "curved cell", "curved cells") +
+                                  (curved_count_ == 1 ? " is" : " are") + " straight to within " + short_text(tolerance_) +
+                                  " of the mesh's size: only the corners are used");
+    }
+
     void report() {
         double shape = 0, fields = 0;
         for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -459,21 +494,18 @@ private:
             shape = std::max(shape, of_shape);
             fields = std::max(fields, of_fields);
         }
-        const auto short_text = [](double value) {
-            char text[32];
-            std::snprintf(text, sizeof text, "%.1e", value);
-            return std::string(text);
-        };
         std::string warning = counted(curved_count_, "curved cell", "curved cells");
         if (curved_count_ < cells_.size()) {
             warning += " and " + counted(cells_.size() - curved_count_, "other", "others");
         }
         warning += " split into " + counted(new_hexes_.corners.size(), "hexahedron", "hexahedra") +
                    " with points on the curved shape, which is within " + short_text(shape) + " of the mesh's size";
-        if (!arrays_.empty()) warning += ", its fields within " + short_text(fields) + " of their ranges";
+        if (std::any_of(groups_.begin() + 1, groups_.end(), [](const Group& group) { return group.range > 0; })) {
+            warning += ", its fields within " + short_text(fields) + " of their ranges";
+        }
         if (limited_) {
             warning += "; for a tolerance of " + short_text(tolerance_) + " there would be more than " +
-                       std::to_string(std::max(kMostHexes, kMostPerCell * cells_.size()));
+                       std::to_string(static_cast<std::size_t>(most_hexes()));
         }
         found_.warnings.push_back(warning);
         found_.hexes = std::move(new_hexes_);
@@ -531,8 +563,7 @@ bool split_curved(MeshFile& found, double tolerance, std::string_view file, cons
                                  ": only the corners are used");
         return false;
     }
-    CurvedSplit(found, tolerance, file, names).run();
-    return true;
+    return CurvedSplit(found, tolerance, file, names).run();
 }
 
 }  // namespace subvol::detail

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "subvol/index.h"
+#include "subvol/mesh_io.h"
 #include "subvol/vec.h"
 #include "text_scanner.h"
 
@@ -82,6 +83,7 @@ struct MeshFile {
     std::vector<FileArray> arrays;
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
+    std::vector<MeshBlock> blocks;
 };
 
 /// Calls call(cells) for the FileCells of each kind.

@@ -20,6 +20,7 @@
 #include "subvol/limit.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_io.h"
+#include "subvol/mesh_series.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mixed_cells.h"

@@ -105,7 +105,7 @@ void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, 
     into.numbers.push_back(static_cast<Index>(next_));
 }
 
-void VtkCellSorter::report(std::string_view file) {
+void VtkCellSorter::report(std::optional<std::string_view> file) {
     if (mislabelled_ > 0) {
         found_.warnings.push_back(counted(mislabelled_, "cell", "cells") +
                                   " with 8 corners but the type of a tetrahedron (10) taken as hexahedra");
@@ -122,7 +122,11 @@ void VtkCellSorter::report(std::string_view file) {
                 counted(count, known ? names->second[0] : "cell", known ? names->second[1] : "cells") + " (VTK type " +
                 std::to_string(type) + ")";
     }
-    add_left_out_warning(found_, list, file);
+    if (file) {
+        add_left_out_warning(found_, list, *file);
+    } else if (!list.empty()) {
+        found_.warnings.push_back(list + " ignored");
+    }
 }
 
 }  // namespace subvol::detail

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -30,7 +31,9 @@ public:
     void set_old_order() { old_order_ = true; }
 
     /// To be called after the last cell: appends warnings about cells that were left out or read as another kind.
-    void report(std::string_view file);
+    ///
+    /// file: refused if it has no cells that are taken; nothing: that is allowed
+    void report(std::optional<std::string_view> file);
 
 private:
     /// Keeps all nodes of a curved hexahedron. returns: whether its shape is known

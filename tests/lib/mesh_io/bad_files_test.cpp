@@ -47,6 +47,8 @@ const std::vector<Good> kGood{
     {"07_unused_vertices_ok.mesh", ""},
     {"08_two_components_edge_contact_ok.mesh", "", 14, 2, 23, 12, 2},
     {"09_irregular3_ok.mesh", "", 14, 3, 25, 15, 10.2},
+    // An edge has no length: a corner of the cube of 8 cells is cut off, up to the diagonal of a face that runs through it.
+    {"25_duplicate_vertex_in_hex.mesh", "1 cell with repeated points taken as 4 tetrahedra", 287, 184, 729, 627, 8 - 1.0 / 3},
     {"26_one_inverted_hex.mesh", "1 of 8 hexahedra was left-handed"},
     {"27_all_inverted.mesh", "8 of 8 hexahedra were left-handed"},
     {"28_folded_hex.mesh", "1 of 8 hexahedra has a negative Jacobian"},
