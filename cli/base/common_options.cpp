@@ -22,6 +22,28 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
         ->group(group)
         ->type_name("D")
         ->check(CLI::PositiveNumber);
+    app.add_option(
+           "--curved,--curved-tolerance", options.curved,
+           "split curved hexahedra into smaller ones, to within this part T of the mesh's size from their true shape, and "
+           "400 T of the fields' ranges (default 5e-6); corners: use nothing but their corners")
+        ->group(group)
+        ->type_name("T|corners")
+        ->check([](const std::string& text) {
+            return text == "corners" || CLI::PositiveNumber(text).empty() ? ""
+                                                                          : text + " is no positive number and not corners";
+        });
+    auto* step =
+        app.add_option("--step", options.step,
+                       "a step of a series, from 0, or last (the default); of verbs that write a file a step also all or A-B");
+    step->group(group)->type_name("N|last|all|A-B");
+    app.add_option("--time", options.time, "the step of a series whose time is nearest to this")
+        ->group(group)
+        ->type_name("T")
+        ->excludes(step);
+    app.add_option("--blocks", options.blocks, "the named parts of the mesh to read (info lists them; default: all)")
+        ->group(group)
+        ->type_name("A,B")
+        ->delimiter(',');
     app.add_option("--sharp", options.sharp,
                    "a group of the file whose faces inside the mesh and edges are kept sharp: a physical group of Gmsh by its "
                    "name or number, a reference of MEDIT, or Ridges (repeatable)")

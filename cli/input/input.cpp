@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "steps.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
 #include "subvol/model.h"
@@ -48,21 +49,37 @@ std::optional<double> weld_distance(const CommonOptions& options) {
     return options.weld ? std::optional<double>(0) : std::nullopt;
 }
 
+std::optional<double> curved_tolerance(const CommonOptions& options) {
+    if (options.curved == "corners") return std::nullopt;
+    double tolerance = 0;
+    std::from_chars(options.curved.data(), options.curved.data() + options.curved.size(), tolerance);
+    return tolerance;
+}
+
 }  // namespace
 
 std::string input_help() {
     return "a mesh (" + join(readable_mesh_extensions()) + "), or model:NAME or model:NAME:RESOLUTION";
 }
 
+bool is_model(const std::string& input) {
+    return input.starts_with(kModelPrefix);
+}
+
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
-    const bool model = input.starts_with(kModelPrefix);
+    const bool model = is_model(input);
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
+    if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
+    if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = report.timed("read", [&] {
         return model ? generate(input.substr(kModelPrefix.size()))
                      : read_mesh(input, {.other_cells = other_cells(options.other_cells),
                                          .weld = weld_distance(options),
-                                         .sharp = options.sharp});
+                                         .sharp = options.sharp,
+                                         .curved_tolerance = curved_tolerance(options),
+                                         .step = one_step(input, options),
+                                         .blocks = options.blocks});
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;

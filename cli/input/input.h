@@ -15,6 +15,9 @@ namespace subvol::cli {
 /// What an argument FILE may be, for its help: a mesh with one of the extensions that the library reads, or a model.
 [[nodiscard]] std::string input_help();
 
+/// Whether the input is "model:NAME" and no file.
+[[nodiscard]] bool is_model(const std::string& input);
+
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
 [[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);
 

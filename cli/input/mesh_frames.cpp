@@ -69,19 +69,25 @@ void check_frames(const std::string& pattern, const FrameRange& range) {
                 "nothing was written");
 }
 
-MeshFrames::MeshFrames(std::string input, const std::optional<std::string>& to, FrameRange range, Load load)
-    : input_(std::move(input)), range_(range), load_(std::move(load)) {
-    if (!to) return;
-    from_ = load_(input_);
-    to_ = load_(*to);
+MeshFrames::MeshFrames(std::string input, const std::optional<std::string>& to, FrameRange range, Load load) : range_(range) {
+    if (!to) {
+        load_ = [input, load = std::move(load)](int frame) { return load(with_number(input, frame)); };
+        return;
+    }
+    from_ = load(input);
+    to_ = load(*to);
     if (!same_cells(*from_, *to_)) {
-        throw Error(ErrorCode::InvalidInput, "does not have the same cells as " + input_, *to,
+        throw Error(ErrorCode::InvalidInput, "does not have the same cells as " + input, *to,
                     "two meshes that differ in points and values");
     }
     if (!same_fields(*from_, *to_)) {
-        throw Error(ErrorCode::InvalidInput, "does not have the same fields as " + input_, *to,
+        throw Error(ErrorCode::InvalidInput, "does not have the same fields as " + input, *to,
                     "--fields with those that both have");
     }
+}
+
+MeshFrames::MeshFrames(FrameRange range, std::vector<double> times, std::function<HexMesh(int)> load)
+    : range_(range), load_(std::move(load)), times_(std::move(times)) {
 }
 
 HexMesh MeshFrames::between(double t) const {
@@ -100,7 +106,7 @@ const HexMesh& MeshFrames::mesh(int frame) {
     const auto found = meshes_.find(frame);
     if (found != meshes_.end()) return found->second;
     const double t = range_.count() > 1 ? static_cast<double>(frame - range_.first) / (range_.count() - 1) : 0;
-    return meshes_.emplace(frame, from_ ? between(t) : load_(with_number(input_, frame))).first->second;
+    return meshes_.emplace(frame, from_ ? between(t) : load_(frame)).first->second;
 }
 
 Attribute MeshFrames::velocity(int frame) {
@@ -111,7 +117,12 @@ Attribute MeshFrames::velocity(int frame) {
         throw Error(ErrorCode::InvalidInput, text("the cells change between the frames ", before, " and ", after), "--velocity",
                     "meshes of the same cells");
     }
-    return velocity_between(a, b, after - before);
+    const auto time = [&](int k) { return times_.empty() ? k : times_[static_cast<std::size_t>(k)]; };
+    const double passed = time(after) - time(before);
+    if (!(passed > 0)) {
+        throw Error(ErrorCode::InvalidInput, text("no time passes between the steps ", before, " and ", after), "--velocity");
+    }
+    return velocity_between(a, b, passed);
 }
 
 }  // namespace subvol::cli

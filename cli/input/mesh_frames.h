@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "subvol/hex_mesh.h"
 
@@ -44,10 +45,14 @@ public:
     /// throws: Error(InvalidInput) if the two do not have the same cells and fields
     MeshFrames(std::string input, const std::optional<std::string>& to, FrameRange range, Load load);
 
+    /// The steps of a series, which `load` reads by their number. times: of all of them, from 0
+    MeshFrames(FrameRange range, std::vector<double> times, std::function<HexMesh(int)> load);
+
     /// Keeps the mesh until it is two frames old.
     [[nodiscard]] const HexMesh& mesh(int frame);
 
-    /// `velocity_between` the frames before and after, in world units a frame; one-sided at the first and the last one.
+    /// `velocity_between` the frames before and after, in world units a frame, or of a series' steps a unit of time; one-sided
+    /// at the first and the last one.
     ///
     /// throws: Error(InvalidInput) if the frames beside it have other cells, or if there is only one frame
     [[nodiscard]] Attribute velocity(int frame);
@@ -55,9 +60,9 @@ public:
 private:
     [[nodiscard]] HexMesh between(double t) const;
 
-    std::string input_;
     FrameRange range_;
-    Load load_;
+    std::function<HexMesh(int)> load_;
+    std::vector<double> times_;
     std::optional<HexMesh> from_, to_;  // with `to`
     std::map<int, HexMesh> meshes_;
 };

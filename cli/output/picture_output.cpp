@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "mesh_frames.h"
 #include "outputs.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
@@ -70,14 +71,19 @@ void warn_if_empty(float opacity, Report& report) {
 
 }  // namespace
 
-PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments)
-    : path_(path), frames_(frames), sheet_(arguments.views.has_value()), background_(arguments.background_color()) {
+PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments, int first)
+    : path_(path),
+      frames_(frames),
+      first_(first),
+      sheet_(arguments.views.has_value()),
+      background_(arguments.background_color()) {
     if (sheet_ && frames_)
         throw Error(ErrorCode::InvalidInput, "a sheet of views does not turn", "--views", "--turntable alone");
     if (!is_video(path_)) {
         check_output(path_, {".png", ".exr"});
     } else if (!frames_) {
-        throw Error(ErrorCode::InvalidInput, "only a turntable makes a video", path, "--turntable N, or .png or .exr");
+        throw Error(ErrorCode::InvalidInput, "only a turntable or steps make a video", path,
+                    "--turntable N, --step all, or .png or .exr");
     } else {
         video_.emplace(path_, parse_size("--size", arguments.size), arguments.frames_per_second);
     }
@@ -101,44 +107,47 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
             }
         }
     }
-    warn_if_empty(most_opaque(sheet.image), report);
+    opacity_ = most_opaque(sheet.image);
     if (path_.extension() == ".png") warn_if_blank(sheet.image, background_, report);
     const detail::Stopwatch watch;
     write_frame(0, sheet);
     report.add_seconds("write", watch.seconds());
-    report["output"] = frame_path(0).string();
 }
 
 void PictureOutput::write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
                           Report& report) {
     if (sheet_) return write_sheet(views, draw, report);
-    float opacity = 0;
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        FrameProgress of_frame(report.progress(), i, views.size());
+    for (const View& view : views) {
+        FrameProgress of_frame(report.progress(), written_, static_cast<std::size_t>(frames_.value_or(1)));
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
-        const Picture picture = draw(views[i], progress);
-        opacity = std::max(opacity, most_opaque(picture.image));
-        if (i == 0 && path_.extension() == ".png") warn_if_blank(picture.image, background_, report);
+        const Picture picture = draw(view, progress);
+        opacity_ = std::max(opacity_, most_opaque(picture.image));
+        if (written_ == 0 && path_.extension() == ".png") warn_if_blank(picture.image, background_, report);
         const detail::Stopwatch watch;
-        write_frame(i, picture);
+        write_frame(written_++, picture);
         report.add_seconds("write", watch.seconds());
     }
-    warn_if_empty(opacity, report);
+}
+
+void PictureOutput::finish(Report& report) {
+    warn_if_empty(opacity_, report);
     report["output"] = frame_path(0).string();
     if (!frames_) return;
     report["frames"] = *frames_;
     if (video_) {
         report.timed("write", [&] { video_->finish(); });
     } else {
-        for (std::size_t i = 0; i < views.size(); ++i) report["outputs"].push_back(frame_path(i).string());
+        for (std::size_t i = 0; i < written_; ++i) report["outputs"].push_back(frame_path(i).string());
     }
 }
 
 std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {
     if (!frames_ || video_) return path_;
-    const std::string number = std::to_string(frame);
-    const std::size_t digits = std::max<std::size_t>(4, std::to_string(*frames_ - 1).size());
+    const int numbered = first_ + static_cast<int>(frame);
+    if (has_number(path_.string())) return with_number(path_.string(), numbered);
+    const std::string number = std::to_string(numbered);
+    const std::size_t digits = std::max<std::size_t>(4, std::to_string(first_ + *frames_ - 1).size());
     return path_.parent_path() /
            (path_.stem().string() + "_" + std::string(digits - number.size(), '0') + number + path_.extension().string());
 }

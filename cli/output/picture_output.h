@@ -27,12 +27,16 @@ class PictureOutput {
 public:
     /// Checks before any work is done that the output can be written.
     ///
-    /// frames: of a turntable; none: a single picture
+    /// frames: of a turntable or the steps of a series; none: a single picture
+    /// first:  the number of the first frame in the names
     /// throws: Error(InvalidInput), Error(Io), Error(MissingCapability)
-    PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments);
+    PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments, int first = 0);
 
-    /// Draws and writes one picture for each view; the names of the files go into the report.
+    /// Draws and writes one picture for each view, after those of earlier calls.
     void write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw, Report& report);
+
+    /// To be called after the last picture: puts the names of the files into the report.
+    void finish(Report& report);
 
 private:
     [[nodiscard]] std::filesystem::path frame_path(std::size_t frame) const;
@@ -42,8 +46,11 @@ private:
 
     std::filesystem::path path_;
     std::optional<int> frames_;
+    int first_;
     bool sheet_;  // four views in one picture
     Vec3 background_;
+    std::size_t written_ = 0;
+    float opacity_ = 0;  // the largest of a pixel
     std::optional<VideoFile> video_;
 };
 

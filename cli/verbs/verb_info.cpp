@@ -6,6 +6,7 @@
 #include "input.h"
 #include "mesh_lines.h"
 #include "points_input.h"
+#include "steps.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
@@ -122,6 +123,7 @@ private:
     void describe_mesh(Report& report) {
         refuse_at("a mesh");
         const ReadResult read = read_input(input_, common(), report);
+        if (!is_model(input_)) put_steps(read, report);
         const MeshReport about = report.timed("inspect", [&] { return inspect(read.mesh); });
         put_mesh_report(report, about);
         report["fields"] = Json::array();
@@ -138,6 +140,16 @@ private:
         lines.pop_back();
         report.say(lines);
         report.all_said();
+    }
+
+    void put_steps(const ReadResult& read, Report& report) const {
+        const MeshSeries series = open_series(input_);
+        const std::size_t step = one_step(input_, common()).value_or(series.size() - 1);
+        report["steps"] = series.size();
+        report["times"] = series.times;
+        report["step"] = step;
+        report["blocks"] = Json::array();
+        for (const MeshBlock& block : read.blocks) report["blocks"].push_back({{"name", block.name}, {"cells", block.cells}});
     }
 
     void describe_points(Report& report) {

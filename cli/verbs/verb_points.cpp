@@ -6,6 +6,7 @@
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "sampled_points.h"
+#include "steps.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "subvol/points_io.h"
@@ -24,6 +25,7 @@ public:
                "  subvol points model:ball -o ball.vtp                 for ParaView\n"
                "  subvol points model:ball -o ball.vdb                 for Houdini\n"
                "  subvol points model:ball -o dense.ply --per-edge 2 --splats\n"
+               "  subvol points run.exo -o 'run_####.ply' --step all\n"
                "  subvol points smoke.vdb -o smoke.ply --threshold 0   one kernel per voxel\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
@@ -50,14 +52,12 @@ public:
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
         report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
-        const RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(report);
-        report.timed("write", [&] {
-            if (extension == ".vdb") {
-                write_vdb_points(output_, volume);
-            } else {
-                write_points(output_, volume, {.ascii = ascii_, .splats = splats_});
-            }
-        });
+        if (asks_for_steps(common())) {
+            write_steps(report);
+            return 0;
+        }
+        const RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
+        write(output_, volume, report);
         report["output"] = output_;
         const bool inside = extension == ".ply" && !splats_;
         if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = detail::boundary_path(output_).string();
@@ -65,8 +65,34 @@ public:
     }
 
 private:
-    [[nodiscard]] RbfVolume points_of_mesh(Report& report) {
-        HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+    void write(const std::string& path, const RbfVolume& volume, Report& report) const {
+        report.timed("write", [&] {
+            if (path.ends_with(".vdb")) {
+                write_vdb_points(path, volume);
+            } else {
+                write_points(path, volume, {.ascii = ascii_, .splats = splats_});
+            }
+        });
+    }
+
+    void write_steps(Report& report) {
+        check_numbered(output_);
+        const MeshSeries series = open_series(input_);
+        const FrameRange range = chosen_steps(series, common());
+        for (int step = range.first; step <= range.last; ++step) {
+            const std::string path = with_number(output_, step);
+            write(path, points_of_mesh(of_step(common(), step), report), report);
+            report["frames"].push_back({{"frame", step},
+                                        {"time", series.times[static_cast<std::size_t>(step)]},
+                                        {"points", report["points"]},
+                                        {"output", path}});
+        }
+        report["input"] = input_;
+        report["output"] = output_;
+    }
+
+    [[nodiscard]] RbfVolume points_of_mesh(const CommonOptions& options, Report& report) {
+        HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report);
         const std::optional<TransferFunction> shown = seen(field_range(mesh));
         return sample_reported(std::move(mesh), sample_, refine_, shown, report);
     }

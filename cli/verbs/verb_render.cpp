@@ -14,6 +14,7 @@
 #include "reference_pictures.h"
 #include "sampled_points.h"
 #include "splat_arguments.h"
+#include "steps.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/error.h"
 #include "subvol/progressive.h"
@@ -46,6 +47,7 @@ public:
                "  subvol render model:ball -o side.exr --view -y --size 1024x768 --tf coolwarm\n"
                "  subvol render model:ball -o turn.mp4 --turntable 120 --legend turn.svg\n"
                "  subvol render model:ball -o reference.exr --method tets --levels 2 --samples 2\n"
+               "  subvol render run.pvd -o run.mp4 --step all             a film\n"
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
                "  subvol render smoke.vdb -o smoke.png                   the voxels as kernels") {
         app()
@@ -85,6 +87,10 @@ public:
         report.if_long(method_ == "dense"  ? "--levels 2, a smaller --size, or --method splat"
                        : drawn_by_splats() ? "a smaller --size, a larger --spacing, or fewer --sheets"
                                            : "a smaller --size, fewer --samples, or --method splat");
+        if (asks_for_steps(common())) {
+            draw_steps(report);
+            return 0;
+        }
         PictureOutput output(output_, picture_.turntable_frames, picture_);
         if (method_ == "grid") {
             draw_voxels(output, report);
@@ -95,6 +101,7 @@ public:
         } else {
             draw_mesh(output, report);
         }
+        output.finish(report);
         return 0;
     }
 
@@ -132,14 +139,57 @@ private:
         }
     }
 
-    void draw_mesh(PictureOutput& output, Report& report) {
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report, splat_.color_field);
+    [[nodiscard]] HexMesh shown_mesh(const CommonOptions& options, Report& report) const {
+        HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report, splat_.color_field);
         check_coordinates(mesh);
-        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
-        const Box box = bounds(mesh);
-        const std::vector<View> views = picture_.make_views(box, mesh.points);
-        const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
+        return mesh;
+    }
+
+    /// A picture of each step, in one box and with one range of colours: all are read once for these.
+    void draw_steps(Report& report) {
+        if (picture_.turntable_frames || splat_.seconds || method_ == "grid") {
+            throw Error(ErrorCode::InvalidInput, "steps are drawn without it",
+                        picture_.turntable_frames ? "--turntable"
+                        : splat_.seconds          ? "--seconds"
+                                                  : "--method grid");
+        }
+        const MeshSeries series = open_series(input_);
+        const FrameRange steps = chosen_steps(series, common());
+        PictureOutput output(output_, steps.count(), picture_, steps.first);
+        Box box;
+        Range range, colors;
+        std::string name;
+        for (int step = steps.first; step <= steps.last; ++step) {
+            const HexMesh mesh = shown_mesh(of_step(common(), step), report);
+            const Range field = field_range(mesh, 0), color = field_range(mesh, mesh.attributes.size() - 1);
+            const bool first = step == steps.first;
+            range = first ? field : Range{std::min(range.min, field.min), std::max(range.max, field.max)};
+            colors = first ? color : Range{std::min(colors.min, color.min), std::max(colors.max, color.max)};
+            box.add(bounds(mesh));
+            name = mesh.attributes.back().name;
+        }
+        const std::vector<View> views = picture_.make_views(box);
         const Optics optics = picture_.make_optics(box, range, colors);
+        for (int step = steps.first; step <= steps.last; ++step) {
+            draw(shown_mesh(of_step(common(), step), report), views, optics, output, report);
+        }
+        output.finish(report);
+        report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
+        picture_.write_legend(optics, name, colors, report);
+    }
+
+    void draw_mesh(PictureOutput& output, Report& report) {
+        const HexMesh mesh = shown_mesh(common(), report);
+        const Box box = bounds(mesh);
+        const Range colors = field_range(mesh, mesh.attributes.size() - 1);
+        const Optics optics = picture_.make_optics(box, field_range(mesh, 0), colors);
+        draw(mesh, picture_.make_views(box, mesh.points), optics, output, report);
+        picture_.write_legend(optics, mesh.attributes.back().name, colors, report);
+    }
+
+    void draw(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
+              Report& report) {
+        if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
         if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
             draw_tetrahedra(fine, boundary_of(mesh, report), views, optics, output, report);
@@ -154,7 +204,6 @@ private:
         } else {
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
         }
-        picture_.write_legend(optics, mesh.attributes.back().name, colors, report);
     }
 
     using Draw = std::function<Picture(const View&, Progress*)>;

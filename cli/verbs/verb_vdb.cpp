@@ -9,6 +9,8 @@
 #include "outputs.h"
 #include "points_input.h"
 #include "refine_arguments.h"
+#include "steps.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_motion.h"
@@ -54,6 +56,7 @@ public:
                "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
                "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
                "  subvol vdb 'run_####.vtu' -o 'run_####.vdb' --frames 1-240 --velocity --fps 24\n"
+               "  subvol vdb run.pvd -o 'run_####.vdb' --step all --velocity\n"
                "  subvol vdb rest.vtu --to bent.vtu -o 'bend_##.vdb' --frames 24\n"
                "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
                "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G") {
@@ -83,7 +86,9 @@ public:
         report.if_long("a lower --resolution, or --levels 1");
         check_output(output_.path, {".vdb"});
         if (!like_.empty()) like_grids_ = read_vdb(like_);
-        if (!frames_.empty() || !to_.empty() || has_number(input_)) {
+        if (asks_for_steps(common())) {
+            run_steps(report);
+        } else if (!frames_.empty() || !to_.empty() || has_number(input_)) {
             run_frames(report);
         } else if (holds_points(input_)) {
             run_points(report);
@@ -172,7 +177,8 @@ private:
             ->type_name("FILE");
         auto* velocity =
             app().add_flag("--velocity", velocity_,
-                           "also write a grid of vectors, named vel: the velocity of the volume, in world units per frame");
+                           "also write a grid of vectors, named vel: the velocity of the volume, in world units per frame; of "
+                           "steps per unit of their time");
         app()
             .add_option("--fps", frames_per_second_,
                         "with --velocity: in world units per second, at this many frames per second")
@@ -213,17 +219,39 @@ private:
         write_reported(grids, output_, report);
     }
 
-    /// The first frame determines the voxel size and the level of all frames.
     void run_frames(Report& report) {
-        if (output_.memory_bytes > 0)
-            throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
         check_frame_names();
         const FrameRange range = parse_frames(frames_);
         if (to_.empty()) check_frames(input_, range);
         MeshFrames frames(input_, to_.empty() ? std::nullopt : std::optional(to_), range,
                           [&](const std::string& name) { return load(name, report); });
+        write_frames(range, frames, {}, report);
+    }
+
+    void run_steps(Report& report) {
+        if (!frames_.empty() || !to_.empty()) {
+            throw Error(ErrorCode::InvalidInput, "a series has steps", frames_.empty() ? "--to" : "--frames", "--step A-B");
+        }
+        if (app().count("--fps") > 0) {
+            throw Error(ErrorCode::InvalidInput, "the velocity of steps follows from their times", "--fps");
+        }
+        check_numbered(output_.path);
+        const MeshSeries series = open_series(input_);
+        const FrameRange range = chosen_steps(series, common());
+        MeshFrames frames(range, series.times, [&](int step) {
+            return with_written_fields(load_mesh(input_, of_step(common(), step), report), report);
+        });
+        report["times"] = std::vector(series.times.begin() + range.first, series.times.begin() + range.last + 1);
+        write_frames(range, frames, series.times, report);
+    }
+
+    /// The first frame determines the voxel size and the level of all frames. times: of the steps of a series; else empty
+    void write_frames(const FrameRange& range, MeshFrames& frames, const std::vector<double>& times, Report& report) {
+        if (output_.memory_bytes > 0)
+            throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
         const HexMesh first = frames.mesh(range.first);
         RasterizeOptions options = set_up(first, report);
+        const auto metadata = options.metadata;
         std::optional<RefinementTables> tables;
         const int levels = options.limit ? finest_level(limit_) : options.refine.levels;
         if (!refine_.crease_angle_deg &&
@@ -237,7 +265,15 @@ private:
             HexMesh mesh = frames.mesh(frame);
             const bool same = same_cells(first, mesh);
             options.tables = tables && same ? &*tables : nullptr;
-            if (velocity_) add_velocity(frames.velocity(frame), mesh);
+            if (!times.empty()) {
+                const auto step = static_cast<std::size_t>(frame);
+                options.metadata = metadata;
+                options.metadata.emplace_back("subvol_step", std::to_string(frame));
+                options.metadata.emplace_back("subvol_time", detail::number_text(times[step], 12));
+                const std::size_t other = step == 0 ? 1 : step - 1;
+                if (velocity_) frames_per_second_ = 1 / std::abs(times[step] - times.at(other));
+            }
+            if (velocity_) add_velocity(frames.velocity(frame), mesh, times.empty() ? frames_per_second_ : 1);
             LimitCells of_frame;  // with tables the first limit serves all meshes with the same cells
             if (options.limit && !options.tables && (velocity_ || frame > range.first)) {
                 of_frame = find_limit(mesh, options.refine, options.voxel_size_world, report);
@@ -272,11 +308,11 @@ private:
         }
     }
 
-    void add_velocity(Attribute velocity, HexMesh& mesh) const {
+    static void add_velocity(Attribute velocity, HexMesh& mesh, double factor) {
         if (mesh.find_attribute(velocity.name)) {
             throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", kVelocity, "--fields without it");
         }
-        for (double& v : velocity.values) v *= frames_per_second_;
+        for (double& v : velocity.values) v *= factor;
         mesh.attributes.push_back(std::move(velocity));
     }
 

@@ -57,7 +57,7 @@ struct DescentClass {
 /// points:  of the child's neighbourhood, as corners of children of the cells that the walk about the parent visits
 struct ClassEntry {
     struct Corner {
-        std::uint16_t cell;  // in the order of the walk
+        std::uint16_t cell;          // in the order of the walk
         std::uint8_t child, corner;  // octants along the axes of the walk
     };
     struct Child {
@@ -70,9 +70,9 @@ struct ClassEntry {
     std::array<Child, 8> children{};  // by octants
 };
 
-/// Which classes the children of a class belong to, and how their points follow: a place in a cell is found by a walk from class
-/// to class, without topology. Around an extraordinary edge or point most children are regular, and the others have the class
-/// of their parent or one of a few others, so that the graph is small however deep the walk goes.
+/// Which classes the children of a class belong to, and how their points follow: a place in a cell is found by a walk from
+/// class to class, without topology. Around an extraordinary edge or point most children are regular, and the others have the
+/// class of their parent or one of a few others, so that the graph is small however deep the walk goes.
 ///
 /// Everything is made when it is asked for first, from the neighbourhood's code alone, so that it does not depend on who asks.
 /// Thread-safe.

@@ -2,6 +2,8 @@
 #include "vtk_xml.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 
 #include "subvol/index.h"
 
@@ -81,6 +83,15 @@ void VtkXml::read_encoding(const pugi::xml_node& root) {
     }
     encoding_.appended_base64 = encoding == "base64";
     if (encoding_.appended_base64) encoding_.appended = encoding_.appended.substr(0, encoding_.appended.find('<'));
+}
+
+bool VtkXml::is_older_than(int major, int minor) const {
+    const std::string_view version = data_set_.parent().attribute("version").as_string("0.1");
+    std::array<int, 2> parts{};
+    const auto [dot, error] = std::from_chars(version.data(), version.data() + version.size(), parts[0]);
+    const char* end = version.data() + version.size();
+    if (error == std::errc() && dot != end) std::from_chars(dot + 1, end, parts[1]);
+    return parts < std::array{major, minor};
 }
 
 std::size_t VtkXml::count(const pugi::xml_node& piece, const char* name) const {

@@ -24,6 +24,9 @@ public:
     [[nodiscard]] const VtuArrays& arrays() const { return arrays_; }
     [[nodiscard]] const TextScanner& in() const { return in_; }
 
+    /// Whether the version of the file is less than this one.
+    [[nodiscard]] bool is_older_than(int major, int minor) const;
+
     /// The largest possible size of all arrays after decompression, in bytes.
     [[nodiscard]] std::size_t most_bytes() const { return largest_size(encoding_.compressor, text_.size()); }
 

@@ -13,7 +13,8 @@ namespace subvol::detail {
 class BatchEvaluator {
 public:
     /// scales: of each channel, what tolerances are relative to. All references are kept.
-    BatchEvaluator(const LimitOptions& options, std::span<const double> scales, const Channels& channels, LimitSamples& samples);
+    BatchEvaluator(const LimitOptions& options, std::span<const double> scales, const Channels& channels,
+                   LimitSamples& samples);
 
     void run(const PatchSource& source, std::span<const LimitQuery> queries, std::span<const std::size_t> numbers);
 

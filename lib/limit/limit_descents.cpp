@@ -82,8 +82,8 @@ struct LimitDescents::State {
         HexMesh second;
     };
 
-    State(const HexMesh& mesh, std::span<const LimitQuery> list, std::span<const std::size_t> sorted, const LimitOptions& wanted,
-          std::span<const double> of_channels, LimitSamples& results)
+    State(const HexMesh& mesh, std::span<const LimitQuery> list, std::span<const std::size_t> sorted,
+          const LimitOptions& wanted, std::span<const double> of_channels, LimitSamples& results)
         : control(mesh),
           queries(list),
           order(sorted),
@@ -172,7 +172,8 @@ struct LimitDescents::State {
         for (const OpenPlace& at : places) with.left.push_back(at.query);
     }
 
-    /// Places in a cell of a class, the values of whose neighbourhood are there, and in its children as deep as they ask for it.
+    /// Places in a cell of a class, the values of whose neighbourhood are there, and in its children as deep as they ask for
+    /// it.
     void begin(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes,
                Worker& with) const {
         const double* values = with.values[static_cast<std::size_t>(level)].data();
@@ -429,7 +430,8 @@ std::vector<std::size_t> LimitDescents::run(std::span<const CellPlaces> cells) {
     run_each(0, [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_at_once(in, classes, with); });
     if (std::ranges::find(done, 0) != done.end()) state.find_common();
     if (!state.common.empty()) {
-        run_each(0.3, [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_common(in, classes, with); });
+        run_each(0.3,
+                 [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_common(in, classes, with); });
     }
     std::vector<CellPlaces> rest;
     std::vector<Vec3> centers;

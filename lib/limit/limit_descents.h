@@ -36,7 +36,8 @@ public:
     LimitDescents(const LimitDescents&) = delete;
     LimitDescents& operator=(const LimitDescents&) = delete;
 
-    /// Fills the samples. Returns the queries, by their numbers, whose surroundings have no class: those are left to the caller.
+    /// Fills the samples. Returns the queries, by their numbers, whose surroundings have no class: those are left to the
+    /// caller.
     [[nodiscard]] std::vector<std::size_t> run(std::span<const CellPlaces> cells);
 
 private:

@@ -10,7 +10,7 @@ namespace subvol {
 
 std::array<std::array<Index, 4>, 6> split_cell(const std::array<Index, 8>& cell) {
     const auto apex = *std::min_element(cell.begin(), cell.end());
-    std::array<std::array<Index, 4>, 6> tets;
+    std::array<std::array<Index, 4>, 6> tets{};  // of a cell that repeats its apex some stay without corners
     std::size_t count = 0;
     for (const auto& face : kCellFaces) {
         std::array<Index, 4> quad;

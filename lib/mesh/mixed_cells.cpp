@@ -190,7 +190,7 @@ void check(std::size_t point_count, const std::vector<std::array<Index, N>>& cel
 
 }  // namespace
 
-HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 8>> hexes, MixedCells others) {
+HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 8>> hexes, MixedCells others, bool cut_all) {
     check(points.size(), hexes, "hexahedron");
     check(points.size(), others.tets, "tetrahedron");
     check(points.size(), others.prisms, "prism");
@@ -201,7 +201,7 @@ HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 
         throw Error(ErrorCode::InvalidInput, "too many cells to be split into hexahedra");
     }
     orient_mixed(points, hexes, others);
-    if (others.pyramids.empty()) return Splitter(points.size(), std::move(hexes), std::move(others)).split();
+    if (others.pyramids.empty() && !cut_all) return Splitter(points.size(), std::move(hexes), std::move(others)).split();
 
     CutCells cut = cut_to_tets(hexes, others);
     MixedCells tets;

@@ -22,7 +22,10 @@ struct HexSplit {
 };
 
 /// The main part of `split_into_hexes`; throws the same.
-[[nodiscard]] HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 8>> hexes, MixedCells others);
+///
+/// cut: cuts all cells into tetrahedra first, even without pyramids
+[[nodiscard]] HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 8>> hexes, MixedCells others,
+                                  bool cut = false);
 
 /// The values of the new points: means over their sources.
 [[nodiscard]] std::vector<Vec3> means(const IndexRows& sources, std::span<const Vec3> points);

@@ -45,14 +45,6 @@ void warn_of_folded(ReadResult& result) {
                               (folded == 1 ? " has" : " have") + " a negative Jacobian at a corner");
 }
 
-void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names) {
-    if (found.not_finite.empty()) return;
-    const auto used = used_points(found);
-    for (const auto& [point, position] : found.not_finite) {
-        if (used[point]) in.fail_at(position, "non-finite coordinate at " + names.point(point));
-    }
-}
-
 FieldInfo describe(const FileArray& array) {
     FieldInfo info{array.name, array.at_cells ? "cell" : "point", array.components, 0, 0};
     const auto components = static_cast<std::size_t>(array.components);
@@ -214,11 +206,11 @@ std::string list_of(std::size_t hexes, const MixedCells& others) {
     return last == std::string::npos ? list : list.replace(last, 2, " and ");
 }
 
-void split_all(ReadResult& result, MixedCells&& others, Origin& origin) {
+void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin) {
     HexMesh& mesh = result.mesh;
     const bool hexes_too = !mesh.cells.empty();
     std::string warning = list_of(mesh.cells.size(), others);
-    HexSplit split = plan_split(mesh.points, std::move(mesh.cells), std::move(others));
+    HexSplit split = plan_split(mesh.points, std::move(mesh.cells), std::move(others), cut);
     mesh.points = means(split.sources, mesh.points);
     mesh.cells = std::move(split.cells);
     if (!origin.cell_numbers.empty()) {
@@ -235,16 +227,34 @@ void split_all(ReadResult& result, MixedCells&& others, Origin& origin) {
 
 }  // namespace
 
+void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names) {
+    if (found.not_finite.empty()) return;
+    const auto used = used_points(found);
+    for (const auto& [point, position] : found.not_finite) {
+        if (used[point]) in.fail_at(position, "non-finite coordinate at " + names.point(point));
+    }
+}
+
 ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names,
                     const ReadOptions& options) {
     drop_ghosts(found);
     refuse_not_finite(found, in, names);
-    if (options.weld) weld_points(found, *options.weld, file, names);
+    return assemble(std::move(found), file, names, options);
+}
+
+ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& names_in_file, const ReadOptions& options) {
+    drop_ghosts(found);
+    if (options.weld) weld_points(found, *options.weld, file, names_in_file);
+    EntityNames names = names_in_file;
+    if (options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names)) names.point_numbers = {};
+    found.curved = {};
+    const bool cut = take_collapsed(found, options.other_cells, file, names);
     Origin origin{used_points(found), {}, {}};
     ReadResult result;
     result.mesh.points = std::move(found.points);
     result.mesh.cells = std::move(found.hexes.corners);
     result.warnings = std::move(found.warnings);
+    result.blocks = std::move(found.blocks);
     MixedCells others = take_others(found);
     if (!others.empty() && options.other_cells == OtherCells::Refuse) {
         throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(result.mesh.cells.size(), others), std::string(file),
@@ -253,7 +263,7 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
     origin.cell_numbers = take_numbers(found);
     turn_hexes(result);
     try {
-        if (!others.empty()) split_all(result, std::move(others), origin);
+        if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
         ArrayConversion conversion(result, origin, file, names);
         for (auto& array : found.arrays) conversion.take(std::move(array));

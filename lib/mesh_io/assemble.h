@@ -7,13 +7,20 @@
 namespace subvol::detail {
 
 /// Makes a mesh of what a reader found. The steps, in this order: drop ghost cells, refuse used points that are not finite,
-/// weld points, turn left-handed hexahedra, split other cells into hexahedra, move cell arrays to the points, validate, tag
-/// sharp faces and creases.
+/// weld points, split curved hexahedra, take collapsed cells as what they look like, turn left-handed hexahedra, split other
+/// cells into hexahedra, move cell arrays to the points, validate, tag sharp faces and creases.
 ///
 /// in, file, names: for messages
 /// throws: Error(InvalidInput) as `read_mesh`
 [[nodiscard]] ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view file, const EntityNames& names,
                                   const ReadOptions& options);
+
+/// The same for what was put together from several files, whose points are known to be finite.
+[[nodiscard]] ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& names,
+                                  const ReadOptions& options);
+
+/// Refuses points that are not finite and that a cell uses.
+void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names);
 
 /// VTK's array of ghosts, at the cells or at the points: a sum of bits for each.
 inline constexpr std::string_view kGhostArray = "vtkGhostType";
@@ -27,8 +34,27 @@ void drop_ghosts(MeshFile& found);
 /// Joins points at the same place: cells then use the first of them. Adds a warning that counts the points.
 ///
 /// tolerance: a point is joined to the first one before it that is no farther away; world units, 0: at exactly the same place
-/// throws:    Error(InvalidInput) if a cell would then have the same corner twice
+/// throws:    Error(InvalidInput) if a cell would then have the same corner twice and the tolerance is not 0
 /// cost:      O(n) if few points lie within a tolerance of each other
 void weld_points(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names);
+
+/// Splits all hexahedra of a mesh with curved ones into smaller ones with points on the curved shape, and evaluates the arrays
+/// at the points there. Opposite edges of a cell are split alike, so that neighbours share their points. Adds a warning with
+/// the estimated error, which is the sum of h² f''/8 over the three directions.
+///
+/// tolerance: of the shape, in parts of the mesh's diagonal; of the fields 400 times that, in parts of their ranges
+/// returns:   whether points were replaced. Not if no cell is bent, beside other kinds of cells, cells that repeat points and
+///            sharp groups: then a warning says that only the corners are used
+/// throws:    Error(InvalidInput) if the degrees do not fit to the number of nodes, a rational weight is not positive, or a
+///            value at a node is not finite
+bool split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names);
+
+/// Takes cells that repeat points as the prisms, pyramids and tetrahedra that they look like; other shapes are cut into
+/// tetrahedra. Cells without volume are left out. Adds warnings with the counts.
+///
+/// other_cells: Ignore: collapsed cells are left out
+/// returns:     whether all cells have to be cut into tetrahedra, so that they fit to those of the other shapes
+/// throws:      Error(InvalidInput) if a cell repeats a point at corners that no collapsed edges join
+[[nodiscard]] bool take_collapsed(MeshFile& found, OtherCells other_cells, std::string_view file, const EntityNames& names);
 
 }  // namespace subvol::detail

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "series/collection.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
@@ -22,17 +23,21 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-constexpr std::array<MeshFormat, 10> kFormats{{
+constexpr std::array<MeshFormat, 14> kFormats{{
     {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
     {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
-    {{".vtu"}, "VTK XML", read_file<read_vtu>, write_vtu},
-    {{".vts"}, "VTK XML", read_file<read_vts>, nullptr},
-    {{".vtr"}, "VTK XML", read_file<read_vtr>, nullptr},
-    {{".vti"}, "VTK XML", read_file<read_vti>, nullptr},
+    {{".vtu"}, "VTK XML", read_file<read_vtu>, write_vtu, false, false, nullptr, read_vtu_piece},
+    {{".vts"}, "VTK XML", read_file<read_vts>, nullptr, false, false, nullptr, read_vts_piece},
+    {{".vtr"}, "VTK XML", read_file<read_vtr>, nullptr, false, false, nullptr, read_vtr_piece},
+    {{".vti"}, "VTK XML", read_file<read_vti>, nullptr, false, false, nullptr, read_vti_piece},
+    {{".pvtu", ".pvts", ".pvtr", ".pvti"}, "VTK XML", read_pieces, nullptr},
+    {{".vtm"}, "VTK XML", read_blocks, nullptr, false, true},
+    {{".pvd"}, "ParaView", read_pvd_step, nullptr, false, true, pvd_times},
+    {{".series"}, "ParaView", read_series_step, nullptr, false, true, series_list_times},
     {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr, true},
     {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
-    {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr},
+    {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr, false, true, exodus_times},
 }};
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "assemble.h"
 
 #include <algorithm>
+#include <unordered_set>
 
 namespace subvol::detail {
 
@@ -57,6 +58,18 @@ void drop_by_points(MeshFile& found, const std::vector<double>& ghosts) {
     if (dropped > 0) found.warnings.push_back(counted(dropped, "cell", "cells") + " with hidden points left out");
 }
 
+// Leaves out the nodes of the curved hexahedra that are no longer there.
+void drop_curved(MeshFile& found) {
+    if (found.curved.size() == 0) return;
+    std::unordered_set<Index> left(found.hexes.numbers.begin(), found.hexes.numbers.end());
+    CurvedHexes kept;
+    for (std::size_t k = 0; k < found.curved.size(); ++k) {
+        const auto& [numbers, orders, ends, nodes] = found.curved;
+        if (left.contains(numbers[k])) kept.add(numbers[k], orders[k], found.curved.nodes_of(k));
+    }
+    found.curved = std::move(kept);
+}
+
 }  // namespace
 
 void drop_ghosts(MeshFile& found) {
@@ -64,6 +77,7 @@ void drop_ghosts(MeshFile& found) {
         if (is_ghosts(array)) array.at_cells ? drop_by_cells(found, array.values) : drop_by_points(found, array.values);
     }
     std::erase_if(found.arrays, is_ghosts);
+    drop_curved(found);
 }
 
 }  // namespace subvol::detail

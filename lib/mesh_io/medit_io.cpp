@@ -107,11 +107,11 @@ private:
 
     void read_cells(std::string_view keyword) {
         if (keyword == "Hexahedra") {
-            read_cells(keyword, kNames, "a hexahedron", found_.hexes.corners);
+            read_cells(keyword, kNames, found_.hexes.corners);
         } else if (keyword == "Tetrahedra") {
-            read_cells(keyword, {"vertex", "tetrahedron", 1}, "a tetrahedron", found_.tets.corners);
+            read_cells(keyword, {"vertex", "tetrahedron", 1}, found_.tets.corners);
         } else if (keyword == "Pyramids") {
-            read_cells(keyword, {"vertex", "pyramid", 1}, "a pyramid", found_.pyramids.corners);
+            read_cells(keyword, {"vertex", "pyramid", 1}, found_.pyramids.corners);
         } else if (keyword == "Quadrilaterals") {
             read_tags<4>(keyword, "quadrilateral", [&](const auto& quad) { found_.sharp.faces.push_back(quad); });
         } else if (keyword == "Triangles") {
@@ -124,7 +124,7 @@ private:
                 ridges_.push_back(in_.integer({"ridge", static_cast<std::int64_t>(r + 1), count}));
             }
         } else {
-            read_cells(keyword, {"vertex", "prism", 1}, "a prism", found_.prisms.corners);
+            read_cells(keyword, {"vertex", "prism", 1}, found_.prisms.corners);
         }
     }
 
@@ -155,21 +155,15 @@ private:
     }
 
     template <std::size_t N>
-    void read_cells(std::string_view keyword, const EntityNames& names, std::string_view kind,
-                    std::vector<std::array<Index, N>>& cells) {
+    void read_cells(std::string_view keyword, const EntityNames& names, std::vector<std::array<Index, N>>& cells) {
         const std::size_t count = in_.count({keyword});
         const std::string reference = "reference of " + std::string(names.cell_word);
         cells.reserve(cells.size() + std::min(count, in_.room_for(N + 1)));
         for (std::size_t c = 0; c < count; ++c) {
             const auto number = static_cast<std::int64_t>(c + 1);
             auto& cell = cells.emplace_back();
-            std::size_t position = 0;
-            for (std::size_t k = 0; k < N; ++k) {
-                cell[k] = read_vertex_index({names.cell_word, number, count});
-                if (k == 0) position = in_.position();
-            }
+            for (std::size_t k = 0; k < N; ++k) cell[k] = read_vertex_index({names.cell_word, number, count});
             in_.integer({reference, number, count});
-            check_corners(in_, position, cell, c, names, kind);
         }
     }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "subvol/index.h"
+#include "subvol/mesh_io.h"
 #include "subvol/vec.h"
 #include "text_scanner.h"
 
@@ -27,6 +28,32 @@ template <std::size_t N>
 struct FileCells {
     std::vector<std::array<Index, N>> corners;
     std::vector<Index> numbers;
+};
+
+/// The order of a curved hexahedron's nodes. Vtk8, VtkBezier8: before VTK 9, where two edges were exchanged
+enum class CurvedOrder : std::uint8_t { Vtk, Vtk8, VtkBezier, VtkBezier8, Exodus, Gmsh };
+
+/// All nodes of the curved ones among the hexahedra, which have their corners as all others.
+///
+/// numbers: as in FileCells
+/// ends:    of the nodes of each cell
+struct CurvedHexes {
+    std::vector<Index> numbers;
+    std::vector<CurvedOrder> orders;
+    std::vector<std::size_t> ends;
+    std::vector<Index> nodes;
+
+    [[nodiscard]] std::size_t size() const { return numbers.size(); }
+    [[nodiscard]] std::span<const Index> nodes_of(std::size_t k) const {
+        const std::size_t begin = k == 0 ? 0 : ends[k - 1];
+        return std::span(nodes).subspan(begin, ends[k] - begin);
+    }
+    void add(std::size_t number, CurvedOrder order, std::span<const Index> of_cell) {
+        numbers.push_back(static_cast<Index>(number));
+        orders.push_back(order);
+        nodes.insert(nodes.end(), of_cell.begin(), of_cell.end());
+        ends.push_back(nodes.size());
+    }
 };
 
 /// The faces and edges of the groups that ReadOptions::sharp names. A triangle repeats its last corner.
@@ -51,10 +78,12 @@ struct MeshFile {
     FileCells<4> tets;
     FileCells<6> prisms;
     FileCells<5> pyramids;
+    CurvedHexes curved;
     FileTags sharp;
     std::vector<FileArray> arrays;
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
+    std::vector<MeshBlock> blocks;
 };
 
 /// Calls call(cells) for the FileCells of each kind.
@@ -94,10 +123,6 @@ void read_point(Numbers& in, MeshFile& file, const EntityNames& names, std::size
     for (int i = 0; i < 3; ++i) point[i] = in.real(place);
     add_point(file, point, in.position());
 }
-
-/// Refuses a cell with the same corner twice. position: of the cell in the text; cell: its number, from 0; kind: "a hexahedron"
-void check_corners(const TextScanner& in, std::size_t position, std::span<const Index> corners, std::size_t cell,
-                   const EntityNames& names, std::string_view kind);
 
 /// Appends a warning about the cells that the reader left out; refuses a file that has no other cells.
 ///

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "formats.h"
+#include "series/steps.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -54,18 +55,38 @@ std::vector<std::string> list_extensions(bool writable_only) {
 
 }  // namespace
 
+const MeshFormat& detail::readable_format(const std::filesystem::path& path) {
+    const MeshFormat* format = format_of(path);
+    if (!format) refuse_format(path, "read", list_formats(false));
+    return *format;
+}
+
+void detail::check_options(const MeshFormat& format, const std::filesystem::path& path, const ReadOptions& options) {
+    if (!options.sharp.empty() && !format.groups) {
+        throw Error(ErrorCode::InvalidInput, "groups of faces and edges are not read from such files", path.string(),
+                    "sharp faces come from Gmsh (.msh) and MEDIT (.mesh, .meshb) files");
+    }
+    if (!options.blocks.empty() && !format.blocks) {
+        throw Error(ErrorCode::InvalidInput, "such files have no named blocks", path.string(),
+                    "blocks come from Exodus II and .vtm files");
+    }
+}
+
 ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options) {
     if (options.weld && !(*options.weld >= 0 && std::isfinite(*options.weld))) {
         throw Error(ErrorCode::InvalidInput, "points cannot be welded within " + number_text(*options.weld), path.string(),
                     "0 or a length");
     }
-    const MeshFormat* format = format_of(path);
-    if (!format) refuse_format(path, "read", list_formats(false));
-    if (!options.sharp.empty() && !format->groups) {
-        throw Error(ErrorCode::InvalidInput, "groups of faces and edges are not read from such files", path.string(),
-                    "sharp faces come from Gmsh (.msh) and MEDIT (.mesh, .meshb) files");
+    if (options.curved_tolerance && !(*options.curved_tolerance > 0 && std::isfinite(*options.curved_tolerance))) {
+        throw Error(ErrorCode::InvalidInput,
+                    "curved cells cannot be followed to within " + number_text(*options.curved_tolerance), path.string(),
+                    "a positive part of the mesh's size, such as 1e-4");
     }
-    return format->read(path, options);
+    const MeshFormat& format = readable_format(path);
+    check_options(format, path, options);
+    std::vector<std::string> none;
+    if (!format.times) static_cast<void>(chosen_step(options, 1, path.string(), none));
+    return format.read(path, options);
 }
 
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh) {

@@ -42,13 +42,13 @@ public:
         const std::int64_t dimension = number({"Dimension"}, NumberType::Int32);
         if (dimension != 3) in_.fail("dimension " + std::to_string(dimension) + " is not supported", "it has to be 3");
         read_vertices();
-        read_cells(kHexahedra, "hex", "a hexahedron", found_.hexes);
+        read_cells(kHexahedra, "hex", found_.hexes);
         if (options_.other_cells == OtherCells::Ignore) {
             list_left_out();
         } else {
-            read_cells(kTetrahedra, "tetrahedron", "a tetrahedron", found_.tets);
-            read_cells(kPrisms, "prism", "a prism", found_.prisms);
-            read_cells(kPyramids, "pyramid", "a pyramid", found_.pyramids);
+            read_cells(kTetrahedra, "tetrahedron", found_.tets);
+            read_cells(kPrisms, "prism", found_.prisms);
+            read_cells(kPyramids, "pyramid", found_.pyramids);
         }
         if (groups_.any()) read_groups();
         groups_.check(file_);
@@ -125,15 +125,13 @@ private:
     }
 
     template <std::size_t N>
-    void read_cells(std::int64_t section, std::string_view name, std::string_view kind, FileCells<N>& into) {
+    void read_cells(std::int64_t section, std::string_view name, FileCells<N>& into) {
         if (!sections_.contains(section)) return;
-        const EntityNames names{kNames.point_word, name, kNames.first};
         const std::size_t count = count_in(section, {name}, (N + 1) * size_of(integer_));
         into.corners.resize(count);
         for (std::size_t c = 0; c < count; ++c) {
             const Place place{name, static_cast<std::int64_t>(c + 1), count};
             for (Index& corner : into.corners[c]) corner = read_corner(place);
-            check_corners(in_, in_.position(), into.corners[c], c, names, kind);
             number(place, integer_);
         }
     }

@@ -81,6 +81,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
     for_each_cell(found, [&](const auto& cell) {
         for (const Index p : cell) joined[p] = p;
     });
+    for (const Index p : found.curved.nodes) joined[p] = p;
     Welder welder(found.points, tolerance);
     std::size_t welded = 0;
     for (Index p = 0; p < joined.size(); ++p) {
@@ -91,7 +92,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
     for_each_cell(found, [&](auto& cell) {
         for (std::size_t k = 0; k < cell.size(); ++k) {
             for (std::size_t j = 0; j < k; ++j) {
-                if (cell[j] != joined[cell[k]]) continue;
+                if (tolerance == 0 || cell[j] != joined[cell[k]]) continue;
                 throw Error(ErrorCode::InvalidInput,
                             "a cell has " + names.point(cell[j]) + " and " + names.point(cell[k]) + ", which would be welded",
                             std::string(file), "a smaller tolerance, or no welding");
@@ -99,6 +100,7 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
             cell[k] = joined[cell[k]];
         }
     });
+    for (Index& p : found.curved.nodes) p = joined[p];
     const auto join_tag = [&](auto& tag) {
         for (Index& p : tag) p = joined[p] == kNone ? p : joined[p];
     };

@@ -23,6 +23,7 @@
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
 #include "subvol/mixed_cells.h"
 #include "subvol/model.h"
 #include "subvol/optics.h"

@@ -6,6 +6,7 @@
 #include "assemble.h"
 #include "exodus_file.h"
 #include "formats.h"
+#include "series/steps.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -18,10 +19,12 @@ constexpr EntityNames kNames{"node", "element", 1};
 //
 // number: in the names of its variables, from 1
 // first:  the number of its first element among all, from 0
+// name:   its own, or "block" and the file's number for it
 // taken:  it is read as cells
 struct Block {
     std::size_t number, first, size, nodes;
     std::string type;
+    std::string name = {};
     bool taken = false;
 };
 
@@ -65,7 +68,13 @@ public:
     ReadResult read() {
         read_points();
         find_blocks();
-        for (Block& block : blocks_) take(block);
+        name_blocks();
+        const BlockChoice choice(options_.blocks, names_of_blocks(), file_);
+        for (Block& block : blocks_) {
+            if (!choice.takes(block.name)) continue;
+            take(block);
+            found_.blocks.push_back({block.name, block.size});
+        }
         list_left_out();
         read_variables();
         return assemble(std::move(found_), in_, file_, kNames, options_);
@@ -102,6 +111,24 @@ private:
         }
     }
 
+    void name_blocks() {
+        const std::size_t count = exodus_.dimension("num_el_blk");
+        const auto names = exodus_.has("eb_names") ? exodus_.names("eb_names", count) : std::vector<std::string>();
+        const auto ids = exodus_.has("eb_prop1") ? exodus_.integers("eb_prop1", count) : std::vector<std::int64_t>();
+        for (Block& block : blocks_) {
+            const std::size_t b = block.number - 1;
+            if (b < names.size()) block.name = printable(names[b]);
+            if (!block.name.empty()) continue;
+            block.name = "block " + (b < ids.size() ? std::to_string(ids[b]) : std::to_string(block.number));
+        }
+    }
+
+    [[nodiscard]] std::vector<std::string> names_of_blocks() const {
+        std::vector<std::string> names;
+        for (const Block& block : blocks_) names.push_back(block.name);
+        return names;
+    }
+
     void take(Block& block) {
         const std::string& type = block.type;
         const bool others = options_.other_cells != OtherCells::Ignore;
@@ -128,14 +155,19 @@ private:
                          std::string(kind) + " has " + std::to_string(N));
         }
         exodus_.expect_room(block.size, block.nodes, "block " + std::to_string(block.number));
-        if (block.nodes > N) curved_ += block.size;
+        const bool whole = N == 8 && options_.curved_tolerance && (block.nodes == 20 || block.nodes == 27);
+        if (block.nodes > N && !whole) curved_ += block.size;
+        std::vector<Index> all;
         const auto nodes = exodus_.integers("connect" + std::to_string(block.number), block.size * block.nodes);
         for (std::size_t e = 0; e < block.size; ++e) {
             auto& corners = into.corners.emplace_back();
             const std::size_t number = block.first + e;
             for (std::size_t k = 0; k < N; ++k) corners[k] = corner(nodes[e * block.nodes + k], number);
             into.numbers.push_back(static_cast<Index>(number));
-            check_corners(in_, 0, corners, number, kNames, kind);
+            if (!whole) continue;
+            all.clear();
+            for (std::size_t k = 0; k < block.nodes; ++k) all.push_back(corner(nodes[e * block.nodes + k], number));
+            found_.curved.add(number, CurvedOrder::Exodus, all);
         }
     }
 
@@ -162,14 +194,12 @@ private:
 
     void read_variables() {
         const std::size_t steps = exodus_.dimension("time_step");
+        step_ = chosen_step(options_, std::max<std::size_t>(1, steps), file_, found_.warnings);
         if (steps == 0) return;
-        step_ = steps - 1;
         const auto of_nodes = exodus_.names("name_nod_var", exodus_.dimension("num_nod_var"));
         const auto of_elements = exodus_.names("name_elem_var", exodus_.dimension("num_elem_var"));
         for (const Variable& variable : with_vectors(of_nodes)) add_array(variable, false);
         for (const Variable& variable : with_vectors(of_elements)) add_array(variable, true);
-        if (steps == 1 || found_.arrays.empty()) return;
-        found_.warnings.push_back("of " + std::to_string(steps) + " time steps the last one is taken");
     }
 
     void add_array(const Variable& variable, bool at_cells) {
@@ -223,6 +253,19 @@ private:
 };
 
 }  // namespace
+
+std::vector<double> exodus_times(const std::filesystem::path& path) {
+    const std::string bytes = read_text(path), file = path.string();
+    const ExodusFile exodus(bytes, file);
+    const std::size_t steps = exodus.dimension("time_step");
+    exodus.expect_room(steps, 1, "time_step");
+    const bool has_times = exodus.has("time_whole");
+    std::vector<double> times;
+    for (std::size_t k = 0; k < steps; ++k) {
+        times.push_back(has_times ? exodus.reals("time_whole", {k}, 1).front() : static_cast<double>(k));
+    }
+    return times;
+}
 
 ReadResult read_exodus(std::string_view text, std::string_view file, const ReadOptions& options) {
     return ExodusReader(text, file, options).read();

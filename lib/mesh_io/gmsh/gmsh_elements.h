@@ -39,9 +39,16 @@ inline const std::map<std::int64_t, GmshElement> kGmshElements{
     {18, {15, "quadratic prism", "quadratic prisms", GmshShape::Prism}},
     {19, {13, "quadratic pyramid", "quadratic pyramids", GmshShape::Pyramid}},
     {21, {10, "cubic triangle", "cubic triangles", GmshShape::Triangle}},
+    {23, {15, "quartic triangle", "quartic triangles", GmshShape::Triangle}},
     {26, {4, "cubic line", "cubic lines", GmshShape::Line}},
+    {27, {5, "quartic line", "quartic lines", GmshShape::Line}},
     {29, {20, "cubic tetrahedron", "cubic tetrahedra", GmshShape::Tetrahedron}},
+    {30, {35, "quartic tetrahedron", "quartic tetrahedra", GmshShape::Tetrahedron}},
     {36, {16, "cubic quad", "cubic quads", GmshShape::Quad}},
-    {92, {64, "cubic hexahedron", "cubic hexahedra", GmshShape::Hexahedron}}};
+    {37, {25, "quartic quad", "quartic quads", GmshShape::Quad}},
+    {90, {40, "cubic prism", "cubic prisms", GmshShape::Prism}},
+    {91, {75, "quartic prism", "quartic prisms", GmshShape::Prism}},
+    {92, {64, "cubic hexahedron", "cubic hexahedra", GmshShape::Hexahedron}},
+    {93, {125, "quartic hexahedron", "quartic hexahedra", GmshShape::Hexahedron}}};
 
 }  // namespace subvol::detail

@@ -314,12 +314,12 @@ private:
         const std::size_t before = elements_.size();
         elements_.add(number);
         taken_.push_back(1);
-        if (element.shape == GmshShape::Hexahedron) return take_as(found_.hexes, element, before, place, "a hexahedron");
+        if (element.shape == GmshShape::Hexahedron) return take_as(found_.hexes, element, before, place);
         if (element.shape == GmshShape::Tetrahedron && others) {
-            return take_as(found_.tets, element, before, place, "a tetrahedron");
+            return take_as(found_.tets, element, before, place);
         }
-        if (element.shape == GmshShape::Prism && others) return take_as(found_.prisms, element, before, place, "a prism");
-        if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, before, place, "a pyramid");
+        if (element.shape == GmshShape::Prism && others) return take_as(found_.prisms, element, before, place);
+        if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, before, place);
         taken_.back() = 0;
         if (in_sharp_group_ && dimension_of(element) < 3) return take_tag(element, place);
         for (std::size_t k = 0; k < element.nodes; ++k) values_.integer(place, number_type());
@@ -339,15 +339,21 @@ private:
     }
 
     template <std::size_t N>
-    void take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, const Place& place,
-                 std::string_view kind) {
+    void take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, const Place& place) {
         auto& corners = into.corners.emplace_back();
         for (Index& corner : corners) corner = read_corner(place, number_type());
-        const std::size_t position = in_.position();
-        for (std::size_t k = N; k < element.nodes; ++k) values_.integer(place, number_type());
-        curved_ += element.nodes > N;
         into.numbers.push_back(static_cast<Index>(number));
-        check_corners(in_, position, corners, number, names_, kind);
+        const bool whole = N == 8 && element.nodes > N && options_.curved_tolerance.has_value();
+        curved_ += element.nodes > N && !whole;
+        std::vector<Index> nodes(corners.begin(), corners.end());
+        for (std::size_t k = N; k < element.nodes; ++k) {
+            if (whole) {
+                nodes.push_back(read_corner(place, number_type()));
+            } else {
+                values_.integer(place, number_type());
+            }
+        }
+        if (whole) found_.curved.add(number, CurvedOrder::Gmsh, nodes);
     }
 
     void list_left_out() {

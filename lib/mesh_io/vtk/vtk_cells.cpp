@@ -8,7 +8,15 @@ namespace subvol::detail {
 
 namespace {
 
-enum CellType : std::int64_t { kTetrahedron = 10, kVoxel = 11, kHexahedron = 12, kWedge = 13, kPyramid = 14 };
+enum CellType : std::int64_t {
+    kTetrahedron = 10,
+    kVoxel = 11,
+    kHexahedron = 12,
+    kWedge = 13,
+    kPyramid = 14,
+    kLagrangeHexahedron = 72,
+    kBezierHexahedron = 79
+};
 
 // The linear type of each type with points in the middle of edges, faces or the cell, which come after the corners.
 const std::map<std::int64_t, std::int64_t> kLinear{
@@ -20,7 +28,7 @@ const std::map<std::int64_t, std::int64_t> kLinear{
 constexpr std::array<std::size_t, 3> kOfCurvedHexahedra{20, 24, 27};
 constexpr std::array<std::size_t, 1> kOfCurvedTetrahedra{10};
 constexpr std::array<std::size_t, 3> kOfCurvedWedges{12, 15, 18};
-constexpr std::array<std::size_t, 2> kOfCurvedPyramids{13, 19};
+constexpr std::array<std::size_t, 3> kOfCurvedPyramids{13, 14, 19};
 
 const std::map<std::int64_t, std::array<std::string_view, 2>> kCellNames{
     {1, {"vertex", "vertices"}},
@@ -54,6 +62,7 @@ void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corne
     };
     if (type == kHexahedron || type == kVoxel || mislabelled) {
         take_as(found_.hexes, corners, position, "a hexahedron", is_curved(kOfCurvedHexahedra));
+        if (corners.size() > 8 && type != kVoxel && keep_curved(type_in_file, corners)) --curved_;
         if (type == kVoxel) {
             auto& hex = found_.hexes.corners.back();
             std::swap(hex[2], hex[3]);
@@ -71,6 +80,18 @@ void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corne
     ++next_;
 }
 
+bool VtkCellSorter::keep_curved(std::int64_t type, std::span<const Index> nodes) {
+    if (!options_.curved_tolerance) return false;
+    const bool bezier = type == kBezierHexahedron, lagrange = type == kLagrangeHexahedron;
+    const bool of_arrays = bezier || lagrange;  // their degrees may be in an array
+    if (!of_arrays && std::ranges::find(kOfCurvedHexahedra, nodes.size()) == kOfCurvedHexahedra.end()) return false;
+    const CurvedOrder order = bezier                   ? (old_order_ ? CurvedOrder::VtkBezier8 : CurvedOrder::VtkBezier)
+                              : lagrange && old_order_ ? CurvedOrder::Vtk8
+                                                       : CurvedOrder::Vtk;
+    found_.curved.add(next_, order, nodes);
+    return true;
+}
+
 template <std::size_t N>
 void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, std::size_t position, std::string_view kind,
                             bool curved) {
@@ -82,10 +103,9 @@ void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, 
     auto& taken = into.corners.emplace_back();
     std::copy_n(corners.begin(), N, taken.begin());
     into.numbers.push_back(static_cast<Index>(next_));
-    check_corners(in_, position, taken, next_, kVtkNames, kind);
 }
 
-void VtkCellSorter::report(std::string_view file) {
+void VtkCellSorter::report(std::optional<std::string_view> file) {
     if (mislabelled_ > 0) {
         found_.warnings.push_back(counted(mislabelled_, "cell", "cells") +
                                   " with 8 corners but the type of a tetrahedron (10) taken as hexahedra");
@@ -102,7 +122,11 @@ void VtkCellSorter::report(std::string_view file) {
                 counted(count, known ? names->second[0] : "cell", known ? names->second[1] : "cells") + " (VTK type " +
                 std::to_string(type) + ")";
     }
-    add_left_out_warning(found_, list, file);
+    if (file) {
+        add_left_out_warning(found_, list, *file);
+    } else if (!list.empty()) {
+        found_.warnings.push_back(list + " ignored");
+    }
 }
 
 }  // namespace subvol::detail

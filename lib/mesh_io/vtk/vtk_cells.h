@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -26,10 +27,17 @@ public:
     /// position: of the cell in the text
     void take(std::int64_t type, std::span<const Index> corners, std::size_t position);
 
+    /// The file is of a version in which Lagrange and Bézier hexahedra have VTK 8's order of nodes.
+    void set_old_order() { old_order_ = true; }
+
     /// To be called after the last cell: appends warnings about cells that were left out or read as another kind.
-    void report(std::string_view file);
+    ///
+    /// file: refused if it has no cells that are taken; nothing: that is allowed
+    void report(std::optional<std::string_view> file);
 
 private:
+    /// Keeps all nodes of a curved hexahedron. returns: whether its shape is known
+    bool keep_curved(std::int64_t type, std::span<const Index> nodes);
     /// Adds the cell to `into`, with its first N corners. curved: it may have more points
     template <std::size_t N>
     void take_as(FileCells<N>& into, std::span<const Index> corners, std::size_t position, std::string_view kind, bool curved);
@@ -39,7 +47,8 @@ private:
     ReadOptions options_;
     std::size_t next_ = 0;  // the number of the cell that comes next
     std::size_t mislabelled_ = 0;
-    std::size_t curved_ = 0;  // cells with points in the middle of their edges
+    bool old_order_ = false;
+    std::size_t curved_ = 0;  // cells of which only the corners are used
     std::map<std::int64_t, std::size_t> left_out_;
 };
 

@@ -46,6 +46,7 @@ public:
         }
         if (cells_.types.size() != cells_.size()) in_.fail("CELLS without CELL_TYPES");
         VtkCellSorter sorter(in_, found_, options_);
+        if (old_order_) sorter.set_old_order();
         if (block_) {
             block_->add_points(in_, found_);
             block_->add_cells(in_, found_);
@@ -64,6 +65,7 @@ private:
         if (!upper_case(first).starts_with("# VTK DATAFILE VERSION")) {
             in_.fail("not a legacy VTK file: it begins with " + in_quotes(first), "# vtk DataFile Version is missing");
         }
+        old_order_ = first.substr(first.find_last_of(" \t") + 1) < "5.1";
         in_.line();  // the title may be anything, in any encoding
         const std::string encoding = upper_case(in_.word());
         if (encoding == "BINARY") values_.set_binary();
@@ -221,6 +223,7 @@ private:
     VtkValues values_;
     VtkArrayReader arrays_;
     VtkCells cells_;
+    bool old_order_ = false;         // of the nodes of Lagrange hexahedra, before version 5.1
     std::optional<VtkBlock> block_;  // of a structured data set
 };
 

@@ -26,7 +26,21 @@ public:
           sorter_(xml_.in(), found_, options) {}
 
     ReadResult read() {
+        read_pieces(false);
+        return assemble(std::move(found_), xml_.in(), file_, kVtkNames, options_);
+    }
+
+    MeshFile read_part() {
+        read_pieces(true);
+        refuse_not_finite(found_, xml_.in(), kVtkNames);
+        return std::move(found_);
+    }
+
+private:
+    // may_be_empty: of a part of a mesh
+    void read_pieces(bool may_be_empty) {
         const pugi::xml_node grid = xml_.data_set();
+        if (xml_.is_older_than(2, 1)) sorter_.set_old_order();
         std::size_t pieces = 0;
         for (const auto& piece : grid.children("Piece")) {
             read_piece(piece);
@@ -37,11 +51,9 @@ public:
             found_.warnings.push_back(std::to_string(pieces) + " pieces put together" +
                                       (options_.weld ? "" : "; points where they touch stay apart without welding"));
         drop_partial_arrays();
-        sorter_.report(file_);
-        return assemble(std::move(found_), xml_.in(), file_, kVtkNames, options_);
+        sorter_.report(may_be_empty ? std::nullopt : std::optional(file_));
     }
 
-private:
     void read_piece(const pugi::xml_node& piece) {
         const std::size_t first_point = found_.points.size();
         const std::size_t first_cell = cells_before_;
@@ -206,16 +218,32 @@ ReadResult read_vtu(std::string_view text, std::string_view file, const ReadOpti
     return VtuReader(text, file, options, VtkGrid::Unstructured).read();
 }
 
+MeshFile read_vtu_piece(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtuReader(text, file, options, VtkGrid::Unstructured).read_part();
+}
+
 ReadResult read_vts(std::string_view text, std::string_view file, const ReadOptions& options) {
     return VtuReader(text, file, options, VtkGrid::Structured).read();
+}
+
+MeshFile read_vts_piece(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtuReader(text, file, options, VtkGrid::Structured).read_part();
 }
 
 ReadResult read_vtr(std::string_view text, std::string_view file, const ReadOptions& options) {
     return VtuReader(text, file, options, VtkGrid::Rectilinear).read();
 }
 
+MeshFile read_vtr_piece(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtuReader(text, file, options, VtkGrid::Rectilinear).read_part();
+}
+
 ReadResult read_vti(std::string_view text, std::string_view file, const ReadOptions& options) {
     return VtuReader(text, file, options, VtkGrid::Image).read();
+}
+
+MeshFile read_vti_piece(std::string_view text, std::string_view file, const ReadOptions& options) {
+    return VtuReader(text, file, options, VtkGrid::Image).read_part();
 }
 
 }  // namespace subvol::detail

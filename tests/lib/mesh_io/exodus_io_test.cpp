@@ -9,6 +9,7 @@
 #include "lib/test_meshes.h"
 #include "mesh_damage.h"
 #include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
 
 namespace subvol::test {
 
@@ -59,8 +60,9 @@ TEST_F(ExodusIo, EveryFormatGivesTheMeshAndTheFieldsOfTheLastStep) {
             const ReadResult result = read(file);
             EXPECT_EQ(result.mesh.points, kBox.points);
             EXPECT_EQ(result.mesh.cells, kBox.cells);
-            EXPECT_THAT(result.warnings, ElementsAre("array \"only one\" is not in every block: ignored",
-                                                     "of 2 time steps the last one is taken", HasSubstr("cell array \"c\"")));
+            EXPECT_THAT(result.warnings,
+                        ElementsAre("of 2 steps the last one is taken", "array \"only one\" is not in every block: ignored",
+                                    HasSubstr("cell array \"c\"")));
             ASSERT_EQ(result.fields.size(), 5u);
             EXPECT_EQ(result.mesh.find_attribute("T")->values, count_from(3 + kPoints, kPoints));
             EXPECT_EQ(result.mesh.find_attribute("D_y")->values, count_from(5 + kPoints, kPoints));  // there is no D_z
@@ -88,7 +90,8 @@ TEST_F(ExodusIo, CurvedCellsGiveTheirCorners) {
     for (const std::size_t nodes : {20u, 27u}) {
         ExodusBlock block{"HEX" + std::to_string(nodes), nodes, hex_block(cube).connectivity};
         block.connectivity.resize(nodes, 1);
-        const ReadResult result = read({.points = cube.points, .blocks = {block}});
+        const std::string text = exodus_text({.points = cube.points, .blocks = {block}});
+        const ReadResult result = read_mesh(write("a.exo", text), {.curved_tolerance = std::nullopt});
         EXPECT_EQ(result.mesh.cells, cube.cells);
         EXPECT_THAT(result.warnings, ElementsAre("1 element has more nodes than corners: only the corners are used"));
     }
@@ -130,7 +133,10 @@ TEST_F(ExodusIo, WrongFilesGetASentenceWithTheElementOrNode) {
     };
     EXPECT_THAT(with_corner(0), HasSubstr("a.exo: element 4: there is no node 0 (nodes are 1 to 18)"));
     EXPECT_THAT(with_corner(19), HasSubstr("element 4: there is no node 19"));
-    EXPECT_THAT(with_corner(two_blocks().blocks[1].connectivity[2]), HasSubstr("a.exo: element 4 has node "));
+    EXPECT_THAT(with_corner(two_blocks().blocks[1].connectivity[1]),
+                HasSubstr("twice, at corners that no collapsed edge joins (a cell may repeat a point only along its edges)"));
+    EXPECT_THAT(with_corner(two_blocks().blocks[1].connectivity[1]), HasSubstr("a.exo: element 4 has node "));
+    EXPECT_EQ(with_corner(two_blocks().blocks[1].connectivity[2]), "no error") << "an edge of no length is allowed";
     ExodusText file = two_blocks();
     file.points[4].y = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THAT(read_error(file), HasSubstr("a.exo: non-finite coordinate at node 5"));
@@ -143,6 +149,27 @@ TEST_F(ExodusIo, WrongFilesGetASentenceWithTheElementOrNode) {
     EXPECT_THAT(read_error(file), HasSubstr("block 1 of type \"HEX8\" has 4 nodes an element (a hexahedron has 8)"));
     EXPECT_THAT(read_error(ExodusText{.points = kBox.points, .blocks = {{"QUAD", 4, {1, 2, 4, 3}}}}),
                 HasSubstr("no hexahedra, but 1 element of type \"QUAD\""));
+}
+
+TEST_F(ExodusIo, EveryStepAndEveryBlockIsRead) {
+    const ExodusText file = two_blocks();
+    const auto path = write("a.exo", exodus_text(file));
+    const MeshSeries series = open_series(path);
+    EXPECT_EQ(series.times, file.times);
+    for (std::size_t k = 0; k < series.size(); ++k) {
+        const ReadResult result = read_mesh(path, {.step = k});
+        EXPECT_EQ(result.mesh.find_attribute("T")->values, count_from(3 + static_cast<double>(k) * kPoints, kPoints));
+    }
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path, {.step = 2})); }),
+                HasSubstr("a.exo: there is no step 2 (steps are 0 to 1)"));
+    const ReadResult all = read_mesh(path);
+    ASSERT_EQ(all.blocks.size(), 2u);
+    EXPECT_EQ(all.blocks[0].cells + all.blocks[1].cells, all.mesh.cells.size());
+    const ReadResult second = read_mesh(path, {.blocks = {all.blocks[1].name}});
+    EXPECT_EQ(second.mesh.cells.size(), all.blocks[1].cells);
+    EXPECT_EQ(second.mesh.cells.back(), all.mesh.cells.back());
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path, {.blocks = {"x"}})); }),
+                HasSubstr("a.exo: there is no block \"x\" (it has: block 1, block 2)"));
 }
 
 // The length of a dimension follows its name, which is padded to a multiple of four bytes.

@@ -173,7 +173,7 @@ TEST_F(MeshIo, VtkErrorsNameThePlace) {
         {"CELLS 8 72", "CELLS 8 71", "cell 7 does not fit into the 71 numbers"},
         {"CELLS 8 72", "CELLS 8 73", "1 more than its cells have"},
         {"8 13 14 17", "8 13 27 17", "line 41: cell 7: there is no point with index 27"},
-        {"8 13 14 17", "8 13 13 17", "line 41: cell 7 has point 13 twice"},
+        {"8 13 14 17", "8 13 14 13", "cell 7 has point 13 twice, at corners that no collapsed edge joins"},
         {"8 13 14 17", "8 13 -1 17", "line 41: cell 7: there is no point with index -1"},
         {"CELL_TYPES 8", "CELL_TYPES 7", "line 42: there are 7 CELL_TYPES for 8 CELLS"},
         {"POINT_DATA 27", "POINT_DATA 26", "line 51: POINT_DATA is for 26 points, but there are 27"},
@@ -298,7 +298,7 @@ TEST_F(MeshIo, VtkCellsMayHaveMorePointsThanTheirTypesCorners) {
     };
     for (const Case& c : cases) {
         for (const std::size_t points : c.points) {
-            const ReadResult result = read("a.vtk", text_of(c, points));
+            const ReadResult result = read_mesh(write("a.vtk", text_of(c, points)), {.curved_tolerance = std::nullopt});
             EXPECT_NEAR(inspect(result.mesh).volume, c.volume, 1e-14) << c.type << " with " << points;
             EXPECT_THAT(result.warnings, Contains(HasSubstr("1 cell has more points than corners: only the corners are used")));
         }

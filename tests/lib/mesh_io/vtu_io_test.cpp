@@ -208,7 +208,7 @@ TEST_F(VtuIo, ErrorsNameFileLineAndArray) {
         {"12 12 12 12", "12 12 12", "\"types\": it has 3 values (4 are needed"},
         {"0 1 4 3", "0 1 18 3", "\"connectivity\": cell 0: there is no point with index 18"},
         {"0 1 4 3", "0 1 -1 3", "\"connectivity\": cell 0: there is no point with index -1"},
-        {"0 1 4 3", "0 1 1 3", "cell 0 has point 1 twice"},
+        {"0 1 4 3", "0 1 0 3", "cell 0 has point 0 twice"},
         {"0 1 4 3", "0 1.5 4 3", "array \"connectivity\": value 1: an integer is expected, not \"1.5\""},
         {"type=\"Int32\"", "type=\"Float32\"", "\"connectivity\": an integer type is needed"},
         {"type=\"Float64\" Name=\"s\"", "type=\"Real\" Name=\"s\"", "\"s\": the type \"Real\" is not supported"},

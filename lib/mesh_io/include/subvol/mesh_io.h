@@ -31,16 +31,33 @@ enum class OtherCells { Split, Ignore, Refuse };
 ///       reference of quadrilaterals, triangles and edges, or "Ridges"
 /// weld: joins points that are no farther apart than this (world units; 0: at exactly the same place), as the borders between
 ///       pieces of a file need. The first of them is kept, with its values; a warning gives the number. Nothing: no welding
+/// curved_tolerance: curved hexahedra are split into smaller ones, with points on their true shape, so often that these lie
+///       within this part of the mesh's diagonal from the shape, and fields within 400 times this part of their ranges; in at
+///       most 32,768 hexahedra, or 4 for each cell. Arrays of whole numbers do not count. Greater than 0. Nothing: only their
+///       corners are used
+/// step: of a series (`open_series`), from 0. Nothing: the last one
+/// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
     std::optional<double> weld = {};
     std::vector<std::string> sharp = {};
+    std::optional<double> curved_tolerance = 5e-6;
+    std::optional<std::size_t> step = {};
+    std::vector<std::string> blocks = {};
 };
 
+/// A named part of a mesh. cells: of all kinds, as the file has them
+struct MeshBlock {
+    std::string name;
+    std::size_t cells = 0;
+};
+
+/// blocks: the parts that were read, of formats that have such parts
 struct ReadResult {
     HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
     std::vector<FieldInfo> fields;
     std::vector<std::string> warnings;  // one sentence for each thing left out, turned round or converted
+    std::vector<MeshBlock> blocks = {};
 };
 
 /// Reads a mesh. The extension of the file name decides the format:
@@ -50,14 +67,20 @@ struct ReadResult {
 ///   .vtu, .vts, .vtr, .vti VTK XML, all encodings and compressors
 ///   .msh                   Gmsh 2, 4.0 and 4.1, ASCII and binary
 ///   .xyz, .p3d             Plot3D, with the flow of the same name in .q
-///   .e, .exo, .ex2, .g     Exodus II, the last time step
+///   .e, .exo, .ex2, .g     Exodus II
+///   .pvtu, .pvts, .pvtr, .pvti, .vtm  the pieces or blocks of VTK, in files of their own
+///   .pvd, .series          steps of VTK and ParaView, in files of their own
+///   .foam                  an OpenFOAM case, as its folder
 ///
-/// Cells of lower dimension are left out; of cells of higher order only the corners are used. Both give a warning. Memory is
+/// Cells of lower dimension are left out; curved hexahedra are split as ReadOptions says, and of other curved cells only the
+/// corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that it looks like, and left out
+/// if it has no volume. All give a warning. Memory is
 /// never allocated by a number in the file that the file is too short for.
 ///
 /// throws: Error(Io) if the file cannot be opened;
 ///         Error(InvalidInput) if it is malformed, naming the line, and the cell or point as the file counts them;
-///         Error(InvalidInput) if options.weld is negative, or makes two corners of a cell the same;
+///         Error(InvalidInput) if options.weld is negative, or positive and makes two corners of a cell the same;
+///         Error(InvalidInput) if options.curved_tolerance is not positive, if there is no such step or block;
 ///         Error(InvalidInput) if there is no group that options.sharp names, the format has none, or one of its faces is not a
 ///         face of a cell;
 ///         Error(MissingCapability) for Exodus II in HDF5 if the library is built without netCDF

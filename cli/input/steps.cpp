@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "steps.h"
+
+#include <charconv>
+
+#include "subvol/error.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+std::optional<std::size_t> whole_number(std::string_view text) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return number;
+}
+
+[[noreturn]] void refuse(const std::string& text) {
+    throw Error(ErrorCode::InvalidInput, "'" + text + "' is no step", "--step", "a number from 0, last, all, or A-B");
+}
+
+std::size_t existing(std::size_t step, const MeshSeries& series) {
+    if (step < series.size()) return step;
+    throw Error(ErrorCode::InvalidInput, text("there is no step ", step), series.path.string(),
+                series.size() == 1 ? "it has one step, number 0" : text("steps are 0 to ", series.size() - 1));
+}
+
+}  // namespace
+
+bool asks_for_steps(const CommonOptions& options) {
+    return options.step && (*options.step == "all" || options.step->find('-') != std::string::npos);
+}
+
+std::optional<std::size_t> one_step(const std::string& input, const CommonOptions& options) {
+    if (options.time) return nearest_step(open_series(input), *options.time);
+    if (!options.step) return std::nullopt;
+    if (asks_for_steps(options)) {
+        throw Error(ErrorCode::InvalidInput, "only one step can be read here, not " + *options.step, "--step",
+                    "a number or last; vdb, points and render write a file a step");
+    }
+    if (*options.step == "last") return open_series(input).size() - 1;
+    const auto step = whole_number(*options.step);
+    if (!step) refuse(*options.step);
+    return step;
+}
+
+FrameRange chosen_steps(const MeshSeries& series, const CommonOptions& options) {
+    const int last = static_cast<int>(series.size()) - 1;
+    const std::string& text = *options.step;
+    if (text == "all") return {0, last};
+    const std::size_t dash = text.find('-');
+    const auto first = whole_number(std::string_view(text).substr(0, dash));
+    const auto end = whole_number(std::string_view(text).substr(dash + 1));
+    if (!first || !end || *end < *first) refuse(text);
+    return {static_cast<int>(existing(*first, series)), static_cast<int>(existing(*end, series))};
+}
+
+CommonOptions of_step(const CommonOptions& options, int step) {
+    CommonOptions one = options;
+    one.step = std::to_string(step);
+    return one;
+}
+
+void check_numbered(const std::string& output) {
+    if (has_number(output)) return;
+    throw Error(ErrorCode::InvalidInput, "has no # for the number of the step", output, "out_####.vdb");
+}
+
+}  // namespace subvol::cli

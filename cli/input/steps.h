@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common_options.h"
+#include "mesh_frames.h"
+#include "subvol/mesh_series.h"
+
+namespace subvol::cli {
+
+/// Whether --step asks for more than one step: a verb then writes a file for each.
+[[nodiscard]] bool asks_for_steps(const CommonOptions& options);
+
+/// The one step that --step and --time choose; nothing: the last one, as none is chosen.
+///
+/// throws: Error(InvalidInput) if there is no such step, or more than one is asked for
+[[nodiscard]] std::optional<std::size_t> one_step(const std::string& input, const CommonOptions& options);
+
+/// The first and the last step that --step asks for.
+///
+/// throws: Error(InvalidInput) if there are no such steps
+[[nodiscard]] FrameRange chosen_steps(const MeshSeries& series, const CommonOptions& options);
+
+/// The same options with one step.
+[[nodiscard]] CommonOptions of_step(const CommonOptions& options, int step);
+
+/// Refuses an output whose name has no place for the number of a step.
+void check_numbered(const std::string& output);
+
+}  // namespace subvol::cli

@@ -1,0 +1,569 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+
+#include "assemble.h"
+#include "curved_cells.h"
+#include "subvol/cell.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Hex = std::array<Index, 8>;
+using Sizes = std::array<std::size_t, 3>;
+
+constexpr std::string_view kDegrees = "HigherOrderDegrees";
+constexpr std::string_view kWeights = "RationalWeights";
+
+// Volumes add up the error of the shape, and nothing adds up that of the fields. The limit is nearer to the fields than the
+// straight lines whose error is measured.
+constexpr double kFieldsPerShape = 400;
+
+// No more hexahedra than this are made, or than this for each cell where that is more.
+constexpr std::size_t kMostHexes = std::size_t{1} << 15, kMostPerCell = 4;
+
+// A direction is never split more often than this.
+constexpr double kMostPieces = 1e4;
+
+const FileArray* find_array(const MeshFile& found, std::string_view name, bool at_cells, int components) {
+    for (const FileArray& array : found.arrays) {
+        if (array.name == name && array.at_cells == at_cells && array.components == components) return &array;
+    }
+    return nullptr;
+}
+
+std::size_t octant_corner(std::size_t x, std::size_t y, std::size_t z) {
+    return kCornerOctants[x + 2 * y + 4 * z];
+}
+
+// Sets of edges that have to be split alike: opposite edges of a cell.
+class EdgeClasses {
+public:
+    explicit EdgeClasses(const std::vector<Hex>& cells) {
+        for (const Hex& cell : cells) {
+            for (std::size_t e = 0; e < 12; ++e) keys_.push_back(key(cell, e));
+        }
+        std::sort(keys_.begin(), keys_.end());
+        keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
+        parents_.resize(keys_.size());
+        std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+        for (const Hex& cell : cells) {
+            for (std::size_t e = 0; e < 12; ++e) {
+                if (e % 4 != 0) join(edge(cell, e - e % 4), edge(cell, e));
+            }
+        }
+    }
+
+    [[nodiscard]] std::size_t size() const { return keys_.size(); }
+    [[nodiscard]] std::size_t edge(const Hex& cell, std::size_t e) const {
+        return static_cast<std::size_t>(std::lower_bound(keys_.begin(), keys_.end(), key(cell, e)) - keys_.begin());
+    }
+    [[nodiscard]] std::size_t class_of(std::size_t edge) const {
+        while (parents_[edge] != edge) edge = parents_[edge];
+        return edge;
+    }
+
+private:
+    static std::array<Index, 2> key(const Hex& cell, std::size_t e) {
+        const Index a = cell[static_cast<std::size_t>(kCellEdges[e][0])], b = cell[static_cast<std::size_t>(kCellEdges[e][1])];
+        return {std::min(a, b), std::max(a, b)};
+    }
+    void join(std::size_t a, std::size_t b) {
+        a = class_of(a);
+        b = class_of(b);
+        for (std::size_t* x : {&a, &b}) parents_[*x] = std::min(a, b);
+    }
+
+    std::vector<std::array<Index, 2>> keys_;
+    std::vector<std::size_t> parents_;
+};
+
+// Replaces every hexahedron of a mesh with curved ones by a grid of smaller ones, with points on the curved shape.
+class CurvedSplit {
+public:
+    CurvedSplit(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names)
+        : found_(found), tolerance_(tolerance), file_(file), names_(names), cells_(found.hexes.corners), edges_(cells_) {}
+
+    /// returns: whether the cells were split; they are not if none is bent
+    bool run() {
+        find_channels();
+        find_layouts();
+        refuse_not_finite();
+        find_ranges();
+        measure();
+        choose_pieces();
+        if (std::ranges::all_of(pieces_, [](std::size_t n) { return n == 1; })) {
+            report_straight();
+            return false;
+        }
+        number_points();
+        fill();
+        report();
+        return true;
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const {
+        throw Error(ErrorCode::InvalidInput, message, std::string(file_), allowed);
+    }
+
+    // The channels of a node: three coordinates, the arrays at the points, and its weight.
+    void find_channels() {
+        const FileArray* weights = find_array(found_, kWeights, false, 1);
+        if (weights != nullptr) weights_ = weights->values;
+        degrees_ = find_array(found_, kDegrees, true, 3);
+        for (const FileArray& array : found_.arrays) {
+            if (array.at_cells || &array == weights) continue;
+            arrays_.push_back(&array);
+            channels_ += static_cast<std::size_t>(array.components);
+        }
+    }
+
+    void find_layouts() {
+        std::unordered_map<Index, std::size_t> places;
+        for (std::size_t k = 0; k < found_.curved.size(); ++k) places.emplace(found_.curved.numbers[k], k);
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const auto place = places.find(found_.hexes.numbers[c]);
+            curved_.push_back(place == places.end() ? kNone : static_cast<Index>(place->second));
+            const bool curved = curved_.back() != kNone;
+            curved_count_ += curved;
+            const CurvedOrder order = curved ? found_.curved.orders[curved_.back()] : CurvedOrder::Vtk;
+            const std::size_t nodes = nodes_of(c).size();
+            const Sizes degrees = curved ? degrees_of(c, order, nodes) : Sizes{1, 1, 1};
+            auto& layout = layouts_[{order, degrees, nodes}];
+            if (layout.slots.empty()) layout = curved_layout(order, degrees, nodes);
+            layout_of_.push_back(&layout);
+        }
+    }
+
+    [[nodiscard]] std::span<const Index> nodes_of(std::size_t c) const {
+        return curved_[c] == kNone ? std::span<const Index>(cells_[c]) : found_.curved.nodes_of(curved_[c]);
+    }
+
+    [[nodiscard]] Sizes degrees_of(std::size_t c, CurvedOrder order, std::size_t nodes) const {
+        const std::size_t number = found_.hexes.numbers[c];
+        Sizes degrees{};
+        const auto uniform = uniform_degree(order, nodes);
+        if (degrees_ != nullptr && order != CurvedOrder::Exodus && order != CurvedOrder::Gmsh) {
+            std::string list;
+            std::size_t needed = 1;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double degree = degrees_->values[3 * number + a];
+                list += " " + number_text(degree);
+                const bool valid = degree >= 1 && degree <= static_cast<double>(kMostDegree) && degree == std::floor(degree);
+                degrees[a] = valid ? static_cast<std::size_t>(degree) : 0;
+                needed *= valid ? degrees[a] + 1 : 0;
+            }
+            if (needed == nodes) return degrees;
+            // A file with cells of several kinds has zeros at those that need no degrees, or 2 at quadratic ones.
+            if ((list != " 0 0 0" && list != " 2 2 2") || !uniform) {
+                fail(names_.cell(number) + " has " + std::to_string(nodes) + " points, but the degrees" + list + " in " +
+                         in_quotes(kDegrees),
+                     "(p + 1)(q + 1)(r + 1) points for degrees p, q, r from 1 to " + std::to_string(kMostDegree));
+            }
+        }
+        if (!uniform) {
+            fail(
+                names_.cell(number) + " has " + std::to_string(nodes) + " points, and there is no array " + in_quotes(kDegrees),
+                "without it a curved hexahedron has (p + 1)³ points, p from 1 to " + std::to_string(kMostDegree));
+        }
+        return {*uniform, *uniform, *uniform};
+    }
+
+    void refuse_not_finite() const {
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            for (const Index p : nodes_of(c)) {
+                for (const FileArray* array : arrays_) {
+                    const auto components = static_cast<std::size_t>(array->components);
+                    for (std::size_t k = 0; k < components; ++k) {
+                        if (std::isfinite(array->values[p * components + k])) continue;
+                        throw Error(ErrorCode::InvalidInput, "the value at " + names_.point(p) + " is not finite",
+                                    std::string(file_) + ", array " + in_quotes(array->name));
+                    }
+                }
+                if (!is_rational(c) || (weights_[p] > 0 && std::isfinite(weights_[p]))) continue;
+                fail("the rational weight of " + names_.point(p) + " is " + number_text(weights_[p]), "a positive number");
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_rational(std::size_t c) const { return layout_of_[c]->bezier && !weights_.empty(); }
+
+    // The size of the mesh, and for each array the length of the vector of its components' ranges; 0 for a constant, and for
+    // whole numbers: they are the numbers of nodes or parts, and no smooth field that more cells would come nearer to.
+    void find_ranges() {
+        std::vector<double> low(channels_, std::numeric_limits<double>::infinity()), high(channels_, -low[0]);
+        std::vector<std::uint8_t> whole(channels_, 1);
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            for (const Index p : nodes_of(c)) {
+                values_of_node(p);
+                for (std::size_t k = 0; k < channels_; ++k) {
+                    low[k] = std::min(low[k], node_[k]);
+                    high[k] = std::max(high[k], node_[k]);
+                    if (node_[k] != std::floor(node_[k])) whole[k] = 0;
+                }
+            }
+        }
+        std::size_t first = 0;
+        const auto add = [&](std::size_t count) {
+            double sum = 0, largest = 0;
+            bool counts = first == 0;
+            for (std::size_t k = first; k < first + count; ++k) {
+                counts = counts || whole[k] == 0;
+                sum += (high[k] - low[k]) * (high[k] - low[k]);
+                largest = std::max({largest, std::abs(low[k]), std::abs(high[k])});
+            }
+            const double range = std::sqrt(sum);
+            groups_.push_back({first, count, counts && range > 1e-9 * largest ? range : 0});
+            first += count;
+        };
+        add(3);
+        for (const FileArray* array : arrays_) add(static_cast<std::size_t>(array->components));
+    }
+
+    void values_of_node(Index p) {
+        node_.clear();
+        for (int a = 0; a < 3; ++a) node_.push_back(found_.points[p][a]);
+        for (const FileArray* array : arrays_) {
+            const auto components = static_cast<std::size_t>(array->components);
+            for (std::size_t k = 0; k < components; ++k) node_.push_back(array->values[p * components + k]);
+        }
+    }
+
+    [[nodiscard]] CurvedCell shape_of(std::size_t c) {
+        std::vector<double> values;
+        for (const Index p : nodes_of(c)) {
+            values_of_node(p);
+            values.insert(values.end(), node_.begin(), node_.end());
+            if (is_rational(c)) values.push_back(weights_[p]);
+        }
+        return {*layout_of_[c], values, channels_ + (is_rational(c) ? 1 : 0), is_rational(c)};
+    }
+
+    // How far a straight line is from the curve at most, if a direction of a cell is not split: in parts of the mesh's size,
+    // and of the fields' ranges. The distance falls with the square of the number of pieces.
+    struct Bend {
+        std::array<float, 3> shape{}, fields{};
+    };
+
+    void measure() {
+        bends_.resize(cells_.size());
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const CurvedCell cell = shape_of(c);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                if (cell.is_straight(axis)) continue;
+                const auto samples = cell.samples(axis);
+                for (const Group& group : groups_) {
+                    if (group.range == 0) continue;
+                    const auto bend = static_cast<float>(cell.bend(axis, samples, group.first, group.count) / 8 / group.range);
+                    float& largest = (group.first == 0 ? bends_[c].shape : bends_[c].fields)[axis];
+                    largest = std::max(largest, bend);
+                }
+            }
+        }
+    }
+
+    // Splits all edges of a class alike, as the cell that needs it most. Three directions share the tolerance. Where there
+    // would be too many pieces, the fields give way first.
+    void choose_pieces() {
+        std::vector<double> of_shape(edges_.size()), of_fields(edges_.size());
+        class_of_.resize(cells_.size());
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const std::size_t e = class_of_[c][axis] = edges_.class_of(edges_.edge(cells_[c], 4 * axis));
+                of_shape[e] = std::max(of_shape[e], 3. * bends_[c].shape[axis] / tolerance_);
+                of_fields[e] = std::max(of_fields[e], 3. * bends_[c].fields[axis] / (kFieldsPerShape * tolerance_));
+            }
+        }
+        pieces_.resize(edges_.size());
+        const double most = most_hexes();
+        const auto fits = [&](double shape_part, double fields_part) {
+            for (std::size_t e = 0; e < pieces_.size(); ++e) {
+                const double needed = std::max(of_shape[e] * shape_part, of_fields[e] * fields_part);
+                pieces_[e] = static_cast<std::size_t>(std::clamp(std::ceil(std::sqrt(needed) - 1e-6), 1., kMostPieces));
+            }
+            double count = 0;
+            for (std::size_t c = 0; c < cells_.size(); ++c) {
+                const Sizes n = pieces_of(c);
+                count += static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
+            }
+            return count <= most;
+        };
+        constexpr double kLess = .8;
+        const bool shape_fits = fits(1, 0);
+        limited_ = !shape_fits || !fits(1, 1);
+        if (!limited_) return;
+        double part = 1;
+        if (shape_fits) {
+            while (!fits(1, part)) part = part < 1e-12 ? 0 : part * kLess;
+        } else {
+            while (!fits(part, part)) part = part < 1e-12 ? 0 : part * kLess;
+        }
+    }
+
+    [[nodiscard]] double most_hexes() const { return static_cast<double>(std::max(kMostHexes, kMostPerCell * cells_.size())); }
+
+    [[nodiscard]] Sizes pieces_of(std::size_t c) const {
+        return {pieces_[class_of_[c][0]], pieces_[class_of_[c][1]], pieces_[class_of_[c][2]]};
+    }
+
+    // The corners of a face from its smallest one, over the smaller of that one's neighbours: the same for both cells.
+    struct Face {
+        std::size_t axis, side;
+        std::array<std::size_t, 2> axes;    // along the face, the one to the smaller neighbour first
+        std::array<std::size_t, 2> upward;  // whether the smallest corner is at their lower end
+        std::array<Index, 4> key;
+    };
+
+    [[nodiscard]] static Face face_of(const Hex& cell, std::size_t axis, std::size_t side) {
+        Face face{axis, side, {(axis + 1) % 3, (axis + 2) % 3}, {}, {}};
+        const auto corner = [&](std::size_t a, std::size_t b) {
+            std::array<std::size_t, 3> at{};
+            at[axis] = side;
+            at[(axis + 1) % 3] = a;
+            at[(axis + 2) % 3] = b;
+            return cell[octant_corner(at[0], at[1], at[2])];
+        };
+        std::size_t a = 0, b = 0;
+        for (std::size_t k = 1; k < 4; ++k) {
+            if (corner(k % 2, k / 2) < corner(a, b)) a = k % 2, b = k / 2;
+        }
+        const bool first = corner(1 - a, b) < corner(a, 1 - b);
+        if (!first) std::swap(face.axes[0], face.axes[1]);
+        face.upward = first ? std::array<std::size_t, 2>{1 - a, 1 - b} : std::array<std::size_t, 2>{1 - b, 1 - a};
+        face.key = {corner(a, b), first ? corner(1 - a, b) : corner(a, 1 - b), corner(1 - a, 1 - b),
+                    first ? corner(a, 1 - b) : corner(1 - a, b)};
+        return face;
+    }
+
+    void number_points() {
+        std::size_t count = 0;
+        const auto add = [&](std::size_t more) {
+            const std::size_t first = count;
+            count += more;
+            if (count >= kNone) fail("its curved cells would be split into too many hexahedra", "a larger tolerance");
+            return first;
+        };
+        corners_.assign(found_.points.size(), kNone);
+        for (const Hex& cell : cells_) {
+            for (const Index p : cell) corners_[p] = 0;
+        }
+        for (Index& corner : corners_) {
+            if (corner == 0) corner = static_cast<Index>(add(1));
+        }
+        for (std::size_t e = 0; e < edges_.size(); ++e) edge_starts_.push_back(add(pieces_[edges_.class_of(e)] - 1));
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const Sizes n = pieces_of(c);
+            for (std::size_t f = 0; f < 6; ++f) {
+                const auto [start, is_new] = face_starts_.try_emplace(face_of(cells_[c], f / 2, f % 2).key, count);
+                if (is_new) start->second = add((n[(f / 2 + 1) % 3] - 1) * (n[(f / 2 + 2) % 3] - 1));
+            }
+            cell_starts_.push_back(add((n[0] - 1) * (n[1] - 1) * (n[2] - 1)));
+        }
+        point_count_ = count;
+    }
+
+    // The new points of a cell, the first direction fastest.
+    [[nodiscard]] std::vector<Index> grid_of(std::size_t c) const {
+        const Hex& cell = cells_[c];
+        const Sizes n = pieces_of(c);
+        const auto at = [&](const Sizes& p) { return p[0] + (n[0] + 1) * (p[1] + (n[1] + 1) * p[2]); };
+        std::vector<Index> grid((n[0] + 1) * (n[1] + 1) * (n[2] + 1));
+        for (std::size_t k = 0; k < 8; ++k) {
+            Sizes place{};
+            for (std::size_t a = 0; a < 3; ++a) place[a] = kCornerParameters[k][a] == 0 ? 0 : n[a];
+            grid[at(place)] = corners_[cell[k]];
+        }
+        for (std::size_t e = 0; e < 12; ++e) {
+            const auto from = static_cast<std::size_t>(kCellEdges[e][0]), to = static_cast<std::size_t>(kCellEdges[e][1]);
+            const std::size_t axis = e / 4, start = edge_starts_[edges_.edge(cell, e)];
+            Sizes place{};
+            for (std::size_t a = 0; a < 3; ++a) place[a] = kCornerParameters[from][a] == 0 ? 0 : n[a];
+            for (std::size_t i = 1; i < n[axis]; ++i) {
+                place[axis] = i;
+                grid[at(place)] = static_cast<Index>(start + (cell[from] < cell[to] ? i : n[axis] - i) - 1);
+            }
+        }
+        for (std::size_t f = 0; f < 6; ++f) {
+            const Face face = face_of(cell, f / 2, f % 2);
+            const std::size_t start = face_starts_.at(face.key);
+            const std::size_t n0 = n[face.axes[0]], n1 = n[face.axes[1]];
+            Sizes place{};
+            place[face.axis] = face.side == 0 ? 0 : n[face.axis];
+            for (std::size_t j = 1; j < n1; ++j) {
+                for (std::size_t i = 1; i < n0; ++i) {
+                    place[face.axes[0]] = face.upward[0] != 0 ? i : n0 - i;
+                    place[face.axes[1]] = face.upward[1] != 0 ? j : n1 - j;
+                    grid[at(place)] = static_cast<Index>(start + (i - 1) + (n0 - 1) * (j - 1));
+                }
+            }
+        }
+        std::size_t inside = cell_starts_[c];
+        for (std::size_t z = 1; z < n[2]; ++z) {
+            for (std::size_t y = 1; y < n[1]; ++y) {
+                for (std::size_t x = 1; x < n[0]; ++x) grid[at({x, y, z})] = static_cast<Index>(inside++);
+            }
+        }
+        return grid;
+    }
+
+    void fill() {
+        std::vector<Vec3> points(point_count_);
+        std::vector<std::vector<double>> values;
+        for (const FileArray* array : arrays_) values.emplace_back(point_count_ * static_cast<std::size_t>(array->components));
+        std::vector<std::uint8_t> filled(point_count_);
+        FileCells<8> hexes;
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const Sizes n = pieces_of(c);
+            const auto grid = grid_of(c);
+            const auto at_grid = shape_of(c).at_grid(n);
+            for (std::size_t i = 0; i < grid.size(); ++i) {
+                const Index p = grid[i];
+                if (filled[p] != 0) continue;  // by a neighbour
+                filled[p] = 1;
+                const double* from = &at_grid[i * channels_];
+                points[p] = {from[0], from[1], from[2]};
+                from += 3;
+                for (std::size_t a = 0; a < arrays_.size(); ++a) {
+                    const auto components = static_cast<std::size_t>(arrays_[a]->components);
+                    std::copy_n(from, components, &values[a][p * components]);
+                    from += components;
+                }
+            }
+            add_hexes(hexes, grid, n, found_.hexes.numbers[c]);
+        }
+        found_.points = std::move(points);
+        std::size_t next = 0;
+        for (FileArray& array : found_.arrays) {
+            if (next < arrays_.size() && &array == arrays_[next]) array.values = std::move(values[next++]);
+        }
+        std::erase_if(found_.arrays, [](const FileArray& array) {
+            return array.at_cells ? array.name == kDegrees && array.components == 3
+                                  : array.name == kWeights && array.components == 1;
+        });
+        new_hexes_ = std::move(hexes);
+    }
+
+    static void add_hexes(FileCells<8>& hexes, const std::vector<Index>& grid, const Sizes& n, Index number) {
+        for (std::size_t z = 0; z < n[2]; ++z) {
+            for (std::size_t y = 0; y < n[1]; ++y) {
+                for (std::size_t x = 0; x < n[0]; ++x) {
+                    auto& hex = hexes.corners.emplace_back();
+                    for (std::size_t k = 0; k < 8; ++k) {
+                        const auto& at = kCornerParameters[k];
+                        const std::size_t i = x + static_cast<std::size_t>(at[0]), j = y + static_cast<std::size_t>(at[1]);
+                        hex[k] = grid[i + (n[0] + 1) * (j + (n[1] + 1) * (z + static_cast<std::size_t>(at[2])))];
+                    }
+                    hexes.numbers.push_back(number);
+                }
+            }
+        }
+    }
+
+    static std::string short_text(double value) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.1e", value);
+        return text;
+    }
+
+    void report_straight() {
+        found_.warnings.push_back(counted(curved_count_, "curved cell", "curved cells") +
+                                  (curved_count_ == 1 ? " is" : " are") + " straight to within " + short_text(tolerance_) +
+                                  " of the mesh's size: only the corners are used");
+    }
+
+    void report() {
+        double shape = 0, fields = 0;
+        for (std::size_t c = 0; c < cells_.size(); ++c) {
+            const Sizes n = pieces_of(c);
+            double of_shape = 0, of_fields = 0;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const auto squared = static_cast<double>(n[a] * n[a]);
+                of_shape += bends_[c].shape[a] / squared;
+                of_fields += bends_[c].fields[a] / squared;
+            }
+            shape = std::max(shape, of_shape);
+            fields = std::max(fields, of_fields);
+        }
+        std::string warning = counted(curved_count_, "curved cell", "curved cells");
+        if (curved_count_ < cells_.size()) {
+            warning += " and " + counted(cells_.size() - curved_count_, "other", "others");
+        }
+        warning += " split into " + counted(new_hexes_.corners.size(), "hexahedron", "hexahedra") +
+                   " with points on the curved shape, which is within " + short_text(shape) + " of the mesh's size";
+        if (std::any_of(groups_.begin() + 1, groups_.end(), [](const Group& group) { return group.range > 0; })) {
+            warning += ", its fields within " + short_text(fields) + " of their ranges";
+        }
+        if (limited_) {
+            warning += "; for a tolerance of " + short_text(tolerance_) + " there would be more than " +
+                       std::to_string(static_cast<std::size_t>(most_hexes()));
+        }
+        found_.warnings.push_back(warning);
+        found_.hexes = std::move(new_hexes_);
+    }
+
+    struct Group {
+        std::size_t first, count;
+        double range;
+    };
+    using LayoutKey = std::tuple<CurvedOrder, Sizes, std::size_t>;
+
+    MeshFile& found_;
+    double tolerance_;
+    std::string_view file_;
+    const EntityNames& names_;
+    const std::vector<Hex>& cells_;
+    EdgeClasses edges_;
+    std::vector<double> weights_;
+    const FileArray* degrees_ = nullptr;
+    std::vector<const FileArray*> arrays_;
+    std::size_t channels_ = 3;
+    std::vector<double> node_;   // the channels of the node that was asked for last
+    std::vector<Index> curved_;  // the place of each cell among the curved ones, or kNone
+    std::size_t curved_count_ = 0;
+    std::map<LayoutKey, CurvedLayout> layouts_;
+    std::vector<const CurvedLayout*> layout_of_;
+    std::vector<Group> groups_;
+    std::vector<Bend> bends_;
+    std::vector<Sizes> class_of_;
+    std::vector<std::size_t> pieces_;  // of each class of edges
+    bool limited_ = false;
+    std::vector<Index> corners_;
+    std::vector<std::size_t> edge_starts_, cell_starts_;
+    std::map<std::array<Index, 4>, std::size_t> face_starts_;
+    std::size_t point_count_ = 0;
+    FileCells<8> new_hexes_;
+};
+
+bool repeats_point(Hex hex) {
+    std::sort(hex.begin(), hex.end());
+    return std::adjacent_find(hex.begin(), hex.end()) != hex.end();
+}
+
+}  // namespace
+
+bool split_curved(MeshFile& found, double tolerance, std::string_view file, const EntityNames& names) {
+    if (found.curved.size() == 0) return false;
+    const bool others = !found.tets.corners.empty() || !found.prisms.corners.empty() || !found.pyramids.corners.empty();
+    const char* reason = others                                                    ? "beside cells of other kinds"
+                         : !found.sharp.empty()                                    ? "with sharp groups"
+                         : std::ranges::any_of(found.hexes.corners, repeats_point) ? "in a mesh with repeated points"
+                                                                                   : nullptr;
+    if (reason != nullptr) {
+        found.warnings.push_back(counted(found.curved.size(), "curved cell", "curved cells") + " " + reason +
+                                 ": only the corners are used");
+        return false;
+    }
+    return CurvedSplit(found, tolerance, file, names).run();
+}
+
+}  // namespace subvol::detail

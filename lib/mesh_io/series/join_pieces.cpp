@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "join_pieces.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <unordered_map>
+
+#include "assemble.h"
+#include "subvol/error.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> kNodeNumbers{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds"};
+
+struct PointHash {
+    std::size_t operator()(const Vec3& x) const {
+        std::uint64_t hash = 0;
+        for (int a = 0; a < 3; ++a)
+            hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(x[a] + 0.0)) * 0x9E3779B97F4A7C15u;
+        return static_cast<std::size_t>(hash ^ (hash >> 32));
+    }
+};
+
+const FileArray* find_array(const MeshFile& piece, std::string_view name, bool at_cells, int components) {
+    const auto found = std::ranges::find_if(piece.arrays, [&](const FileArray& array) {
+        return array.name == name && array.at_cells == at_cells && array.components == components;
+    });
+    return found == piece.arrays.end() ? nullptr : &*found;
+}
+
+// The number of cells of all kinds that the piece's file has.
+std::size_t cell_count(const MeshFile& piece) {
+    std::size_t count = 0;
+    for (const FileArray& array : piece.arrays) {
+        if (array.at_cells) count = std::max(count, array.values.size() / static_cast<std::size_t>(array.components));
+    }
+    each_kind(piece, [&](const auto& cells) {
+        for (const Index number : cells.numbers) count = std::max(count, std::size_t{number} + 1);
+    });
+    return count;
+}
+
+class Joiner {
+public:
+    Joiner(std::vector<MeshFile>&& pieces, std::string_view word, std::string_view file)
+        : pieces_(std::move(pieces)), word_(word), file_(file) {}
+
+    MeshFile run() {
+        std::size_t points = 0, cells = 0;
+        for (const MeshFile& piece : pieces_) {
+            points += piece.points.size();
+            cells += cell_count(piece);
+        }
+        if (points >= kNone || cells >= kNone) {
+            throw Error(ErrorCode::InvalidInput, "too many points or cells", std::string(file_));
+        }
+        all_.points.reserve(points);
+        if (!join_by_numbers()) join_by_places();
+        for (MeshFile& piece : pieces_) add_cells(piece);
+        add_arrays();
+        std::set<std::string> said;
+        for (const MeshFile& piece : pieces_) {
+            for (const std::string& warning : piece.warnings) {
+                if (said.insert(warning).second) all_.warnings.push_back(warning);
+            }
+            all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
+        }
+        all_.warnings.push_back(counted(pieces_.size(), word_, std::string(word_) + "s") + " put together; " +
+                                counted(joined_, "point", "points") + " joined with those of another, by " + by_);
+        return std::move(all_);
+    }
+
+private:
+    // Adds the points of a piece; find(point of the piece) is the place in the whole of one to join it with, or kNone.
+    template <class Find>
+    void add_points(const MeshFile& piece, const Find& find) {
+        auto& points = places_.emplace_back();
+        points.reserve(piece.points.size());
+        for (std::size_t p = 0; p < piece.points.size(); ++p) {
+            const Index same = find(p);
+            if (same != kNone) {
+                ++joined_;
+                points.push_back(same);
+                continue;
+            }
+            points.push_back(static_cast<Index>(all_.points.size()));
+            sources_.push_back({places_.size() - 1, p});
+            all_.points.push_back(piece.points[p]);
+        }
+    }
+
+    // Returns whether that is possible: numbers that are whole and not repeated in a piece, each at one place.
+    bool join_by_numbers() {
+        std::vector<const FileArray*> numbers;
+        for (const std::string_view name : kNodeNumbers) {
+            numbers.clear();
+            for (const MeshFile& piece : pieces_) {
+                if (const FileArray* array = find_array(piece, name, false, 1)) numbers.push_back(array);
+            }
+            if (numbers.size() == pieces_.size()) break;
+        }
+        if (pieces_.empty() || numbers.size() != pieces_.size()) return false;
+        std::unordered_map<double, Index> known;
+        Box box;
+        for (const MeshFile& piece : pieces_) {
+            for (const Vec3& x : piece.points) box.add(x);
+        }
+        const double near = 1e-6 * box.diagonal();
+        for (std::size_t k = 0; k < pieces_.size(); ++k) {
+            const auto& of_piece = numbers[k]->values;
+            bool sound = true;
+            const std::size_t before = all_.points.size();
+            add_points(pieces_[k], [&](std::size_t p) {
+                const double number = of_piece[p];
+                sound = sound && number == std::floor(number);
+                const auto [at, is_new] = known.try_emplace(number, static_cast<Index>(all_.points.size()));
+                if (is_new) return kNone;
+                sound = sound && at->second < before && glm::distance(all_.points[at->second], pieces_[k].points[p]) <= near;
+                return at->second;
+            });
+            if (sound) continue;
+            all_.warnings.push_back("array " + in_quotes(numbers[k]->name) + " does not number the points: not used");
+            all_.points.clear();
+            places_.clear();
+            sources_.clear();
+            joined_ = 0;
+            return false;
+        }
+        by_ = in_quotes(numbers[0]->name);
+        return true;
+    }
+
+    void join_by_places() {
+        std::unordered_map<Vec3, Index, PointHash> known;
+        for (const MeshFile& piece : pieces_) {
+            const std::size_t before = all_.points.size();
+            add_points(piece, [&](std::size_t p) {
+                const auto at = known.find(piece.points[p]);
+                return at == known.end() ? kNone : at->second;
+            });
+            for (std::size_t p = before; p < all_.points.size(); ++p) known.try_emplace(all_.points[p], static_cast<Index>(p));
+        }
+        by_ = "their places";
+    }
+
+    void add_cells(MeshFile& piece) {
+        const std::vector<Index>& points = places_[first_cells_.size()];
+        const auto first = static_cast<Index>(cells_);
+        first_cells_.push_back(cells_);
+        cells_ += cell_count(piece);
+        const auto append = [&](auto& to, auto& from) {
+            for (auto& corners : from.corners) {
+                for (Index& p : corners) p = points[p];
+                to.corners.push_back(corners);
+            }
+            for (const Index number : from.numbers) to.numbers.push_back(first + number);
+        };
+        append(all_.hexes, piece.hexes);
+        append(all_.tets, piece.tets);
+        append(all_.prisms, piece.prisms);
+        append(all_.pyramids, piece.pyramids);
+        std::vector<Index> nodes;
+        for (std::size_t k = 0; k < piece.curved.size(); ++k) {
+            nodes.clear();
+            for (const Index p : piece.curved.nodes_of(k)) nodes.push_back(points[p]);
+            all_.curved.add(first + piece.curved.numbers[k], piece.curved.orders[k], nodes);
+        }
+    }
+
+    void add_arrays() {
+        std::set<std::pair<std::string, bool>> done;
+        for (const MeshFile& first : pieces_) {
+            for (const FileArray& array : first.arrays) {
+                if (!done.insert({array.name, array.at_cells}).second) continue;
+                std::vector<const FileArray*> parts;
+                for (const MeshFile& piece : pieces_) {
+                    parts.push_back(find_array(piece, array.name, array.at_cells, array.components));
+                }
+                const bool ghosts = array.name == kGhostArray;  // where it is missing there are none
+                if (!ghosts && std::ranges::find(parts, nullptr) != parts.end()) {
+                    all_.warnings.push_back("array " + in_quotes(array.name) + " is not in every " + std::string(word_) +
+                                            ": ignored");
+                    continue;
+                }
+                all_.arrays.push_back(joined(array, parts));
+            }
+        }
+    }
+
+    [[nodiscard]] FileArray joined(const FileArray& like, const std::vector<const FileArray*>& parts) const {
+        const auto components = static_cast<std::size_t>(like.components);
+        FileArray array{like.name, like.components, like.at_cells, {}};
+        if (!like.at_cells) {
+            array.values.reserve(all_.points.size() * components);
+            for (const auto& [piece, p] : sources_) {
+                for (std::size_t c = 0; c < components; ++c) {
+                    array.values.push_back(parts[piece] ? parts[piece]->values[p * components + c] : 0);
+                }
+            }
+            return array;
+        }
+        array.values.resize(cells_ * components);
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            if (parts[k] == nullptr) continue;
+            std::ranges::copy(parts[k]->values,
+                              array.values.begin() + static_cast<std::ptrdiff_t>(first_cells_[k] * components));
+        }
+        return array;
+    }
+
+    std::vector<MeshFile> pieces_;
+    std::string_view word_, file_;
+    MeshFile all_;
+    std::vector<std::vector<Index>> places_;                    // of each piece's points in the whole
+    std::vector<std::pair<std::size_t, std::size_t>> sources_;  // of each point of the whole: piece and point
+    std::vector<std::size_t> first_cells_;
+    std::size_t cells_ = 0, joined_ = 0;
+    std::string by_;
+};
+
+}  // namespace
+
+MeshFile join_pieces(std::vector<MeshFile>&& pieces, std::string_view word, std::string_view file) {
+    return Joiner(std::move(pieces), word, file).run();
+}
+
+}  // namespace subvol::detail
