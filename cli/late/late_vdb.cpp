@@ -2,14 +2,19 @@
 // The command's subvol::vdb: each call loads the module subvol_openvdb.so, if it is the first, and continues there. OpenVDB's
 // symbols take longer to resolve than the command takes to start.
 #include "subvol/detail/module.h"
+#include "subvol/detail/unfinished_files.h"
 #include "vdb_functions.h"
 
 namespace {
 
 const subvol::cli::VdbFunctions& vdb() {
     using Entry = const subvol::cli::VdbFunctions* (*)();
-    static const subvol::cli::VdbFunctions& functions =
-        *reinterpret_cast<Entry>(subvol::detail::load_module("openvdb", "reading, writing or computing grids"))();
+    static const subvol::cli::VdbFunctions& functions = []() -> const subvol::cli::VdbFunctions& {
+        const auto& loaded =
+            *reinterpret_cast<Entry>(subvol::detail::load_module("openvdb", "reading, writing or computing grids"))();
+        subvol::detail::remove_unfinished_files_of(loaded.remove_unfinished_files);
+        return loaded;
+    }();
     return functions;
 }
 

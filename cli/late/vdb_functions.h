@@ -47,6 +47,7 @@ struct VdbFunctions {
     std::optional<double> (*value)(const VdbGrid&, const Vec3&);
     std::unique_ptr<Voxels> (*voxels)(const VdbGrid&);
     void (*free)(detail::VdbData*);
+    void (*remove_unfinished_files)() noexcept;
 };
 
 }  // namespace subvol::cli

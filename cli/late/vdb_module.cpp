@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The module subvol_openvdb.so: subvol::vdb, and OpenVDB with it.
+#include "subvol/detail/unfinished_files.h"
 #include "subvol/version.h"
 #include "vdb_functions.h"
 
@@ -30,6 +31,7 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .value = [](const VdbGrid& grid, const Vec3& x) { return grid.value(x); },
         .voxels = [](const VdbGrid& grid) { return grid.voxels(); },
         .free = &detail::free_vdb_data,
+        .remove_unfinished_files = &detail::remove_unfinished_files,
     };
     return &functions;
 }

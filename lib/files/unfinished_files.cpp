@@ -26,6 +26,7 @@ struct Place {
 static_assert(std::atomic<State>::is_always_lock_free);
 
 std::array<Place, kPlaces> places;
+std::atomic<void (*)() noexcept> of_module = nullptr;
 
 void put(const std::string& name, std::array<char, kLongestName>& to) {
     *std::ranges::copy(name, to.begin()).out = '\0';
@@ -57,6 +58,11 @@ void remove_unfinished_files() noexcept {
         (void)unlink(place.file.data());
         if (place.folder[0] != '\0') (void)rmdir(place.folder.data());
     }
+    if (auto* const remove_others = of_module.load()) remove_others();
+}
+
+void remove_unfinished_files_of(void (*module)() noexcept) {
+    of_module = module;
 }
 
 }  // namespace subvol::detail
