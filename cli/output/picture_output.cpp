@@ -67,8 +67,11 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
     const int width = views.front().width(), height = views.front().height();
     Picture sheet{Image(2 * width, 2 * height), {}};
     sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    float opacity = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
-        const Picture part = draw(views[i], report.progress());
+        Picture part = draw(views[i], report.progress());
+        opacity = std::max(opacity, most_opaque(part.image));
+        notes_.draw_over(part, views[i]);
         const int left = static_cast<int>(i % 2) * width, top = static_cast<int>(i / 2) * height;
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x) {
@@ -80,8 +83,9 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
             }
         }
     }
-    warn_if_empty(most_opaque(sheet.image), report);
+    warn_if_empty(opacity, report);
     const detail::Stopwatch watch;
+    notes_.add_legend(sheet);
     write_frame(0, sheet);
     report.add_seconds("write", watch.seconds());
     report["output"] = frame_path(0).string();
@@ -95,9 +99,11 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
         FrameProgress of_frame(report.progress(), i, views.size());
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
-        const Picture picture = draw(views[i], progress);
+        Picture picture = draw(views[i], progress);
         opacity = std::max(opacity, most_opaque(picture.image));
         const detail::Stopwatch watch;
+        notes_.draw_over(picture, views[i]);
+        notes_.add_legend(picture);
         write_frame(i, picture);
         report.add_seconds("write", watch.seconds());
     }
