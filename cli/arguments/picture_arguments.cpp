@@ -2,6 +2,7 @@
 #include "picture_arguments.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "choices.h"
 #include "outputs.h"
 #include "subvol/camera_fit.h"
+#include "subvol/clamped.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
@@ -20,8 +22,19 @@ namespace subvol::cli {
 namespace {
 
 constexpr double kOpacityUnitsPerDiagonal = 100;
+constexpr double kFaint = 0.02;                 // of the largest opacity: what has less is not framed
+constexpr double kAlmostWhole = 0.8;            // of the box's diagonal
 constexpr double kSolidUnitsPerDiagonal = 1e6;  // all light ends far within a pixel
 const Vec3 kPlainColor(0.72, 0.76, 0.82);       // of a body without a field, sRGB
+
+/// The largest opacity of the values from low to high.
+double largest_alpha(const TransferFunction& function, double low, double high) {
+    double largest = std::max(alpha_at(function, low), alpha_at(function, high));
+    for (const auto& knot : function.opacity) {
+        if (knot.value > low && knot.value < high) largest = std::max(largest, knot.alpha);
+    }
+    return largest;
+}
 
 }  // namespace
 
@@ -159,12 +172,18 @@ void PictureArguments::add_light_to(CLI::App& app) {
            "opacities instead of those of --tf, linear in between: at values of the field or per cent of its range, such "
            "as 0%:0,50%:.2,100%:.9")
         ->type_name("V:A,V:A,…");
+    app.add_flag("--clamp", clamp, "show values beyond the field's range, where interpolating schemes overshoot, as its ends");
     app.add_option("--opacity-unit", opacity_unit_world,
                    "the world distance over which an opacity acts (default: 1/100 of the bounding box's diagonal)")
         ->type_name("D")
         ->check(CLI::PositiveNumber);
-    app.add_option("--legend", legend, "also write a colour bar with the opacities and the field's name")
-        ->type_name("FILE.svg");
+    app.add_option("--legend", legend,
+                   "a colour bar with the opacities and the field's name, at the right of the picture, or in a file of its own")
+        ->type_name("[FILE.svg]")
+        ->expected(0, 1);
+    app.add_option("--unit", unit, "the field's unit, which the legend shows")->type_name("TEXT");
+    app.add_flag("--axes", axes, "draw the directions of x, y and z in the lower left corner");
+    app.add_flag("--edges", edges, "splat: draw the edges of the control mesh over the picture, hidden lines hidden");
     app.add_option(
            "--background", background,
            "the background of a .png: linear red, green, blue in 0..1, #rrggbb (sRGB), or a name such as white (default: light "
@@ -195,12 +214,13 @@ Camera PictureArguments::make_camera(const Box& box, std::span<const Vec3> point
     if (made_orthographic) given = orthographic_camera(given, box, aspect);
     // A named view shows the whole box, so all pictures of its turntable do.
     if (turntable_frames && (fit || !camera || made_orthographic)) return fit_turntable(given, box, *turntable_frames, aspect);
-    if (look == Look::Solid && !camera && !points.empty()) return fit_camera_to_points(given, points, aspect);
+    if (!camera && !points.empty()) return fit_camera_to_points(given, points, aspect);
     return fit ? fit_camera(given, box, aspect) : given;
 }
 
 std::vector<View> PictureArguments::make_views(const Box& box, std::span<const Vec3> points) const {
-    const auto [width, height] = parse_size("--size", size);
+    const PictureSize whole = parse_size("--size", size);
+    const int width = whole.width - legend_px, height = whole.height;
     const Camera first = make_camera(box, points, static_cast<double>(width) / height);
     if (views) return make_sheet(box, points, width / 2, height / 2);
     if (!turntable_frames) return {View(first, width, height)};
@@ -217,6 +237,34 @@ std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const V
         sheet.emplace_back(one.make_camera(box, points, static_cast<double>(width) / height), width, height);
     }
     return sheet;
+}
+
+std::vector<Vec3> PictureArguments::framed_points(const HexMesh& mesh, const Optics& optics) const {
+    if (look == Look::Solid) return mesh.points;
+    const TransferFunction& function = optics.function();
+    double most = 0;
+    for (const auto& knot : function.opacity) most = std::max(most, knot.alpha);
+    const std::vector<double>& values = mesh.attributes[0].values;
+    std::vector<std::uint8_t> seen(mesh.points.size());
+    for (const auto& cell : mesh.cells) {
+        double low = values[cell[0]], high = low;
+        for (const Index corner : cell) {
+            low = std::min(low, values[corner]);
+            high = std::max(high, values[corner]);
+        }
+        if (largest_alpha(function, low, high) <= kFaint * most) continue;
+        for (const Index corner : cell) seen[corner] = 1;
+    }
+    std::vector<Vec3> points;
+    Box part;
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+        if (!seen[p]) continue;
+        points.push_back(mesh.points[p]);
+        part.add(mesh.points[p]);
+    }
+    // Almost the whole is framed as the whole, like a grid or kernels of it.
+    if (points.empty() || part.diagonal() > kAlmostWhole * bounds(mesh).diagonal()) return {};
+    return points;
 }
 
 Range PictureArguments::shown_range(const Range& field) const {
@@ -248,6 +296,11 @@ Optics PictureArguments::make_optics(const Box& box, const Range& field, const R
         }
     }
     if (opacity) function.opacity = parse_opacity(*opacity, range.min, range.max);
+    if (clamp) {
+        TransferFunction kept = clamped(function, field.min, field.max);
+        kept.color = clamped(function, colors.min, colors.max).color;
+        function = std::move(kept);
+    }
     return {std::move(function), opacity_unit_world.value_or(unit_world)};
 }
 
@@ -261,13 +314,25 @@ void PictureArguments::check() const {
         throw Error(ErrorCode::InvalidInput, "a sheet of four views has quarters of whole pixels", "--size " + size,
                     "an even width and height");
     }
-    if (legend) check_output(*legend, {".svg"});
+    if (legend && !legend_inside()) check_output(*legend, {".svg"});
+    if (!unit.empty() && !legend) throw Error(ErrorCode::InvalidInput, "is shown by a legend only", "--unit", "--legend");
 }
 
-void PictureArguments::write_legend(const Optics& optics, const std::string& field, const Range& colors, Report& report) const {
-    if (!legend) return;
-    const Range range = shown_range(colors);
-    subvol::write_legend(*legend, optics.function(), {.title = field, .min = range.min, .max = range.max});
+LegendOptions PictureArguments::legend_options(const ShownField& field, const ShownField& colors) const {
+    const Range range = shown_range(colors.range);
+    LegendOptions options{.title = colors.name + (unit.empty() ? "" : " [" + unit + "]"), .min = range.min, .max = range.max};
+    if (field.name != colors.name) {
+        const Range opacities = shown_range(field.range);
+        options.opacity_title = field.name;
+        options.opacity_min = opacities.min;
+        options.opacity_max = opacities.max;
+    }
+    return options;
+}
+
+void PictureArguments::write_legend(const Optics& optics, const LegendOptions& options, Report& report) const {
+    if (!legend || legend_inside()) return;
+    subvol::write_legend(*legend, optics.function(), options);
     report["legend"] = *legend;
 }
 

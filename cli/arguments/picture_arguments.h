@@ -9,6 +9,7 @@
 #include "report.h"
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/legend.h"
 #include "subvol/optics.h"
 
 namespace CLI {
@@ -20,6 +21,12 @@ namespace subvol::cli {
 /// The range of a field's values.
 struct Range {
     double min = 0, max = 0;
+};
+
+/// A field with the range of its values.
+struct ShownField {
+    std::string name;
+    Range range;
 };
 
 struct PictureSize {
@@ -65,7 +72,11 @@ struct PictureArguments {
     std::optional<std::string> transfer_range;
     std::optional<std::string> opacity;
     std::optional<double> opacity_unit_world;
-    std::optional<std::string> legend;
+    std::optional<std::string> legend;  // the file; empty: inside the picture
+    int legend_px = 0;                  // the width of a legend inside the picture, as settled
+    std::string unit;                   // of the field that the legend shows
+    bool axes = false, edges = false;
+    bool clamp = false;  // values beyond the field's range look like its ends
     std::optional<std::string> background;
 
     void add_to(CLI::App& app);
@@ -77,8 +88,11 @@ struct PictureArguments {
     [[nodiscard]] bool lit() const { return look == Look::Solid || look == Look::Isosurface; }
     [[nodiscard]] Vec3 background_color() const;
 
-    /// One view, or those of the turntable, or the four of a sheet, each a quarter of the picture. points: of a body that is
-    /// seen as a whole: a solid's named view is fitted to them
+    /// The points to which the camera is fitted: those of a solid; of other bodies those of the cells that can be seen, or
+    /// nothing if these are most of the body.
+    [[nodiscard]] std::vector<Vec3> framed_points(const HexMesh& mesh, const Optics& optics) const;
+    /// One view, or those of the turntable, or the four of a sheet, each a quarter of the picture. points: a
+    /// named view is fitted to them; none: to the box
     [[nodiscard]] std::vector<View> make_views(const Box& box, std::span<const Vec3> points = {}) const;
     /// field, colors: the ranges of the field that gives the opacities and of the one that gives the colours, often the same
     [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
@@ -88,8 +102,11 @@ struct PictureArguments {
     /// throws: Error(InvalidInput)
     void check() const;
 
-    /// Writes the --legend, if there is one, over the range of the colours.
-    void write_legend(const Optics& optics, const std::string& field, const Range& colors, Report& report) const;
+    [[nodiscard]] bool legend_inside() const { return legend && legend->empty(); }
+    /// The legend of what is shown: titles and ranges.
+    [[nodiscard]] LegendOptions legend_options(const ShownField& field, const ShownField& colors) const;
+    /// Writes the --legend into its file, if it has one.
+    void write_legend(const Optics& optics, const LegendOptions& options, Report& report) const;
 
 private:
     /// The range of --tf-range; without it the field's range.

@@ -5,10 +5,21 @@
 #include <filesystem>
 #include <vector>
 
+#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "text.h"
 
 namespace subvol::cli {
+namespace {
+
+std::string held(const VdbContents& contents) {
+    std::vector<std::string> names;
+    for (const VdbGrid& grid : contents.grids) names.push_back(grid.report().name);
+    for (const auto& other : contents.others) names.push_back(other.name + " (" + other.type + ")");
+    return names.empty() ? "" : "it has: " + join(names);
+}
+
+}  // namespace
 
 std::string extension_of(const std::string& file) {
     std::string extension = std::filesystem::path(file).extension().string();
@@ -20,28 +31,45 @@ bool is_vdb_file(const std::string& input) {
     return extension_of(input) == ".vdb";
 }
 
+VdbGrid select_grid(const VdbContents& contents, const std::optional<std::string>& name, const std::string& input) {
+    const auto& grids = contents.grids;
+    if (!name) {
+        for (const char* kind : {"float", "vector"}) {
+            for (const VdbGrid& grid : grids) {
+                if (grid.report().kind == kind) return scalar_of(grid, std::nullopt, grid.report().name);
+            }
+        }
+        throw Error(ErrorCode::InvalidInput, "holds no grid of floats or vectors", input, held(contents));
+    }
+    for (const VdbGrid& grid : grids) {
+        if (grid.report().name == *name) return scalar_of(grid, std::nullopt, *name);
+    }
+    const std::size_t dot = name->rfind('.');
+    if (dot != std::string::npos && dot + 2 == name->size()) {
+        const std::size_t letter = std::string("xyz012").find(name->back());
+        for (const VdbGrid& grid : grids) {
+            if (letter != std::string::npos && grid.report().kind == "vector" && grid.report().name == name->substr(0, dot))
+                return scalar_of(grid, static_cast<int>(letter % 3), *name);
+        }
+    }
+    std::vector<std::string> names;
+    for (const VdbGrid& grid : grids) names.push_back(grid.report().name);
+    throw Error(ErrorCode::InvalidInput, "there is no grid '" + *name + "'" + detail::did_you_mean(*name, names), input,
+                held(contents));
+}
+
 VdbGrid load_grid(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
     if (!is_vdb_file(input)) {
         throw Error(ErrorCode::InvalidInput, "is not a grid", input, "a .vdb file, as `subvol vdb` makes of a mesh");
     }
-    std::vector<VdbGrid> grids = report.timed("read", [&] { return read_vdb(input); });
-    auto found = grids.begin();
-    if (options.field) {
-        found = std::ranges::find(grids, *options.field, [](const VdbGrid& grid) { return grid.report().name; });
-        if (found == grids.end()) {
-            std::vector<std::string> names;
-            for (const VdbGrid& grid : grids) names.push_back(grid.report().name);
-            throw Error(ErrorCode::InvalidInput, "there is no float grid '" + *options.field + "'", input,
-                        "it has: " + join(names));
-        }
-    }
-    const GridReport& grid = found->report();
+    VdbGrid found = select_grid(report.timed("read", [&] { return read_vdb_contents(input); }), options.field, input);
+    const GridReport& grid = found.report();
     if (grid.active_voxels == 0) throw Error(ErrorCode::InvalidInput, "the grid has no active voxels", input);
     report["field"] = grid.name;
     report["active_voxels"] = grid.active_voxels;
     report["voxel_size"] = grid.voxel_size_world;
-    return std::move(*found);
+    return found;
 }
 
 Box box_of(const GridReport& grid) {

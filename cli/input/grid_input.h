@@ -5,6 +5,7 @@
 
 #include "common_options.h"
 #include "report.h"
+#include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 
 namespace subvol::cli {
@@ -15,7 +16,15 @@ namespace subvol::cli {
 /// Whether the input is a `.vdb` file, also if that is written in capitals; it may contain points instead of grids.
 [[nodiscard]] bool is_vdb_file(const std::string& input);
 
-/// Reads the float grid of a `.vdb` file that --field names, else the first. Puts "input", "field", and the number and
+/// The grid of floats that a name means: one of the file's, of a grid of vectors the lengths, or with NAME.x (or NAME.0) a
+/// component. Without a name the first grid of floats, else the first of vectors.
+///
+/// input:  the file, named in the error
+/// throws: Error(InvalidInput) if there is no such grid
+[[nodiscard]] VdbGrid select_grid(const VdbContents& contents, const std::optional<std::string>& name,
+                                  const std::string& input);
+
+/// Reads the grid of a `.vdb` file that --field names, as `select_grid` does. Puts "input", "field", and the number and
 /// size of the voxels into the report.
 ///
 /// throws: Error(InvalidInput) if it is not a `.vdb` file, has no such grid, or the grid has no active voxels

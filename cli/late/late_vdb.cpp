@@ -93,6 +93,18 @@ VoxelSampleResult sample_rbf_points(const VdbGrid& grid, const VoxelSampleOption
     return vdb().sample_rbf_points(grid, options);
 }
 
+VdbContents read_vdb_contents(const Path& path) {
+    return vdb().read_vdb_contents(path);
+}
+
+VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::string& name) {
+    return vdb().scalar_of(grid, component, name);
+}
+
+void clamp_voxels(VdbGrid& grid, const FieldRange& range) {
+    vdb().clamp_voxels(grid, range);
+}
+
 GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b) {
     return vdb().compare_voxels(a, b);
 }

@@ -13,6 +13,7 @@
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 #include "subvol/spread_vectors.h"
+#include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 #include "subvol/vdb_points.h"
 #include "subvol/vdb_sample.h"
@@ -41,6 +42,10 @@ struct VdbFunctions {
     RbfVolume (*read_vdb_points)(const std::filesystem::path&);
     bool (*holds_vdb_points)(const std::filesystem::path&);
     VoxelSampleResult (*sample_rbf_points)(const VdbGrid&, const VoxelSampleOptions&);
+
+    VdbContents (*read_vdb_contents)(const std::filesystem::path&);
+    VdbGrid (*scalar_of)(const VdbGrid&, std::optional<int>, const std::string&);
+    void (*clamp_voxels)(VdbGrid&, const FieldRange&);
 
     GridDifference (*compare_voxels)(const VdbGrid&, const VdbGrid&);
     const GridReport& (*report)(const VdbGrid&);

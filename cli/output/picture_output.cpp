@@ -94,8 +94,11 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
     const int width = views.front().width(), height = views.front().height();
     Picture sheet{Image(2 * width, 2 * height), {}};
     sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    float opacity = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
-        const Picture part = draw(views[i], report.progress());
+        Picture part = draw(views[i], report.progress());
+        opacity = std::max(opacity, most_opaque(part.image));
+        notes_.draw_over(part, views[i]);
         const int left = static_cast<int>(i % 2) * width, top = static_cast<int>(i / 2) * height;
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x) {
@@ -110,6 +113,7 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
     opacity_ = most_opaque(sheet.image);
     if (path_.extension() == ".png") warn_if_blank(sheet.image, background_, report);
     const detail::Stopwatch watch;
+    notes_.add_legend(sheet);
     write_frame(0, sheet);
     report.add_seconds("write", watch.seconds());
 }
@@ -121,10 +125,12 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
         FrameProgress of_frame(report.progress(), written_, static_cast<std::size_t>(frames_.value_or(1)));
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
-        const Picture picture = draw(view, progress);
+        Picture picture = draw(view, progress);
         opacity_ = std::max(opacity_, most_opaque(picture.image));
         if (written_ == 0 && path_.extension() == ".png") warn_if_blank(picture.image, background_, report);
         const detail::Stopwatch watch;
+        notes_.draw_over(picture, view);
+        notes_.add_legend(picture);
         write_frame(written_++, picture);
         report.add_seconds("write", watch.seconds());
     }

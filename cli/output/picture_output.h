@@ -8,19 +8,12 @@
 #include <vector>
 
 #include "picture_arguments.h"
+#include "picture_notes.h"
 #include "report.h"
 #include "subvol/image.h"
 #include "video_file.h"
 
 namespace subvol::cli {
-
-/// A drawn picture.
-///
-/// depth: one per pixel for .exr, see `write_image`; empty: not known
-struct Picture {
-    Image image;
-    std::vector<float> depth{};
-};
 
 /// Where the pictures of a run go: one file, numbered files NAME_0000.png and so on, or a video.
 class PictureOutput {
@@ -31,6 +24,9 @@ public:
     /// first:  the number of the first frame in the names
     /// throws: Error(InvalidInput), Error(Io), Error(MissingCapability)
     PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments, int first = 0);
+
+    /// What is drawn over every picture from now on.
+    void set_notes(PictureNotes notes) { notes_ = std::move(notes); }
 
     /// Draws and writes one picture for each view, after those of earlier calls.
     void write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw, Report& report);
@@ -49,6 +45,7 @@ private:
     int first_;
     bool sheet_;  // four views in one picture
     Vec3 background_;
+    PictureNotes notes_{};
     std::size_t written_ = 0;
     float opacity_ = 0;  // the largest of a pixel
     std::optional<VideoFile> video_;

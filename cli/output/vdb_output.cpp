@@ -82,7 +82,8 @@ void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& out
 }
 
 void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
-                 const RasterizeOptions& options, const VdbOutput& output, Report& report) {
+                 const RasterizeOptions& options, const VdbOutput& output, Report& report,
+                 const std::function<void(std::vector<VdbGrid>&)>& prepare) {
     const std::filesystem::path path(output.path);
     std::deque<detail::AtomicFile> files;  // all of them appear, or none
     std::size_t active = 0;
@@ -91,7 +92,8 @@ void write_parts(const std::string& input, const HexMesh& mesh, std::span<const 
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
     const detail::Stopwatch whole;
     double writing = 0;
-    rasterize_parts(mesh, fields, options, output.memory_bytes, [&](const GridPart& part) {
+    rasterize_parts(mesh, fields, options, output.memory_bytes, [&](GridPart part) {
+        prepare(part.grids);
         const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
         const GridReport& first = part.grids.front().report();
         const detail::Stopwatch one;

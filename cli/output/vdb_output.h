@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "report.h"
@@ -29,9 +30,11 @@ struct VdbOutput {
 
 /// Rasterizes and writes slab by slab: NAME_0000.vdb and so on, and NAME.json that lists them.
 ///
-/// input: the name of the mesh, for NAME.json
+/// input:   the name of the mesh, for NAME.json
+/// prepare: changes the grids of each slab before they are written
 void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
-                 const RasterizeOptions& options, const VdbOutput& output, Report& report);
+                 const RasterizeOptions& options, const VdbOutput& output, Report& report,
+                 const std::function<void(std::vector<VdbGrid>&)>& prepare);
 
 /// Writes grids; puts what is in them into the report.
 void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);

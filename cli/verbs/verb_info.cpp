@@ -68,7 +68,8 @@ public:
         app().add_flag("--list-fields", list_fields_, "print the names of a mesh's fields only, one a line");
         app().add_flag("--gl", gl_, "list the OpenGL devices that can splat");
         app()
-            .add_option("--at", points_, "print the value of a .vdb file's grid there (repeatable)")
+            .add_option("--at", points_,
+                        "print the values of a .vdb file's grids there, or of the one that --field names (repeatable)")
             ->type_name("X,Y,Z")
             ->allow_extra_args(false);
     }
@@ -166,10 +167,12 @@ private:
 
     void describe_grids(Report& report) {
         report["input"] = input_;
-        const std::vector<VdbGrid> grids = report.timed("read", [&] { return read_vdb(input_); });
-        for (const VdbGrid& grid : grids) {
+        const VdbContents contents = report.timed("read", [&] { return read_vdb_contents(input_); });
+        report["grids"] = Json::array();
+        for (const VdbGrid& grid : contents.grids) {
             const GridReport& about = grid.report();
             report["grids"].push_back({{"name", about.name},
+                                       {"kind", about.kind},
                                        {"active_voxels", about.active_voxels},
                                        {"voxel_size", about.voxel_size_world},
                                        {"bounds", to_json(about.bounds)},
@@ -177,26 +180,35 @@ private:
                                        {"max", about.max},
                                        {"bytes", about.bytes}});
         }
+        for (const auto& [name, type] : contents.others) report["grids"].push_back({{"name", name}, {"kind", type}});
         if (points_.empty()) return;
-        const VdbGrid& shown = selected(grids);
+        const std::vector<VdbGrid> scalars = probed(contents);
         for (const std::string& point : points_) {
             const Vec3 x = parse_vector("--at", point);
-            const std::optional<double> value = shown.value(x);
-            report["at"].push_back(
-                {{"point", to_json(x)}, {"field", shown.report().name}, {"value", value ? Json(*value) : Json(nullptr)}});
+            for (const VdbGrid& scalar : scalars) {
+                const std::optional<double> value = scalar.value(x);
+                report["at"].push_back(
+                    {{"point", to_json(x)}, {"field", scalar.report().name}, {"value", value ? Json(*value) : Json(nullptr)}});
+            }
         }
     }
 
-    [[nodiscard]] const VdbGrid& selected(const std::vector<VdbGrid>& grids) const {
-        if (!common().field) return grids.front();
-        std::vector<std::string> names;
-        for (const VdbGrid& grid : grids) {
-            if (grid.report().name == *common().field) return grid;
-            names.push_back(grid.report().name);
+    /// What --at reads: the grid that --field names, else all, vectors by their components.
+    [[nodiscard]] std::vector<VdbGrid> probed(const VdbContents& contents) const {
+        std::vector<VdbGrid> scalars;
+        if (common().field) {
+            scalars.push_back(select_grid(contents, common().field, input_));
+            return scalars;
         }
-        throw Error(ErrorCode::InvalidInput,
-                    "no grid is named '" + *common().field + "'" + detail::did_you_mean(*common().field, names), input_,
-                    "it has: " + join(names));
+        for (const VdbGrid& grid : contents.grids) {
+            const std::string& name = grid.report().name;
+            if (grid.report().kind == "vector") {
+                for (int c = 0; c < 3; ++c) scalars.push_back(scalar_of(grid, c, name + "." + "xyz"[c]));
+            } else {
+                scalars.push_back(scalar_of(grid, std::nullopt, name));
+            }
+        }
+        return scalars;
     }
 
     std::string input_;

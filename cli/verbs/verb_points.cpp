@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 
+#include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
 #include "outputs.h"
 #include "picture_arguments.h"
+#include "points_input.h"
 #include "sampled_points.h"
 #include "steps.h"
+#include "subvol/clamp_channel.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "subvol/points_io.h"
@@ -36,6 +39,7 @@ public:
                        ".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it");
         sample_.add_to(app());
         app().add_option("--tf", transfer_function_, "the colour map for --threshold, as for `render`")->type_name("FILE|NAME");
+        app().add_flag("--clamp", clamp_, "keep the kernels' values within the field's range: interpolating schemes overshoot");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
                         "--reduce", "--levels", "--scheme"});
@@ -93,11 +97,18 @@ private:
 
     [[nodiscard]] RbfVolume points_of_mesh(const CommonOptions& options, Report& report) {
         HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report);
-        const std::optional<TransferFunction> shown = seen(field_range(mesh));
-        return sample_reported(std::move(mesh), sample_, refine_, shown, report);
+        const Range given = field_range(mesh);
+        RbfVolume volume = sample_reported(std::move(mesh), sample_, refine_, seen(given), report);
+        if (clamp_) {
+            report["clamped"] = clamp_channel(volume.channels.front(), given.min, given.max);
+        } else {
+            note_beyond(volume.channels.front().name, given, channel_range(volume, 0), report);
+        }
+        return volume;
     }
 
     [[nodiscard]] RbfVolume points_of_grid(Report& report) {
+        refuse_options(app(), {"--clamp"}, "needs a mesh: the values of voxels are within their range");
         const VdbGrid grid = load_grid(input_, common(), report);
         return sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
     }
@@ -110,7 +121,7 @@ private:
     std::string input_;
     std::string output_;
     bool ascii_ = false;
-    bool splats_ = false;
+    bool splats_ = false, clamp_ = false;
     std::string transfer_function_;
     SampleArguments sample_;
     RefineArguments refine_;

@@ -16,6 +16,7 @@
 #include "splat_arguments.h"
 #include "steps.h"
 #include "subvol/boundary_shading.h"
+#include "subvol/boundary_values.h"
 #include "subvol/error.h"
 #include "subvol/progressive.h"
 #include "subvol/render_tets.h"
@@ -27,6 +28,7 @@ namespace subvol::cli {
 namespace {
 
 constexpr int kTetsLevel = 1;
+constexpr std::size_t kManyTriangles = 16000;  // of a boundary that is refined once rather than twice
 
 void check_coordinates(const HexMesh& mesh) {
     constexpr double kMost_world = 1e18;  // as of splats; far beyond it, squares and volumes overflow
@@ -127,6 +129,10 @@ private:
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
                         "--shade, --color-field", "use --method splat or sheets");
         }
+        if (picture_.edges) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " has no depths to hide lines by", "--edges",
+                        "use --method splat or sheets");
+        }
         const bool on_gpu = method_ == "pt";
         if (splat_.seconds && !on_gpu) {
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " has no time limit", "--seconds",
@@ -158,7 +164,7 @@ private:
         PictureOutput output(output_, steps.count(), picture_, steps.first);
         Box box;
         Range range, colors;
-        std::string name;
+        std::string field_name, color_name;
         for (int step = steps.first; step <= steps.last; ++step) {
             const HexMesh mesh = shown_mesh(of_step(common(), step), report);
             const Range field = field_range(mesh, 0), color = field_range(mesh, mesh.attributes.size() - 1);
@@ -166,25 +172,36 @@ private:
             range = first ? field : Range{std::min(range.min, field.min), std::max(range.max, field.max)};
             colors = first ? color : Range{std::min(colors.min, color.min), std::max(colors.max, color.max)};
             box.add(bounds(mesh));
-            name = mesh.attributes.back().name;
+            field_name = mesh.attributes.front().name;
+            color_name = mesh.attributes.back().name;
         }
-        const std::vector<View> views = picture_.make_views(box);
         const Optics optics = picture_.make_optics(box, range, colors);
+        const LegendOptions legend = picture_.legend_options({field_name, range}, {color_name, colors});
+        std::vector<View> views;
         for (int step = steps.first; step <= steps.last; ++step) {
-            draw(shown_mesh(of_step(common(), step), report), views, optics, output, report);
+            const HexMesh mesh = shown_mesh(of_step(common(), step), report);
+            PictureNotes notes = make_notes(picture_, optics, legend, &mesh);
+            if (views.empty()) views = picture_.make_views(box);
+            output.set_notes(std::move(notes));
+            draw(mesh, views, optics, output, report);
         }
+        output.set_notes({});  // the last mesh is gone
         output.finish(report);
         report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
-        picture_.write_legend(optics, name, colors, report);
+        picture_.write_legend(optics, legend, report);
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {
         const HexMesh mesh = shown_mesh(common(), report);
         const Box box = bounds(mesh);
-        const Range colors = field_range(mesh, mesh.attributes.size() - 1);
-        const Optics optics = picture_.make_optics(box, field_range(mesh, 0), colors);
-        draw(mesh, picture_.make_views(box, mesh.points), optics, output, report);
-        picture_.write_legend(optics, mesh.attributes.back().name, colors, report);
+        const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
+        const Optics optics = picture_.make_optics(box, range, colors);
+        const LegendOptions legend =
+            picture_.legend_options({mesh.attributes.front().name, range}, {mesh.attributes.back().name, colors});
+        output.set_notes(make_notes(picture_, optics, legend, &mesh));
+        draw(mesh, picture_.make_views(box, picture_.framed_points(mesh, optics)), optics, output, report);
+        output.set_notes({});
+        picture_.write_legend(optics, legend, report);
     }
 
     void draw(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
@@ -192,30 +209,47 @@ private:
         if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
         if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-            draw_tetrahedra(fine, boundary_of(mesh, report), views, optics, output, report);
+            draw_tetrahedra(fine, skin_of(mesh, report).surface, views, optics, output, report);
         } else if (method_ == "dense") {
             const RefineOptions refine = refine_.options(0, report);
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_dense(mesh, refine, refine_.levels, view, optics, reference_, progress, report);
             };
-            output.write(views, lit(draw, boundary_of(mesh, report)), report);
+            output.write(views, lit(draw, skin_of(mesh, report).surface), report);
         } else if (splat_.seconds) {
             splat_in_time(mesh, views.front(), optics, output, report);
         } else {
-            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report);
+            BoundaryValues skin;
+            if (paints_boundary()) skin = skin_of(mesh, report);
+            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report, skin);
         }
     }
 
     using Draw = std::function<Picture(const View&, Progress*)>;
 
-    /// The surface that is lit, if there is light.
-    [[nodiscard]] Surface boundary_of(const HexMesh& mesh, Report& report) const {
+    /// The surface that is lit, if there is light, and the values on it.
+    [[nodiscard]] BoundaryValues skin_of(const HexMesh& mesh, Report& report) const {
         if (!picture_.lit()) return {};
         if (picture_.look != Look::Solid) {
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " lights the boundary only", "--look isosurface",
                         "use --method splat or sheets, or --tf isosurface for surfaces without light");
         }
-        return sample_rbf_points(mesh, sample_.options(bounds(mesh), refine_.options(0, report))).volume.boundary;
+        const int levels = refine_.levels                                             ? std::min(2, *refine_.levels)
+                           : boundary_surface(mesh).triangles.size() > kManyTriangles ? 1
+                                                                                      : 2;
+        RefineOptions options = refine_.options(levels, report);
+        options.levels = levels;
+        return report.timed("boundary", [&] { return boundary_values(mesh, options); });
+    }
+
+    /// Whether the colours of a solid are those of its boundary: unless the picture is to show what kernels make of it.
+    [[nodiscard]] bool paints_boundary() {
+        if (picture_.look != Look::Solid || picture_.opacity || picture_.opacity_unit_world || refine_.levels) return false;
+        for (const char* option : {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--values",
+                                   "--kernel", "--threshold", "--correction", "--reduce", "--plain-sums", "--sheets"}) {
+            if (app().get_option(option)->count() > 0) return false;
+        }
+        return true;
     }
 
     /// The same pictures with light on the boundary; the methods themselves know none.
@@ -252,12 +286,14 @@ private:
         const Box box = box_of(grid.report());
         const Range range{grid.report().min, grid.report().max};
         const Optics optics = picture_.make_optics(box, range, range);
+        const LegendOptions legend = picture_.legend_options({grid.report().name, range}, {grid.report().name, range});
+        output.set_notes(make_notes(picture_, optics, legend, nullptr));
         const auto voxels = grid.voxels();
         const auto draw = [&](const View& view, Progress* progress) {
             return draw_grid(*voxels, view, optics, reference_, progress, report);
         };
         output.write(picture_.make_views(box), draw, report);
-        picture_.write_legend(optics, grid.report().name, range, report);
+        picture_.write_legend(optics, legend, report);
     }
 
     void splat_voxels(PictureOutput& output, Report& report) {
@@ -268,29 +304,40 @@ private:
         const Box box = box_of(grid.report());
         const Range range{grid.report().min, grid.report().max};
         const Optics optics = picture_.make_optics(box, range, range);
+        const LegendOptions legend = picture_.legend_options({grid.report().name, range}, {grid.report().name, range});
+        output.set_notes(make_notes(picture_, optics, legend, nullptr));
         const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
         splat(volume, picture_.make_views(box), optics, output, report);
-        picture_.write_legend(optics, grid.report().name, range, report);
+        picture_.write_legend(optics, legend, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
         if (!drawn_by_splats()) throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         if (volume.channels.size() == 1) options_.color_channel.reset();
-        const std::vector<View> views = picture_.make_views(volume.bounds);
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
         const Optics optics = picture_.make_optics(volume.bounds, range, colors);
+        const LegendOptions legend =
+            picture_.legend_options({volume.channels.front().name, range}, {volume.channels.back().name, colors});
+        output.set_notes(make_notes(picture_, optics, legend, nullptr));
+        const std::vector<View> views = picture_.make_views(volume.bounds);
         splat(volume, views, optics, output, report);
-        picture_.write_legend(optics, volume.channels.back().name, colors, report);
+        picture_.write_legend(optics, legend, report);
     }
 
+    /// skin: if it is not empty, the boundary of a solid, which gets its colours from it
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
-               Report& report) const {
+               Report& report, const BoundaryValues& skin = {}) const {
         Splatter splatter(volume, options_);
         const auto draw = [&](const View& view, Progress* progress) {
             SplatResult drawn = splatter.draw(view, optics, progress);
             report["method"] = method_;
             report_splats(drawn.report, report);
+            if (!skin.values.empty()) {
+                report.timed("colors", [&] {
+                    color_boundary(drawn.image, skin.surface, skin.values.back(), view, optics, Shading{}, reference_.samples);
+                });
+            }
             return Picture{std::move(drawn.image), std::move(drawn.depth)};
         };
         output.write(views, draw, report);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 
+#include "grid_fields.h"
 #include "input.h"
 #include "outputs.h"
 #include "refine_arguments.h"
+#include "subvol/field_range.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "text.h"
@@ -26,6 +28,7 @@ public:
         refine_.add_to(app(), "number of refinements (default 1)");
         app().add_flag("--on-limit", on_limit_,
                        "move the refined points to the limit (cc and bsxw; those of the other schemes lie on it)");
+        app().add_flag("--clamp", clamp_, "keep values within the ranges of the fields: interpolating schemes overshoot");
     }
 
     int run(Report& report) override {
@@ -33,7 +36,8 @@ public:
         check_output(output_, {".vtu", ".mesh"});
         report.if_long("fewer --levels");
         const HexMesh mesh = load_mesh(input_, common(), report);
-        const HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
+        HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
+        keep_in_range(mesh, fine, report);
         for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine); }))
             report.warn(warning);
         put_shape(mesh, fine, report);
@@ -44,6 +48,21 @@ public:
     }
 
 private:
+    void keep_in_range(const HexMesh& control, HexMesh& fine, Report& report) const {
+        for (std::size_t f = 0; f < fine.attributes.size(); ++f) {
+            const FieldRange given = range_of(control.attributes[f]);
+            if (clamp_) {
+                clamp_to(fine.attributes[f], given);
+            } else {
+                const FieldRange found = range_of(fine.attributes[f]);
+                for (std::size_t c = 0; c < given.min.size(); ++c) {
+                    const std::string name = control.attributes[f].name + (given.min.size() > 1 ? text(".", c) : "");
+                    note_beyond(name, {given.min[c], given.max[c]}, {found.min[c], found.max[c]}, report);
+                }
+            }
+        }
+    }
+
     /// A scheme that interpolates its control points can fold badly shaped cells.
     static void put_shape(const HexMesh& control, const HexMesh& fine, Report& report) {
         const ShapeReport before = measure_cells(control), after = measure_cells(fine);
@@ -57,7 +76,7 @@ private:
 
     std::string input_;
     std::string output_;
-    bool on_limit_ = false;
+    bool on_limit_ = false, clamp_ = false;
     RefineArguments refine_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "choices.h"
+#include "grid_fields.h"
 #include "input.h"
 #include "mesh_frames.h"
 #include "outputs.h"
@@ -12,12 +13,15 @@
 #include "steps.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
+#include "subvol/field_expression.h"
+#include "subvol/field_range.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 #include "subvol/spread_vectors.h"
+#include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -54,6 +58,7 @@ public:
         : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: one grid per field.",
                "  subvol vdb model:ball -o ball.vdb\n"
                "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
+               "  subvol vdb fire.vtu -o fire.vdb --fields \"density=soot,heat=(Temp-293)/620\" --remap 0,.02 --up y\n"
                "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
                "  subvol vdb 'run_####.vtu' -o 'run_####.vdb' --frames 1-240 --velocity --fps 24\n"
                "  subvol vdb run.pvd -o 'run_####.vdb' --step all --velocity\n"
@@ -78,6 +83,9 @@ public:
 
     int run(Report& report) override {
         check_choice("--from", from_, {"mesh", "points"});
+        check_choice("--up", up_, {"z", "y"});
+        fields_wanted_ = parse_grid_fields(fields_);
+        for (const std::string& remap : remaps_) parsed_remaps_.push_back(parse_remap(remap));
         if (output_.nano && !has_nanovdb()) {
             throw Error(ErrorCode::MissingCapability, "this build has no NanoVDB", "--nano",
                         "configure again where libnanovdb-dev is installed");
@@ -118,11 +126,24 @@ private:
 
     void add_grid_options() {
         app()
-            .add_option("--fields", fields_,
-                        "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
-                        "NAME.k is its component k")
-            ->type_name("A,B")
-            ->delimiter(',');
+            .add_option(
+                "--fields", fields_,
+                "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
+                "NAME.k is its component k. GRID=FIELD names the grid; GRID=EXPRESSION computes it from x, y, z and the "
+                "fields, e.g. \"heat=(Temp-293)/620,speed=length(V)\"")
+            ->type_name("A,B=C");
+        app()
+            .add_option(
+                "--remap", remaps_,
+                "values from LO to HI become 0 to 1, or A to B, what is beyond becomes the nearer of these; of the first "
+                "field or of GRID (repeatable)")
+            ->type_name("[GRID=]LO,HI[:A,B]")
+            ->allow_extra_args(false);
+        app().add_flag("--clamp", clamp_, "keep values within the range of the field: interpolating schemes overshoot");
+        app()
+            .add_option("--up", up_, "the axis that is up: z, or y as in most programs for pictures (default z)")
+            ->type_name("AXIS");
+        app().add_option("--scale", scale_, "multiply all coordinates by this")->type_name("S")->check(CLI::PositiveNumber);
         app().add_flag("--cell-ids", cell_numbers_, "also write a grid: the number of the control cell");
         app().add_flag("--mask", mask_, "also write a grid: a mask of the volume");
         app().add_flag("--coverage", coverage_, "also write a grid: the part of each voxel that the volume fills");
@@ -188,7 +209,11 @@ private:
     }
 
     [[nodiscard]] HexMesh load(const std::string& input, Report& report) const {
-        return with_written_fields(load_mesh(input, common(), report), report);
+        HexMesh mesh = with_written_fields(load_mesh(input, common(), report), report);
+        for (const Remap& remap : parsed_remaps_) apply(remap, mesh);
+        if (up_ == "y") turn_y_up(mesh);
+        if (scale_ != 1) scale_points(mesh, scale_);
+        return mesh;
     }
 
     void run_one(Report& report) {
@@ -197,11 +222,13 @@ private:
         const RasterizeOptions options = set_up(mesh, report);
         if (output_.memory_bytes > 0) {
             refuse_with_memory();
-            write_parts(input_, mesh, names_of(mesh), options, output_, report);
+            write_parts(input_, mesh, names_of(mesh), options, output_, report,
+                        [&](std::vector<VdbGrid>& grids) { clamp_grids(mesh, grids); });
             return;
         }
         const std::vector<VdbGrid> grids = grids_of(mesh, options, report);
         if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
+        note_overshoot(mesh, grids, report);
         write_reported(grids, output_, report);
     }
 
@@ -212,7 +239,16 @@ private:
         options.voxel_size_world = voxel_size_;
         options.resolution = resolution_;
         options.level_set = level_set();
-        const std::vector<VdbGrid> grids = grids_of_points(input_, fields_, common(), app(), options, report);
+        refuse_options(app(), {"--remap", "--clamp", "--up", "--scale"}, "needs a mesh; these are points");
+        std::vector<std::string> names;
+        for (const GridField& field : fields_wanted_) {
+            if (field.name != field.source) {
+                throw Error(ErrorCode::InvalidInput, "needs a mesh; points have channels",
+                            "--fields " + field.name + "=" + field.source, "--fields with names of channels");
+            }
+            names.push_back(field.name);
+        }
+        const std::vector<VdbGrid> grids = grids_of_points(input_, names, common(), app(), options, report);
         if (!has_voxels(grids)) {
             throw no_voxels(input_, text("try --voxel-size below ", grids.front().report().voxel_size_world));
         }
@@ -377,8 +413,37 @@ private:
     }
 
     [[nodiscard]] std::vector<VdbGrid> grids_of(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const {
-        if (from_ == "points") return kernel_sums(mesh, options, per_edge_, report);
-        return report.timed("rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
+        std::vector<VdbGrid> grids = from_ == "points"
+                                         ? kernel_sums(mesh, options, per_edge_, report)
+                                         : report.timed("rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
+        clamp_grids(mesh, grids);
+        return grids;
+    }
+
+    /// Keeps the grids of fields within what --clamp and --remap say.
+    void clamp_grids(const HexMesh& mesh, std::vector<VdbGrid>& grids) const {
+        for (VdbGrid& grid : grids) {
+            const Attribute* field = mesh.find_attribute(grid.report().name);
+            if (field == nullptr || field->name == kVelocity) continue;
+            if (clamp_) clamp_voxels(grid, range_of(*field));
+            for (const Remap& remap : parsed_remaps_) {
+                if (remap.grid.empty() ? field == &mesh.attributes.front() : remap.grid == field->name)
+                    clamp_voxels(grid, {{std::min(remap.to_low, remap.to_high)}, {std::max(remap.to_low, remap.to_high)}});
+            }
+        }
+    }
+
+    void note_overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, Report& report) const {
+        for (const VdbGrid& grid : grids) {
+            const Attribute* field = mesh.find_attribute(grid.report().name);
+            if (field == nullptr || field->channels != 1 || clamp_) continue;
+            const bool mapped = std::ranges::any_of(parsed_remaps_, [&](const Remap& remap) {
+                return remap.grid.empty() ? field == &mesh.attributes.front() : remap.grid == field->name;
+            });
+            if (mapped) continue;
+            const FieldRange range = range_of(*field);
+            note_beyond(field->name, {range.min[0], range.max[0]}, {grid.report().min, grid.report().max}, report);
+        }
     }
 
     void refuse_with_memory() const {
@@ -387,9 +452,13 @@ private:
     }
 
     [[nodiscard]] HexMesh with_written_fields(HexMesh mesh, Report& report) const {
-        if (fields_.empty()) return with_selected_field(std::move(mesh), common(), report);
+        if (fields_wanted_.empty()) return with_selected_field(std::move(mesh), common(), report);
         std::vector<Attribute> chosen;
-        for (const std::string& name : fields_) {
+        for (const auto& [name, source] : fields_wanted_) {
+            if (name != source) {
+                chosen.push_back(field_of(mesh, name, source));
+                continue;
+            }
             if (const Attribute* vector = mesh.find_attribute(name); vector && vector->channels == 3) {
                 chosen.push_back(*vector);
                 continue;
@@ -437,7 +506,12 @@ private:
     std::uint64_t budget_bytes_ = 0;
     std::string like_;
     std::vector<VdbGrid> like_grids_;
-    std::vector<std::string> fields_;
+    std::vector<std::string> fields_, remaps_;
+    std::vector<GridField> fields_wanted_;
+    std::vector<Remap> parsed_remaps_;
+    bool clamp_ = false;
+    std::string up_ = "z";
+    double scale_ = 1;
     bool half_ = false, cell_numbers_ = false, mask_ = false, coverage_ = false;
     LevelSetOptions level_set_{.name = {}};
     CLI::Option* level_set_option_ = nullptr;

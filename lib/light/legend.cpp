@@ -25,6 +25,7 @@ namespace {
 // Pixels, with room for half a label on either side of the bar, and for the labels of the opacity on its left.
 constexpr int kLeft = 56, kRight = 36, kTop = 34, kCurve = 64, kGap = 6, kBar = 18, kBottom = 30;
 constexpr int kBarTop = kTop + kCurve + kGap, kBarEnd = kBarTop + kBar;
+constexpr int kApart = 130;   // from the bar down to the plot of the opacities of another field
 constexpr int kColors = 128;  // along the bar, besides the knots
 constexpr const char* kInk = "#222";
 constexpr const char* kColorsUrl = "url(#colors)";
@@ -58,12 +59,14 @@ public:
         : function_(function),
           options_(options),
           range_(usable_range(options.min, options.max)),
+          opacity_range_(options.opacity_title.empty() ? range_ : usable_range(options.opacity_min, options.opacity_max)),
           end_(kLeft + options.width_px) {
         validate(function);
     }
 
     [[nodiscard]] std::string svg() const {
-        const std::string width = std::to_string(end_ + kRight), height = std::to_string(kBarEnd + kBottom);
+        const std::string width = std::to_string(end_ + kRight),
+                          height = std::to_string(kBarEnd + kBottom + (apart() ? kApart : 0));
         pugi::xml_document document;
         const pugi::xml_node svg = append(document, "svg",
                                           {{"xmlns", "http://www.w3.org/2000/svg"},
@@ -86,9 +89,14 @@ public:
     }
 
 private:
-    [[nodiscard]] double part(double value) const { return (value - range_.min) / (range_.max - range_.min); }
-    [[nodiscard]] double x(double value) const { return kLeft + part(value) * options_.width_px; }
-    [[nodiscard]] static double y(double alpha) { return kTop + (1 - alpha) * kCurve; }
+    [[nodiscard]] bool apart() const { return !options_.opacity_title.empty(); }
+    [[nodiscard]] static double part(const ValueRange& range, double value) {
+        return (value - range.min) / (range.max - range.min);
+    }
+    [[nodiscard]] double x(const ValueRange& range, double value) const {
+        return kLeft + part(range, value) * options_.width_px;
+    }
+    [[nodiscard]] double y(double alpha) const { return (apart() ? kBarEnd + kApart : kTop + kCurve) - alpha * kCurve; }
     [[nodiscard]] bool inside(double value) const { return value > range_.min && value < range_.max; }
 
     /// SVG interpolates between stops in sRGB; there are enough of them to make that invisible.
@@ -103,7 +111,7 @@ private:
                    {{"id", "colors"}, {"gradientUnits", "userSpaceOnUse"}, {"x1", number(kLeft)}, {"x2", number(end_)}});
         for (const double value : values) {
             append(gradient, "stop",
-                   {{"offset", number(100 * part(value)) + "%"}, {"stop-color", hex(color_at(function_, value))}});
+                   {{"offset", number(100 * part(range_, value)) + "%"}, {"stop-color", hex(color_at(function_, value))}});
         }
     }
 
@@ -114,12 +122,19 @@ private:
     }
 
     void append_opacity(pugi::xml_node svg) const {
-        std::string line = "M" + curve_point(range_.min);
+        std::string line = "M" + curve_point(opacity_range_.min);
         for (const auto& knot : function_.opacity) {
-            if (inside(knot.value)) line += " L" + curve_point(knot.value);
+            if (knot.value > opacity_range_.min && knot.value < opacity_range_.max) line += " L" + curve_point(knot.value);
         }
-        line += " L" + curve_point(range_.max);
-        append(svg, "path", {{"fill", kColorsUrl}, {"d", line + " V" + number(y(0)) + " H" + number(kLeft) + " Z"}});
+        line += " L" + curve_point(opacity_range_.max);
+        if (apart()) {
+            append_text(svg, 0.5 * (kLeft + end_), y(1) - 12, "middle", options_.opacity_title)
+                .append_attribute("style")
+                .set_value("font-size:14px;font-weight:bold");
+            append_ticks(svg, opacity_range_, y(0));
+        }
+        append(svg, "path",
+               {{"fill", apart() ? "#ddd" : kColorsUrl}, {"d", line + " V" + number(y(0)) + " H" + number(kLeft) + " Z"}});
         for (const int alpha : {0, 1}) {
             append(svg, "path",
                    {{"stroke", "#999"}, {"d", "M" + number(kLeft) + " " + number(y(alpha)) + " H" + number(end_)}});
@@ -132,7 +147,7 @@ private:
     }
 
     [[nodiscard]] std::string curve_point(double value) const {
-        return number(x(value)) + " " + number(y(alpha_at(function_, value)));
+        return number(x(opacity_range_, value)) + " " + number(y(alpha_at(function_, value)));
     }
 
     void append_bar(pugi::xml_node svg) const {
@@ -143,16 +158,20 @@ private:
                 {"height", number(kBar)},
                 {"fill", kColorsUrl},
                 {"stroke", kInk}});
+        append_ticks(svg, range_, kBarEnd);
+    }
+
+    void append_ticks(pugi::xml_node svg, const ValueRange& range, double top) const {
         const int most = std::clamp(options_.width_px / 50, 5, 11);
-        for (const auto& [value, label] : round_ticks(range_.min, range_.max, most)) {
-            append(svg, "path", {{"stroke", kInk}, {"d", "M" + number(x(value)) + " " + number(kBarEnd) + " v5"}});
-            append_text(svg, x(value), kBarEnd + 19, "middle", label);
+        for (const auto& [value, label] : round_ticks(range.min, range.max, most)) {
+            append(svg, "path", {{"stroke", kInk}, {"d", "M" + number(x(range, value)) + " " + number(top) + " v5"}});
+            append_text(svg, x(range, value), top + 19, "middle", label);
         }
     }
 
     const TransferFunction& function_;
     LegendOptions options_;
-    ValueRange range_;
+    ValueRange range_, opacity_range_;
     int end_;  // of the bar, in pixels
 };
 

@@ -15,6 +15,8 @@
 #include "child_topology.h"
 #include "refine_steps.h"
 #include "scheme_rows.h"
+#include "subvol/boundary_values.h"
+#include "subvol/error.h"
 #include "subvol/limit.h"
 #include "surface_builder.h"
 #include "topology_parts.h"
@@ -38,12 +40,12 @@ HullFlags hull_points(const HexMesh& mesh) {
     return on_hull;
 }
 
-/// The cells that have a point on the hull, without attributes, and the flags of their points.
+/// The cells that have a point on the hull, and the flags of their points.
 struct HullCells {
     HexMesh mesh;
     HullFlags on_hull;
 
-    HullCells(const HexMesh& whole, std::span<const std::uint8_t> flags) {
+    HullCells(const HexMesh& whole, std::span<const std::uint8_t> flags, bool with_attributes = false) {
         const auto at_hull = [&](const auto& entity) { return std::ranges::any_of(entity, [&](Index p) { return flags[p]; }); };
         std::ranges::copy_if(whole.cells, std::back_inserter(mesh.cells), at_hull);
         std::ranges::copy_if(whole.creases, std::back_inserter(mesh.creases), at_hull);
@@ -56,6 +58,7 @@ struct HullCells {
             if (used[p]) on_hull.push_back(flags[p]);
         }
         mesh.points = whole.points;
+        if (with_attributes) mesh.attributes = whole.attributes;
         mesh = without_unused_points(std::move(mesh));
     }
 };
@@ -124,21 +127,61 @@ Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_
     return boundary_of_child(near.mesh, build_topology(near.mesh), near.on_hull, scheme);
 }
 
-Surface boundary_at_level(HexMesh mesh, const RefineOptions& options) {
+namespace {
+
+/// Refines the cells at the boundary, with their attributes. on_hull: becomes that of the last level's points
+HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_hull) {
     RefineOptions once = options;
     once.levels = 1;
-    mesh.attributes.clear();
-    HullFlags on_hull = hull_points(mesh);
+    on_hull = hull_points(mesh);
     for (int level = 0; level < options.levels; ++level) {
-        HullCells near(mesh, on_hull);
+        HullCells near(mesh, on_hull, true);
         Topology topology = build_topology(near.mesh);
         on_hull = hull_points_of_child(topology, near.on_hull);
         RefinedPoints child = refine_points(std::move(near.mesh), std::move(topology), once);
         mesh = std::move(child.mesh);
         mesh.cells = child_cells(child.parent);
     }
-    mesh = on_limit(std::move(mesh), options.scheme.kind);
+    return on_limit(std::move(mesh), options.scheme.kind);
+}
+
+}  // namespace
+
+Surface boundary_at_level(HexMesh mesh, const RefineOptions& options) {
+    mesh.attributes.clear();
+    HullFlags on_hull;
+    mesh = hull_at_level(std::move(mesh), options, on_hull);
     return boundary_surface_where(mesh, [&](const auto& face) { return on_hull[face[0]] != 0; });
 }
 
 }  // namespace subvol::detail
+
+namespace subvol {
+
+using namespace detail;
+
+BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options) {
+    check_levels(options.levels);
+    for (const Attribute& field : mesh.attributes) {
+        if (field.channels != 1) throw Error(ErrorCode::InvalidInput, "has more than one component", "field " + field.name);
+    }
+    HullFlags on_hull;
+    mesh = hull_at_level(control_mesh(std::move(mesh), options.scheme), options, on_hull);
+    // The points of the mesh that the surface uses, in its order: a surface in which they stand for the positions.
+    const auto at_hull = [&](const auto& face) { return on_hull[face[0]] != 0; };
+    BoundaryValues boundary{boundary_surface_where(mesh, at_hull), {}};
+    for (const Attribute& field : mesh.attributes) {
+        HexMesh numbers{.points = std::vector<Vec3>(mesh.points.size()),
+                        .cells = mesh.cells,
+                        .attributes = {},
+                        .creases = {},
+                        .sharp_faces = {}};
+        for (std::size_t p = 0; p < numbers.points.size(); ++p) numbers.points[p].x = field.values[p];
+        const Surface values = boundary_surface_where(numbers, at_hull);
+        std::vector<double>& of_field = boundary.values.emplace_back();
+        for (const Vec3& value : values.points) of_field.push_back(value.x);
+    }
+    return boundary;
+}
+
+}  // namespace subvol

@@ -37,6 +37,28 @@ End
 """
 
 
+# Two scalars and a vector on one cell.
+TWO_FIELDS = """# vtk DataFile Version 3.0
+two
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 8 float
+0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1
+CELLS 1 9
+8 0 1 2 3 4 5 6 7
+CELL_TYPES 1
+12
+POINT_DATA 8
+SCALARS Temp float 1
+LOOKUP_TABLE default
+293 313 313 293 293 313 313 293
+SCALARS Pres float 1
+LOOKUP_TABLE default
+0 0 0 0 2000 2000 2000 2000
+VECTORS V float
+1 0 0 1 0 0 1 0 0 1 0 0 0 0 2 0 0 2 0 0 2 0 0 2
+"""
+
 # Only against a command that hangs: twenty times what the longest one takes on a quiet machine.
 HANGS_AFTER = 3000
 

@@ -9,7 +9,7 @@ import zlib
 from pathlib import Path
 from xml.etree import ElementTree
 
-from command import COMMAND, HANGS_AFTER, InFolder, Run
+from command import COMMAND, HANGS_AFTER, TWO_FIELDS, InFolder, Run
 
 SMALL = ["--backend", "cpu", "--sheets", "20"]
 CAMERA = ["--camera", "3,-4,2,0,0,0,0,0,1,35"]
@@ -208,6 +208,43 @@ class Legends(Pictures):
         texts = [node.text for node in ElementTree.parse(Path(self.folder) / "a.svg").iter() if node.tag.endswith("text")]
         self.assertIn("density", texts)
 
+    def test_two_fields_have_a_plot_each(self):
+        fields = ["--density", "x", "--look", "volume"]
+        self.render("-o", "one.png", "--legend", "one.svg", *fields)
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        done = subprocess.run([COMMAND, "render", "two.vtk", "-o", "two.png", "--legend", "two.svg", "--field", "Temp", "--color-field",
+                               "Pres", "--size", "32", "--unit", "Pa", *SMALL], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        texts = [node.text for node in ElementTree.parse(self.folder / "two.svg").iter() if node.tag.endswith("text")]
+        for text in ("Pres [Pa]", "Temp", "300", "1000"):  # titles, and ticks of 293..313 and of 0..2000
+            self.assertIn(text, texts)
+
+    def test_a_legend_in_the_picture_is_beside_the_body(self):
+        plain = self.render("-o", "a.exr", "--look", "solid", size="128x96")
+        self.assertEqual(plain.code, 0, plain.err)
+        for name, options in [("legend", ["--legend"]), ("axes", ["--axes"]), ("edges", ["--edges"]),
+                              ("sheet", ["--legend", "--views", 4, "--axes", "--edges"])]:
+            done = self.render("-o", f"{name}.png", "--look", "solid", *options, size="128x96")
+            self.assertEqual(done.code, 0, done.err)
+            header = self.bytes_of(f"{name}.png")[16:24]
+            self.assertEqual((int.from_bytes(header[:4], "big"), int.from_bytes(header[4:], "big")), (128, 96))
+        pictures = [self.bytes_of(f"{name}.png") for name in ("legend", "axes", "edges", "sheet")]
+        self.assertEqual(len(set(pictures)), 4)
+
+    def test_what_cannot_be_drawn_over_is_refused(self):
+        for options, naming in [(["--edges", "--method", "tets"], "--edges"), (["--unit", "K"], "--legend"),
+                                (["--legend", "--size", "30x400"], "--size")]:
+            done = self.render("-o", "a.png", *options)
+            self.assertEqual((done.code, naming in done.err), (2, True), done.err)
+
+    def test_clamped_values_look_like_the_ends_of_the_range(self):
+        # One hot point: the scheme goes below zero beside it, where this map is opaque.
+        field = ["--density", "abs(x)+abs(y)+abs(z)<.1", "--opacity", "-1:1,-.001:1,0:0,1:0", "--look", "volume"]
+        opaque = self.render("-o", "open.png", *field, "--method", "tets", "--levels", 1, "--json")
+        clamped = self.render("-o", "kept.png", *field, "--method", "tets", "--levels", 1, "--clamp", "--json")
+        self.assertEqual((opaque.code, clamped.code), (0, 0), clamped.err)
+        self.assertIn("the picture is empty", clamped.err)
+        self.assertNotIn("the picture is empty", opaque.err)
 
     def test_a_map_is_stretched_to_a_range(self):
         (self.folder / "map.json").write_text('[{"Name": "n m", "RGBPoints": [0, 0, 0, 0, 1, 1, 1, 1]}]')

@@ -8,7 +8,7 @@ import os
 import sys
 import unittest
 
-from command import InFolder, subvol
+from command import TWO_FIELDS, InFolder, subvol
 
 
 def write_box(path, offset=0.0, length=1.0):
@@ -55,6 +55,57 @@ class Grids(InFolder):
         for part in manifest["parts"]:
             self.assertTrue((self.folder / part["file"]).exists())
             self.assertLessEqual(sum(grid["bytes"] for grid in part["grids"]), 8 << 20)
+
+    def test_grids_are_computed_renamed_and_mapped(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        made = self.vdb("--fields", "density=Temp,heat=(Temp-293)/20+max(z,0),V,speed=length(V)", "--remap", "293,303:0,1", "--resolution", 8,
+                        "--levels", 0, source="two.vtk")
+        grids = {grid["name"]: grid for grid in made["grids"]}
+        self.assertEqual([(name, grid["kind"]) for name, grid in grids.items()],
+                         [("density", "float"), ("heat", "float"), ("V", "vector"), ("speed", "float")])
+        info = self.run_ok("info", "a.vdb", "--at", ".25,.5,.5", "--json").json()
+        self.assertEqual([grid["kind"] for grid in info["grids"]], ["float", "float", "vector", "float"])
+        values = {entry["field"]: entry["value"] for entry in info["at"]}
+        self.assertAlmostEqual(values["density"], .5, delta=1e-3)  # 298 of 293..303
+        self.assertAlmostEqual(values["heat"], .75, delta=1e-3)
+        self.assertAlmostEqual(values["V.z"], 1, delta=1e-3)
+        self.assertEqual(grids["density"]["max"], 1)  # 313 is beyond 303
+        for field in ("V", "V.x", "speed"):
+            self.run_ok("render", "a.vdb", "-o", "a.png", "--field", field, "--method", "grid", "--size", 16)
+        self.run_ok("points", "a.vdb", "-o", "a.ply", "--field", "V.z")
+        refused = subvol("render", "a.vdb", "-o", "a.png", "--field", "sped", folder=self.folder)
+        self.assertEqual((refused.code, "did you mean speed?" in refused.err), (2, True), refused.err)
+
+    def test_up_and_scale_turn_and_stretch(self):
+        write_box(self.folder / "long.mesh", 0, 4)
+        self.run_ok("vdb", "long.mesh", "-o", "b.vdb", "--resolution", 16, "--up", "y", "--scale", 10, "--density", "z")
+        low, high = self.run_ok("info", "b.vdb", "--json").json()["grids"][0]["bounds"]
+        for axis, (least, most) in enumerate([(0, 40), (0, 10), (-10, 0)]):  # z is now y; y is now -z
+            self.assertAlmostEqual(low[axis], least, delta=2.6)
+            self.assertAlmostEqual(high[axis], most, delta=2.6)
+        at = self.run_ok("info", "b.vdb", "--at", "20,7.5,-5", "--json").json()["at"][0]
+        self.assertAlmostEqual(at["value"], .75, delta=.01)
+
+    def test_overshoot_is_said_and_ends(self):
+        peak = ["--density", "abs(x)+abs(y)+abs(z)<.1", "--resolution", 40]
+        said = self.run_ok("vdb", "model:ball:4", "-o", "a.vdb", *peak)
+        self.assertRegex(said.err, r"density 0…1 becomes -0\.\d+…1.*--clamp")
+        made = self.vdb(*peak, "--clamp")
+        self.assertEqual((made["grids"][0]["min"], made["grids"][0]["max"] <= 1), (0, True))
+        said = self.run_ok("subdivide", "model:ball:4", "-o", "a.vtu", *peak[:2])
+        self.assertIn("becomes", said.err)
+        self.assertNotIn("becomes", self.run_ok("subdivide", "model:ball:4", "-o", "a.vtu", *peak[:2], "--clamp").err)
+        fine = ["points", "model:ball:4", "-o", "a.ply", *peak[:2], "--per-edge", 2]
+        self.assertIn("becomes", self.run_ok(*fine).err)
+        self.assertGreater(self.run_ok(*fine, "--clamp", "--json").json()["clamped"], 0)
+
+    def test_refused_fields_and_ranges(self):
+        for arguments, naming in [(["--fields", "a=1+nothing"], "position 2"), (["--fields", "a=densty"], "did you mean density?"),
+                                  (["--fields", "a=x,a=y"], "two grids"), (["--fields", "=x"], "empty"), (["--remap", "1"], "LO,HI"),
+                                  (["--remap", "2,2"], "no width"), (["--remap", "heat=0,1"], "the grids are: density"),
+                                  (["--scale", "0"], "--scale"), (["--up", "x"], "--up")]:
+            done = subvol("vdb", "model:ball:2", "-o", "a.vdb", *arguments, folder=self.folder)
+            self.assertEqual((done.code, naming in done.err), (2, True), done.err)
 
     def test_a_budget_is_kept_to_about(self):
         made = self.vdb("--budget", "4M", "--levels", 1)

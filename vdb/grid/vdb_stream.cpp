@@ -5,6 +5,7 @@
 #include <openvdb/io/GridDescriptor.h>
 #include "openvdb_grids.h"
 
+#include <algorithm>
 #include <fstream>
 #include <span>
 
@@ -66,7 +67,31 @@ std::uint32_t flag_of(VdbCompression compression) {
     }
 }
 
+openvdb::GridPtrVec read_entries(const std::filesystem::path& path, std::span<const GridEntry> entries) {
+    std::ifstream file(path, std::ios::binary);
+    // OpenVDB continues after a short read with memory that was never filled; a stream that throws stops it.
+    file.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
+    try {
+        return CheckedReader().read(file, entries);
+    } catch (const std::ios_base::failure&) {
+        throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: it ends too early", path.string());
+    } catch (const std::exception& error) {
+        throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: " + printable(error.what()), path.string());
+    }
+}
+
 }  // namespace
+
+openvdb::GridPtrVec read_grids(const std::filesystem::path& path, std::span<const std::string> types,
+                               const std::function<void(const std::string&, const std::string&)>& other) {
+    std::vector<GridEntry> entries = checked_grids(path, types);
+    std::erase_if(entries, [&](const GridEntry& entry) {
+        if (std::ranges::find(types, entry.type) != types.end()) return false;
+        other(entry.name, entry.type);
+        return true;
+    });
+    return read_entries(path, entries);
+}
 
 openvdb::GridPtrVec read_grids(const std::filesystem::path& path, const std::string& type, const std::string& what) {
     std::vector<GridEntry> entries = checked_grids(path, std::span(&type, 1));
@@ -78,16 +103,7 @@ openvdb::GridPtrVec read_grids(const std::filesystem::path& path, const std::str
     if (entries.empty()) {
         throw Error(ErrorCode::InvalidInput, "holds no " + what, path.string(), others.empty() ? "" : "it holds: " + others);
     }
-    std::ifstream file(path, std::ios::binary);
-    // OpenVDB continues after a short read with memory that was never filled; a stream that throws stops it.
-    file.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-    try {
-        return CheckedReader().read(file, entries);
-    } catch (const std::ios_base::failure&) {
-        throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: it ends too early", path.string());
-    } catch (const std::exception& error) {
-        throw Error(ErrorCode::InvalidInput, "is not a whole OpenVDB file: " + printable(error.what()), path.string());
-    }
+    return read_entries(path, entries);
 }
 
 std::vector<std::string> grid_types(const std::filesystem::path& path) {

@@ -4,6 +4,8 @@
 #include <openvdb/Grid.h>
 
 #include <filesystem>
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,10 @@ namespace subvol::detail {
 /// throws: Error(Io); Error(InvalidInput) if it is not a whole OpenVDB file or holds no such grid
 [[nodiscard]] openvdb::GridPtrVec read_grids(const std::filesystem::path& path, const std::string& type,
                                              const std::string& what);
+
+/// The grids of several types, in the file's order; `other` gets the names and types of all others. throws: as above
+[[nodiscard]] openvdb::GridPtrVec read_grids(const std::filesystem::path& path, std::span<const std::string> types,
+                                             const std::function<void(const std::string&, const std::string&)>& other);
 
 /// The types of a file's grids; the grids themselves are not read.
 ///

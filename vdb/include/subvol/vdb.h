@@ -6,6 +6,7 @@
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 #include "subvol/spread_vectors.h"
+#include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 #include "subvol/vdb_points.h"
 #include "subvol/vdb_sample.h"

@@ -12,11 +12,16 @@ namespace subvol {
 /// title:    above the legend, e.g. the field's name with its unit
 /// min, max: the range of values; if it has no width, it is widened by .5 on either side
 /// width_px: of the colour bar, 50..10000
+/// opacity_title, opacity_min, opacity_max: where the opacities are of another field than the colours, its name and range: they
+///           get a plot of their own; an empty title: they are of the same field
 struct LegendOptions {
     std::string title{};
     double min = 0;
     double max = 1;
     int width_px = 360;
+    std::string opacity_title{};
+    double opacity_min = 0;
+    double opacity_max = 1;
 };
 
 /// A colour bar with ticks at round values and the opacity curve above it, as a self-contained SVG picture in sRGB on white.

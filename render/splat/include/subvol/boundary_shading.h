@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "subvol/camera.h"
 #include "subvol/image.h"
+#include "subvol/optics.h"
 #include "subvol/splat_options.h"
 #include "subvol/surface.h"
 
@@ -14,5 +17,16 @@ namespace subvol {
 /// boundary: closed, outward, as of RbfVolume
 /// samples:  as those of the picture
 void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples = 1);
+
+/// Colours and lights the picture of a body that is opaque from its boundary on by the values on the boundary. Kernels are as
+/// wide as cells: where two bodies touch, or a field is steep, their sums are not the values on the surface. Pixels that no ray
+/// to the boundary meets stay as they are.
+///
+/// image:    its opacities stay
+/// boundary: closed, outward; values: one for each of its points, linear on triangles
+/// samples:  as those of the picture
+/// throws:   Error(InvalidInput) if there is not one value for each point
+void color_boundary(Image& image, const Surface& boundary, std::span<const double> values, const View& view,
+                    const Optics& optics, const Shading& shading, int samples = 1);
 
 }  // namespace subvol

@@ -24,7 +24,8 @@ private:
 /// Removes all files that are remembered. May be called by a signal's handler; the program should end after it.
 void remove_unfinished_files() noexcept;
 
-/// Makes `remove_unfinished_files` call another one: that of a module, which has its own copy of this library and its own files.
+/// Makes `remove_unfinished_files` call another one: that of a module, which has its own copy of this library and its own
+/// files.
 void remove_unfinished_files_of(void (*module)() noexcept);
 
 }  // namespace subvol::detail

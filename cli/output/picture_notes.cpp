@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_notes.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "subvol/error.h"
+#include "subvol/overlay.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kDarkInk = 0.012, kLightInk = 0.85;  // linear
+
+/// Copies a picture into a larger one, transparent at its right.
+Picture widened(const Picture& from, int width) {
+    Picture to{Image(width, from.image.height), {}};
+    if (!from.depth.empty()) to.depth.assign(to.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    const auto columns = static_cast<std::size_t>(from.image.width);
+    for (int y = 0; y < from.image.height; ++y) {
+        const auto row = static_cast<std::size_t>(y), to_row = row * static_cast<std::size_t>(width);
+        std::copy_n(from.image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * row * columns), 4 * columns,
+                    to.image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * to_row));
+        if (from.depth.empty()) continue;
+        std::copy_n(from.depth.begin() + static_cast<std::ptrdiff_t>(row * columns), columns,
+                    to.depth.begin() + static_cast<std::ptrdiff_t>(to_row));
+    }
+    return to;
+}
+
+}  // namespace
+
+void PictureNotes::draw_over(Picture& picture, const View& view) const {
+    if (edges != nullptr) {
+        const double scale = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
+        draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6});
+    }
+    if (axes) draw_axes(picture.image, view, ink);
+}
+
+void PictureNotes::add_legend(Picture& picture) const {
+    if (!legend) return;
+    picture = widened(picture, picture.image.width + legend_px);
+    draw_legend(picture.image, function, *legend, ink);
+}
+
+PictureNotes make_notes(PictureArguments& arguments, const Optics& optics, const LegendOptions& legend, const HexMesh* mesh) {
+    const Vec3 behind = arguments.background_color();
+    PictureNotes notes{.axes = arguments.axes, .function = optics.function()};
+    notes.ink = Vec3(0.2126 * behind.x + 0.7152 * behind.y + 0.0722 * behind.z > 0.18 ? kDarkInk : kLightInk);
+    if (arguments.edges) {
+        if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "needs a mesh; this input has no cells", "--edges");
+        notes.edges = mesh;
+    }
+    if (arguments.legend_inside()) {
+        notes.legend = legend;
+        const auto [width, height] = parse_size("--size", arguments.size);
+        const int parts = arguments.views ? 2 : 1;  // each side by side gets as many columns
+        notes.legend_px = legend_width_px(notes.function, legend, height);
+        notes.legend_px += (width - notes.legend_px) % parts;
+        if (width - notes.legend_px < width / 3) {
+            throw Error(ErrorCode::InvalidInput, "leaves no room for the picture", "--legend",
+                        "a wider --size, or --legend FILE.svg");
+        }
+        arguments.legend_px = notes.legend_px;
+    }
+    return notes;
+}
+
+}  // namespace subvol::cli

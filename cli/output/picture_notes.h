@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "picture_arguments.h"
+#include "subvol/image.h"
+#include "subvol/legend.h"
+
+namespace subvol::cli {
+
+/// A drawn picture.
+///
+/// depth: one per pixel for .exr, see `write_image`; empty: not known
+struct Picture {
+    Image image;
+    std::vector<float> depth{};
+};
+
+/// What is drawn over the pictures of a run: axes, edges of the control mesh, a legend beside them.
+struct PictureNotes {
+    bool axes = false;
+    const HexMesh* edges = nullptr;  // of this mesh
+    Vec3 ink{0.0};
+    TransferFunction function{};
+    std::optional<LegendOptions> legend{};
+    int legend_px = 0;  // its width
+
+    /// Draws axes and edges.
+    void draw_over(Picture& picture, const View& view) const;
+    /// Makes room at the right for the legend, and draws it.
+    void add_legend(Picture& picture) const;
+};
+
+/// The notes that the arguments ask for. The legend's width is taken off the views that `arguments.make_views` makes from then
+/// on.
+///
+/// mesh: the control mesh, which the notes refer to; null: there is none
+[[nodiscard]] PictureNotes make_notes(PictureArguments& arguments, const Optics& optics, const LegendOptions& legend,
+                                      const HexMesh* mesh);
+
+}  // namespace subvol::cli

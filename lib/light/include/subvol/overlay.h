@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "subvol/camera.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/image.h"
+#include "subvol/legend.h"
+#include "subvol/transfer_function.h"
+
+namespace subvol {
+
+/// What is drawn over finished pictures. Places are in pixels from the top left corner of the picture, whose pixel (0,0) has
+/// its centre at (.5,.5); what lies outside the picture is cut off. Colours are in linear light.
+
+enum class TextAnchor { Start, Middle, End };
+
+/// size_px: of an em; capitals are about .73 of it high
+struct TextOptions {
+    double size_px = 14;
+    Vec3 color{0.0};
+    TextAnchor anchor = TextAnchor::Start;
+};
+
+/// Draws one line of text, with the start of its base line at `place`, or its middle or end.
+///
+/// text: UTF-8; letters of the built-in font (Latin letters, digits, signs, some Greek), a box for all others
+void draw_text(Image& image, const Vec2& place, const std::string& text, const TextOptions& options = {});
+
+/// The width of a text in pixels.
+[[nodiscard]] double text_width_px(const std::string& text, double size_px);
+
+/// alpha: 0..1
+struct LineOptions {
+    double width_px = 1;
+    Vec3 color{0.0};
+    double alpha = 1;
+};
+
+void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions& options = {});
+
+/// Draws the edges on the boundary of a mesh. What is behind the surface that the picture shows is seen through it only as far
+/// as that is transparent; a tenth of an edge's length counts as on the surface, for limits are not where their edges are.
+///
+/// depth:  of the picture as of `SplatResult`
+/// throws: Error(InvalidInput) if the sizes of picture, depth and view differ, or as `build_topology`
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh,
+                const LineOptions& options = {});
+
+/// Draws the directions of the axes x, y, z in the lower left corner, red, green and blue, with their names.
+///
+/// ink: of the names
+void draw_axes(Image& image, const View& view, const Vec3& ink);
+
+/// The width that `draw_legend` needs in a picture of this height.
+[[nodiscard]] int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height);
+
+/// Draws an upright colour bar with ticks at round values, its title above it, and the curve of the opacities where they
+/// differ, at the right edge of the picture.
+///
+/// ink:    of text and lines
+/// throws: Error(InvalidInput) as `legend_svg`
+void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink);
+
+}  // namespace subvol

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "coverage.h"
+#include "knot_values.h"
+#include "subvol/detail/round_ticks.h"
+#include "subvol/overlay.h"
+
+namespace subvol {
+
+using namespace detail;
+namespace {
+
+constexpr double kMostOfHeight = 0.45;  // a longer title is cut off
+
+double part_of(const ValueRange& range, double value) {
+    return (value - range.min) / (range.max - range.min);
+}
+
+bool varies(const TransferFunction& function) {
+    return std::ranges::any_of(function.opacity,
+                               [&](const auto& knot) { return knot.alpha != function.opacity.front().alpha; });
+}
+
+/// A bar, its ticks and its title from the top, at one size of letters.
+class LegendPainter {
+public:
+    LegendPainter(const TransferFunction& function, const LegendOptions& options, int height)
+        : function_(function),
+          options_(options),
+          colors_(usable_range(options.min, options.max)),
+          opacities_(options.opacity_title.empty() ? colors_ : usable_range(options.opacity_min, options.opacity_max)),
+          height_(height),
+          letter_(std::clamp(height / 40.0, 8.0, 120.0)) {
+        validate(function);
+    }
+
+    [[nodiscard]] int width() const {
+        const double most = kMostOfHeight * height_;
+        const double titles = std::max(title_width(options_.title), apart() ? title_width(options_.opacity_title) : 0.0);
+        const double bars = curve_width() + bar_width() + 0.9 * letter_ +
+                            std::max(labels_width(colors_), apart() ? labels_width(opacities_) : 0.0);
+        return static_cast<int>(std::ceil(std::max(std::min(titles, most), bars) + 2 * margin()));
+    }
+
+    void draw(Image& image, const Vec3& ink) {
+        image_ = &image;
+        ink_ = ink;
+        left_ = image.width - width() + margin();
+        const double bottom = height_ - 2.2 * letter_;
+        const double middle = apart() ? 0.56 * height_ : bottom;
+        draw_bar(2.2 * letter_, middle);
+        if (apart()) {
+            draw_title(options_.opacity_title, middle + 3.2 * letter_);
+            draw_curve(left_ + bar_width() + curve_width(), middle + 4.4 * letter_, bottom, opacities_);
+        }
+    }
+
+private:
+    [[nodiscard]] bool apart() const { return !options_.opacity_title.empty(); }
+    [[nodiscard]] double margin() const { return 0.9 * letter_; }
+    [[nodiscard]] double bar_width() const { return 1.3 * letter_; }
+    [[nodiscard]] double curve_width() const {
+        return !apart() && varies(function_) ? 2.6 * letter_ : apart() ? 2.6 * letter_ : 0;
+    }
+    [[nodiscard]] double title_width(const std::string& title) const { return text_width_px(title, 1.08 * letter_); }
+    [[nodiscard]] std::vector<Tick> ticks(const ValueRange& range) const {
+        return round_ticks(range.min, range.max, apart() ? 5 : 8);
+    }
+    [[nodiscard]] double labels_width(const ValueRange& range) const {
+        double width = 0;
+        for (const auto& [value, label] : ticks(range)) width = std::max(width, text_width_px(label, letter_));
+        return width;
+    }
+
+    void write(const Vec2& place, const std::string& text, TextAnchor anchor = TextAnchor::Start, double size = 1) const {
+        draw_text(*image_, place, text, {.size_px = size * letter_, .color = ink_, .anchor = anchor});
+    }
+
+    void draw_title(std::string title, double base) const {
+        const double room = image_->width - left_ - 0.3 * margin();
+        if (title_width(title) > room) {
+            while (!title.empty() && title_width(title + "…") > room) title.pop_back();
+            while (!title.empty() && (static_cast<unsigned char>(title.back()) & 0xc0U) == 0x80) title.pop_back();
+            title += "…";
+        }
+        write({left_, base}, title, TextAnchor::Start, 1.08);
+    }
+
+    void draw_bar(double title_base, double bottom) const {
+        draw_title(options_.title, title_base);
+        const double top = title_base + 1.2 * letter_;
+        const double start = left_ + (apart() ? 0 : curve_width()), end = start + bar_width();
+        const int x0 = static_cast<int>(start), x1 = static_cast<int>(end);
+        for (int y = static_cast<int>(top); y < static_cast<int>(bottom); ++y) {
+            const Vec3 color = color_at(function_, colors_.at((bottom - y - 0.5) / (bottom - top)));
+            for (int x = x0; x < x1; ++x) {
+                if (x >= 0 && y >= 0 && x < image_->width && y < image_->height) put_over(*image_, x, y, color, 1);
+            }
+        }
+        draw_frame(x0, static_cast<int>(top), x1, static_cast<int>(bottom));
+        draw_ticks(x1, static_cast<int>(top), static_cast<int>(bottom), colors_);
+        if (!apart() && curve_width() > 0) draw_curve(start, top, bottom, colors_);
+    }
+
+    void draw_frame(double x0, double y0, double x1, double y1) const {
+        const std::array<Vec2, 4> corners{{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}};
+        for (std::size_t i = 0; i < 4; ++i) line(corners[i], corners[(i + 1) % 4], 1);
+    }
+
+    void line(const Vec2& from, const Vec2& to, double width) const {
+        draw_line(*image_, from, to, {.width_px = width * std::max(1.0, letter_ / 14), .color = ink_});
+    }
+
+    void draw_ticks(double x, double top, double bottom, const ValueRange& range) const {
+        for (const auto& [value, label] : ticks(range)) {
+            const double y = bottom - part_of(range, value) * (bottom - top);
+            line({x, y}, {x + 0.4 * letter_, y}, 1);
+            write({x + 0.8 * letter_, y + 0.36 * letter_}, label);
+        }
+    }
+
+    /// The opacity, 0 at the right edge and 1 at the left.
+    void draw_curve(double right, double top, double bottom, const ValueRange& range) const {
+        const double width = curve_width() - 0.5 * letter_;
+        const auto place = [&](double value) {
+            return Vec2(right - alpha_at(function_, value) * width, bottom - part_of(range, value) * (bottom - top));
+        };
+        std::vector<double> values{range.min};
+        for (const auto& knot : function_.opacity) {
+            if (knot.value > range.min && knot.value < range.max) values.push_back(knot.value);
+        }
+        values.push_back(range.max);
+        for (std::size_t i = 0; i + 1 < values.size(); ++i) line(place(values[i]), place(values[i + 1]), 1.6);
+        line({right, top}, {right, bottom}, 1);
+        write({right - width, bottom + 1.2 * letter_}, "1", TextAnchor::Middle, 0.8);
+        write({right, bottom + 1.2 * letter_}, "0", TextAnchor::Middle, 0.8);
+        write({right - 0.5 * width, bottom + 2 * letter_}, "opacity", TextAnchor::Middle, 0.8);
+        if (apart()) draw_ticks(right, top, bottom, range);
+    }
+
+    const TransferFunction& function_;
+    const LegendOptions& options_;
+    ValueRange colors_, opacities_;
+    double height_, letter_;
+    Image* image_ = nullptr;
+    Vec3 ink_{0.0};
+    double left_ = 0;
+};
+
+}  // namespace
+
+int legend_width_px(const TransferFunction& function, const LegendOptions& options, int height) {
+    return LegendPainter(function, options, height).width();
+}
+
+void draw_legend(Image& image, const TransferFunction& function, const LegendOptions& options, const Vec3& ink) {
+    LegendPainter(function, options, image.height).draw(image, ink);
+}
+
+}  // namespace subvol

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "subvol/refine.h"
+#include "subvol/surface.h"
+
+namespace subvol {
+
+/// The boundary of a volume with the values of its fields there.
+///
+/// values: for each attribute of the mesh, one number for each point of the surface
+struct BoundaryValues {
+    Surface surface;
+    std::vector<std::vector<double>> values;
+};
+
+/// The boundary of the mesh refined options.levels times, on the limit, with the limit's values. Only the cells at the boundary
+/// are refined. Bodies that touch keep their own values.
+///
+/// throws: Error(InvalidInput) as `refine`, or if an attribute has more than one channel
+/// cost:   about 20 points for each point of the boundary of the last level
+[[nodiscard]] BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options);
+
+}  // namespace subvol

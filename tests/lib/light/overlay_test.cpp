@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lib/expect_error.h"
+#include "lib/test_meshes.h"
+#include "subvol/transfer_function.h"
+
+namespace subvol {
+namespace {
+
+/// The sum of all covers, in pixels.
+double ink_of(const Image& image) {
+    double sum = 0;
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) sum += static_cast<double>(image.rgba[i]);
+    return sum;
+}
+
+struct Extent {
+    int left = 1 << 20, top = 1 << 20, right = -1, bottom = -1;
+};
+
+Extent extent_of(const Image& image) {
+    Extent extent;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            if (image.pixel(x, y)[3] == 0) continue;
+            extent = {std::min(extent.left, x), std::min(extent.top, y), std::max(extent.right, x), std::max(extent.bottom, y)};
+        }
+    }
+    return extent;
+}
+
+TEST(Overlay, TextHasTheSameInkAtEveryPlace) {
+    Image a(100, 40), b(100, 40);
+    draw_text(a, {10, 30}, "Temp 3.5", {.size_px = 16});
+    draw_text(b, {10.37, 29.81}, "Temp 3.5", {.size_px = 16});
+    EXPECT_GT(ink_of(a), 100);
+    EXPECT_NEAR(ink_of(a), ink_of(b), 1e-3 * ink_of(a)) << "the area of its letters";
+    const Extent extent = extent_of(a);
+    EXPECT_LE(extent.right, 10 + text_width_px("Temp 3.5", 16));
+    EXPECT_NEAR(extent.top, 30 - 0.73 * 16, 2) << "capitals stand on the base line";
+    EXPECT_NEAR(extent.bottom, 30 + 0.21 * 16, 2) << "the p goes below it";
+}
+
+TEST(Overlay, TextIsAnchoredAndCutOff) {
+    Image start(80, 20), end(80, 20), beyond(10, 10);
+    const double width = text_width_px("0123", 12);
+    draw_text(start, {20, 15}, "0123", {.size_px = 12});
+    draw_text(end, {20 + width, 15}, "0123", {.size_px = 12, .anchor = TextAnchor::End});
+    EXPECT_EQ(extent_of(start).left, extent_of(end).left);
+    EXPECT_NO_THROW(draw_text(beyond, {-5, 4}, "Überlänge ∇·v 日本 \xff", {.size_px = 30}));
+    EXPECT_GT(text_width_px("日", 10), 0) << "a box for letters that the font lacks";
+}
+
+TEST(Overlay, LinesHaveTheirWidth) {
+    for (const Vec2& to : {Vec2(80, 20), Vec2(20, 70), Vec2(75, 61)}) {
+        Image image(100, 100);
+        const Vec2 from(20, 20);
+        draw_line(image, from, to, {.width_px = 3, .color = {1, 0, 0}, .alpha = 0.5});
+        const double length = glm::length(to - from), round_ends = 9 * M_PI / 4;
+        EXPECT_NEAR(ink_of(image), 0.5 * (3 * length + round_ends), 0.05 * length);
+        EXPECT_FLOAT_EQ(image.pixel(20, 20)[0], image.pixel(20, 20)[3]) << "premultiplied";
+    }
+}
+
+/// Edges of a cube before a picture that is opaque at the front face, and the same where the picture is empty.
+double ink_over_cube(bool opaque, float front) {
+    const HexMesh mesh = test::make_box(1, 1, 1);
+    const View view({.eye = {0.5, -4, 0.5}, .target = {0.5, 0, 0.5}, .up = {0, 0, 1}, .fovy_deg = 30}, 64, 64);
+    Image image(64, 64);
+    std::vector<float> depth(64 * 64, std::numeric_limits<float>::infinity());
+    if (opaque) {
+        for (std::size_t i = 0; i < depth.size(); ++i) {
+            depth[i] = front;
+            for (std::size_t c = 0; c < 4; ++c) image.rgba[4 * i + c] = 1;
+        }
+    }
+    draw_edges(image, depth, view, mesh, {.width_px = 1, .color = {0, 0, 0}});
+    double dark = 0;
+    for (std::size_t i = 0; i < depth.size(); ++i)
+        dark += opaque ? 1 - static_cast<double>(image.rgba[4 * i]) : static_cast<double>(image.rgba[4 * i + 3]);
+    return dark;
+}
+
+TEST(Overlay, HiddenEdgesAreHidden) {
+    const double all = ink_over_cube(false, 0), front = ink_over_cube(true, 4), none = ink_over_cube(true, 3);
+    const double face = 4 * 64 * (1 / (2 * 4 * std::tan(M_PI / 12)));  // four edges of the front face, in pixels
+    EXPECT_NEAR(front, face, 0.1 * face) << "only the face before the surface";
+    EXPECT_GT(all, 1.5 * front) << "through nothing all twelve are seen";
+    EXPECT_EQ(none, 0) << "behind an opaque surface";
+}
+
+TEST(Overlay, EdgesNeedAPictureOfTheViewsSize) {
+    Image image(8, 8);
+    const View view({}, 8, 9);
+    const std::vector<float> depth(64);
+    test::expect_error(ErrorCode::InvalidInput, "one size", [&] { draw_edges(image, depth, view, test::make_box(1, 1, 1)); });
+}
+
+TEST(Overlay, AxesPointWhereTheyAreSeen) {
+    Image image(400, 400);
+    draw_axes(image, View({.eye = {0, -5, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}}, 400, 400), Vec3(1.0));
+    double red_x = 0, red = 0, blue_y = 0, blue = 0;
+    for (int y = 0; y < 400; ++y) {
+        for (int x = 0; x < 400; ++x) {
+            const auto p = image.pixel(x, y);
+            if (p[0] > 0.5f && p[1] < 0.1f) red_x += x, red += 1;
+            if (p[2] > 0.5f && p[0] < 0.1f) blue_y += y, blue += 1;
+        }
+    }
+    const Extent extent = extent_of(image);
+    EXPECT_LT(extent.right, 150) << "in the lower left corner";
+    EXPECT_GT(extent.top, 250);
+    ASSERT_GT(red, 20);
+    ASSERT_GT(blue, 20);
+    EXPECT_GT(red_x / red, extent.left + 15) << "x to the right";
+    EXPECT_LT(blue_y / blue, extent.bottom - 15) << "z up";
+}
+
+TEST(Overlay, LegendShowsTheColorsFromBelowUp) {
+    const TransferFunction function = transfer_function_preset("grey", 0, 10);
+    const LegendOptions options{.title = "Temp [K]", .min = 0, .max = 10};
+    const int width = legend_width_px(function, options, 300);
+    Image image(width, 300);
+    draw_legend(image, function, options, Vec3(0.02));
+    float darkest = 2, brightest = -1;
+    int dark_y = 0, bright_y = 0;
+    for (int y = 30; y < 290; ++y) {  // the bar: opaque pixels without ink at both sides
+        for (int x = 4; x + 4 < width; ++x) {
+            if (image.pixel(x - 3, y)[3] != 1 || image.pixel(x + 3, y)[3] != 1 || image.pixel(x, y)[3] != 1) continue;
+            const float v = image.pixel(x, y)[0];
+            if (v > brightest) brightest = v, bright_y = y;
+            if (v < darkest) darkest = v, dark_y = y;
+        }
+    }
+    EXPECT_GT(brightest, 0.9f);
+    EXPECT_LT(bright_y, dark_y) << "large values above";
+    EXPECT_LE(extent_of(image).right, width - 1);
+}
+
+TEST(Overlay, LegendOfTwoFieldsHasBothTitles) {
+    const TransferFunction function = transfer_function_preset("viridis", 0, 1);
+    LegendOptions options{.title = "Temp", .min = 0, .max = 1};
+    Image one(200, 300), two(200, 300);
+    draw_legend(one, function, options, Vec3(0.0));
+    options.opacity_title = "Pres";
+    options.opacity_min = 1e5;
+    options.opacity_max = 2e5;
+    draw_legend(two, function, options, Vec3(0.0));
+    EXPECT_NE(one.rgba, two.rgba);
+    options.opacity_max = std::numeric_limits<double>::infinity();
+    test::expect_error(ErrorCode::InvalidInput, "not finite", [&] { draw_legend(two, function, options, Vec3(0.0)); });
+}
+
+}  // namespace
+}  // namespace subvol

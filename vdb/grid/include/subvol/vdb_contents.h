@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/field_range.h"
+#include "subvol/vdb_grid.h"
+
+namespace subvol {
+
+/// grids:  of floats, vectors of floats, 32-bit integers and masks
+/// others: those of other types, which are not read
+struct VdbContents {
+    struct Other {
+        std::string name, type;
+    };
+    std::vector<VdbGrid> grids;
+    std::vector<Other> others;
+};
+
+/// Reads all grids of a `.vdb` file, in the file's order.
+///
+/// throws: Error(Io), Error(InvalidInput) if it is not a VDB file
+[[nodiscard]] VdbContents read_vdb_contents(const std::filesystem::path& path);
+
+/// A grid of floats with the same active voxels: the lengths of vectors or one of their components, integers as floats, 1 where
+/// a mask is. A grid of floats is shared, not copied.
+///
+/// component: 0..2 of vectors; none: their length
+/// name:      of the result
+/// throws:    Error(InvalidInput) if the grid has no such component
+[[nodiscard]] VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::string& name);
+
+/// Moves the active values of a grid of floats or vectors that are beyond the range to its nearer end, component by component.
+/// Other grids stay as they are.
+///
+/// throws: Error(InvalidInput) if the range has another number of components
+void clamp_voxels(VdbGrid& grid, const FieldRange& range);
+
+}  // namespace subvol
