@@ -7,7 +7,6 @@
 #include "mesh_lines.h"
 #include "points_input.h"
 #include "steps.h"
-#include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
 #include "subvol/points_io.h"
