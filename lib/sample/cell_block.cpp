@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cell_block.h"
 
+#include <limits>
+
 #include "subvol/cell.h"
 
 namespace subvol::detail {
 
 namespace {
+
+/// 4 / (i − j): the slopes of the factors of the basis.
+constexpr auto kSlopes = [] {
+    std::array<std::array<double, 5>, 5> slopes{};
+    for (std::size_t i = 0; i < 5; ++i) {
+        for (std::size_t j = 0; j < 5; ++j) {
+            if (i != j) slopes[i][j] = 4.0 / (static_cast<double>(i) - static_cast<double>(j));
+        }
+    }
+    return slopes;
+}();
 
 /// The quartic Lagrange basis on the nodes 0, 1/4, 1/2, 3/4, 1. At a node the values are exactly one and zeros.
 struct QuarticBasis {
@@ -18,7 +31,7 @@ struct QuarticBasis {
             double p = 1, dp = 0;  // the product so far and its derivative
             for (std::size_t j = 0; j < kNodes; ++j) {
                 if (j == i) continue;
-                const double slope = 4.0 / (static_cast<double>(i) - static_cast<double>(j));
+                const double slope = kSlopes[i][j];
                 const double factor = (t - static_cast<double>(j) / 4) * slope;
                 dp = dp * factor + p * slope;
                 p *= factor;
@@ -83,6 +96,25 @@ CellBlocks::CellBlocks(const HexMesh& twice_refined) : mesh_(twice_refined) {
         for (std::size_t c = 0; c < static_cast<std::size_t>(mesh_.attributes[a].channels); ++c) source_.emplace_back(a, c);
     }
     channels_ = source_.size();
+    row_ = (3 + channels_ + 3) / 4 * 4;
+}
+
+CellBlocks::Nodes::Nodes(const CellBlocks& blocks) : blocks_(blocks), rows_(kCells * 125 * blocks.row_) {
+    cells_.fill(std::numeric_limits<std::size_t>::max());
+}
+
+const double* CellBlocks::Nodes::of(std::size_t cell) {
+    const std::size_t slot = cell % kCells;
+    double* first = &rows_[slot * 125 * blocks_.row_];
+    if (cells_[slot] == cell) return first;
+    cells_[slot] = cell;
+    for (std::size_t n = 0; n < 125; ++n) {
+        double* row = first + n * blocks_.row_;
+        const Index p = blocks_.point(cell, n);
+        for (int a = 0; a < 3; ++a) row[a] = blocks_.mesh_.points[p][a];
+        for (std::size_t c = 0; c < blocks_.channels_; ++c) row[3 + c] = blocks_.channel_value(p, c);
+    }
+    return first;
 }
 
 Index CellBlocks::point(std::size_t cell, std::size_t node) const {
@@ -96,45 +128,60 @@ double CellBlocks::channel_value(Index point, std::size_t channel) const {
     return values.values[point * static_cast<std::size_t>(values.channels) + c];
 }
 
-void CellBlocks::evaluate(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+void CellBlocks::evaluate(const double* nodes, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
                           Jet& jet) const {
     const std::array<SampleStencil, 3> basis{SampleStencil(uvw[0], step[0]), SampleStencil(uvw[1], step[1]),
                                              SampleStencil(uvw[2], step[2])};
-    jet.position = Vec3(0.0);
-    jet.d_position = jet.dd_position = {Vec3(0.0), Vec3(0.0), Vec3(0.0)};
-    jet.value.assign(channels_, 0);
-    jet.d_value.assign(channels_, {0, 0, 0});
-    jet.dd_value.assign(channels_, {0, 0, 0});
-
+    jet.value.resize(channels_);
+    jet.d_value.resize(channels_);
+    jet.dd_value.resize(channels_);
     constexpr std::array<std::size_t, 3> kStride{1, 5, 25};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
-        for (std::size_t j = 0; j < 5; ++j) {
-            if (basis[b].value[j] == 0) continue;  // at corners, on edges and faces most weights vanish
-            for (std::size_t k = 0; k < 5; ++k) {
-                const double across = basis[b].value[j] * basis[c].value[k];
-                if (across == 0) continue;
-                for (std::size_t i = 0; i < 5; ++i) {
-                    const Index p = point(cell, i * kStride[axis] + j * kStride[b] + k * kStride[c]);
-                    const double w = across * basis[axis].value[i], d = across * basis[axis].first[i];
-                    const double dd = across * basis[axis].second[i];
-                    const Vec3& x = mesh_.points[p];
-                    jet.d_position[axis] += d * x;
-                    jet.dd_position[axis] += dd * x;
-                    if (axis == 0) jet.position += w * x;
-                    for (std::size_t ch = 0; ch < channels_; ++ch) {
-                        const double f = channel_value(p, ch);
-                        jet.d_value[ch][axis] += d * f;
-                        jet.dd_value[ch][axis] += dd * f;
-                        if (axis == 0) jet.value[ch] += w * f;
+    for (std::size_t block = 0; block < row_; block += 4) {
+        std::array<double, 4> value{};
+        std::array<std::array<double, 4>, 3> first{}, second{};  // by axes
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t b = (axis + 1) % 3, c = (axis + 2) % 3;
+            std::array<double, 4> d{}, dd{};
+            for (std::size_t j = 0; j < 5; ++j) {
+                if (basis[b].value[j] == 0) continue;  // at corners, on edges and faces most weights vanish
+                for (std::size_t k = 0; k < 5; ++k) {
+                    const double across = basis[b].value[j] * basis[c].value[k];
+                    if (across == 0) continue;
+                    const double* line = nodes + (j * kStride[b] + k * kStride[c]) * row_ + block;
+                    for (std::size_t i = 0; i < 5; ++i) {
+                        const double* x = line + i * kStride[axis] * row_;
+                        const double weight = across * basis[axis].first[i], bend = across * basis[axis].second[i];
+                        for (std::size_t n = 0; n < 4; ++n) d[n] += weight * x[n];
+                        for (std::size_t n = 0; n < 4; ++n) dd[n] += bend * x[n];
+                        if (axis != 0) continue;
+                        const double here = across * basis[axis].value[i];
+                        for (std::size_t n = 0; n < 4; ++n) value[n] += here * x[n];
                     }
+                }
+            }
+            first[axis] = d;
+            second[axis] = dd;
+        }
+        for (std::size_t n = block; n < block + 4 && n < 3 + channels_; ++n) {
+            if (n < 3) {
+                const int i = static_cast<int>(n);
+                jet.position[i] = value[n];
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    jet.d_position[axis][i] = first[axis][n];
+                    jet.dd_position[axis][i] = second[axis][n];
+                }
+            } else {
+                jet.value[n - 3] = value[n - block];
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    jet.d_value[n - 3][axis] = first[axis][n - block];
+                    jet.dd_value[n - 3][axis] = second[axis][n - block];
                 }
             }
         }
     }
 }
 
-void CellBlocks::evaluate_mixed(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+void CellBlocks::evaluate_mixed(const double* nodes, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
                                 Jet& jet) const {
     const std::array<SampleStencil, 3> basis{SampleStencil(uvw[0], step[0]), SampleStencil(uvw[1], step[1]),
                                              SampleStencil(uvw[2], step[2])};
@@ -148,9 +195,9 @@ void CellBlocks::evaluate_mixed(std::size_t cell, const std::array<double, 3>& u
             for (std::size_t j = 0; j < 5; ++j) {
                 for (std::size_t k = 0; k < 5; ++k) {
                     const double w = basis[axis].value[i] * basis[b].first[j] * basis[c].first[k];
-                    const Index p = point(cell, i * kStride[axis] + j * kStride[b] + k * kStride[c]);
-                    jet.mixed_position[axis] += w * mesh_.points[p];
-                    for (std::size_t ch = 0; ch < channels_; ++ch) jet.mixed_value[ch][axis] += w * channel_value(p, ch);
+                    const double* x = nodes + (i * kStride[axis] + j * kStride[b] + k * kStride[c]) * row_;
+                    jet.mixed_position[axis] += w * Vec3(x[0], x[1], x[2]);
+                    for (std::size_t ch = 0; ch < channels_; ++ch) jet.mixed_value[ch][axis] += w * x[3 + ch];
                 }
             }
         }

@@ -28,9 +28,25 @@ public:
         std::vector<std::array<double, 3>> mixed_value;
     };
 
-    /// step: the sample interval along u, v, w. `evaluate` leaves the mixed derivatives as they are, `evaluate_mixed` all else.
-    void evaluate(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
-    void evaluate_mixed(std::size_t cell, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
+    /// The nodes of the cells that were looked at last: position and channels of each, side by side. Each thread has its own.
+    class Nodes {
+    public:
+        explicit Nodes(const CellBlocks& blocks);
+        /// The rows of a cell's 125 nodes, u fastest.
+        [[nodiscard]] const double* of(std::size_t cell);
+
+    private:
+        static constexpr std::size_t kCells = 16;  // as many as meet at most points
+        const CellBlocks& blocks_;
+        std::array<std::size_t, kCells> cells_;
+        std::vector<double> rows_;
+    };
+
+    /// nodes: of the cell; step: the sample interval along u, v, w. `evaluate` leaves the mixed derivatives as they are,
+    /// `evaluate_mixed` all else.
+    void evaluate(const double* nodes, const std::array<double, 3>& uvw, const std::array<double, 3>& step, Jet& jet) const;
+    void evaluate_mixed(const double* nodes, const std::array<double, 3>& uvw, const std::array<double, 3>& step,
+                        Jet& jet) const;
 
     [[nodiscard]] std::size_t channels() const { return channels_; }
 
@@ -41,6 +57,7 @@ private:
 
     const HexMesh& mesh_;
     std::size_t channels_ = 0;
+    std::size_t row_ = 4;                                      // numbers of a node: a multiple of 4
     std::vector<std::pair<std::size_t, std::size_t>> source_;  // channel → attribute, channel of it
 };
 

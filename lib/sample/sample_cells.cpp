@@ -67,6 +67,7 @@ public:
                  std::span<const ChannelView> control, const SampleOptions& options, double diagonal, RbfVolume& volume)
         : counts_(counts),
           blocks_(blocks),
+          nodes_(blocks),
           options_(options),
           volume_(volume),
           sums_(options, diagonal, volume),
@@ -83,7 +84,8 @@ public:
     void add_cell(std::size_t cell, const std::array<double, 3>& uvw) {
         const std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
                                          1.0 / counts_.near(cell, 2, uvw)};
-        blocks_.evaluate(cell, uvw, step, jet_);
+        const double* nodes = nodes_.of(cell);
+        blocks_.evaluate(nodes, uvw, step, jet_);
         if (cells_++ == 0) {
             volume_.centers[point_] = jet_.position;
             write_values(static_cast<Index>(cell), uvw);
@@ -96,7 +98,7 @@ public:
             sums_.add(1, jet_.d_position[a], jet_.dd_position[a], d_.data(), dd_.data());
         }
         if (options_.correction != Correction::Full) return;
-        blocks_.evaluate_mixed(cell, uvw, step, jet_);
+        blocks_.evaluate_mixed(nodes, uvw, step, jet_);
         jets_.push_back(jet_);
     }
 
@@ -148,6 +150,7 @@ private:
 
     const SampleCounts& counts_;
     const CellBlocks& blocks_;
+    CellBlocks::Nodes nodes_;
     const SampleOptions& options_;
     RbfVolume& volume_;
     DirectionSums sums_;

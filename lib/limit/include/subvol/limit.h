@@ -59,7 +59,8 @@ struct LimitSamples {
 /// that of the last level.
 ///
 /// throws: Error(InvalidInput) as `refine`, or if a query names a cell that does not exist or lies outside [0,1]³
-/// cost:   parallel; queries in one cell share the work; bitwise the same for any number of threads
+/// cost:   parallel; queries in one cell share the work: best are many queries in one call. Bitwise the same for any number of
+///         threads and whatever the other queries
 [[nodiscard]] LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries,
                                           const LimitOptions& options = {});
 

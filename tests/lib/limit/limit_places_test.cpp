@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Places of the limit are found from class to class. The vertices of a fine refined mesh are the reference.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "lib/test_meshes.h"
+#include "subvol/limit.h"
+#include "subvol/refine.h"
+
+namespace subvol {
+namespace {
+
+constexpr int kLevels = 4;
+
+/// The lowest corner of the level-4 descendant of a cell that begins at uvw, in sixteenths.
+Index vertex_at(const HexMesh& fine, Index cell, const std::array<Index, 3>& uvw) {
+    constexpr std::array<Index, 8> kChild{0, 1, 3, 2, 4, 5, 7, 6};
+    for (int level = kLevels - 1; level >= 0; --level) {
+        const std::size_t octant = (uvw[0] >> level & 1) + 2 * (uvw[1] >> level & 1) + 4 * (uvw[2] >> level & 1);
+        cell = 8 * cell + kChild[octant];
+    }
+    return fine.cells[cell][0];
+}
+
+/// Asserts that places at vertices of level 4 are those of the refined mesh on the limit.
+void expect_fine_vertices(HexMesh mesh, const SchemeOptions& scheme, double tolerance) {
+    test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(p.x) * p.y + p.z; });
+    mesh.attributes.push_back({"v", 3, {}});  // more channels than fit into one vector
+    for (const Vec3& p : mesh.points)
+        mesh.attributes.back().values.insert(mesh.attributes.back().values.end(), {p.z, p.x * p.y, 1});
+    const HexMesh fine = on_limit(refine(mesh, {.scheme = scheme, .levels = kLevels}), scheme.kind);
+    std::mt19937 random(4);
+    std::vector<LimitQuery> queries;
+    std::vector<Index> vertices;
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        for (int i = 0; i < 3; ++i) {
+            const auto sixteenth = [&] { return static_cast<Index>(random() % 16); };
+            const std::array<Index, 3> at{sixteenth(), sixteenth(), sixteenth()};
+            queries.push_back({c, Vec3(at[0], at[1], at[2]) / 16.0});
+            vertices.push_back(vertex_at(fine, c, at));
+        }
+    }
+    const LimitSamples samples = evaluate_limit(mesh, queries, {.scheme = scheme, .tolerance = 1e-9, .max_levels = 14});
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        EXPECT_NEAR(glm::distance(samples.positions[q], fine.points[vertices[q]]), 0, tolerance) << q;
+        EXPECT_NEAR(samples.attributes[0].values[q], fine.attributes[0].values[vertices[q]], tolerance);
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(samples.attributes[1].values[3 * q + c], fine.attributes[1].values[3 * vertices[q] + c], tolerance);
+        }
+    }
+}
+
+// A dyadic place is a vertex of MCQ, which stays where it is. Splines converge to their limit, to 1e-9 of the diagonal and a
+// few times that where neither a spline nor a class of regular children is near.
+double tolerance_of(Scheme scheme) {
+    return interpolates(scheme) ? 1e-13 : 1e-7;
+}
+
+class LimitPlaces : public testing::TestWithParam<Scheme> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, LimitPlaces,
+                         testing::Values(Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear));
+
+TEST_P(LimitPlaces, AreFineVerticesAboutIrregularEdges) {
+    expect_fine_vertices(test::irregular(), {GetParam()}, tolerance_of(GetParam()));
+}
+
+TEST_P(LimitPlaces, AreFineVerticesWhateverTheAxesOfTheCells) {
+    // Each cell turned by one of the 24 rotations: neighbours' axes do not agree.
+    constexpr std::array<std::array<std::size_t, 8>, 3> kTurns{
+        {{1, 2, 3, 0, 5, 6, 7, 4}, {4, 5, 1, 0, 7, 6, 2, 3}, {1, 5, 6, 2, 0, 4, 7, 3}}};  // about w, u, v
+    HexMesh mesh = test::make_box(5, 5, 5);
+    test::jitter(mesh, .15, 8);
+    std::mt19937 random(2);
+    for (auto& cell : mesh.cells) {
+        for (int i = 0; i < 4; ++i) {
+            const auto& turn = kTurns[random() % 3];
+            const auto before = cell;
+            for (std::size_t k = 0; k < 8; ++k) cell[k] = before[turn[k]];
+        }
+    }
+    expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
+}
+
+TEST(LimitPlacesOfMcq, AreFineVerticesAtCreasesAndSharpFaces) {
+    HexMesh mesh = test::make_box(4, 3, 3);
+    const auto id = [](Index i, Index j, Index k) { return i + 5 * (j + 4 * k); };
+    for (Index i = 0; i < 4; ++i) mesh.creases.push_back({id(i, 1, 3), id(i + 1, 1, 3)});  // along the top
+    for (Index j = 0; j < 3; ++j) {
+        for (Index k = 0; k < 3; ++k)
+            mesh.sharp_faces.push_back({id(2, j, k), id(2, j + 1, k), id(2, j + 1, k + 1), id(2, j, k + 1)});
+    }
+    test::jitter(mesh, .1, 6);
+    expect_fine_vertices(mesh, {Scheme::Mcq}, tolerance_of(Scheme::Mcq));
+}
+
+TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAnEdgeOnly) {
+    // No walk across faces comes from one cell to the other: no class.
+    HexMesh mesh = test::make_box(2, 2, 2);
+    mesh.cells = {mesh.cells[0], mesh.cells[3], mesh.cells[4]};
+    mesh = without_unused_points(std::move(mesh));
+    test::jitter(mesh, .1, 3);
+    expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
+}
+
+TEST(LimitInOneCell, IsTheSameForManyPlaces) {
+    // More places than one batch takes, all in one irregular cell: each is the same as alone.
+    HexMesh mesh = test::irregular();
+    std::vector<LimitQuery> queries;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> t(0, 1);
+    for (int i = 0; i < 270000; ++i) queries.push_back({3, {t(random), t(random), t(random)}});
+    const LimitOptions options{.tolerance = 1e-4, .max_levels = 4};
+    const LimitSamples samples = evaluate_limit(mesh, queries, options);
+    for (const std::size_t q : {std::size_t{0}, std::size_t{150000}, std::size_t{269999}}) {
+        const LimitSamples alone = evaluate_limit(mesh, std::span(queries).subspan(q, 1), options);
+        EXPECT_EQ(alone.positions[0], samples.positions[q]);
+        EXPECT_EQ(alone.jacobians[0], samples.jacobians[q]);
+    }
+    EXPECT_EQ(samples.report.refined, queries.size());
+}
+
+}  // namespace
+}  // namespace subvol
