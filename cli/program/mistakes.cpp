@@ -77,8 +77,11 @@ std::string usage_name(const CLI::App& verb, const std::string& name) {
 std::optional<Error> of_a_number(const std::string& option, const std::string& words) {
     const std::string begin = "Value ", middle = " not in range ", few = "Number less ";
     if (const std::size_t at = words.find(middle); words.starts_with(begin) && at != std::string::npos) {
+        std::string range = words.substr(at + middle.size());
+        constexpr std::size_t kLongestNumber = 100;  // to the largest double, which is 309 digits long: any positive number
+        if (range.size() > kLongestNumber) range = "more than 0";
         return Error(ErrorCode::InvalidInput, "'" + words.substr(begin.size(), at - begin.size()) + "' is out of range", option,
-                     words.substr(at + middle.size()));
+                     range);
     }
     if (!words.starts_with(few)) return std::nullopt;
     std::string value = words.substr(words.rfind(": ") + 2);

@@ -262,6 +262,7 @@ private:
         }
         for (const StudyPlot& plot : make_plots(results)) {
             detail::write_text_file(folder / (plot.name + ".svg"), plot_svg_file(plot.plot));
+            detail::write_text_file(folder / (plot.name + ".pdf"), plot_pdf(plot.plot));
         }
     }
 

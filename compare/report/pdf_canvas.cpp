@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pdf_canvas.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "subvol/detail/number_text.h"
@@ -25,16 +28,72 @@ std::string stream(const std::string& dictionary, const std::string& bytes) {
     return "<< " + dictionary + " /Length " + std::to_string(bytes.size()) + " >>\nstream\n" + bytes + "endstream";
 }
 
-/// The outline in units of 1/1000 em, y up.
-std::string outline(const Glyph& glyph) {
-    std::string path;
-    for (const auto& polygon : glyph.polygons) {
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            path += fixed_text(1000 * polygon[i].x, 0) + " " + fixed_text(-1000 * polygon[i].y, 0) + (i == 0 ? " m\n" : " l\n");
+// Helvetica's advances of the characters from 32 to 126, in 1/1000 em.
+constexpr std::array<int, 95> kAdvances{
+    278, 278, 355, 556, 556, 889, 667, 191, 333,  333, 389, 584, 278, 333, 278, 278, 556, 556, 556, 556, 556, 556, 556, 556,
+    556, 556, 278, 278, 584, 584, 584, 556, 1015, 667, 667, 722, 722, 667, 611, 778, 722, 278, 500, 667, 556, 833, 722, 778,
+    667, 778, 722, 667, 611, 722, 667, 944, 667,  667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556,
+    556, 222, 222, 500, 222, 833, 556, 556, 556,  556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584};
+
+/// What is not ASCII: bytes of the font's encoding with their advance, or digits that are raised.
+struct Special {
+    std::string_view utf8, bytes;
+    int advance;
+    bool raised = false;
+};
+constexpr std::array<Special, 19> kSpecials{{{"·", "\\267", 278},
+                                             {"×", "\\327", 584},
+                                             {"–", "\\226", 556},
+                                             {"−", "-", 333},
+                                             {"°", "\\260", 400},
+                                             {"µ", "\\265", 556},
+                                             {"½", "\\275", 834},
+                                             {"…", "\\205", 1000},
+                                             {"⁰", "0", 556, true},
+                                             {"¹", "1", 556, true},
+                                             {"²", "2", 556, true},
+                                             {"³", "3", 556, true},
+                                             {"⁴", "4", 556, true},
+                                             {"⁵", "5", 556, true},
+                                             {"⁶", "6", 556, true},
+                                             {"⁷", "7", 556, true},
+                                             {"⁸", "8", 556, true},
+                                             {"⁹", "9", 556, true},
+                                             {"⁻", "-", 333, true}}};
+constexpr double kRaised = .65;  // of the font's size
+
+/// A part of a text that is set at once. width: of an em of the text's size
+struct Run {
+    std::string bytes;
+    double width = 0;
+    bool raised = false;
+};
+
+std::vector<Run> runs_of(std::string_view utf8) {
+    std::vector<Run> runs;
+    const auto add = [&](const std::string& bytes, int advance, bool raised) {
+        if (runs.empty() || runs.back().raised != raised) runs.push_back({.bytes = {}, .width = 0, .raised = raised});
+        runs.back().bytes += bytes;
+        runs.back().width += advance / 1000. * (raised ? kRaised : 1);
+    };
+    while (!utf8.empty()) {
+        const auto byte = static_cast<unsigned char>(utf8.front());
+        const auto* special = std::ranges::find_if(kSpecials, [&](const Special& s) { return utf8.starts_with(s.utf8); });
+        if (special != kSpecials.end()) {
+            add(std::string(special->bytes), special->advance, special->raised);
+            utf8.remove_prefix(special->utf8.size());
+        } else if (byte >= 32 && byte < 127) {
+            const bool escaped = byte == '(' || byte == ')' || byte == '\\';
+            add((escaped ? "\\" : "") + std::string(1, utf8.front()), kAdvances[byte - 32U], false);
+            utf8.remove_prefix(1);
+        } else {
+            add("?", kAdvances['?' - ' '], false);
+            do {
+                utf8.remove_prefix(1);
+            } while (!utf8.empty() && (static_cast<unsigned char>(utf8.front()) & 0xC0U) == 0x80);
         }
-        path += "h\n";
     }
-    return path + "f\n";
+    return runs;
 }
 
 /// As UTF-16, which PDF's texts may be in: all characters appear right.
@@ -109,34 +168,28 @@ void PdfCanvas::series(const Series& series) {
 }
 
 void PdfCanvas::text(const Vec2& place, Anchor anchor, const std::string& words, double size, bool upward) {
-    const PlacedText placed = place_glyphs(words);
-    const double back = anchor == Anchor::Start ? 0 : anchor == Anchor::Middle ? placed.width / 2 : placed.width;
-    const std::string turn = upward ? "0 1 -1 0 " : "1 0 0 1 ";
-    page_ += "q .11 g " + turn + at(place) + " cm\n";
-    for (const PlacedGlyph& letter : placed.glyphs) {
-        if (letter.glyph->polygons.empty()) continue;
-        const std::size_t number = letters_.try_emplace(letter.glyph, letters_.size()).first->second;
-        page_ += "q " + fixed_text(size / 1000, 5) + " 0 0 " + fixed_text(size / 1000, 5) + " " +
-                 coordinate((letter.start - back) * size) + " 0 cm /L" + std::to_string(number) + " Do Q\n";
+    const std::vector<Run> runs = runs_of(words);
+    double width = 0;
+    for (const Run& run : runs) width += run.width;
+    const double back = anchor == Anchor::Start ? 0 : anchor == Anchor::Middle ? width / 2 : width;
+    page_ += "q .11 g " + std::string(upward ? "0 1 -1 0 " : "1 0 0 1 ") + at(place) + " cm BT " + coordinate(-back * size) +
+             " 0 Td\n";
+    for (const Run& run : runs) {
+        page_ += "/F " + coordinate(run.raised ? kRaised * size : size) + " Tf " + coordinate(run.raised ? .38 * size : 0) +
+                 " Ts (" + run.bytes + ") Tj\n";
     }
-    page_ += "Q\n";
+    page_ += "ET Q\n";
 }
 
 std::string PdfCanvas::file(const std::string& title) const {
-    constexpr std::size_t kFirstLetter = 6;  // objects before it: catalogue, pages, page, its contents, the title
-    std::vector<const Glyph*> letters(letters_.size());
-    for (const auto& [glyph, number] : letters_) letters[number] = glyph;
-    std::string names;
-    for (std::size_t i = 0; i < letters.size(); ++i)
-        names += "/L" + std::to_string(i) + " " + std::to_string(kFirstLetter + i) + " 0 R ";
-    std::vector<std::string> objects{"<< /Type /Catalog /Pages 2 0 R >>", "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
-                                     "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 " + coordinate(size_.x) + " " +
-                                         coordinate(size_.y) + "] /Contents 4 0 R /Resources << /XObject << " + names +
-                                         ">> >> >>",
-                                     stream("", page_), "<< /Title " + title_hex(title) + " /Producer (OpenSubVol) >>"};
-    for (const Glyph* letter : letters) {
-        objects.push_back(stream("/Type /XObject /Subtype /Form /BBox [-1000 -1000 3000 2000]", outline(*letter)));
-    }
+    const std::vector<std::string> objects{"<< /Type /Catalog /Pages 2 0 R >>",
+                                           "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
+                                           "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 " + coordinate(size_.x) + " " +
+                                               coordinate(size_.y) +
+                                               "] /Contents 4 0 R /Resources << /Font << /F 6 0 R >> >> >>",
+                                           stream("", page_),
+                                           "<< /Title " + title_hex(title) + " /Producer (OpenSubVol) >>",
+                                           "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica /Encoding /WinAnsiEncoding >>"};
     std::string file = "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n";
     std::string places;
     for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <string>
 
 #include "canvas.h"
-#include "subvol/detail/glyphs.h"
 
 namespace subvol::detail {
 
-/// A page of PDF that needs no font: letters are outlines, each kept once.
+/// A page of PDF in Helvetica, one of the fonts that every reader of PDF has.
 class PdfCanvas : public Canvas {
 public:
     explicit PdfCanvas(const Vec2& size) : size_(size) {}
@@ -28,7 +26,6 @@ private:
 
     Vec2 size_;
     std::string page_;
-    std::map<const Glyph*, std::size_t> letters_;
 };
 
 }  // namespace subvol::detail

@@ -8,6 +8,7 @@
 
 #include "canvas.h"
 #include "html_text.h"
+#include "pdf_canvas.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/round_ticks.h"
 
@@ -261,6 +262,12 @@ std::string plot_svg_file(const Plot& plot) {
                        "<style>text { fill: #1c1c1c; font-family: Helvetica, Arial, 'DejaVu Sans', sans-serif; stroke: none } "
                        ".grid { stroke: #e2e2e2 } .frame { fill: none; stroke: #777 } .line { stroke-width: 1.8 }</style>\n"
                        "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
+}
+
+std::string plot_pdf(const Plot& plot) {
+    PdfCanvas canvas({kWidth, height_of(plot)});
+    draw(plot, canvas);
+    return canvas.file(plot.title);
 }
 
 }  // namespace subvol

@@ -89,7 +89,8 @@ std::string figures(const CaseResult& result) {
         const auto found = result.metrics.find(key);
         if (found == result.metrics.end()) continue;
         const std::string unit = std::string_view(key).starts_with("psnr") ? " dB" : "";
-        words += (words.empty() ? "" : ", ") + std::string(name) + " " + readable(found->second) + unit;
+        const auto mark = mark_of(result, key);
+        words += (words.empty() ? "" : ", ") + std::string(name) + " " + (mark ? *mark : readable(found->second)) + unit;
     }
     return words;
 }

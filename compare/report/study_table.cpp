@@ -30,16 +30,6 @@ StudyTable::Cell cell_of(const StudyCase& of, const CaseResult& result, const st
     return key == "input" ? spaced(as_text(*value)) : as_text(*value);
 }
 
-/// "≤ 0.0002" for an error below what is known, "≥ 73.9" for such a PSNR.
-std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits) {
-    const auto known = accuracy(result, key);
-    const auto found = result.metrics.find(key);
-    if (!known || found == result.metrics.end()) return {};
-    const bool psnr = key == "psnr";
-    if (psnr ? found->second <= *known : found->second >= *known) return {};
-    return (psnr ? "≥ " : "≤ ") + readable(*known, std::min(digits, 2 + (psnr ? 1 : 0)));
-}
-
 /// The index of a text among those found so far; new ones are appended.
 std::size_t place_in(std::vector<std::string>& all, const std::string& one) {
     const auto found = std::ranges::find(all, one);
@@ -161,6 +151,15 @@ std::optional<double> accuracy(const CaseResult& result, const std::string& metr
     if (metric == "mse") return rms * rms;
     if (metric == "psnr") return -20 * std::log10(rms);
     return {};
+}
+
+std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits) {
+    const auto known = accuracy(result, key);
+    const auto found = result.metrics.find(key);
+    if (!known || found == result.metrics.end()) return {};
+    const bool psnr = key == "psnr";
+    if (psnr ? found->second <= *known : found->second >= *known) return {};
+    return (psnr ? "≥ " : "≤ ") + readable(*known, std::min(digits, 2 + (psnr ? 1 : 0)));
 }
 
 std::string as_text(const StudyTable& table) {

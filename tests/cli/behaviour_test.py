@@ -137,7 +137,7 @@ class Interrupt(InFolder):
         self.assertEqual(made.code, 0, made.err)
         for frame in (1, 2, 3):
             self.assertIn(f"frame {frame} of 3", made.err)
-        self.assertTrue(made.err.endswith("\r\033[K"))  # nothing is left of the bar
+        self.assertTrue(made.err.endswith("\033[K"))  # nothing is left of the bar
 
 
 class SameForAnyNumberOfThreads(InFolder):

@@ -109,7 +109,7 @@ TEST_P(StudyMistake, IsToldWithItsPlace) {
 INSTANTIATE_TEST_SUITE_P(
     Study, StudyMistake,
     testing::Values(
-        Mistake{R"({"name")", R"({"nam")", "s.json: nam: this key is unknown (name, title"},
+        Mistake{R"({"name")", R"({"nam")", "s.json: nam: this key is unknown: did you mean name? (name, title"},
         Mistake{R"("name": "s")", R"("name": 7)", "s.json: name: must be a string, not a number"},
         Mistake{R"("name": "s")", R"("name": "a/b")", "name: 'a/b' is not a valid name"},
         Mistake{R"({"name": "s", )", "{", "s.json: name: the name is missing"},
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{R"([{"model": "ball", "resolution": 4}])", "[]", "inputs: the list is empty"},
         Mistake{R"([{"model": "ball", "resolution": 4}])", R"("ball")", "inputs: must be a list, not a string"},
         Mistake{R"({"model": "ball", "resolution": 4})", R"("ball")", "inputs[0]: must be an object, not a string"},
-        Mistake{R"("model": "ball")", R"("model": "cat")", "inputs[0].model: 'cat' is unknown (cell, pawn"},
+        Mistake{R"("model": "ball")", R"("model": "cat")", "inputs[0].model: 'cat' is unknown: did you mean car? (cell, pawn"},
         Mistake{R"("model": "ball")", R"("file": "no.vtk")", "inputs[0]: a file has no resolution"},
         Mistake{R"("model": "ball", "resolution": 4)", R"("file": "no.vtk")", "inputs[0].file: 'no.vtk' cannot be read"},
         Mistake{R"("model": "ball", )", "", "inputs[0]: an input has either a model or a file"},

@@ -32,6 +32,9 @@ struct Plot {
 /// The same as a file of its own, with its size and styles.
 [[nodiscard]] std::string plot_svg_file(const Plot& plot);
 
+/// The same as a page of PDF of the plot's size, without a date: the same bytes in every run.
+[[nodiscard]] std::string plot_pdf(const Plot& plot);
+
 /// The slope of log y over log x by least squares: the order of convergence. Nothing with fewer than two positive points at
 /// different x.
 [[nodiscard]] std::optional<double> fitted_order(const PlotLine& line);

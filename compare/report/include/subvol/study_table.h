@@ -37,6 +37,9 @@ struct StudyTable {
 /// The same as text; "" if there is no such value.
 [[nodiscard]] std::string value_text(const StudyCase& of, const CaseResult& result, const std::string& key);
 
+/// "≤ 0.0002" for an error below what is known, "≥ 73.9" for such a PSNR; nothing for other figures.
+[[nodiscard]] std::optional<std::string> mark_of(const CaseResult& result, const std::string& key, int digits = 4);
+
 /// A name with spaces instead of underscores, for people.
 [[nodiscard]] std::string spaced(std::string name);
 
