@@ -46,9 +46,6 @@
 #ifndef SUBVOL_FOREIGN_PUGIXML
 #pragma GCC poison pugi
 #endif
-#ifndef SUBVOL_FOREIGN_PYBIND11
-#pragma GCC poison pybind11
-#endif
 #ifndef SUBVOL_FOREIGN_ZLIB
 #pragma GCC poison z_stream
 #endif

@@ -37,8 +37,8 @@ struct SurfaceArrays {
     py::array triangles;
 };
 
-// Arrays that come in. `what` is their name in messages. Numbers of any width and stride are accepted; text, objects and complex
-// numbers are refused with Error(InvalidInput), as is another shape. Arrays of the type T in C order are read in place.
+// Arrays that come in. `what` is their name in messages. Numbers of any width and stride are accepted; text, objects and
+// complex numbers are refused with Error(InvalidInput), as is another shape. Arrays of the type T in C order are read in place.
 
 /// Rows of N numbers each.
 template <class T>

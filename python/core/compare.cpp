@@ -145,7 +145,8 @@ void bind_compare(py::module_& module) {
         },
         py::arg("test"), py::arg("reference"));
     module.def(
-        "heatmap", [](const Picture& a, const Picture& b, double scale) { return Picture{difference_heatmap(a.image, b.image, scale)}; },
+        "heatmap",
+        [](const Picture& a, const Picture& b, double scale) { return Picture{difference_heatmap(a.image, b.image, scale)}; },
         py::arg("test"), py::arg("reference"), py::arg("scale"));
 }
 

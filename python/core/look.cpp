@@ -63,9 +63,11 @@ std::string said(const Camera& camera) {
 Picture picture_of(const py::object& given) {
     py::array array = py::array::ensure(given);
     PyErr_Clear();
-    const bool right = array && array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4) && array.dtype().kind() == 'f';
+    const bool right =
+        array && array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4) && array.dtype().kind() == 'f';
     if (!right || array.shape(0) > 65536 || array.shape(1) > 65536 || array.size() == 0) {
-        throw Error(ErrorCode::InvalidInput, "is not a picture", "image", "real numbers of linear light, (height, width, 3 or 4)");
+        throw Error(ErrorCode::InvalidInput, "is not a picture", "image",
+                    "real numbers of linear light, (height, width, 3 or 4)");
     }
     const py::array_t<float, py::array::c_style | py::array::forcecast> floats(array);
     Picture picture{Image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)))};
@@ -91,13 +93,14 @@ py::bytes png_of(const Picture& picture, const py::object& background) {
 }
 
 void bind_image(py::module_& module) {
-    py::class_<Picture>(module, "Image", py::buffer_protocol(), "A picture in linear light: RGBA floats, premultiplied, rows from the top.")
+    py::class_<Picture>(module, "Image", py::buffer_protocol(),
+                        "A picture in linear light: RGBA floats, premultiplied, rows from the top.")
         .def(py::init(&picture_of), py::arg("array"))
         .def_buffer([](Picture& picture) {
             const auto width = py::ssize_t(picture.image.width), height = py::ssize_t(picture.image.height);
             const py::ssize_t word = sizeof(float);
-            return py::buffer_info(picture.image.rgba.data(), word, py::format_descriptor<float>::format(), 3, {height, width, py::ssize_t(4)},
-                                   {4 * width * word, 4 * word, word}, true);
+            return py::buffer_info(picture.image.rgba.data(), word, py::format_descriptor<float>::format(), 3,
+                                   {height, width, py::ssize_t(4)}, {4 * width * word, 4 * word, word}, true);
         })
         .def_property_readonly("width", [](const Picture& p) { return p.image.width; })
         .def_property_readonly("height", [](const Picture& p) { return p.image.height; })
@@ -150,11 +153,14 @@ void bind_look(py::module_& module) {
         [](const std::string& path, const std::string& name) { return read_transfer_function(path, name); }, py::arg("path"),
         py::arg("name"));
     module.def("stretched", &stretched, py::arg("knots"), py::arg("min"), py::arg("max"));
-    module.def("parse_opacity", [](const std::string& text, double min, double max) {
-        TransferFunction function;
-        function.opacity = parse_opacity(text, min, max);
-        return opacities_of(function);
-    }, py::arg("text"), py::arg("min"), py::arg("max"));
+    module.def(
+        "parse_opacity",
+        [](const std::string& text, double min, double max) {
+            TransferFunction function;
+            function.opacity = parse_opacity(text, min, max);
+            return opacities_of(function);
+        },
+        py::arg("text"), py::arg("min"), py::arg("max"));
     module.def(
         "legend_svg",
         [](const TransferFunction& knots, const std::string& title, double min, double max, int width_px) {
@@ -177,18 +183,26 @@ void bind_look(py::module_& module) {
             },
             py::arg("text"), py::arg("bounds"), py::arg("aspect") = 1.0)
         .def(
-            "fit", [](const Camera& c, const py::object& points, double aspect) { return fit_camera_to_points(c, vectors(points, "points"), aspect); },
+            "fit",
+            [](const Camera& c, const py::object& points, double aspect) {
+                return fit_camera_to_points(c, vectors(points, "points"), aspect);
+            },
             py::arg("points"), py::arg("aspect") = 1.0)
         .def(
-            "fit_box", [](const Camera& c, const py::object& bounds, double aspect) { return fit_camera(c, box_of(bounds), aspect); },
+            "fit_box",
+            [](const Camera& c, const py::object& bounds, double aspect) { return fit_camera(c, box_of(bounds), aspect); },
             py::arg("bounds"), py::arg("aspect") = 1.0)
         .def(
             "orthographic",
-            [](const Camera& c, const py::object& bounds, double aspect) { return orthographic_camera(c, box_of(bounds), aspect); },
+            [](const Camera& c, const py::object& bounds, double aspect) {
+                return orthographic_camera(c, box_of(bounds), aspect);
+            },
             py::arg("bounds"), py::arg("aspect") = 1.0)
         .def(
             "turntable",
-            [](const Camera& c, const py::object& center, int frames) { return turntable(c, vector_of(center, "center"), frames); },
+            [](const Camera& c, const py::object& center, int frames) {
+                return turntable(c, vector_of(center, "center"), frames);
+            },
             py::arg("center"), py::arg("frames"))
         .def("__repr__", &said)
         .def(py::pickle(

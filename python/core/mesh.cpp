@@ -127,19 +127,22 @@ SurfaceArrays boundary_of(const HexMesh& mesh) {
 }  // namespace
 
 void bind_mesh(py::module_& module) {
-    py::class_<HexMesh>(module, "HexMesh", "A hexahedral mesh with fields at its points. It does not change: its arrays are read-only views.")
+    py::class_<HexMesh>(module, "HexMesh",
+                        "A hexahedral mesh with fields at its points. It does not change: its arrays are read-only views.")
         .def(py::init(&mesh_of), py::arg("points"), py::arg("cells"), py::arg("fields") = py::none(),
              py::arg("creases") = py::none(), py::arg("sharp_faces") = py::none())
-        .def_property_readonly("points",
-                               [](const py::object& self) {
-                                   const auto& points = self.cast<const HexMesh&>().points;
-                                   return view(reinterpret_cast<const double*>(points.data()), {length(points.size()), 3}, self);
-                               })
-        .def_property_readonly("cells", [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().cells, self); })
+        .def_property_readonly(
+            "points",
+            [](const py::object& self) {
+                const auto& points = self.cast<const HexMesh&>().points;
+                return view(reinterpret_cast<const double*>(points.data()), {length(points.size()), 3}, self);
+            })
+        .def_property_readonly("cells",
+                               [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().cells, self); })
         .def_property_readonly("creases",
                                [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().creases, self); })
-        .def_property_readonly("sharp_faces",
-                               [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().sharp_faces, self); })
+        .def_property_readonly(
+            "sharp_faces", [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().sharp_faces, self); })
         .def_property_readonly("fields", &fields_of)
         .def_property_readonly("bounds", [](const HexMesh& mesh) { return as_array(bounds(mesh)); })
         .def("report", &figures_of)

@@ -3,10 +3,12 @@
 #include <tbb/global_control.h>
 
 #include <memory>
+#include <string_view>
 
 #include "bind.h"
 #include "subvol/scheme.h"
 #include "subvol/version.h"
+#include "uninitialised.h"
 
 namespace subvol::python {
 namespace {
@@ -14,6 +16,25 @@ namespace {
 py::str text_of(std::string_view bytes) {  // file names may be any bytes
     return py::reinterpret_steal<py::str>(
         PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "backslashreplace"));
+}
+
+/// The parts of "where: message (allowed)", as error.h describes what(). A place that holds a colon is cut at it.
+struct Parts {
+    std::string_view where, allowed;
+};
+
+Parts parts_of(std::string_view what) {
+    Parts parts;
+    if (const std::size_t colon = what.find(": "); colon != std::string_view::npos) parts.where = what.substr(0, colon);
+    if (!what.ends_with(')')) return parts;
+    int open = 0;
+    for (std::size_t i = what.size(); i-- > 1;) {
+        open += what[i] == ')' ? 1 : what[i] == '(' ? -1 : 0;
+        if (open > 0) continue;
+        if (what[i - 1] == ' ') parts.allowed = what.substr(i + 1, what.size() - i - 2);
+        break;
+    }
+    return parts;
 }
 
 /// The exceptions are classes of Python (subvol/_errors.py).
@@ -32,7 +53,8 @@ void raise(const Error& error) {
         return "Error";
     }();
     const py::object type = py::module_::import("subvol._errors").attr(code);
-    const py::object value = type(text_of(error.what()), text_of(error.where()), text_of(error.allowed()));
+    const Parts parts = parts_of(error.what());
+    const py::object value = type(text_of(error.what()), text_of(parts.where), text_of(parts.allowed));
     PyErr_SetObject(type.ptr(), value.ptr());
 }
 
@@ -50,8 +72,8 @@ void set_threads(int threads) {
     if (threads < 0) throw Error(ErrorCode::InvalidInput, std::to_string(threads) + " threads", "set_threads", "0 or more");
     thread_limit.reset();
     if (threads == 0) return;
-    thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                         static_cast<std::size_t>(threads));
+    thread_limit =
+        std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 }
 
 }  // namespace
@@ -87,4 +109,5 @@ PYBIND11_MODULE(_core, module) {
     bind_render(module);
     bind_compare(module);
     bind_studies(module);
+    refuse_uninitialised(module);
 }

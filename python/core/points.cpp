@@ -129,7 +129,8 @@ py::dict as_dict(const ErrorAtSamples& error) {
 
 py::tuple reduce(const HexMesh& mesh, const std::string& field, double rmse, const std::string& kernel, double overlap,
                  std::size_t max_points, bool move, const std::string& scheme, const py::object& progress) {
-    ReduceOptions options{.rmse = rmse, .kernel = kernel_from_json(kernel), .overlap = overlap, .max_points = max_points, .move = move};
+    ReduceOptions options{
+        .rmse = rmse, .kernel = kernel_from_json(kernel), .overlap = overlap, .max_points = max_points, .move = move};
     options.limit.scheme.kind = scheme_named(scheme);
     ReduceResult result = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
@@ -188,17 +189,20 @@ std::string said(const RbfVolume& volume) {
 }  // namespace
 
 void bind_points(py::module_& module) {
-    py::class_<RbfVolume>(module, "RbfVolume", "A volume as radial basis functions. It does not change: its arrays are read-only views.")
+    py::class_<RbfVolume>(module, "RbfVolume",
+                          "A volume as radial basis functions. It does not change: its arrays are read-only views.")
         .def(py::init(&volume_of), py::arg("centers"), py::arg("frames"), py::arg("values"), py::arg("gradients") = py::dict(),
              py::arg("moments") = py::dict(), py::arg("hessians") = py::dict(), py::arg("kernel") = "{\"type\": \"compact\"}",
              py::arg("boundary") = py::none())
         .def("__len__", &RbfVolume::size)
-        .def_property_readonly("centers", [](const py::object& self) { return view_of_points(self.cast<const RbfVolume&>().centers, self); })
-        .def_property_readonly("frames",
-                               [](const py::object& self) {
-                                   const auto& frames = self.cast<const RbfVolume&>().frames;
-                                   return view(frames.empty() ? nullptr : frames.front().data(), {length(frames.size()), 6}, self);
-                               })
+        .def_property_readonly(
+            "centers", [](const py::object& self) { return view_of_points(self.cast<const RbfVolume&>().centers, self); })
+        .def_property_readonly(
+            "frames",
+            [](const py::object& self) {
+                const auto& frames = self.cast<const RbfVolume&>().frames;
+                return view(frames.empty() ? nullptr : frames.front().data(), {length(frames.size()), 6}, self);
+            })
         .def_property_readonly("values", [](const py::object& self) { return of_channels(&RbfChannel::values, self); })
         .def_property_readonly("gradients", [](const py::object& self) { return of_channels(&RbfChannel::gradients, self); })
         .def_property_readonly("moments", [](const py::object& self) { return of_channels(&RbfChannel::moments, self); })
@@ -222,7 +226,8 @@ void bind_points(py::module_& module) {
             }));
     module.def("sample", &sample, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
                py::arg("per_edge"), py::arg("spacing_world"), py::arg("tolerance"), py::arg("correction"), py::arg("values"),
-               py::arg("kernel"), py::arg("boundary_levels"), py::arg("footprint"), py::arg("footprint_size"), py::arg("progress"));
+               py::arg("kernel"), py::arg("boundary_levels"), py::arg("footprint"), py::arg("footprint_size"),
+               py::arg("progress"));
     module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("rmse"), py::arg("kernel"), py::arg("overlap"),
                py::arg("max_points"), py::arg("move"), py::arg("scheme"), py::arg("progress"));
     module.def(
@@ -239,7 +244,8 @@ void bind_points(py::module_& module) {
             return read_points(path);
         },
         py::arg("path"));
-    module.def("is_points_file", [](const std::string& path) { return is_points_file(path); }, py::arg("path"));
+    module.def(
+        "is_points_file", [](const std::string& path) { return is_points_file(path); }, py::arg("path"));
     module.def(
         "write_points",
         [](const std::string& path, const RbfVolume& volume, bool ascii, bool splats) {
@@ -248,7 +254,8 @@ void bind_points(py::module_& module) {
         },
         py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"));
     module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"), py::arg("extent"), py::arg("terms"));
-    module.def("named_kernel", [](const std::string& name) { return to_json(named_kernel(name)); }, py::arg("name"));
+    module.def(
+        "named_kernel", [](const std::string& name) { return to_json(named_kernel(name)); }, py::arg("name"));
     module.def("kernel_names", &kernel_names);
     module.def(
         "kernel_values",

@@ -50,9 +50,9 @@ public:
         tables_.apply(std::span(reinterpret_cast<const double*>(mesh->points.data()), 3 * mesh->points.size()), 3,
                       std::span(reinterpret_cast<double*>(fine.points.data()), 3 * fine.points.size()));
         for (const Attribute& attribute : mesh->attributes) {
-            fine.attributes.push_back({attribute.name, attribute.channels,
-                                       tables_.apply(std::span<const double>(attribute.values),
-                                                     static_cast<std::size_t>(attribute.channels))});
+            fine.attributes.push_back(
+                {attribute.name, attribute.channels,
+                 tables_.apply(std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels))});
         }
         return fine;
     }
@@ -165,7 +165,8 @@ py::dict limit_of(const HexMesh& mesh, const py::object& cells, const py::object
     for (LimitAttribute& attribute : samples.attributes) {
         const py::ssize_t channels = length(attribute.channels);
         const bool scalar = channels == 1;
-        fields[py::str(attribute.name)] = owned(std::move(attribute.values), scalar ? std::vector<py::ssize_t>{count} : std::vector<py::ssize_t>{count, channels});
+        fields[py::str(attribute.name)] = owned(
+            std::move(attribute.values), scalar ? std::vector<py::ssize_t>{count} : std::vector<py::ssize_t>{count, channels});
         py::array rows = owned(std::move(attribute.derivatives));
         derivatives[py::str(attribute.name)] = scalar ? rows : rows.reshape({count, channels, py::ssize_t(3)});
     }
@@ -189,7 +190,8 @@ void bind_refine(py::module_& module) {
                py::arg("crease_angle"), py::arg("on_limit"), py::arg("progress"));
     py::class_<Refinement>(module, "Refinement", "A refinement that is computed once and applied any number of times.")
         .def(py::init<const HexMesh&, int, const std::string&, double, const py::object&>(), py::arg("mesh"),
-             py::arg("levels") = 1, py::arg("scheme") = "mcq", py::arg("tension") = 1.0 / 16.0, py::arg("progress") = py::none())
+             py::arg("levels") = 1, py::arg("scheme") = "mcq", py::arg("tension") = 1.0 / 16.0,
+             py::arg("progress") = py::none())
         .def("apply", &Refinement::apply_to_mesh, py::arg("mesh"))
         .def("apply", &Refinement::apply_to_array, py::arg("values"), py::arg("out") = py::none())
         .def("matrix", &Refinement::matrix)

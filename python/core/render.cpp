@@ -108,7 +108,8 @@ ProjectedOrder order_named(const std::string& name) {
 }
 
 Picture projected(const HexMesh& mesh, const std::string& field, const Scene& scene, const std::string& order,
-                  const std::optional<int>& device, int samples, const std::optional<double>& seconds, const py::object& progress) {
+                  const std::optional<int>& device, int samples, const std::optional<double>& seconds,
+                  const py::object& progress) {
     ProjectedOptions options{.order = order_named(order), .device = device, .samples = samples};
     const ProjectedResult result = result_of(progress, [&](Progress* listener) {
         ProjectedRenderer renderer(mesh, field, device, listener);
@@ -125,8 +126,8 @@ Picture projected(const HexMesh& mesh, const std::string& field, const Scene& sc
     picture.report["tets"] = result.report.tets;
     picture.report["cycles"] = result.report.cycles;
     picture.report["late_faces"] = result.report.late_faces;
-    picture.report["seconds"] = result.report.seconds_build + result.report.seconds_prepare + result.report.seconds_sort +
-                                result.report.seconds_draw;
+    picture.report["seconds"] =
+        result.report.seconds_build + result.report.seconds_prepare + result.report.seconds_sort + result.report.seconds_draw;
     return picture;
 }
 

@@ -70,7 +70,8 @@ std::optional<py::error_already_set> pass_on(const py::object& progress, const N
 
 void run(const py::object& progress, const std::function<void(Progress*)>& work) {
     if (!progress.is_none() && PyCallable_Check(progress.ptr()) == 0) {
-        throw Error(ErrorCode::InvalidInput, "is not callable", "progress", "None, True, or a function of a stage and a fraction");
+        throw Error(ErrorCode::InvalidInput, "is not callable", "progress",
+                    "None, True, or a function of a stage and a fraction");
     }
     Wire wire;
     std::exception_ptr failure;

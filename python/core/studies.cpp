@@ -31,7 +31,8 @@ CaseResult work_on(const py::object& work, const StudyCase& of, std::optional<py
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         const py::object metrics = work(of);
         CaseResult result;
-        for (const auto& [name, value] : metrics.cast<py::dict>()) result.metrics[py::str(name)] = py::float_(value.cast<py::object>());
+        for (const auto& [name, value] : metrics.cast<py::dict>())
+            result.metrics[py::str(name)] = py::float_(value.cast<py::object>());
         return result;
     } catch (py::error_already_set& error) {
         if (error.matches(PyExc_Exception)) {
@@ -84,8 +85,9 @@ void bind_studies(py::module_& module) {
         .def_readonly("title", &Study::title)
         .def_property_readonly("cases", [](const Study& study) { return study.cases; })
         .def("__len__", [](const Study& study) { return study.cases.size(); })
-        .def("__repr__",
-             [](const Study& study) { return "<subvol.Study: " + study.name + ", " + std::to_string(study.cases.size()) + " cases>"; });
+        .def("__repr__", [](const Study& study) {
+            return "<subvol.Study: " + study.name + ", " + std::to_string(study.cases.size()) + " cases>";
+        });
     py::class_<StudyResults>(module, "StudyResults", "What the cases of a study gave, in their order.")
         .def_readonly("ran", &StudyResults::ran)
         .def_readonly("failed", &StudyResults::failed)
@@ -98,7 +100,8 @@ void bind_studies(py::module_& module) {
         .def("tables", &tables_of)
         .def("csv", &results_csv)
         .def("__repr__", [](const StudyResults& r) {
-            return "<subvol.StudyResults: " + std::to_string(r.results.size()) + " cases, " + std::to_string(r.failed) + " failed>";
+            return "<subvol.StudyResults: " + std::to_string(r.results.size()) + " cases, " + std::to_string(r.failed) +
+                   " failed>";
         });
     module.def("list_studies", [] {
         py::dict studies;
@@ -106,8 +109,10 @@ void bind_studies(py::module_& module) {
         return studies;
     });
     module.def("built_in_study", &built_in_study, py::arg("name"));
-    module.def("read_study", [](const std::string& path) { return read_study(path); }, py::arg("path"));
-    module.def("parse_study", [](const std::string& json) { return parse_study(json, "study"); }, py::arg("json"));
+    module.def(
+        "read_study", [](const std::string& path) { return read_study(path); }, py::arg("path"));
+    module.def(
+        "parse_study", [](const std::string& json) { return parse_study(json, "study"); }, py::arg("json"));
     module.def("run_study", &run_here, py::arg("study"), py::arg("work"), py::arg("folder"), py::arg("fresh"));
 }
 

@@ -12,6 +12,7 @@
 #include "subvol/vdb_points.h"
 #include "subvol/vdb_sample.h"
 #include "subvol/version.h"
+#include "uninitialised.h"
 
 namespace subvol::python {
 namespace {
@@ -73,14 +74,15 @@ py::object written_or_made(std::vector<VdbGrid> grids, const std::optional<std::
 ///
 /// levels: None: the limit
 /// path:   None: the grids are returned; else they are written, and their reports are returned
-py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fields, double voxel_size, const std::string& scheme,
-                         double tension, const std::optional<double>& crease_angle, const std::optional<int>& levels, bool half,
-                         bool mask, const std::optional<std::string>& sdf, const std::optional<std::string>& path, bool nano,
-                         const py::object& progress) {
+py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fields, double voxel_size,
+                         const std::string& scheme, double tension, const std::optional<double>& crease_angle,
+                         const std::optional<int>& levels, bool half, bool mask, const std::optional<std::string>& sdf,
+                         const std::optional<std::string>& path, bool nano, const py::object& progress) {
     static const std::map<std::string, Scheme> kSchemes{
         {"mcq", Scheme::Mcq}, {"cc", Scheme::CatmullClark}, {"bsxw", Scheme::Bsxw}, {"linear", Scheme::Linear}};
     const auto found = kSchemes.find(scheme);
-    if (found == kSchemes.end()) throw Error(ErrorCode::InvalidInput, "'" + scheme + "' is not known", "scheme", "mcq, cc, bsxw or linear");
+    if (found == kSchemes.end())
+        throw Error(ErrorCode::InvalidInput, "'" + scheme + "' is not known", "scheme", "mcq, cc, bsxw or linear");
     RefineOptions refinement{.scheme = {.kind = found->second, .tension = tension, .crease_angle_deg = crease_angle},
                              .levels = levels.value_or(0)};
     LimitCells limit;
@@ -103,7 +105,8 @@ py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fi
         if (path) write_files(*path, made, nano);
         return made;
     });
-    return py::make_tuple(written_or_made(std::move(grids), path), levels ? py::object(py::none()) : py::object(py::float_(limit.value_of_range)),
+    return py::make_tuple(written_or_made(std::move(grids), path),
+                          levels ? py::object(py::none()) : py::object(py::float_(limit.value_of_range)),
                           levels || limit.converged);
 }
 
@@ -168,17 +171,20 @@ PYBIND11_MODULE(_grids, module) {
                                })
         .def("values", &values_at, py::arg("at"))
         .def("voxels", [](const VdbGrid& grid) { return grid.voxels(); })
-        .def("difference",
-             [](const VdbGrid& grid, const VdbGrid& other) {
-                 const GridDifference difference = compare_voxels(grid, other);
-                 py::dict figures;
-                 figures["voxels"] = difference.voxels;
-                 figures["rms"] = difference.rms;
-                 figures["max"] = difference.max;
-                 return figures;
-             }, py::arg("other"))
+        .def(
+            "difference",
+            [](const VdbGrid& grid, const VdbGrid& other) {
+                const GridDifference difference = compare_voxels(grid, other);
+                py::dict figures;
+                figures["voxels"] = difference.voxels;
+                figures["rms"] = difference.rms;
+                figures["max"] = difference.max;
+                return figures;
+            },
+            py::arg("other"))
         .def("__repr__", [](const VdbGrid& grid) {
-            return "<subvol.Grid: " + grid.report().name + ", " + std::to_string(grid.report().active_voxels) + " active voxels>";
+            return "<subvol.Grid: " + grid.report().name + ", " + std::to_string(grid.report().active_voxels) +
+                   " active voxels>";
         });
     module.def("rasterize", &rasterize_mesh, py::arg("mesh"), py::arg("fields"), py::arg("voxel_size"), py::arg("scheme"),
                py::arg("tension"), py::arg("crease_angle"), py::arg("levels"), py::arg("half"), py::arg("mask"), py::arg("sdf"),
@@ -190,12 +196,14 @@ PYBIND11_MODULE(_grids, module) {
         "read_vdb", [](const std::string& path) { return shared(read_vdb(path)); }, py::arg("path"),
         py::call_guard<py::gil_scoped_release>());
     module.def(
-        "write_points", [](const std::string& path, const RbfVolume& volume) { write_vdb_points(path, volume); }, py::arg("path"),
-        py::arg("volume"), py::call_guard<py::gil_scoped_release>());
+        "write_points", [](const std::string& path, const RbfVolume& volume) { write_vdb_points(path, volume); },
+        py::arg("path"), py::arg("volume"), py::call_guard<py::gil_scoped_release>());
     module.def(
         "read_points", [](const std::string& path) { return read_vdb_points(path); }, py::arg("path"),
         py::call_guard<py::gil_scoped_release>());
-    module.def("holds_points", [](const std::string& path) { return holds_vdb_points(path); }, py::arg("path"));
+    module.def(
+        "holds_points", [](const std::string& path) { return holds_vdb_points(path); }, py::arg("path"));
     module.def("sample", &sample_grid, py::arg("grid"), py::arg("spacing_world"), py::arg("progress"));
     module.def("has_nanovdb", &has_nanovdb);
+    refuse_uninitialised(module);
 }

@@ -43,7 +43,10 @@ class TransferFunction:
                  opacity: Union[None, str, npt.ArrayLike] = None, *, map: str = "") -> None:
         self.name = name
         self.map = map
-        self.range = None if range is None else (float(range[0]), float(range[1]))
+        self.range: Optional[tuple[float, float]] = None
+        if range is not None:
+            low, high = range
+            self.range = (float(low), float(high))
         self.opacity = opacity
         self._color: Optional[npt.NDArray[np.float64]] = None
         # Mistakes are found here, not when a picture is drawn.
@@ -110,7 +113,7 @@ def _look_of(look: Optional[str], body: bool, tf: Any, opacity_unit: Optional[fl
 
 def _knots_of(tf: Union[None, str, TransferFunction], look: str, low: float, high: float) -> _core.Knots:
     name = {"xray": "xray", "isosurface": "isosurface"}.get(look, "viridis")
-    function = TransferFunction(name) if tf is None else TransferFunction(tf) if isinstance(tf, str) else tf
+    function = TransferFunction(name) if tf is None else tf if isinstance(tf, TransferFunction) else TransferFunction(tf)
     knots = function.knots(low, high)
     if look != "solid":
         return knots
@@ -127,6 +130,8 @@ def _camera_of(view: str, camera: Union[None, str, Camera], bounds: npt.NDArray[
     aspect = size[0] / size[1]
     if isinstance(camera, Camera):
         return camera
+    if not isinstance(camera, (str, type(None))):
+        raise TypeError(f"camera: a Camera or text is needed, not {type(camera).__name__}")
     given = Camera.parse(view if camera is None else camera, bounds, aspect)
     if ortho and given.ortho_height == 0:
         given = given.orthographic(bounds, aspect)

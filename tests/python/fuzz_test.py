@@ -22,7 +22,7 @@ def arrays(rng):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            array = (numbers.random(shape) * rng.choice([1, 10, 27, 1e300, -5])).astype(kind)
+            array = np.asarray(numbers.random(shape) * rng.choice([1, 10, 27, 1e300, -5])).astype(kind)
         except (TypeError, ValueError):
             array = np.zeros(shape, kind)
     if array.dtype.kind == "f" and array.size and rng.random() < .3:
@@ -31,6 +31,7 @@ def arrays(rng):
         array = np.repeat(array, 2, 0)[::rng.choice([2, -2])]
     if array.ndim > 1 and rng.random() < .2:
         array = np.asfortranarray(array)
+    array = np.array(array, copy=False)
     if rng.random() < .2:
         array.flags.writeable = False
     if rng.random() < .1:
