@@ -21,6 +21,7 @@ for correction in ("none", "gradient", "second"):
     order = np.polyfit(np.log(sizes), np.log(errors), 1)[0]
     axes.loglog(sizes, errors, "o-", label=f"{correction} (order {-order:.1f})")
     print(correction, *(f"{e:.2e}" for e in errors), f"order {-order:.2f}")
-axes.set(xlabel="cells along the inner cube", ylabel="rms error", title="What kernels carry beside their value")
+axes.set(xlabel="cells along the inner cube", ylabel="rms error", title="What kernels carry beside their value", xticks=sizes, xticklabels=sizes)
+axes.minorticks_off()
 axes.legend()
 figure.savefig("study.png", dpi=120)

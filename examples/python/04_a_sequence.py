@@ -19,4 +19,4 @@ for frame in range(6):
     print(f"swing_{frame:04d}.vdb: {grid['active_voxels']} voxels")
     frames.append(np.asarray(subvol.render(subvol.HexMesh(points, rest.cells, rest.fields), size=(size, size), tf="coolwarm", look="solid",
                                            camera=subvol.Camera((3, -3, 2.2), (0, 0, 0), fovy_deg=35))))
-subvol.write_image(np.concatenate(frames, axis=1), "swing.png")
+subvol.write_image(np.concatenate(frames, axis=1), "swing.png", background=(0.77, 0.79, 0.81))

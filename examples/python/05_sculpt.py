@@ -13,7 +13,7 @@ number = np.arange((n + 1) ** 3).reshape(n + 1, n + 1, n + 1)
 a, b, c = (n + 1) ** 2, n + 1, 1  # steps along u, v, w
 cells = number[:-1, :-1, :-1].reshape(-1, 1) + [0, a, a + b, b, c, a + c, a + b + c, b + c]
 
-# A vase: narrow at the neck, twisted about its axis. Wherever numpy can compute it, points can go.
+# A vase: narrow at its ends, twisted about its axis. Wherever numpy can compute it, points can go.
 height = points[:, 2]
 radius = 0.7 + 0.25 * np.cos(2.5 * height + 0.4)
 angle = 0.6 * height
