@@ -13,3 +13,6 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/subvolConfig.cmake ${CMAKE_CURRENT_BIN
   cmake/SubvolDependencies.cmake DESTINATION ${config_dir} COMPONENT development)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT command)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libsubvol-dev RENAME copyright COMPONENT development)
+if(SUBVOL_PYTHON_FOUND)
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-subvol RENAME copyright COMPONENT python)
+endif()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# `cpack` in the build folder: subvol (the command) and libsubvol-dev (headers, static libraries, CMake's files) for Debian.
+# `cpack` in the build folder: subvol (the command), libsubvol-dev (headers, static libraries, CMake's files) and python3-subvol for
+# Debian.
 # scripts/test-package installs both in a bare Debian.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME subvol)
@@ -34,5 +35,22 @@ if(SUBVOL_VDB)
 endif()
 if(SUBVOL_RENDER)
   string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libembree-dev, libepoxy-dev")
+endif()
+if(SUBVOL_PYTHON_FOUND)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "subdivision volumes: the Python package
+import subvol: meshes, points and pictures as arrays of numpy.")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-subvol)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  # An extension is of one version of Python. The modules that it loads are in the package of the command.
+  execute_process(COMMAND ${SUBVOL_PYTHON_EXECUTABLE} -c "import sys; print('%d.%d %d.%d' % (3, sys.version_info[1], 3, sys.version_info[1] + 1), end='')"
+    OUTPUT_VARIABLE python_versions)
+  string(REPLACE " " ";" python_versions "${python_versions}")
+  list(GET python_versions 0 python_from)
+  list(GET python_versions 1 python_below)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "subvol (= ${PROJECT_VERSION}), python3 (>= ${python_from}), python3 (<< ${python_below}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-tqdm, python3-meshio, python3-matplotlib")
 endif()
 include(CPack)

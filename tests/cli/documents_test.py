@@ -18,7 +18,7 @@ WAYS_IN = {"lib": "subvol.h", "vdb": "vdb.h", "render": "render.h", "compare": "
 def rooms(component):
     """The rooms of a component, each with those that it uses, by its CMakeLists.txt."""
     text = (TOP / component / "CMakeLists.txt").read_text()
-    calls = re.findall(rf"^subvol_room\({component} (\w+)\n([^)]*)\)", text, re.M)
+    calls = re.findall(rf"^subvol_(?:room\({component} |extension\()(\w+)\n([^)]*)\)", text, re.M)
     uses = {name: re.search(r"USES ([\w ]+)", rest) for name, rest in calls}
     return {name: sorted(found[1].split()) if found else [] for name, found in uses.items()}
 
@@ -139,7 +139,7 @@ class WaysIn(unittest.TestCase):
     def test_every_room_is_in_the_table_of_rooms(self):
         rows = re.findall(r"^\| `(\w+/\w+)` \| .+ \| ?(.*) \|$", (TOP / "CONTRIBUTING.md").read_text(), re.M)
         listed = {room: sorted(uses.split(", ")) if uses else [] for room, uses in rows}
-        here = {f"{component}/{room}": uses for component in [*WAYS_IN, "cli"] for room, uses in rooms(component).items()}
+        here = {f"{component}/{room}": uses for component in [*WAYS_IN, "cli", "python"] for room, uses in rooms(component).items()}
         self.assertEqual(listed, here)
         for room in here:
             self.assertTrue((TOP / room).is_dir(), room)

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
+
+#include "bind.h"
+
+namespace subvol::python {
+namespace {
+
+std::string shape_of(const py::array& array) {
+    std::string text = "(";
+    for (py::ssize_t d = 0; d < array.ndim(); ++d) text += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
+    return text + (array.ndim() == 1 ? ",)" : ")");
+}
+
+/// Any array of numbers, as numpy makes it of what was given.
+py::array array_of(const py::handle& given, bool integers, const std::string& what) {
+    py::array array = py::array::ensure(given);
+    if (!array) {
+        PyErr_Clear();
+        throw Error(ErrorCode::InvalidInput, "cannot be made an array", what, "an array of numbers");
+    }
+    const char kind = array.dtype().kind();
+    const bool right = kind == 'i' || kind == 'u' || (kind == 'f' && !integers);
+    if (right || array.size() == 0) return array;
+    throw Error(ErrorCode::InvalidInput, "has the type " + py::str(array.dtype()).cast<std::string>(), what,
+                integers ? "integers" : "real numbers");
+}
+
+template <class T>
+py::array_t<T> converted(const py::array& array, const std::string& what) {
+    auto result = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
+    if (!result) {
+        PyErr_Clear();
+        throw Error(ErrorCode::InvalidInput, "cannot be converted", what, "an array of numbers");
+    }
+    return result;
+}
+
+void check_columns(const py::array& array, py::ssize_t columns, const std::string& what) {
+    if (array.ndim() == 2 && array.shape(1) == columns) return;
+    throw Error(ErrorCode::InvalidInput, "has the shape " + shape_of(array), what, "(n, " + std::to_string(columns) + ")");
+}
+
+}  // namespace
+
+template <class T>
+py::array_t<T> rows_of(const py::handle& given, py::ssize_t columns, const std::string& what) {
+    const py::array array = array_of(given, std::is_integral_v<T>, what);
+    check_columns(array, columns, what);
+    return converted<T>(array, what);
+}
+
+template <class T>
+py::array_t<T> numbers(const py::handle& given, const std::string& what) {
+    const py::array array = array_of(given, std::is_integral_v<T>, what);
+    if (array.ndim() != 1) throw Error(ErrorCode::InvalidInput, "has the shape " + shape_of(array), what, "(n,)");
+    return converted<T>(array, what);
+}
+
+template py::array_t<double> rows_of<double>(const py::handle&, py::ssize_t, const std::string&);
+template py::array_t<float> rows_of<float>(const py::handle&, py::ssize_t, const std::string&);
+template py::array_t<double> numbers<double>(const py::handle&, const std::string&);
+template py::array_t<float> numbers<float>(const py::handle&, const std::string&);
+template py::array_t<std::int64_t> numbers<std::int64_t>(const py::handle&, const std::string&);
+
+template <std::size_t N>
+std::vector<std::array<Index, N>> index_rows(const py::handle& given, std::size_t end, const std::string& what) {
+    const py::array array = array_of(given, true, what);
+    check_columns(array, N, what);
+    const auto count = static_cast<std::size_t>(array.shape(0));
+    std::vector<std::array<Index, N>> rows(count);
+    if (py::isinstance<py::array_t<Index>>(array) && (array.flags() & py::array::c_style) != 0) {
+        if (count > 0) std::memcpy(rows.data(), array.data(), count * sizeof(rows[0]));
+    } else {
+        const auto wide = converted<std::int64_t>(array, what);
+        const std::int64_t* from = wide.data();
+        for (std::size_t i = 0; i < count * N; ++i) {
+            const bool exists = from[i] >= 0 && static_cast<std::uint64_t>(from[i]) < end;
+            rows[i / N][i % N] = exists ? static_cast<Index>(from[i]) : kNone;
+            if (!exists) {
+                throw Error(ErrorCode::InvalidInput,
+                            "row " + std::to_string(i / N) + " has the number " + std::to_string(from[i]) + "; there are " +
+                                std::to_string(end) + " points",
+                            what, "numbers from 0");
+            }
+        }
+        return rows;
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const Index largest = *std::ranges::max_element(rows[i]);
+        if (largest < end) continue;
+        throw Error(ErrorCode::InvalidInput,
+                    "row " + std::to_string(i) + " has the number " + std::to_string(largest) + "; there are " +
+                        std::to_string(end) + " points",
+                    what, "numbers from 0");
+    }
+    return rows;
+}
+
+template std::vector<std::array<Index, 8>> index_rows<8>(const py::handle&, std::size_t, const std::string&);
+template std::vector<std::array<Index, 4>> index_rows<4>(const py::handle&, std::size_t, const std::string&);
+template std::vector<std::array<Index, 3>> index_rows<3>(const py::handle&, std::size_t, const std::string&);
+template std::vector<std::array<Index, 2>> index_rows<2>(const py::handle&, std::size_t, const std::string&);
+
+std::vector<Vec3> vectors(const py::handle& given, const std::string& what) {
+    const py::array_t<double> rows = rows_of<double>(given, 3, what);
+    std::vector<Vec3> points(static_cast<std::size_t>(rows.shape(0)));
+    static_assert(sizeof(Vec3) == 3 * sizeof(double));
+    if (!points.empty()) std::memcpy(static_cast<void*>(points.data()), rows.data(), points.size() * sizeof(Vec3));
+    return points;
+}
+
+py::array owned(std::vector<Vec3> values) {
+    auto* kept = new std::vector<Vec3>(std::move(values));
+    const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<Vec3>*>(p); });
+    return py::array(py::dtype::of<double>(), std::vector<py::ssize_t>{length(kept->size()), 3},
+                     reinterpret_cast<const double*>(kept->data()), owner);
+}
+
+py::array as_array(const Box& box) {
+    return owned(std::vector<Vec3>{box.lower, box.upper});
+}
+
+}  // namespace subvol::python

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "subvol/camera.h"
+#include "subvol/error.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/image.h"
+#include "subvol/optics.h"
+#include "subvol/progress.h"
+#include "subvol/refine.h"
+
+namespace subvol::python {
+
+namespace py = pybind11;
+
+/// What a renderer returns to Python: the class Image there. report: counts and seconds, under the names of the command's JSON
+struct Picture {
+    Image image;
+    std::vector<float> depth{};
+    py::dict report{};
+};
+
+/// A surface of triangles as arrays: (n,3) float64 and (m,3) integers.
+struct SurfaceArrays {
+    py::array points;
+    py::array triangles;
+};
+
+// Arrays that come in. `what` is their name in messages. Numbers of any width and stride are accepted; text, objects and
+// complex numbers are refused with Error(InvalidInput), as is another shape. Arrays of the type T in C order are read in place.
+
+/// Rows of N numbers each.
+template <class T>
+[[nodiscard]] py::array_t<T> rows_of(const py::handle& given, py::ssize_t columns, const std::string& what);
+/// A row of numbers.
+template <class T>
+[[nodiscard]] py::array_t<T> numbers(const py::handle& given, const std::string& what);
+/// Point numbers from 0 to below `end`, N a row.
+template <std::size_t N>
+[[nodiscard]] std::vector<std::array<Index, N>> index_rows(const py::handle& given, std::size_t end, const std::string& what);
+[[nodiscard]] std::vector<Vec3> vectors(const py::handle& given, const std::string& what);
+
+/// A read-only array over memory of `owner`, which the array keeps alive. The memory must not move as long as the owner lives.
+template <class T>
+[[nodiscard]] py::array view(const T* data, std::vector<py::ssize_t> shape, const py::handle& owner) {
+    py::array array(py::dtype::of<T>(), std::move(shape), data, owner);
+    py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+    return array;
+}
+
+/// An array that owns the vector's memory: nothing is copied. Python may write to it.
+template <class T>
+[[nodiscard]] py::array owned(std::vector<T> values, std::vector<py::ssize_t> shape) {
+    auto* kept = new std::vector<T>(std::move(values));
+    const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<T>*>(p); });
+    return py::array(py::dtype::of<T>(), std::move(shape), kept->data(), owner);
+}
+[[nodiscard]] py::array owned(std::vector<Vec3> values);
+
+[[nodiscard]] inline py::ssize_t length(std::size_t n) {
+    return static_cast<py::ssize_t>(n);
+}
+
+[[nodiscard]] inline py::tuple as_tuple(const Vec3& v) {
+    return py::make_tuple(v.x, v.y, v.z);
+}
+
+/// Lower and upper corner, (2,3).
+[[nodiscard]] py::array as_array(const Box& box);
+
+/// Does long work on a thread of its own, while this one, without the GIL, waits, passes on what is reported, and looks for
+/// signals: so Ctrl-C ends the work wherever it runs, and `progress` is called on the thread that made the call.
+///
+/// progress: None, or a callable (stage: str, fraction: float); an exception in it cancels the work and is raised
+void run(const py::object& progress, const std::function<void(Progress*)>& work);
+
+/// The same with a result.
+template <class Work>
+[[nodiscard]] auto result_of(const py::object& progress, const Work& work) {
+    std::optional<decltype(work(static_cast<Progress*>(nullptr)))> result;
+    run(progress, [&](Progress* listener) { result.emplace(work(listener)); });
+    return std::move(*result);
+}
+
+/// Words of the command for the library's enumerators. throws: Error(InvalidInput) that lists the words
+[[nodiscard]] Scheme scheme_named(const std::string& name);
+[[nodiscard]] RefineOptions refine_options(const std::string& scheme, int levels, double tension,
+                                           const std::optional<double>& crease_angle);
+[[nodiscard]] Error unknown_word(const std::string& word, const std::string& where, const std::string& allowed);
+
+void bind_mesh(py::module_& module);
+void bind_refine(py::module_& module);
+void bind_points(py::module_& module);
+void bind_look(py::module_& module);
+void bind_render(py::module_& module);
+void bind_compare(py::module_& module);
+void bind_studies(py::module_& module);
+
+}  // namespace subvol::python

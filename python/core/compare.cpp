@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <limits>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "bind.h"
+#include "subvol/field_metrics.h"
+#include "subvol/flip.h"
+#include "subvol/image_metrics.h"
+#include "subvol/mesh_field.h"
+#include "subvol/points_field.h"
+#include "subvol/ssim.h"
+
+namespace subvol::python {
+namespace {
+
+/// A field in world space with the object that it refers to.
+struct Field {
+    std::shared_ptr<const void> owner;
+    FieldView view;
+    std::string name;
+};
+
+Field field_of_mesh(const HexMesh& mesh, const std::string& name) {
+    const py::gil_scoped_release without_gil;
+    auto field = std::make_shared<const MeshField>(with_scalar_field(mesh, name), name);
+    FieldView view = field->view();
+    return {std::move(field), std::move(view), name};
+}
+
+Field field_of_points(const RbfVolume& volume, std::size_t channel) {
+    const py::gil_scoped_release without_gil;
+    auto field = std::make_shared<const PointsField>(volume, channel);
+    FieldView view = field->view();
+    return {std::move(field), std::move(view), volume.channels[channel].name};
+}
+
+/// Values at places of the world (nan outside the field), and whether there is one.
+py::tuple values_at(const Field& field, const py::object& at) {
+    const std::vector<Vec3> places = vectors(at, "at");
+    std::vector<double> values(places.size());
+    std::vector<std::uint8_t> inside(places.size());
+    {
+        const py::gil_scoped_release without_gil;
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const bool finite = std::isfinite(places[i].x) && std::isfinite(places[i].y) && std::isfinite(places[i].z);
+                const std::optional<double> value = finite ? field.view.value(places[i]) : std::nullopt;
+                values[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
+                inside[i] = value ? 1 : 0;
+            }
+        });
+    }
+    const py::ssize_t count = length(places.size());
+    return py::make_tuple(owned(std::move(values), {count}), owned(std::move(inside), {count}).attr("view")("bool"));
+}
+
+py::array gradients_at(const Field& field, const py::object& at) {
+    const std::vector<Vec3> places = vectors(at, "at");
+    std::vector<Vec3> gradients(places.size(), Vec3(std::numeric_limits<double>::quiet_NaN()));
+    {
+        const py::gil_scoped_release without_gil;
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 64), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+                const bool finite = std::isfinite(places[i].x) && std::isfinite(places[i].y) && std::isfinite(places[i].z);
+                if (finite) gradients[i] = gradient_at(field.view, places[i]).value_or(gradients[i]);
+            }
+        });
+    }
+    return owned(std::move(gradients));
+}
+
+py::dict difference_of(const Field& test, const Field& reference, std::size_t samples, std::uint64_t seed, bool gradients,
+                       const py::object& progress) {
+    if (samples == 0 || samples > 1'000'000'000) {
+        throw Error(ErrorCode::InvalidInput, std::to_string(samples) + " samples", "samples", "1 to a billion");
+    }
+    FieldDifferenceOptions options{.samples = samples, .seed = seed, .gradients = gradients};
+    const FieldDifference difference = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return compare_fields(test.view, reference.view, options);
+    });
+    py::dict figures;
+    figures["l1"] = difference.l1;
+    figures["l2"] = difference.l2;
+    figures["linf"] = difference.linf;
+    figures["gradient_rmse"] = difference.gradient_rmse;
+    figures["samples"] = difference.samples;
+    figures["uncovered"] = difference.uncovered;
+    return figures;
+}
+
+py::dict metrics_of(const Picture& a, const Picture& b) {
+    const ImageMetrics metrics = [&] {
+        const py::gil_scoped_release without_gil;
+        return compare_images(a.image, b.image);
+    }();
+    py::dict figures;
+    figures["mse"] = metrics.mse;
+    figures["rmse"] = metrics.rmse;
+    figures["mae"] = metrics.mae;
+    figures["max"] = metrics.max;
+    figures["psnr"] = metrics.psnr;
+    return figures;
+}
+
+py::tuple as_map(double mean, MetricMap map) {
+    return py::make_tuple(mean, owned(std::move(map.values), {map.height, map.width}));
+}
+
+}  // namespace
+
+void bind_compare(py::module_& module) {
+    py::class_<Field>(module, "Field", "A scalar field in world space.")
+        .def_static("of_mesh", &field_of_mesh, py::arg("mesh"), py::arg("name"))
+        .def_static("of_points", &field_of_points, py::arg("volume"), py::arg("channel"))
+        .def_readonly("name", &Field::name)
+        .def_property_readonly("bounds", [](const Field& field) { return as_array(field.view.box); })
+        .def("values", &values_at, py::arg("at"))
+        .def("gradients", &gradients_at, py::arg("at"))
+        .def("__repr__", [](const Field& field) { return "<subvol.Field: " + field.name + ">"; });
+    module.def("compare_fields", &difference_of, py::arg("test"), py::arg("reference"), py::arg("samples"), py::arg("seed"),
+               py::arg("gradients"), py::arg("progress"));
+    module.def("compare_images", &metrics_of, py::arg("test"), py::arg("reference"));
+    module.def(
+        "ssim",
+        [](const Picture& a, const Picture& b) {
+            SsimResult result = [&] {
+                const py::gil_scoped_release without_gil;
+                return ssim(a.image, b.image);
+            }();
+            return as_map(result.mean, std::move(result.map));
+        },
+        py::arg("test"), py::arg("reference"));
+    module.def(
+        "flip",
+        [](const Picture& a, const Picture& b) {
+            FlipResult result = [&] {
+                const py::gil_scoped_release without_gil;
+                return flip(a.image, b.image);
+            }();
+            return as_map(result.mean, std::move(result.map));
+        },
+        py::arg("test"), py::arg("reference"));
+    module.def(
+        "heatmap",
+        [](const Picture& a, const Picture& b, double scale) { return Picture{difference_heatmap(a.image, b.image, scale)}; },
+        py::arg("test"), py::arg("reference"), py::arg("scale"));
+}
+
+}  // namespace subvol::python

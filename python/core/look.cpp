@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstring>
+
+#include "bind.h"
+#include "subvol/camera_fit.h"
+#include "subvol/image_io.h"
+#include "subvol/legend.h"
+#include "subvol/transfer_function.h"
+
+namespace subvol::python {
+namespace {
+
+TransferFunction function_of(const py::object& color, const py::object& opacity) {
+    const auto colors = rows_of<double>(color, 4, "color"), alphas = rows_of<double>(opacity, 2, "opacity");
+    TransferFunction function;
+    for (const double* c = colors.data(); c != colors.data() + colors.size(); c += 4) {
+        function.color.push_back({c[0], {c[1], c[2], c[3]}});
+    }
+    for (const double* a = alphas.data(); a != alphas.data() + alphas.size(); a += 2) function.opacity.push_back({a[0], a[1]});
+    validate(function);
+    return function;
+}
+
+py::array colors_of(const TransferFunction& function) {
+    std::vector<double> rows;
+    for (const auto& [value, rgb] : function.color) rows.insert(rows.end(), {value, rgb.x, rgb.y, rgb.z});
+    return owned(std::move(rows), {length(function.color.size()), 4});
+}
+
+py::array opacities_of(const TransferFunction& function) {
+    std::vector<double> rows;
+    for (const auto& [value, alpha] : function.opacity) rows.insert(rows.end(), {value, alpha});
+    return owned(std::move(rows), {length(function.opacity.size()), 2});
+}
+
+Vec3 vector_of(const py::object& given, const char* what) {
+    const auto numbers_given = numbers<double>(given, what);
+    if (numbers_given.size() != 3) throw Error(ErrorCode::InvalidInput, "has another number of numbers", what, "three");
+    const double* v = numbers_given.data();
+    return {v[0], v[1], v[2]};
+}
+
+Camera camera_of(const py::object& eye, const py::object& target, const py::object& up, double fovy_deg, double ortho_height) {
+    const Camera camera{vector_of(eye, "eye"), vector_of(target, "target"), vector_of(up, "up"), fovy_deg, ortho_height};
+    (void)View(camera, 1, 1);  // checks it
+    return camera;
+}
+
+Box box_of(const py::object& bounds) {
+    const std::vector<Vec3> corners = vectors(bounds, "bounds");
+    if (corners.size() != 2) throw Error(ErrorCode::InvalidInput, "is not a box", "bounds", "the lower and the upper corner");
+    return {corners[0], corners[1]};
+}
+
+std::string said(const Camera& camera) {
+    return py::str("<subvol.Camera: eye {}, target {}, {}>")
+        .format(as_tuple(camera.eye), as_tuple(camera.target),
+                camera.ortho_height > 0 ? py::str("{} high").format(camera.ortho_height)
+                                        : py::str("{} degrees").format(camera.fovy_deg));
+}
+
+Picture picture_of(const py::object& given) {
+    py::array array = py::array::ensure(given);
+    PyErr_Clear();
+    const bool right =
+        array && array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4) && array.dtype().kind() == 'f';
+    if (!right || array.shape(0) > 65536 || array.shape(1) > 65536 || array.size() == 0) {
+        throw Error(ErrorCode::InvalidInput, "is not a picture", "image",
+                    "real numbers of linear light, (height, width, 3 or 4)");
+    }
+    const py::array_t<float, py::array::c_style | py::array::forcecast> floats(array);
+    Picture picture{Image(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)))};
+    const py::ssize_t channels = array.shape(2);
+    const float* from = floats.data();
+    for (float* to = picture.image.rgba.data(); to != picture.image.rgba.data() + picture.image.rgba.size(); to += 4) {
+        to[3] = 1;
+        for (py::ssize_t c = 0; c < channels; ++c) to[c] = *from++;
+    }
+    return picture;
+}
+
+/// The colour behind the picture: the one given, else the one that it was drawn for, else black.
+Vec3 background_of(const Picture& picture, const py::object& given) {
+    if (!given.is_none()) return vector_of(given, "background");
+    return picture.report.contains("background") ? vector_of(picture.report["background"], "background") : Vec3(0.0);
+}
+
+py::bytes png_of(const Picture& picture, const py::object& background) {
+    const std::vector<std::uint8_t> rgb = srgb_bytes(picture.image, background_of(picture, background));
+    const py::bytes bytes(reinterpret_cast<const char*>(rgb.data()), rgb.size());
+    return py::module_::import("subvol._png").attr("encode")(bytes, picture.image.width, picture.image.height);
+}
+
+void bind_image(py::module_& module) {
+    py::class_<Picture>(module, "Image", py::buffer_protocol(),
+                        "A picture in linear light: RGBA floats, premultiplied, rows from the top.")
+        .def(py::init(&picture_of), py::arg("array"))
+        .def_buffer([](Picture& picture) {
+            const auto width = py::ssize_t(picture.image.width), height = py::ssize_t(picture.image.height);
+            const py::ssize_t word = sizeof(float);
+            return py::buffer_info(picture.image.rgba.data(), word, py::format_descriptor<float>::format(), 3,
+                                   {height, width, py::ssize_t(4)}, {4 * width * word, 4 * word, word}, true);
+        })
+        .def_property_readonly("width", [](const Picture& p) { return p.image.width; })
+        .def_property_readonly("height", [](const Picture& p) { return p.image.height; })
+        .def_property_readonly("depth",
+                               [](const py::object& self) -> py::object {
+                                   const auto& p = self.cast<const Picture&>();
+                                   if (p.depth.empty()) return py::none();
+                                   return view(p.depth.data(), {p.image.height, p.image.width}, self);
+                               })
+        .def_property_readonly("report", [](const Picture& p) { return p.report; })
+        .def("png", &png_of, py::arg("background") = py::none())
+        .def("_repr_png_", [](const Picture& p) { return png_of(p, py::none()); })
+        .def(
+            "write",
+            [](const Picture& p, const py::object& given, const py::object& background) {
+                const auto path = py::module_::import("subvol._arguments").attr("path_bytes")(given).cast<std::string>();
+                const Vec3 behind = background_of(p, background);
+                const py::gil_scoped_release without_gil;
+                const bool exr = std::filesystem::path(path).extension() == ".exr";
+                write_image(path, p.image, behind, exr ? std::span<const float>(p.depth) : std::span<const float>());
+            },
+            py::arg("path"), py::arg("background") = py::none())
+        .def("__repr__",
+             [](const Picture& p) {
+                 return "<subvol.Image: " + std::to_string(p.image.width) + " x " + std::to_string(p.image.height) + " pixels>";
+             })
+        .def(py::pickle([](const py::object& self) { return py::make_tuple(py::array::ensure(self).attr("copy")()); },
+                        [](const py::tuple& state) { return picture_of(state[0]); }));
+    module.def(
+        "read_image",
+        [](const std::string& path) {
+            Picture picture;
+            const py::gil_scoped_release without_gil;
+            picture.image = read_image(path);
+            return picture;
+        },
+        py::arg("path"));
+}
+
+}  // namespace
+
+void bind_look(py::module_& module) {
+    py::class_<TransferFunction>(module, "Knots", "Colours and opacities of values.")
+        .def(py::init(&function_of), py::arg("color"), py::arg("opacity"))
+        .def_property_readonly("color", &colors_of)
+        .def_property_readonly("opacity", &opacities_of);
+    module.def("preset", &transfer_function_preset, py::arg("name"), py::arg("min"), py::arg("max"));
+    module.def(
+        "read_transfer_function",
+        [](const std::string& path, const std::string& name) { return read_transfer_function(path, name); }, py::arg("path"),
+        py::arg("name"));
+    module.def("stretched", &stretched, py::arg("knots"), py::arg("min"), py::arg("max"));
+    module.def(
+        "parse_opacity",
+        [](const std::string& text, double min, double max) {
+            TransferFunction function;
+            function.opacity = parse_opacity(text, min, max);
+            return opacities_of(function);
+        },
+        py::arg("text"), py::arg("min"), py::arg("max"));
+    module.def(
+        "legend_svg",
+        [](const TransferFunction& knots, const std::string& title, double min, double max, int width_px) {
+            return legend_svg(knots, {.title = title, .min = min, .max = max, .width_px = width_px});
+        },
+        py::arg("knots"), py::arg("title"), py::arg("min"), py::arg("max"), py::arg("width_px"));
+
+    py::class_<Camera>(module, "Camera", "A camera without a lens; pixel (0,0) is the top left.")
+        .def(py::init(&camera_of), py::arg("eye"), py::arg("target"), py::arg("up") = py::make_tuple(0.0, 0.0, 1.0),
+             py::arg("fovy_deg") = 40.0, py::arg("ortho_height") = 0.0)
+        .def_property_readonly("eye", [](const Camera& c) { return as_tuple(c.eye); })
+        .def_property_readonly("target", [](const Camera& c) { return as_tuple(c.target); })
+        .def_property_readonly("up", [](const Camera& c) { return as_tuple(c.up); })
+        .def_readonly("fovy_deg", &Camera::fovy_deg)
+        .def_readonly("ortho_height", &Camera::ortho_height)
+        .def_static(
+            "parse",
+            [](const std::string& text, const py::object& bounds, double aspect) {
+                return parse_camera(text, box_of(bounds), aspect);
+            },
+            py::arg("text"), py::arg("bounds"), py::arg("aspect") = 1.0)
+        .def(
+            "fit",
+            [](const Camera& c, const py::object& points, double aspect) {
+                return fit_camera_to_points(c, vectors(points, "points"), aspect);
+            },
+            py::arg("points"), py::arg("aspect") = 1.0)
+        .def(
+            "fit_box",
+            [](const Camera& c, const py::object& bounds, double aspect) { return fit_camera(c, box_of(bounds), aspect); },
+            py::arg("bounds"), py::arg("aspect") = 1.0)
+        .def(
+            "orthographic",
+            [](const Camera& c, const py::object& bounds, double aspect) {
+                return orthographic_camera(c, box_of(bounds), aspect);
+            },
+            py::arg("bounds"), py::arg("aspect") = 1.0)
+        .def(
+            "turntable",
+            [](const Camera& c, const py::object& center, int frames) {
+                return turntable(c, vector_of(center, "center"), frames);
+            },
+            py::arg("center"), py::arg("frames"))
+        .def("__repr__", &said)
+        .def(py::pickle(
+            [](const Camera& c) {
+                return py::make_tuple(as_tuple(c.eye), as_tuple(c.target), as_tuple(c.up), c.fovy_deg, c.ortho_height);
+            },
+            [](const py::tuple& s) { return camera_of(s[0], s[1], s[2], s[3].cast<double>(), s[4].cast<double>()); }));
+    bind_image(module);
+}
+
+}  // namespace subvol::python

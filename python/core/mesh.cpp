@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bind.h"
+#include "subvol/expression.h"
+#include "subvol/mesh_io.h"
+#include "subvol/mesh_motion.h"
+#include "subvol/mesh_report.h"
+#include "subvol/model.h"
+#include "subvol/surface.h"
+#include "subvol/topology.h"
+
+namespace subvol::python {
+namespace {
+
+template <std::size_t N>
+py::array view_of_rows(const std::vector<std::array<Index, N>>& rows, const py::handle& owner) {
+    return view(rows.empty() ? nullptr : rows.front().data(), {length(rows.size()), length(N)}, owner);
+}
+
+py::dict fields_of(const py::object& self) {
+    py::dict fields;
+    for (const Attribute& attribute : self.cast<const HexMesh&>().attributes) {
+        const auto channels = length(static_cast<std::size_t>(attribute.channels));
+        const py::ssize_t points = length(attribute.values.size()) / channels;
+        std::vector<py::ssize_t> shape{points};
+        if (channels > 1) shape.push_back(channels);
+        fields[py::str(attribute.name)] = view(attribute.values.data(), std::move(shape), self);
+    }
+    return fields;
+}
+
+Attribute attribute_of(const std::string& name, const py::handle& given, std::size_t points) {
+    const std::string what = "fields['" + name + "']";
+    const py::array array = py::array::ensure(given);
+    PyErr_Clear();
+    const bool flat = !array || array.ndim() != 2;
+    const py::ssize_t channels = flat ? 1 : array.shape(1);
+    const py::array_t<double> rows = flat ? numbers<double>(given, what) : rows_of<double>(given, channels, what);
+    if (channels < 1 || static_cast<std::size_t>(rows.shape(0)) != points) {
+        throw Error(ErrorCode::InvalidInput, "has " + std::to_string(rows.shape(0)) + " rows", what,
+                    "one for each of the " + std::to_string(points) + " points");
+    }
+    return {name, static_cast<int>(channels), std::vector<double>(rows.data(), rows.data() + rows.size())};
+}
+
+HexMesh mesh_of(const py::object& points, const py::object& cells, const py::object& fields, const py::object& creases,
+                const py::object& sharp_faces) {
+    HexMesh mesh;
+    mesh.points = vectors(points, "points");
+    const std::size_t count = mesh.points.size();
+    mesh.cells = index_rows<8>(cells, count, "cells");
+    if (!creases.is_none()) mesh.creases = index_rows<2>(creases, count, "creases");
+    if (!sharp_faces.is_none()) mesh.sharp_faces = index_rows<4>(sharp_faces, count, "sharp_faces");
+    if (!fields.is_none()) {
+        for (const auto& [name, values] : py::dict(fields)) {
+            mesh.attributes.push_back(attribute_of(py::str(name), values, count));
+        }
+    }
+    const py::gil_scoped_release without_gil;
+    validate(mesh);
+    return mesh;
+}
+
+std::string said(const HexMesh& mesh) {
+    std::string text = "<subvol.HexMesh: " + std::to_string(mesh.points.size()) + " points, " +
+                       std::to_string(mesh.cells.size()) + (mesh.cells.size() == 1 ? " cell" : " cells");
+    for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
+        const Attribute& field = mesh.attributes[i];
+        text += (i == 0 ? ", fields " : ", ") + field.name;
+        if (field.channels > 1) text += "[" + std::to_string(field.channels) + "]";
+    }
+    return text + ">";
+}
+
+py::dict figures_of(const HexMesh& mesh) {
+    const MeshReport report = [&] {
+        const py::gil_scoped_release without_gil;
+        return inspect(mesh);
+    }();
+    py::dict figures;
+    figures["points"] = report.points;
+    figures["points_used"] = report.points_used;
+    figures["cells"] = report.cells;
+    figures["edges"] = report.edges;
+    figures["faces"] = report.faces;
+    figures["boundary_faces"] = report.boundary_faces;
+    figures["interior_edges"] = report.interior_edges;
+    figures["interior_edge_valence"] = report.interior_edge_valence;
+    figures["singular_nodes"] = report.singular_nodes;
+    figures["inverted_cells"] = report.inverted_cells;
+    figures["degenerate_cells"] = report.degenerate_cells;
+    figures["min_scaled_jacobian"] = report.min_scaled_jacobian;
+    figures["nonmanifold_edges"] = report.nonmanifold_edges;
+    figures["volume"] = report.volume;
+    return figures;
+}
+
+py::tuple read(const std::string& path, const std::string& other_cells, const std::optional<double>& weld,
+               const std::vector<std::string>& sharp) {
+    if (other_cells != "split" && other_cells != "ignore" && other_cells != "refuse") {
+        throw unknown_word(other_cells, "other_cells", "split, ignore or refuse");
+    }
+    const OtherCells rule = other_cells == "ignore"   ? OtherCells::Ignore
+                            : other_cells == "refuse" ? OtherCells::Refuse
+                                                      : OtherCells::Split;
+    ReadResult result = [&] {
+        const py::gil_scoped_release without_gil;
+        return read_mesh(path, {.other_cells = rule, .weld = weld, .sharp = sharp});
+    }();
+    return py::make_tuple(std::move(result.mesh), result.warnings);
+}
+
+py::tuple selected(const HexMesh& mesh, const std::optional<std::string>& name) {
+    SelectedField field = select_field(mesh, name);
+    HexMesh with{mesh.points, mesh.cells, {std::move(field.scalar)}, mesh.creases, mesh.sharp_faces};
+    return py::make_tuple(std::move(with), field.warning);
+}
+
+SurfaceArrays boundary_of(const HexMesh& mesh) {
+    Surface surface = boundary_surface(mesh);
+    std::vector<Index> corners;
+    corners.reserve(3 * surface.triangles.size());
+    for (const auto& triangle : surface.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+    const py::ssize_t triangles = length(surface.triangles.size());
+    return {owned(std::move(surface.points)), owned(std::move(corners), {triangles, 3})};
+}
+
+}  // namespace
+
+void bind_mesh(py::module_& module) {
+    py::class_<HexMesh>(module, "HexMesh",
+                        "A hexahedral mesh with fields at its points. It does not change: its arrays are read-only views.")
+        .def(py::init(&mesh_of), py::arg("points"), py::arg("cells"), py::arg("fields") = py::none(),
+             py::arg("creases") = py::none(), py::arg("sharp_faces") = py::none())
+        .def_property_readonly(
+            "points",
+            [](const py::object& self) {
+                const auto& points = self.cast<const HexMesh&>().points;
+                return view(reinterpret_cast<const double*>(points.data()), {length(points.size()), 3}, self);
+            })
+        .def_property_readonly("cells",
+                               [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().cells, self); })
+        .def_property_readonly("creases",
+                               [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().creases, self); })
+        .def_property_readonly(
+            "sharp_faces", [](const py::object& self) { return view_of_rows(self.cast<const HexMesh&>().sharp_faces, self); })
+        .def_property_readonly("fields", &fields_of)
+        .def_property_readonly("bounds", [](const HexMesh& mesh) { return as_array(bounds(mesh)); })
+        .def("report", &figures_of)
+        .def("boundary",
+             [](const HexMesh& mesh) {
+                 SurfaceArrays surface = boundary_of(mesh);
+                 return py::make_tuple(surface.points, surface.triangles);
+             })
+        .def("without_unused_points", [](const HexMesh& mesh) { return without_unused_points(mesh); })
+        .def(
+            "with_creases",
+            [](const HexMesh& mesh, double angle_deg) {
+                HexMesh tagged = mesh;
+                tag_creases(tagged, angle_deg);
+                return tagged;
+            },
+            py::arg("angle_deg"))
+        .def(
+            "same_cells", [](const HexMesh& mesh, const HexMesh& other) { return same_cells(mesh, other); }, py::arg("other"))
+        .def("__repr__", &said)
+        .def(py::pickle(
+            [](const py::object& self) {
+                return py::make_tuple(self.attr("points"), self.attr("cells"), self.attr("fields"), self.attr("creases"),
+                                      self.attr("sharp_faces"));
+            },
+            [](const py::tuple& state) {
+                if (state.size() != 5) throw Error(ErrorCode::InvalidInput, "is not a mesh", "pickle");
+                return mesh_of(state[0], state[1], state[2], state[3], state[4]);
+            }));
+
+    module.def("read_mesh", &read, py::arg("path"), py::arg("other_cells") = "split", py::arg("weld") = py::none(),
+               py::arg("sharp") = std::vector<std::string>{});
+    module.def(
+        "write_mesh",
+        [](const std::string& path, const HexMesh& mesh) {
+            const py::gil_scoped_release without_gil;
+            return write_mesh(path, mesh);
+        },
+        py::arg("path"), py::arg("mesh"));
+    module.def("select_field", &selected, py::arg("mesh"), py::arg("name"));
+    module.def(
+        "make_model",
+        [](const std::string& name, int resolution) {
+            const py::gil_scoped_release without_gil;
+            return make_model(name, resolution);
+        },
+        py::arg("name"), py::arg("resolution"));
+    module.def("list_models", [] {
+        py::dict models;
+        for (const ModelInfo& info : list_models()) models[py::str(info.name)] = info.description;
+        return models;
+    });
+    module.def(
+        "evaluate_expression",
+        [](const std::string& expression, const py::object& points) {
+            std::vector<double> values = evaluate_expression(expression, vectors(points, "points"));
+            const py::ssize_t count = length(values.size());
+            return owned(std::move(values), {count});
+        },
+        py::arg("expression"), py::arg("points"));
+    module.def("readable_extensions", &readable_mesh_extensions);
+}
+
+}  // namespace subvol::python

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The extension subvol._core: all but grids, which subvol._grids has, so that OpenVDB is loaded by its first use.
+#include <tbb/global_control.h>
+
+#include <memory>
+#include <string_view>
+
+#include "bind.h"
+#include "subvol/scheme.h"
+#include "subvol/version.h"
+#include "uninitialised.h"
+
+namespace subvol::python {
+namespace {
+
+py::str text_of(std::string_view bytes) {  // file names may be any bytes
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "backslashreplace"));
+}
+
+/// The parts of "where: message (allowed)", as error.h describes what(). A place that holds a colon is cut at it.
+struct Parts {
+    std::string_view where, allowed;
+};
+
+Parts parts_of(std::string_view what) {
+    Parts parts;
+    if (const std::size_t colon = what.find(": "); colon != std::string_view::npos) parts.where = what.substr(0, colon);
+    if (!what.ends_with(')')) return parts;
+    int open = 0;
+    for (std::size_t i = what.size(); i-- > 1;) {
+        open += what[i] == ')' ? 1 : what[i] == '(' ? -1 : 0;
+        if (open > 0) continue;
+        if (what[i - 1] == ' ') parts.allowed = what.substr(i + 1, what.size() - i - 2);
+        break;
+    }
+    return parts;
+}
+
+/// The exceptions are classes of Python (subvol/_errors.py).
+void raise(const Error& error) {
+    const auto code = [&]() -> const char* {
+        switch (error.code()) {
+            case ErrorCode::InvalidInput:
+                return "InvalidInput";
+            case ErrorCode::Io:
+                return "FileError";
+            case ErrorCode::MissingCapability:
+                return "MissingCapability";
+            case ErrorCode::Cancelled:
+                return "Cancelled";
+        }
+        return "Error";
+    }();
+    const py::object type = py::module_::import("subvol._errors").attr(code);
+    const Parts parts = parts_of(error.what());
+    const py::object value = type(text_of(error.what()), text_of(parts.where), text_of(parts.allowed));
+    PyErr_SetObject(type.ptr(), value.ptr());
+}
+
+void translate(std::exception_ptr failure) {
+    try {
+        if (failure) std::rethrow_exception(failure);
+    } catch (const Error& error) {
+        raise(error);
+    }
+}
+
+std::unique_ptr<tbb::global_control> thread_limit;
+
+void set_threads(int threads) {
+    if (threads < 0) throw Error(ErrorCode::InvalidInput, std::to_string(threads) + " threads", "set_threads", "0 or more");
+    thread_limit.reset();
+    if (threads == 0) return;
+    thread_limit =
+        std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+}
+
+}  // namespace
+
+Error unknown_word(const std::string& word, const std::string& where, const std::string& allowed) {
+    return {ErrorCode::InvalidInput, "'" + word + "' is not known", where, allowed};
+}
+
+Scheme scheme_named(const std::string& name) {
+    if (name == "mcq") return Scheme::Mcq;
+    if (name == "cc") return Scheme::CatmullClark;
+    if (name == "bsxw") return Scheme::Bsxw;
+    if (name == "linear") return Scheme::Linear;
+    throw unknown_word(name, "scheme", "mcq, cc, bsxw or linear");
+}
+
+RefineOptions refine_options(const std::string& scheme, int levels, double tension, const std::optional<double>& crease_angle) {
+    return {.scheme = {.kind = scheme_named(scheme), .tension = tension, .crease_angle_deg = crease_angle}, .levels = levels};
+}
+
+}  // namespace subvol::python
+
+PYBIND11_MODULE(_core, module) {
+    using namespace subvol::python;
+    module.doc() = "The calls of the C++ library, as they are. Use the package subvol.";
+    module.attr("__version__") = SUBVOL_VERSION;
+    py::register_exception_translator(&translate);
+    module.def("set_threads", &set_threads, py::arg("threads"));
+    bind_mesh(module);
+    bind_look(module);
+    bind_refine(module);
+    bind_points(module);
+    bind_render(module);
+    bind_compare(module);
+    bind_studies(module);
+    refuse_uninitialised(module);
+}

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bind.h"
+#include "subvol/basis_function.h"
+#include "subvol/fit_kernel.h"
+#include "subvol/points_io.h"
+#include "subvol/reduce.h"
+#include "subvol/sample.h"
+#include "subvol/visible_points.h"
+
+namespace subvol::python {
+namespace {
+
+py::array view_of_points(const std::vector<Vec3>& points, const py::handle& owner) {
+    return view(reinterpret_cast<const double*>(points.data()), {length(points.size()), 3}, owner);
+}
+
+/// A dictionary of the channels' arrays; of Hessians only where there are some.
+template <class Array>
+py::dict of_channels(const Array RbfChannel::*array, const py::object& self) {
+    py::dict channels;
+    for (const RbfChannel& channel : self.cast<const RbfVolume&>().channels) {
+        const auto& values = channel.*array;
+        using Item = typename Array::value_type;
+        std::vector<py::ssize_t> shape{length(values.size())};
+        if constexpr (sizeof(Item) > sizeof(float)) shape.push_back(sizeof(Item) / sizeof(float));
+        if (values.empty()) continue;
+        channels[py::str(channel.name)] = view(reinterpret_cast<const float*>(values.data()), std::move(shape), self);
+    }
+    return channels;
+}
+
+template <class Item>
+std::vector<Item> floats_of(const py::dict& arrays, const py::handle& name, const std::string& what) {
+    constexpr std::size_t kWide = sizeof(Item) / sizeof(float);
+    if (!arrays.contains(name)) return {};
+    const std::string where = what + "['" + py::str(name).cast<std::string>() + "']";
+    py::array_t<float> rows;
+    if constexpr (kWide == 1) {
+        rows = numbers<float>(arrays[name], where);
+    } else {
+        rows = rows_of<float>(arrays[name], kWide, where);
+    }
+    const auto* first = reinterpret_cast<const Item*>(rows.data());
+    return std::vector<Item>(first, first + rows.size() / py::ssize_t(kWide));
+}
+
+RbfVolume volume_of(const py::object& centers, const py::object& frames, const py::dict& values, const py::dict& gradients,
+                    const py::dict& moments, const py::dict& hessians, const std::string& kernel, const py::object& boundary) {
+    RbfVolume volume;
+    volume.centers = vectors(centers, "centers");
+    const auto rows = rows_of<float>(frames, 6, "frames");
+    const auto* first = reinterpret_cast<const Symmetric3*>(rows.data());
+    volume.frames.assign(first, first + rows.shape(0));
+    for (const auto& item : values) {
+        const py::handle name = item.first;
+        RbfChannel channel{.name = py::str(name),
+                           .values = floats_of<float>(values, name, "values"),
+                           .gradients = floats_of<std::array<float, 3>>(gradients, name, "gradients"),
+                           .moments = floats_of<float>(moments, name, "moments"),
+                           .hessians = floats_of<Symmetric3>(hessians, name, "hessians")};
+        if (channel.gradients.empty()) channel.gradients.resize(volume.centers.size());
+        if (channel.moments.empty()) channel.moments.resize(volume.centers.size());
+        volume.channels.push_back(std::move(channel));
+    }
+    volume.kernel = kernel_from_json(kernel);
+    if (!boundary.is_none()) {
+        const py::tuple parts(boundary);
+        if (parts.size() != 2) throw Error(ErrorCode::InvalidInput, "is not a surface", "boundary", "(points, triangles)");
+        volume.boundary.points = vectors(parts[0], "boundary points");
+        volume.boundary.triangles = index_rows<3>(parts[1], volume.boundary.points.size(), "boundary triangles");
+    }
+    if (volume.centers.empty()) throw Error(ErrorCode::InvalidInput, "is empty", "centers", "at least one point");
+    validate(volume);
+    volume.bounds = box_of(volume);
+    return volume;
+}
+
+py::tuple boundary_of(const py::object& self) {
+    const Surface& boundary = self.cast<const RbfVolume&>().boundary;
+    const Index* corners = boundary.triangles.empty() ? nullptr : boundary.triangles.front().data();
+    return py::make_tuple(view_of_points(boundary.points, self), view(corners, {length(boundary.triangles.size()), 3}, self));
+}
+
+Correction correction_named(const std::string& name) {
+    if (name == "none") return Correction::None;
+    if (name == "gradient") return Correction::Gradient;
+    if (name == "second") return Correction::Second;
+    if (name == "full") return Correction::Full;
+    throw unknown_word(name, "correction", "none, gradient, second or full");
+}
+
+ValueRule rule_named(const std::string& name) {
+    if (name == "scheme") return ValueRule::Scheme;
+    if (name == "cubic") return ValueRule::Cubic;
+    if (name == "paper") return ValueRule::Paper;
+    throw unknown_word(name, "values", "scheme, cubic or paper");
+}
+
+py::tuple sample(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
+                 int per_edge, double spacing_world, double tolerance, const std::string& correction, const std::string& values,
+                 const std::string& kernel, const std::optional<int>& boundary_levels, const std::optional<Camera>& footprint,
+                 const std::pair<int, int>& footprint_size, const py::object& progress) {
+    SampleOptions options{.scheme = refine_options(scheme, 0, tension, crease_angle).scheme,
+                          .per_edge = per_edge,
+                          .spacing_world = spacing_world,
+                          .tolerance = tolerance,
+                          .correction = correction_named(correction),
+                          .values = rule_named(values),
+                          .kernel = kernel_from_json(kernel),
+                          .boundary_levels = boundary_levels};
+    if (footprint) {
+        options.footprint =
+            Footprint{.camera = *footprint, .width_px = footprint_size.first, .height_px = footprint_size.second};
+    }
+    SampleResult result = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return sample_rbf_points(mesh, options);
+    });
+    return py::make_tuple(std::move(result.volume), result.report.flat_frames, result.report.largest_error);
+}
+
+py::dict as_dict(const ErrorAtSamples& error) {
+    py::dict figures;
+    figures["rmse"] = error.rmse;
+    figures["max"] = error.max_abs;
+    figures["uncovered"] = error.uncovered;
+    return figures;
+}
+
+py::tuple reduce(const HexMesh& mesh, const std::string& field, double rmse, const std::string& kernel, double overlap,
+                 std::size_t max_points, bool move, const std::string& scheme, const py::object& progress) {
+    ReduceOptions options{
+        .rmse = rmse, .kernel = kernel_from_json(kernel), .overlap = overlap, .max_points = max_points, .move = move};
+    options.limit.scheme.kind = scheme_named(scheme);
+    ReduceResult result = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return reduce_rbf(mesh, field, options);
+    });
+    py::dict report;
+    report["points"] = result.report.points;
+    report["samples"] = result.report.samples;
+    report["rounds"] = result.report.rounds;
+    report["rmse"] = result.report.rmse;
+    report["validation"] = as_dict(result.report.validation);
+    report["reached"] = result.report.reached;
+    return py::make_tuple(std::move(result.volume), report);
+}
+
+KernelShape shape_named(const std::string& name) {
+    static constexpr std::array<std::pair<const char*, KernelShape>, 9> kShapes{
+        {{"gaussian", KernelShape::Gaussian},
+         {"scaled_gaussian", KernelShape::ScaledGaussian},
+         {"bc", KernelShape::BcSpline},
+         {"cardinal", KernelShape::CardinalSpline},
+         {"wendland_c2", KernelShape::WendlandC2},
+         {"wendland_c4", KernelShape::WendlandC4},
+         {"gaussians", KernelShape::GaussianSum},
+         {"separable_gaussian", KernelShape::SeparableGaussian},
+         {"separable_table", KernelShape::SeparableTable}}};
+    std::string known;
+    for (const auto& [word, shape] : kShapes) {
+        if (name == word) return shape;
+        known += (known.empty() ? "" : ", ") + std::string(word);
+    }
+    throw unknown_word(name, "shape", known);
+}
+
+py::tuple fit(const std::string& shape, const std::string& scheme, int level, double extent, int terms) {
+    const KernelShape kind = shape_named(shape);
+    const Scheme rule = scheme_named(scheme);
+    const KernelFit best = [&] {
+        const py::gil_scoped_release without_gil;
+        return fit_kernel(sample_basis_function(rule, level), kind, {.extent = extent, .terms = terms});
+    }();
+    py::dict errors;
+    errors["mse"] = best.report.errors.mse;
+    errors["rmse"] = best.report.errors.rmse;
+    errors["mae"] = best.report.errors.mae;
+    errors["max"] = best.report.errors.max;
+    return py::make_tuple(to_json(best.kernel), errors);
+}
+
+std::string said(const RbfVolume& volume) {
+    std::string text = "<subvol.RbfVolume: " + std::to_string(volume.size()) + " points, channels";
+    for (const RbfChannel& channel : volume.channels) text += " " + channel.name;
+    return text + (volume.boundary.triangles.empty() ? ", no boundary>" : ">");
+}
+
+}  // namespace
+
+void bind_points(py::module_& module) {
+    py::class_<RbfVolume>(module, "RbfVolume",
+                          "A volume as radial basis functions. It does not change: its arrays are read-only views.")
+        .def(py::init(&volume_of), py::arg("centers"), py::arg("frames"), py::arg("values"), py::arg("gradients") = py::dict(),
+             py::arg("moments") = py::dict(), py::arg("hessians") = py::dict(), py::arg("kernel") = "{\"type\": \"compact\"}",
+             py::arg("boundary") = py::none())
+        .def("__len__", &RbfVolume::size)
+        .def_property_readonly(
+            "centers", [](const py::object& self) { return view_of_points(self.cast<const RbfVolume&>().centers, self); })
+        .def_property_readonly(
+            "frames",
+            [](const py::object& self) {
+                const auto& frames = self.cast<const RbfVolume&>().frames;
+                return view(frames.empty() ? nullptr : frames.front().data(), {length(frames.size()), 6}, self);
+            })
+        .def_property_readonly("values", [](const py::object& self) { return of_channels(&RbfChannel::values, self); })
+        .def_property_readonly("gradients", [](const py::object& self) { return of_channels(&RbfChannel::gradients, self); })
+        .def_property_readonly("moments", [](const py::object& self) { return of_channels(&RbfChannel::moments, self); })
+        .def_property_readonly("hessians", [](const py::object& self) { return of_channels(&RbfChannel::hessians, self); })
+        .def_property_readonly("kernel", [](const RbfVolume& volume) { return to_json(volume.kernel); })
+        .def_property_readonly("boundary", &boundary_of)
+        .def_property_readonly("bounds", [](const RbfVolume& volume) { return as_array(volume.bounds); })
+        .def("__repr__", &said)
+        .def(py::pickle(
+            [](const py::object& self) {
+                return py::make_tuple(self.attr("centers"), self.attr("frames"), self.attr("values"), self.attr("gradients"),
+                                      self.attr("moments"), self.attr("hessians"), self.attr("kernel"), self.attr("boundary"),
+                                      self.attr("bounds"));
+            },
+            [](const py::tuple& s) {
+                if (s.size() != 9) throw Error(ErrorCode::InvalidInput, "is not a volume", "pickle");
+                RbfVolume volume = volume_of(s[0], s[1], s[2], s[3], s[4], s[5], s[6].cast<std::string>(), s[7]);
+                const std::vector<Vec3> corners = vectors(s[8], "bounds");
+                if (corners.size() == 2) volume.bounds = {corners[0], corners[1]};
+                return volume;
+            }));
+    module.def("sample", &sample, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
+               py::arg("per_edge"), py::arg("spacing_world"), py::arg("tolerance"), py::arg("correction"), py::arg("values"),
+               py::arg("kernel"), py::arg("boundary_levels"), py::arg("footprint"), py::arg("footprint_size"),
+               py::arg("progress"));
+    module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("rmse"), py::arg("kernel"), py::arg("overlap"),
+               py::arg("max_points"), py::arg("move"), py::arg("scheme"), py::arg("progress"));
+    module.def(
+        "drop_invisible",
+        [](const RbfVolume& volume, const TransferFunction& knots) {
+            const py::gil_scoped_release without_gil;
+            return drop_invisible(volume, 0, knots).volume;
+        },
+        py::arg("volume"), py::arg("knots"));
+    module.def(
+        "read_points",
+        [](const std::string& path) {
+            const py::gil_scoped_release without_gil;
+            return read_points(path);
+        },
+        py::arg("path"));
+    module.def(
+        "is_points_file", [](const std::string& path) { return is_points_file(path); }, py::arg("path"));
+    module.def(
+        "write_points",
+        [](const std::string& path, const RbfVolume& volume, bool ascii, bool splats) {
+            const py::gil_scoped_release without_gil;
+            write_points(path, volume, {.ascii = ascii, .splats = splats});
+        },
+        py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"));
+    module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"), py::arg("extent"), py::arg("terms"));
+    module.def(
+        "named_kernel", [](const std::string& name) { return to_json(named_kernel(name)); }, py::arg("name"));
+    module.def("kernel_names", &kernel_names);
+    module.def(
+        "kernel_values",
+        [](const std::string& kernel, const py::object& offsets) {
+            const Kernel with = kernel_from_json(kernel);
+            std::vector<double> values;
+            for (const Vec3& x : vectors(offsets, "offsets")) values.push_back(kernel_value(with, x));
+            const py::ssize_t count = length(values.size());
+            return owned(std::move(values), {count});
+        },
+        py::arg("kernel"), py::arg("offsets"));
+}
+
+}  // namespace subvol::python

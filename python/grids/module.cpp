@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// The extension subvol._grids: the calls that need OpenVDB, loaded when the first of them is made. It shares the classes of
+// subvol._core, which pybind11 knows by the names of their C++ types.
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "bind.h"
+#include "subvol/nanovdb.h"
+#include "subvol/rasterize.h"
+#include "subvol/vdb_grid.h"
+#include "subvol/vdb_points.h"
+#include "subvol/vdb_sample.h"
+#include "subvol/version.h"
+#include "uninitialised.h"
+
+namespace subvol::python {
+namespace {
+
+using Grid = std::shared_ptr<VdbGrid>;
+
+/// The grids as a list for Python.
+std::vector<Grid> shared(std::vector<VdbGrid> grids) {
+    std::vector<Grid> list;
+    for (VdbGrid& grid : grids) list.push_back(std::make_shared<VdbGrid>(std::move(grid)));
+    return list;
+}
+
+py::dict report_of(const VdbGrid& grid) {
+    const GridReport& about = grid.report();
+    py::dict report;
+    report["name"] = about.name;
+    report["kind"] = about.kind;
+    report["active_voxels"] = about.active_voxels;
+    report["voxel_size"] = about.voxel_size_world;
+    report["bytes"] = about.bytes;
+    report["min"] = about.min;
+    report["max"] = about.max;
+    return report;
+}
+
+py::tuple values_at(const VdbGrid& grid, const py::object& at) {
+    const auto rows = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(at);
+    if (!rows || rows.ndim() != 2 || rows.shape(1) != 3) {
+        PyErr_Clear();
+        throw Error(ErrorCode::InvalidInput, "is not a list of places", "at", "(n, 3)");
+    }
+    const auto count = static_cast<std::size_t>(rows.shape(0));
+    py::array_t<double> values(rows.shape(0));
+    py::array_t<bool> inside(rows.shape(0));
+    for (std::size_t i = 0; i < count; ++i) {
+        const double* x = rows.data() + 3 * i;
+        const std::optional<double> value = grid.value({x[0], x[1], x[2]});
+        values.mutable_data()[i] = value.value_or(std::numeric_limits<double>::quiet_NaN());
+        inside.mutable_data()[i] = value.has_value();
+    }
+    return py::make_tuple(values, inside);
+}
+
+void write_files(const std::string& path, std::span<const VdbGrid> grids, bool nano) {
+    write_vdb(path, grids);
+    if (nano) write_nanovdb(std::filesystem::path(path).replace_extension(".nvdb"), grids);
+}
+
+/// The grids, or where they were written, their reports.
+py::object written_or_made(std::vector<VdbGrid> grids, const std::optional<std::string>& path) {
+    if (!path) return py::cast(shared(std::move(grids)));
+    py::list reports;
+    for (const VdbGrid& grid : grids) reports.append(report_of(grid));
+    return py::object(reports);
+}
+
+/// Grids of a mesh: of its limit, or of a level.
+///
+/// levels: None: the limit
+/// path:   None: the grids are returned; else they are written, and their reports are returned
+py::tuple rasterize_mesh(const HexMesh& mesh, const std::vector<std::string>& fields, double voxel_size,
+                         const std::string& scheme, double tension, const std::optional<double>& crease_angle,
+                         const std::optional<int>& levels, bool half, bool mask, const std::optional<std::string>& sdf,
+                         const std::optional<std::string>& path, bool nano, const py::object& progress) {
+    static const std::map<std::string, Scheme> kSchemes{
+        {"mcq", Scheme::Mcq}, {"cc", Scheme::CatmullClark}, {"bsxw", Scheme::Bsxw}, {"linear", Scheme::Linear}};
+    const auto found = kSchemes.find(scheme);
+    if (found == kSchemes.end())
+        throw Error(ErrorCode::InvalidInput, "'" + scheme + "' is not known", "scheme", "mcq, cc, bsxw or linear");
+    RefineOptions refinement{.scheme = {.kind = found->second, .tension = tension, .crease_angle_deg = crease_angle},
+                             .levels = levels.value_or(0)};
+    LimitCells limit;
+    std::vector<VdbGrid> grids = result_of(progress, [&](Progress* listener) {
+        refinement.progress = listener;
+        if (!levels) limit = limit_for_voxels(mesh, refinement, voxel_size);
+        RasterizeOptions options{.voxel_size_world = voxel_size,
+                                 .refine = refinement,
+                                 .on_limit = !interpolates(refinement.scheme.kind),
+                                 .limit = levels ? nullptr : &limit,
+                                 .half = half,
+                                 .mask = mask,
+                                 .metadata = {{"subvol_from", "mesh"},
+                                              {"subvol_version", SUBVOL_VERSION},
+                                              {"subvol_scheme", scheme},
+                                              {"subvol_level", std::to_string(levels ? *levels : finest_level(limit))}},
+                                 .progress = listener};
+        if (sdf) options.level_set = LevelSetOptions{.name = *sdf};
+        std::vector<VdbGrid> made = rasterize(mesh, fields, options);
+        if (path) write_files(*path, made, nano);
+        return made;
+    });
+    return py::make_tuple(written_or_made(std::move(grids), path),
+                          levels ? py::object(py::none()) : py::object(py::float_(limit.value_of_range)),
+                          levels || limit.converged);
+}
+
+py::object rasterize_volume(const RbfVolume& volume, double voxel_size, bool half, const std::optional<std::string>& path,
+                            bool nano, const py::object& progress) {
+    std::vector<std::size_t> channels(volume.channels.size());
+    for (std::size_t c = 0; c < channels.size(); ++c) channels[c] = c;
+    std::vector<VdbGrid> grids = result_of(progress, [&](Progress* listener) {
+        const RasterizeOptions options{.voxel_size_world = voxel_size,
+                                       .half = half,
+                                       .metadata = {{"subvol_from", "points"}, {"subvol_version", SUBVOL_VERSION}},
+                                       .progress = listener};
+        std::vector<VdbGrid> made = rasterize_points(volume, channels, options);
+        if (path) write_files(*path, made, nano);
+        return made;
+    });
+    return written_or_made(std::move(grids), path);
+}
+
+/// Holds the GIL: the writers take grids side by side, so these are moved there and back.
+void write_grids(const std::string& path, const std::vector<Grid>& grids, bool nano) {
+    if (grids.empty()) throw Error(ErrorCode::InvalidInput, "there is no grid", path, "at least one");
+    if (std::set<Grid>(grids.begin(), grids.end()).size() < grids.size()) {
+        throw Error(ErrorCode::InvalidInput, "a grid is listed twice", path, "each once");
+    }
+    std::vector<VdbGrid> side_by_side;
+    side_by_side.reserve(grids.size());
+    for (const Grid& grid : grids) side_by_side.push_back(std::move(*grid));
+    const auto give_back = [&] {
+        for (std::size_t i = 0; i < grids.size(); ++i) *grids[i] = std::move(side_by_side[i]);
+    };
+    try {
+        write_files(path, side_by_side, nano);
+    } catch (...) {
+        give_back();
+        throw;
+    }
+    give_back();
+}
+
+py::tuple sample_grid(const VdbGrid& grid, double spacing_world, const py::object& progress) {
+    VoxelSampleResult result = result_of(progress, [&](Progress* listener) {
+        return sample_rbf_points(grid, {.spacing_world = spacing_world, .progress = listener});
+    });
+    return py::make_tuple(std::move(result.volume), result.report.left_out);
+}
+
+}  // namespace
+}  // namespace subvol::python
+
+PYBIND11_MODULE(_grids, module) {
+    using namespace subvol;
+    using namespace subvol::python;
+    py::module_::import("subvol._core");
+    py::class_<VdbGrid, Grid>(module, "Grid", "An OpenVDB grid: voxels with centres at world = h ijk.")
+        .def_property_readonly("name", [](const VdbGrid& grid) { return grid.report().name; })
+        .def_property_readonly("report", &report_of)
+        .def_property_readonly("bounds",
+                               [](const VdbGrid& grid) {
+                                   const Box& box = grid.report().bounds;
+                                   return py::make_tuple(as_tuple(box.lower), as_tuple(box.upper));
+                               })
+        .def("values", &values_at, py::arg("at"))
+        .def("voxels", [](const VdbGrid& grid) { return grid.voxels(); })
+        .def(
+            "difference",
+            [](const VdbGrid& grid, const VdbGrid& other) {
+                const GridDifference difference = compare_voxels(grid, other);
+                py::dict figures;
+                figures["voxels"] = difference.voxels;
+                figures["rms"] = difference.rms;
+                figures["max"] = difference.max;
+                return figures;
+            },
+            py::arg("other"))
+        .def("__repr__", [](const VdbGrid& grid) {
+            return "<subvol.Grid: " + grid.report().name + ", " + std::to_string(grid.report().active_voxels) +
+                   " active voxels>";
+        });
+    module.def("rasterize", &rasterize_mesh, py::arg("mesh"), py::arg("fields"), py::arg("voxel_size"), py::arg("scheme"),
+               py::arg("tension"), py::arg("crease_angle"), py::arg("levels"), py::arg("half"), py::arg("mask"), py::arg("sdf"),
+               py::arg("path"), py::arg("nano"), py::arg("progress"));
+    module.def("rasterize_points", &rasterize_volume, py::arg("volume"), py::arg("voxel_size"), py::arg("half"),
+               py::arg("path"), py::arg("nano"), py::arg("progress"));
+    module.def("write", &write_grids, py::arg("path"), py::arg("grids"), py::arg("nano"));
+    module.def(
+        "read_vdb", [](const std::string& path) { return shared(read_vdb(path)); }, py::arg("path"),
+        py::call_guard<py::gil_scoped_release>());
+    module.def(
+        "write_points", [](const std::string& path, const RbfVolume& volume) { write_vdb_points(path, volume); },
+        py::arg("path"), py::arg("volume"), py::call_guard<py::gil_scoped_release>());
+    module.def(
+        "read_points", [](const std::string& path) { return read_vdb_points(path); }, py::arg("path"),
+        py::call_guard<py::gil_scoped_release>());
+    module.def(
+        "holds_points", [](const std::string& path) { return holds_vdb_points(path); }, py::arg("path"));
+    module.def("sample", &sample_grid, py::arg("grid"), py::arg("spacing_world"), py::arg("progress"));
+    module.def("has_nanovdb", &has_nanovdb);
+    refuse_uninitialised(module);
+}

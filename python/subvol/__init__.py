@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subdivision volumes: hexahedral meshes refined, drawn as splats, turned into OpenVDB grids, and measured.
+
+Arrays go in as they are: any real type, any strides. Arrays that come out of objects are read-only views that keep their object alive;
+those that calls return are yours. Long calls release the GIL, stop at Ctrl-C, and take `progress`: True, or a function of a stage and a
+fraction. Errors are `subvol.Error`; what was chosen or left out is warned about (`SubvolWarning`). docs/python.md says more.
+"""
+from . import _core
+from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, StudyCase, StudyResults, gl_devices, set_threads
+from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
+from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
+from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
+from ._mesh import Series, model, models, open_series, read_mesh, subdivide, write_mesh
+from ._pictures import (FieldComparison, ImageComparison, TransferFunction, compare, compare_fields, compare_images, read_image, render,
+                        write_image)
+from ._points import fit, kernels, read_points, reduce, sample, write_points
+from ._studies import run_study, studies, study
+from ._vdb import Grid, rasterize, read_vdb, sample_grid, write_vdb
+
+__version__: str = _core.__version__
+
+for _class in (Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, StudyCase, StudyResults):
+    _class.__module__ = "subvol"  # what pickles and messages call them
+del _class
+
+__all__ = [
+    "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "Grid", "HexMesh", "Image", "ImageComparison",
+    "InvalidInput", "LimitSamples", "MissingCapability", "RbfVolume", "Refinement", "Series", "Study", "StudyCase", "StudyResults",
+    "SubvolWarning", "TransferFunction", "as_field", "compare", "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit",
+    "from_meshio", "from_pyvista", "gl_devices", "kernels", "model", "models", "open_series", "rasterize", "read_image", "read_mesh",
+    "read_points", "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "studies", "study",
+    "subdivide", "to_meshio", "to_pyvista", "write_image", "write_mesh", "write_points", "write_vdb",
+]

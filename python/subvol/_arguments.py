@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What several calls do with their arguments."""
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from collections.abc import Mapping
+from typing import Any, Union
+
+from ._errors import InvalidInput, SubvolWarning
+
+Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+Kernel = Union[str, Mapping[str, Any]]
+
+
+def path_bytes(path: Path) -> bytes:
+    """The name of a file as the system has it."""
+    name = os.fsencode(path)
+    if b"\0" in name:
+        raise InvalidInput(f"{path!r}: has a zero byte", repr(path), "the name of a file")
+    return name
+
+
+def extension(path: Path) -> str:
+    return os.path.splitext(os.fsdecode(path))[1].lower()
+
+
+def warn(text: str, level: int = 3) -> None:
+    """Warns on behalf of the function that called ours."""
+    if text:
+        warnings.warn(text, SubvolWarning, stacklevel=level)
+
+
+def kernel_json(kernel: Kernel) -> str:
+    """A kernel by its name or as a dictionary, as the library reads it."""
+    from . import _core
+
+    if isinstance(kernel, str):
+        return _core.named_kernel(kernel)
+    return json.dumps(dict(kernel))

@@ -1,0 +1,373 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures: colours, the camera, the renderers, and the distance between two pictures or fields."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arguments import Path, path_bytes, warn
+from ._core import Camera, Field, HexMesh, Image, RbfVolume
+from ._errors import InvalidInput
+from ._fields import as_field
+from ._points import _selected
+from ._progress import Progress, listening
+from ._vdb import Grid, sample_grid
+
+# What the command draws without options (cli/arguments/picture_arguments.cpp); tests hold the two equal.
+_OPACITY_UNITS_PER_DIAGONAL = 100
+_SOLID_UNITS_PER_DIAGONAL = 1e6  # all light ends far within a pixel
+_PLAIN_COLOR = (0.72, 0.76, 0.82)  # of a body whose values are all the same, sRGB
+_LIGHT_GREY = (0xE4 / 255, 0xE6 / 255, 0xE9 / 255)  # sRGB
+
+
+def _linear(srgb: Sequence[float]) -> tuple[float, ...]:
+    return tuple(s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4 for s in srgb)
+
+
+class TransferFunction:
+    """Colours and opacities of the values of a field.
+
+    name:    viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface or constant; or a colour-map
+             file of ParaView (.json)
+    range:   the values that the map covers; None: the range of the field that is drawn (a file keeps its own values)
+    opacity: pairs (value, opacity), linear in between, or text as "0%:0,50%:.2"; None: those of the map
+    map:     the name of one of several maps in a file
+    """
+
+    def __init__(self, name: Path = "viridis", range: Optional[tuple[float, float]] = None,
+                 opacity: Union[None, str, npt.ArrayLike] = None, *, map: str = "") -> None:
+        self.name = name
+        self.map = map
+        self.range: Optional[tuple[float, float]] = None
+        if range is not None:
+            low, high = range
+            self.range = (float(low), float(high))
+        self.opacity = opacity
+        self._color: Optional[npt.NDArray[np.float64]] = None
+        # Mistakes are found here, not when a picture is drawn.
+        self.knots(*(self.range or (0.0, 1.0)))
+
+    @staticmethod
+    def from_knots(color: npt.ArrayLike, opacity: npt.ArrayLike) -> TransferFunction:
+        """color: (n,4): value and linear rgb in [0,1]; opacity: (m,2): value and opacity. Values ascend."""
+        rows = np.array(color, float)
+        _core.Knots(rows, np.asarray(opacity))
+        function = TransferFunction(opacity=np.array(opacity, float))
+        function._color = rows
+        function.name = "knots"
+        return function
+
+    def knots(self, low: float, high: float) -> _core.Knots:
+        """The function over the range of a field; of no effect if it has a range of its own."""
+        low, high = self.range or (low, high)
+        if self._color is not None:
+            assert self.opacity is not None
+            return _core.Knots(self._color, self.opacity)
+        import os
+
+        name = os.fsdecode(self.name)
+        if os.path.splitext(name)[1] or os.path.dirname(name):
+            knots = _core.read_transfer_function(path_bytes(self.name), self.map)
+            if self.range is not None:
+                knots = _core.stretched(knots, low, high)
+        else:
+            knots = _core.preset(name, low, high)
+        if self.opacity is None:
+            return knots
+        alphas = _core.parse_opacity(self.opacity, low, high) if isinstance(self.opacity, str) else self.opacity
+        return _core.Knots(knots.color, alphas)
+
+    def legend(self, title: str = "", low: float = 0, high: float = 1, width: int = 360) -> str:
+        """A colour bar with ticks and the opacities, as SVG."""
+        low, high = self.range or (low, high)
+        return _core.legend_svg(self.knots(low, high), title, low, high, width)
+
+    def _repr_svg_(self) -> str:
+        return self.legend()
+
+    def __repr__(self) -> str:
+        over = "" if self.range is None else f", {self.range[0]:g} to {self.range[1]:g}"
+        return f"<subvol.TransferFunction: {self.name!s}{over}>"
+
+
+Drawable = Union[HexMesh, RbfVolume, Grid]
+
+
+def _range_of(values: npt.NDArray[Any]) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
+
+
+def _look_of(look: Optional[str], body: bool, tf: Any, opacity_unit: Optional[float]) -> str:
+    if look is None:
+        return "solid" if body and tf is None and opacity_unit is None else "volume"
+    if look not in ("solid", "volume", "xray", "isosurface"):
+        raise InvalidInput(f"look: '{look}' is not known (solid, volume, xray or isosurface)", "look",
+                           "solid, volume, xray or isosurface")
+    return look
+
+
+def _knots_of(tf: Union[None, str, TransferFunction], look: str, low: float, high: float) -> _core.Knots:
+    name = {"xray": "xray", "isosurface": "isosurface"}.get(look, "viridis")
+    function = TransferFunction(name) if tf is None else tf if isinstance(tf, TransferFunction) else TransferFunction(tf)
+    knots = function.knots(low, high)
+    if look != "solid":
+        return knots
+    opacity, color = knots.opacity, knots.color
+    if function.opacity is None:
+        opacity[:, 1] = 1
+    if tf is None and not low < high:
+        color[:, 1:] = _linear(_PLAIN_COLOR)
+    return _core.Knots(color, opacity)
+
+
+def _camera_of(view: str, camera: Union[None, str, Camera], bounds: npt.NDArray[Any], points: Optional[npt.NDArray[Any]], look: str,
+               size: tuple[int, int], ortho: bool) -> Camera:
+    aspect = size[0] / size[1]
+    if isinstance(camera, Camera):
+        return camera
+    if not isinstance(camera, (str, type(None))):
+        raise TypeError(f"camera: a Camera or text is needed, not {type(camera).__name__}")
+    given = Camera.parse(view if camera is None else camera, bounds, aspect)
+    if ortho and given.ortho_height == 0:
+        given = given.orthographic(bounds, aspect)
+    if look == "solid" and camera is None and points is not None:
+        return given.fit(points, aspect)
+    return given
+
+
+def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
+           size: tuple[int, int] = (512, 512), field: Optional[str] = None, color_field: Optional[str] = None,
+           tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None, look: Optional[str] = None,
+           shade: bool = False, samples: Optional[int] = None, sheets: int = 0, levels: Optional[int] = None, scheme: str = "mcq",
+           tension: float = 1 / 16, crease_angle: Optional[float] = None, per_edge: int = 1, seconds: Optional[float] = None,
+           order: str = "topological", image_tolerance: float = 1e-3, backend: str = "auto", device: Optional[int] = None,
+           progress: Progress = None) -> Image:
+    """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
+
+    method:       "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "tets" (rays through tetrahedra), "pt" (tetrahedra
+                  projected by OpenGL), "dense" (rays through the limit's cells), "grid" (rays through voxels)
+    view:         the side to look from: +x -x +y -y +z -z iso
+    camera:       instead: a Camera, or text as of --camera
+    size:         width and height in pixels
+    tf:           a TransferFunction or its name; None: viridis over the field's range
+    opacity_unit: the world distance that opacities are for; None: 1/100 of the bounding box's diagonal
+    look:         "solid" (opaque and lit; what a mesh without tf, opacity_unit and shade gets), "volume", "xray" or "isosurface"
+    shade:        lit surfaces of equal value (splats only)
+    samples:      n x n rays or places for each pixel, 1 to 16; None: 2 for solids, else 1
+    levels:       draw the trilinear cells of this level; None: 1 for tets and pt, the limit for the others
+    seconds:      a time limit (splat and pt)
+
+    Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32, linear, premultiplied, without a copy. Its `report` has
+    counts and seconds.
+    """
+    if method not in ("splat", "sheets", "tets", "pt", "dense", "grid"):
+        raise InvalidInput(f"method: '{method}' is not known (splat, sheets, tets, pt, dense or grid)", "method",
+                           "splat, sheets, tets, pt, dense or grid")
+    if isinstance(what, Field):
+        raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
+    if len(size) != 2 or not (1 <= size[0] <= 65536 and 1 <= size[1] <= 65536):
+        raise InvalidInput(f"size: {size} is not a picture size", "size", "width and height, 1 to 65536")
+    splats = method in ("splat", "sheets")
+    if isinstance(what, HexMesh):
+        body = True
+    elif isinstance(what, (RbfVolume, Grid)):
+        body = False
+        if isinstance(what, Grid) and splats:
+            what = sample_grid(what)
+        if isinstance(what, RbfVolume) and not splats:
+            raise InvalidInput(f"method: points can only be splatted, not drawn by {method}", "method", "splat or sheets")
+        if isinstance(what, Grid) and method != "grid":
+            raise InvalidInput(f"method: a grid has no cells for {method}", "method", "grid, splat or sheets")
+    else:
+        raise TypeError(f"render() takes a HexMesh, RbfVolume or Grid, not {type(what).__name__}")
+    if body and method == "grid":
+        raise InvalidInput("method: a mesh has no voxels", "method", "subvol.rasterize makes a grid of it")
+    if not splats and shade:
+        raise InvalidInput(f"shade: method {method} draws without light", "shade", "splat or sheets")
+    if seconds is not None and method not in ("splat", "sheets", "pt"):
+        raise InvalidInput(f"seconds: method {method} has no time limit", "seconds", "splat, sheets or pt")
+    kind = _look_of(look, body and not shade, tf, opacity_unit)
+    lit = kind in ("solid", "isosurface")
+    if lit and not splats and kind != "solid":
+        raise InvalidInput(f"look: method {method} lights the boundary only", "look", "solid")
+    many = samples if samples is not None else 2 if kind == "solid" else 1
+
+    channel, color_channel = 0, None
+    if isinstance(what, HexMesh):
+        mesh = _selected(what, field)
+        values = next(iter(mesh.fields.values()))
+        low, high = _range_of(values)
+        bounds, points = mesh.bounds, mesh.points
+    elif isinstance(what, RbfVolume):
+        names = list(what.values)
+        channel = _channel(names, field)
+        if color_field is not None:
+            color_channel = _channel(names, color_field)
+        low, high = _range_of(what.values[names[channel]])
+        bounds, points = what.bounds, None
+    else:
+        about = what.report
+        low, high = about["min"], about["max"]
+        half = about["voxel_size"] / 2
+        bounds, points = np.array(what.bounds) + [[-half], [half]], None
+    knots = _knots_of(tf, kind, low, high)
+    if color_channel is not None and isinstance(what, RbfVolume):
+        other = _knots_of(tf, kind, *_range_of(what.values[names[color_channel]]))
+        knots = _core.Knots(other.color, knots.opacity)
+    diagonal = float(np.linalg.norm(bounds[1] - bounds[0]))
+    unit = opacity_unit or diagonal / (_SOLID_UNITS_PER_DIAGONAL if kind == "solid" else _OPACITY_UNITS_PER_DIAGONAL)
+    eye = _camera_of(view, camera, bounds, points, kind, size, ortho)
+    scene = _core.Scene(eye, (int(size[0]), int(size[1])), knots, unit)
+    way = "sheets" if method == "sheets" else backend
+
+    with listening(progress) as listener:
+        if isinstance(what, RbfVolume):
+            image = _core.splat(what, scene, way, device, many, sheets, channel, color_channel, shade or lit, listener)
+        elif isinstance(what, Grid):
+            image = _core.grid(what.voxels(), scene, many, listener)
+        elif splats and seconds is not None:
+            image = _core.splat_in_time(mesh, scene, seconds, scheme, way, device, many, sheets, shade or lit, listener)
+        elif splats:
+            volume = _sampled(mesh, levels, scheme, tension, crease_angle, per_edge, listener)
+            image = _core.splat(volume, scene, way, device, many, sheets, 0, None, shade or lit, listener)
+        else:
+            name = next(iter(mesh.fields))
+            if method == "dense":
+                image = _core.dense(mesh, name, scene, scheme, tension, crease_angle, levels, image_tolerance, many, listener)
+            else:
+                level = 1 if levels is None else levels
+                fine = _core.subdivide(mesh, level, scheme, tension, crease_angle, True, listener)
+                if method == "tets":
+                    image = _core.tets(fine, name, scene, many, listener)
+                else:
+                    image = _core.projected(fine, name, scene, order, device, many, seconds, listener)
+            if lit:
+                skin = _sampled(mesh, None, scheme, tension, crease_angle, per_edge, listener)
+                image = _core.lit(image, skin, scene, many)
+    image.report["method"] = method
+    image.report["background"] = _linear(_LIGHT_GREY) if lit else (1.0, 1.0, 1.0) if kind == "xray" else (0.0, 0.0, 0.0)
+    lost = image.report.get("lost_rays", 0)
+    if lost:
+        warn(f"{lost} rays were lost inside the mesh")
+    return image
+
+
+def _sampled(mesh: HexMesh, levels: Optional[int], scheme: str, tension: float, crease_angle: Optional[float], per_edge: int,
+             listener: Any) -> RbfVolume:
+    boundary_levels = None
+    if levels is not None:
+        mesh = _core.subdivide(mesh, levels, scheme, tension, crease_angle, True, listener)
+        scheme, boundary_levels = "linear", 0
+    return _core.sample(mesh, scheme, tension, crease_angle, per_edge, 0.0, 0.0, "second", "scheme", _core.named_kernel("compact"),
+                        boundary_levels, None, (512, 512), listener)[0]
+
+
+def _channel(names: list[str], field: Optional[str]) -> int:
+    if field is None:
+        return 0
+    if field not in names:
+        raise InvalidInput(f"field: there is no channel '{field}' (there are {', '.join(names)})", "field", ", ".join(names))
+    return names.index(field)
+
+
+def read_image(path: Path) -> Image:
+    """Reads a picture of any common format as linear premultiplied floats."""
+    return _core.read_image(path_bytes(path))
+
+
+def write_image(image: Union[Image, npt.ArrayLike], path: Path, background: Optional[Sequence[float]] = None) -> None:
+    """Writes `.exr` (linear floats, with the depth if there is one) or `.png` (8 bits over the background, linear rgb)."""
+    _as_image(image).write(path_bytes(path), background)
+
+
+def _as_image(given: Union[Image, npt.ArrayLike]) -> Image:
+    return given if isinstance(given, Image) else Image(given)
+
+
+class ImageComparison:
+    """Differences over red, green and blue of all pixels, for a peak of 1: mse, rmse, mae, max, psnr (infinite for equal pictures).
+
+    ssim and flip, and their maps (height, width), are computed when they are asked for.
+    """
+
+    def __init__(self, test: Image, reference: Image) -> None:
+        self._test, self._reference = test, reference
+        figures = _core.compare_images(test, reference)
+        self.mse = figures["mse"]
+        self.rmse = figures["rmse"]
+        self.mae = figures["mae"]
+        self.max = figures["max"]
+        self.psnr = figures["psnr"]
+
+    @cached_property
+    def _ssim(self) -> tuple[float, npt.NDArray[np.float32]]:
+        return _core.ssim(self._test, self._reference)
+
+    @cached_property
+    def _flip(self) -> tuple[float, npt.NDArray[np.float32]]:
+        return _core.flip(self._test, self._reference)
+
+    @property
+    def ssim(self) -> float:
+        return self._ssim[0]
+
+    @property
+    def flip(self) -> float:
+        return self._flip[0]
+
+    @property
+    def ssim_map(self) -> npt.NDArray[np.float32]:
+        return self._ssim[1]
+
+    @property
+    def flip_map(self) -> npt.NDArray[np.float32]:
+        return self._flip[1]
+
+    def heatmap(self, scale: float = 0) -> Image:
+        """The largest difference of each pixel in the colours of inferno, with a legend; scale 0: up to the largest."""
+        return _core.heatmap(self._test, self._reference, scale)
+
+    def __repr__(self) -> str:
+        return f"<subvol.ImageComparison: rmse {self.rmse:.3g}, psnr {self.psnr:.2f} dB>"
+
+
+class FieldComparison:
+    """Differences of two fields at random places of the reference, in the field's unit: l1, l2, linf; gradient_rmse per world length;
+    samples: places where both have a value; uncovered: places where only the reference has one."""
+
+    def __init__(self, figures: dict[str, Any]) -> None:
+        self.l1: float = figures["l1"]
+        self.l2: float = figures["l2"]
+        self.linf: float = figures["linf"]
+        self.gradient_rmse: float = figures["gradient_rmse"]
+        self.samples: int = figures["samples"]
+        self.uncovered: int = figures["uncovered"]
+
+    def __repr__(self) -> str:
+        return f"<subvol.FieldComparison: l2 {self.l2:.3g}, linf {self.linf:.3g}, {self.samples} samples>"
+
+
+def compare_images(test: Union[Image, npt.ArrayLike], reference: Union[Image, npt.ArrayLike]) -> ImageComparison:
+    """The distance between two pictures of the same size: Images, or arrays of linear floats (height, width, 3 or 4)."""
+    return ImageComparison(_as_image(test), _as_image(reference))
+
+
+def compare_fields(test: Union[HexMesh, RbfVolume, Field], reference: Union[HexMesh, RbfVolume, Field], field: Optional[str] = None,
+                   *, samples: int = 100_000, seed: int = 0, gradients: bool = True, progress: Progress = None) -> FieldComparison:
+    """The distance between two fields: of meshes (their limit), of points, or given as Field."""
+    a, b = as_field(test, field), as_field(reference, field)
+    with listening(progress) as listener:
+        return FieldComparison(_core.compare_fields(a, b, samples, seed, gradients, listener))
+
+
+def compare(test: Any, reference: Any, **options: Any) -> Any:
+    """`compare_fields` of meshes, points and Fields; `compare_images` of pictures and arrays."""
+    kinds = (HexMesh, RbfVolume, Field)
+    if isinstance(test, kinds) != isinstance(reference, kinds):
+        raise InvalidInput("compare: one of the two is a picture, the other a field", "compare", "two pictures or two fields")
+    return compare_fields(test, reference, **options) if isinstance(test, kinds) else compare_images(test, reference, **options)

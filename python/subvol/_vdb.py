@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""OpenVDB grids. The extension with OpenVDB is loaded by the first call that needs it."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+
+from ._arguments import Path, extension, path_bytes, warn
+from ._core import HexMesh, RbfVolume
+from ._errors import InvalidInput
+from ._progress import Progress, listening
+
+if TYPE_CHECKING:
+    from ._grids import Grid as Grid
+else:
+    class _LazyGrid(type):
+        """`isinstance(x, Grid)` without loading OpenVDB: there is no grid before it is loaded."""
+
+        def __instancecheck__(cls, x: Any) -> bool:
+            import sys
+
+            grids = sys.modules.get("subvol._grids")
+            return grids is not None and isinstance(x, grids.Grid)
+
+    class Grid(metaclass=_LazyGrid):
+        """An OpenVDB grid, as `read_vdb` and `rasterize` return it."""
+
+
+def _with_fields(mesh: HexMesh, fields: Optional[Sequence[str]]) -> HexMesh:
+    """The mesh with the fields to be written: scalars, vectors of three, lengths of others."""
+    from . import _core
+
+    mesh = mesh.without_unused_points()
+    if fields is None:
+        chosen, said = _core.select_field(mesh, None)
+        warn(said, 5)
+        return chosen
+    if isinstance(fields, str):
+        fields = [fields]
+    arrays = {}
+    for name in fields:
+        values = mesh.fields.get(name)
+        if values is not None and values.ndim == 2 and values.shape[1] == 3:
+            arrays[name] = values
+        else:
+            one, said = _core.select_field(mesh, name)
+            warn(said, 5)
+            arrays.update(one.fields)
+    return HexMesh(mesh.points, mesh.cells, arrays, mesh.creases, mesh.sharp_faces)
+
+
+def _make(what: Union[HexMesh, RbfVolume], path: Optional[bytes], resolution: int, voxel_size: Optional[float],
+          fields: Optional[Sequence[str]], levels: Optional[int], scheme: str, tension: float, crease_angle: Optional[float], half: bool,
+          mask: bool, sdf: Optional[str], nano: bool, progress: Progress) -> Any:
+    from . import _grids
+
+    if not isinstance(what, (HexMesh, RbfVolume)):
+        raise TypeError(f"a HexMesh or an RbfVolume is needed, not {type(what).__name__}")
+    low, high = what.bounds
+    if voxel_size is None:
+        if not 1 <= resolution <= 1_000_000:
+            raise InvalidInput(f"resolution: {resolution} voxels along the longest side", "resolution", "1 to a million")
+        voxel_size = float(np.max(high - low)) / resolution
+    if not (voxel_size > 0 and np.isfinite(voxel_size)):
+        raise InvalidInput(f"voxel_size: {voxel_size} is not a length", "voxel_size", "above 0")
+    with listening(progress) as listener:
+        if isinstance(what, RbfVolume):
+            if fields is not None or levels is not None or mask or sdf is not None:
+                raise InvalidInput("points: fields, levels, mask and sdf are of meshes", "points", "all channels of points are summed")
+            return _grids.rasterize_points(what, voxel_size, half, path, nano, listener)
+        mesh = _with_fields(what, fields)
+        made, change, converged = _grids.rasterize(mesh, list(mesh.fields), voxel_size, scheme, tension, crease_angle, levels, half, mask,
+                                                   sdf, path, nano, listener)
+    if not converged:
+        warn(f"the finest level within limits still changed values by {change:.2g} of their range", 4)
+    return made
+
+
+def rasterize(what: Union[HexMesh, RbfVolume], *, resolution: int = 200, voxel_size: Optional[float] = None,
+              fields: Optional[Sequence[str]] = None, levels: Optional[int] = None, scheme: str = "mcq", tension: float = 1 / 16,
+              crease_angle: Optional[float] = None, half: bool = False, mask: bool = False, sdf: Optional[str] = None,
+              progress: Progress = None) -> list[Grid]:
+    """The grids that `write_vdb` writes, in memory."""
+    made: list[Grid] = _make(what, None, resolution, voxel_size, fields, levels, scheme, tension, crease_angle, half, mask, sdf, False,
+                             progress)
+    return made
+
+
+def write_vdb(what: Union[HexMesh, RbfVolume, Grid, Sequence[Grid]], path: Path, *, resolution: int = 200,
+              voxel_size: Optional[float] = None, fields: Optional[Sequence[str]] = None, levels: Optional[int] = None,
+              scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None, half: bool = False,
+              mask: bool = False, sdf: Optional[str] = None, nano: bool = False, progress: Progress = None) -> list[dict[str, Any]]:
+    """Writes the limit of a mesh, or sums of kernels, as `.vdb`: cubic voxels, values at their centres, active inside the volume.
+
+    resolution: voxels along the longest side; voxel_size: instead, a world length
+    fields:     scalars become grids of floats, vectors grids of vectors; None: the most sensible scalar, said in a warning
+    levels:     the trilinear cells of this level instead of the limit
+    half:       floats in 16 bits; mask: adds the grid "mask"; sdf: adds a level set of this name; nano: also writes `.nvdb`
+
+    Returns the grids' reports: name, kind, active_voxels, voxel_size, min, max, bytes. The file appears whole or not at all.
+    """
+    from . import _grids
+
+    if extension(path) != ".vdb":
+        raise InvalidInput(f"{path!s}: has an unknown extension (.vdb)", str(path), ".vdb")
+    if not isinstance(what, (HexMesh, RbfVolume)):
+        grids = [what] if isinstance(what, Grid) else list(what)
+        _grids.write(path_bytes(path), grids, nano)
+        return [grid.report for grid in grids]
+    made: list[dict[str, Any]] = _make(what, path_bytes(path), resolution, voxel_size, fields, levels, scheme, tension, crease_angle, half,
+                                       mask, sdf, nano, progress)
+    if made[0]["active_voxels"] == 0:
+        warn(f'the grid "{made[0]["name"]}" is empty: no voxel centre lies inside')
+    return made
+
+
+def read_vdb(path: Path) -> list[Grid]:
+    """The grids of floats of a `.vdb` file."""
+    from . import _grids
+
+    return _grids.read_vdb(path_bytes(path))
+
+
+def sample_grid(grid: Grid, spacing: float = 0, progress: Progress = None) -> RbfVolume:
+    """The active voxels of a grid as kernels; spacing: their distance (world), in whole voxels."""
+    from . import _grids
+
+    with listening(progress) as listener:
+        return _grids.sample(grid, spacing, listener)[0]

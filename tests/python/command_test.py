@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What Python writes is what the command writes, byte for byte."""
+import json
+import warnings
+
+import numpy as np
+import pytest
+import subvol
+
+
+def same(a, b):
+    assert a.read_bytes() == b.read_bytes()
+
+
+@pytest.mark.parametrize("options", [{}, {"levels": 2, "scheme": "cc"}, {"scheme": "bsxw", "on_limit": True}, {"tension": .03},
+                                     {"crease_angle": 30.0}])
+def test_refined_meshes(tmp_path, command, options):
+    flags = [word for name, value in options.items()
+             for word in (["--" + name.replace("_", "-")] if value is True else ["--" + name.replace("_", "-"), value])]
+    command("subdivide", "model:ball:3", "-o", tmp_path / "a.vtu", *flags)
+    subvol.write_mesh(subvol.subdivide(subvol.model("ball", 3), **options), tmp_path / "b.vtu")
+    same(tmp_path / "a.vtu", tmp_path / "b.vtu")
+
+
+@pytest.mark.parametrize("options", [{}, {"per_edge": 2}, {"correction": "full"}, {"levels": 1}, {"kernel": "gaussian"}, {"spacing": .2}])
+def test_points(tmp_path, command, options):
+    flags = [word for name, value in options.items() for word in ("--" + name.replace("_", "-"), value)]
+    command("points", "model:ball:3", "-o", tmp_path / "a.ply", *flags)
+    subvol.write_points(subvol.sample(subvol.model("ball", 3), **options), tmp_path / "b.ply")
+    same(tmp_path / "a.ply", tmp_path / "b.ply")
+
+
+@pytest.mark.parametrize("flags, options", [
+    ([], {}),
+    (["--look", "volume"], {"look": "volume"}),
+    (["--look", "xray"], {"look": "xray"}),
+    (["--look", "isosurface"], {"look": "isosurface"}),
+    (["--tf", "coolwarm", "--view", "-y"], {"tf": "coolwarm", "view": "-y"}),
+    (["--tf", "grey", "--tf-range", "-.5,.5"], {"tf": subvol.TransferFunction("grey", range=(-.5, .5))}),
+    (["--opacity", "0%:0,100%:.3"], {"tf": subvol.TransferFunction("viridis", opacity="0%:0,100%:.3"), "look": "volume"}),
+    (["--shade", "--per-edge", "2"], {"shade": True, "per_edge": 2}),
+    (["--method", "tets"], {"method": "tets"}),
+    (["--method", "tets", "--levels", "2", "--look", "volume", "--samples", "2"],
+     {"method": "tets", "levels": 2, "look": "volume", "samples": 2}),
+    (["--method", "dense", "--levels", "2"], {"method": "dense", "levels": 2}),
+    (["--method", "dense", "--scheme", "cc", "--look", "volume"], {"method": "dense", "scheme": "cc", "look": "volume"}),
+    (["--ortho", "--opacity-unit", ".1"], {"ortho": True, "opacity_unit": .1}),
+    (["--camera", "3,-3,2,0,0,0,0,0,1,30"], {"camera": "3,-3,2,0,0,0,0,0,1,30"}),
+    (["--levels", "1", "--look", "volume"], {"levels": 1, "look": "volume"}),
+    (["--sheets", "40", "--look", "volume"], {"sheets": 40, "look": "volume"}),
+])
+def test_pictures(tmp_path, command, flags, options):
+    if "tets" not in flags and "dense" not in flags:
+        flags, options = [*flags, "--backend", "cpu"], {**options, "backend": "cpu"}
+    for ending in ("exr", "png") if not flags[:1] or "xray" in flags else ("exr",):
+        command("render", "model:ball:3", "-o", tmp_path / f"a.{ending}", "--size", "48x40", *flags)
+        subvol.render(subvol.model("ball", 3), size=(48, 40), **options).write(tmp_path / f"b.{ending}")
+        a, b = subvol.read_image(tmp_path / f"a.{ending}"), subvol.read_image(tmp_path / f"b.{ending}")
+        assert np.asarray(a).tobytes() == np.asarray(b).tobytes(), ending
+
+
+def test_pictures_by_opengl(tmp_path, command):
+    if not subvol.gl_devices():
+        pytest.skip("there is no OpenGL 4.5")
+    for method in ("pt", "sheets"):
+        command("render", "model:ball:3", "-o", tmp_path / "a.exr", "--size", "48", "--method", method)
+        subvol.render(subvol.model("ball", 3), size=(48, 48), method=method).write(tmp_path / "b.exr")
+        a, b = subvol.read_image(tmp_path / "a.exr"), subvol.read_image(tmp_path / "b.exr")
+        assert np.asarray(a).tobytes() == np.asarray(b).tobytes(), method
+
+
+def test_pictures_of_points(tmp_path, command):
+    command("points", "model:ball:3", "-o", tmp_path / "p.ply")
+    command("render", tmp_path / "p.ply", "-o", tmp_path / "a.exr", "--size", "40", "--backend", "cpu")
+    subvol.render(subvol.read_points(tmp_path / "p.ply"), size=(40, 40), backend="cpu").write(tmp_path / "b.exr")
+    same(tmp_path / "a.exr", tmp_path / "b.exr")
+
+
+@pytest.mark.parametrize("options", [{}, {"levels": 1}, {"scheme": "cc"}, {"half": True}])
+def test_grids(tmp_path, command, options):
+    flags = [word for name, value in options.items() for word in (["--" + name] if value is True else ["--" + name, value])]
+    report = json.loads(command("vdb", "model:ball:3", "-o", tmp_path / "a.vdb", "--resolution", "30", "--json", *flags))
+    (mine,) = subvol.write_vdb(subvol.model("ball", 3), tmp_path / "b.vdb", resolution=30, **options)
+    (a,), (b,) = subvol.read_vdb(tmp_path / "a.vdb"), subvol.read_vdb(tmp_path / "b.vdb")
+    difference = a.difference(b)
+    assert difference["max"] == 0 and difference["voxels"] == mine["active_voxels"] == report["active_voxels"]
+
+
+def test_figures(tmp_path, command):
+    info = json.loads(command("info", "model:ball:3", "--json"))
+    report = subvol.model("ball", 3).report()
+    for key in ("points", "cells", "edges", "faces", "boundary_faces", "singular_nodes", "inverted_cells", "min_scaled_jacobian", "volume"):
+        assert report[key] == info[key], key
+    for name, view in (("a", "iso"), ("b", "-y")):
+        command("render", "model:ball:3", "-o", tmp_path / f"{name}.exr", "--size", "40", "--view", view)
+    theirs = json.loads(command("compare", tmp_path / "a.exr", tmp_path / "b.exr", "--json"))
+    mine = subvol.compare(subvol.read_image(tmp_path / "a.exr"), subvol.read_image(tmp_path / "b.exr"))
+    for key in ("mse", "rmse", "mae", "max", "psnr", "ssim", "flip"):
+        assert getattr(mine, key) == theirs[key], key
+
+
+def test_a_field_chosen_by_default_is_the_command_s(tmp_path, command):
+    cube = subvol.model("twist", 4)
+    mesh = subvol.HexMesh(cube.points, cube.cells, {"NodeId": np.arange(len(cube.points)), "Temp": cube.points[:, 2] + 1})
+    subvol.write_mesh(mesh, tmp_path / "m.vtu")
+    command("render", tmp_path / "m.vtu", "-o", tmp_path / "a.exr", "--size", "32", "--backend", "cpu")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        subvol.render(subvol.read_mesh(tmp_path / "m.vtu"), size=(32, 32), backend="cpu").write(tmp_path / "b.exr")
+    same(tmp_path / "a.exr", tmp_path / "b.exr")

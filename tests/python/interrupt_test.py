@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Progress, Ctrl-C, and the GIL."""
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+import subvol
+from conftest import grid_of
+
+
+def test_progress_is_reported_on_the_calling_thread():
+    seen = []
+    subvol.subdivide(grid_of(20), 2, progress=lambda stage, part: seen.append((stage, part, threading.get_ident())))
+    assert seen
+    assert all(isinstance(stage, str) and 0 <= part <= 1 for stage, part, _ in seen)
+    assert {thread for *_, thread in seen} == {threading.get_ident()}
+
+
+def test_an_exception_in_progress_cancels_and_is_raised():
+    class Enough(Exception):
+        pass
+
+    def stop(stage, part):
+        raise Enough(stage)
+
+    with pytest.raises(Enough):
+        subvol.subdivide(grid_of(24), 2, progress=stop)
+    with pytest.raises(Enough):
+        subvol.render(subvol.sample(subvol.model("pawn")), size=(1024, 1024), progress=stop, samples=4)
+
+
+def test_progress_must_be_callable(cube):
+    for wrong in (3, "yes", [1]):
+        with pytest.raises((subvol.InvalidInput, TypeError)):
+            subvol.subdivide(cube, progress=wrong)
+
+
+def test_true_draws_a_bar(capsys):
+    subvol.subdivide(grid_of(20), 2, progress=True)
+    assert "refine" in capsys.readouterr().err.lower()
+
+
+def test_ctrl_c_ends_the_work():
+    program = textwrap.dedent("""
+        import subvol, sys
+        mesh = subvol.model("ball", 24)
+        print("ready", flush=True)
+        try:
+            for _ in range(1000):
+                subvol.subdivide(mesh, 3)
+        except KeyboardInterrupt:
+            print("interrupted", flush=True)
+            sys.exit(7)
+        """)
+    running = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    assert running.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    running.send_signal(signal.SIGINT)
+    out, _ = running.communicate(timeout=300)
+    assert out == "interrupted\n" and running.returncode == 7
+
+
+def test_other_threads_run_while_one_refines():
+    mesh = grid_of(24)
+    ticks, stop = 0, threading.Event()
+
+    def tick():
+        nonlocal ticks
+        while not stop.is_set():
+            ticks += 1
+            time.sleep(0.001)
+
+    clock = threading.Thread(target=tick)
+    clock.start()
+    subvol.subdivide(mesh, 2)
+    stop.set()
+    clock.join()
+    assert ticks > 2
+
+
+def test_eight_threads_draw_the_same_picture(ball, ball_points):
+    expected = np.asarray(subvol.render(ball_points, size=(64, 64), backend="cpu")).copy()
+    exact = np.asarray(subvol.render(ball, size=(32, 32), method="tets", samples=1, look="volume")).copy()
+    wrong, errors = [], []
+
+    def draw():
+        try:
+            for _ in range(3):
+                if not np.array_equal(np.asarray(subvol.render(ball_points, size=(64, 64), backend="cpu")), expected):
+                    wrong.append("splat")
+                if not np.array_equal(np.asarray(subvol.render(ball, size=(32, 32), method="tets", samples=1, look="volume")), exact):
+                    wrong.append("tets")
+        except BaseException as error:  # noqa: B902
+            errors.append(error)
+
+    threads = [threading.Thread(target=draw) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert errors == [] and wrong == []
+
+
+def test_results_do_not_depend_on_the_number_of_threads(ball):
+    def everything():
+        volume = subvol.sample(ball, per_edge=2)
+        return [subvol.subdivide(ball, 2).points.tobytes(), volume.frames.tobytes(),
+                np.asarray(subvol.render(volume, size=(50, 50), backend="cpu")).tobytes()]
+
+    try:
+        many = everything()
+        subvol.set_threads(1)
+        assert everything() == many
+    finally:
+        subvol.set_threads(0)
+    with pytest.raises(subvol.InvalidInput):
+        subvol.set_threads(-1)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_child_of_a_fork_works_if_nothing_ran_before():
+    program = "import os, subvol\npid = os.fork()\nmesh = subvol.subdivide(subvol.model('ball', 2))\n" \
+              "os._exit(0) if pid == 0 else os._exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))"
+    assert subprocess.run([sys.executable, "-c", program], timeout=120).returncode == 0

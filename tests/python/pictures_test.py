@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures and their distance."""
+import struct
+import zlib
+
+import numpy as np
+import pytest
+import subvol
+from conftest import grid_of
+
+
+def opaque(value=1.0):
+    return subvol.TransferFunction.from_knots([[0, value, value, value]], [[0, .5]])
+
+
+@pytest.mark.parametrize("method", ["splat", "tets", "dense"])
+def test_a_slab_has_the_opacity_of_its_thickness(method):
+    block = grid_of(3)
+    image = np.asarray(subvol.render(block, method=method, view="-y", ortho=True, size=(40, 40), tf=opaque(), opacity_unit=1,
+                                     backend="cpu"))
+    middle = image[20, 20]
+    assert middle[3] == pytest.approx(.5, abs=2e-3)  # one unit of opacity .5; splats sum halves of floats
+    assert middle[:3] == pytest.approx([middle[3]] * 3, abs=1e-6)
+    assert not image[0, 0].any()
+
+
+@pytest.mark.parametrize("method", ["splat", "tets", "dense", "pt", "sheets"])
+def test_all_methods_draw_the_same(ball, method):
+    if method in ("pt", "sheets") and not subvol.gl_devices():
+        pytest.skip("there is no OpenGL 4.5")
+    tf = subvol.TransferFunction("viridis", opacity=[(-1, 0), (1, .3)])
+    levels = {"tets": 2, "pt": 2}.get(method)
+    image = subvol.render(ball, method=method, tf=tf, levels=levels, size=(96, 96), per_edge=2)
+    reference = subvol.render(ball, method="dense", tf=tf, levels=3, size=(96, 96))
+    assert subvol.compare(image, reference).psnr > 40  # the geometry of two levels; splats of half a cell
+    assert image.report["method"] == method
+
+
+def test_solids_are_lit_and_opaque(ball):
+    image = np.asarray(subvol.render(ball, size=(64, 64)))
+    assert image[32, 32, 3] == pytest.approx(1, abs=1e-3)
+    assert image.shape == (64, 64, 4)
+    flat = np.asarray(subvol.render(ball, size=(64, 64), look="volume"))
+    assert not np.array_equal(image, flat)
+    assert subvol.render(ball, size=(8, 8)).report["background"][0] > .5
+    assert subvol.render(ball, size=(8, 8), look="volume").report["background"] == (0, 0, 0)
+
+
+def test_depth_and_report(ball_points):
+    image = subvol.render(ball_points, size=(32, 32), backend="cpu")
+    assert image.depth.shape == (32, 32) and not image.depth.flags.writeable
+    assert np.isinf(image.depth[0, 0]) and np.isfinite(image.depth[16, 16])
+    assert image.report["points"] == len(ball_points) and image.report["backend"] == "cpu"
+    assert subvol.Image(np.zeros((2, 2, 4))).depth is None
+
+
+def test_within_a_time(ball):
+    image = subvol.render(ball, seconds=0.2, size=(64, 64), backend="cpu")
+    assert image.report["steps"] >= 1
+    with pytest.raises(subvol.InvalidInput):
+        subvol.render(ball, seconds=1, method="tets")
+    with pytest.raises(subvol.InvalidInput):
+        subvol.render(ball, seconds=-1)
+
+
+def test_a_transfer_function():
+    tf = subvol.TransferFunction("viridis", range=(300, 900), opacity=[(300, 0), (900, .5)])
+    knots = tf.knots(0, 1)
+    assert knots.color[0, 0] == 300 and knots.color[-1, 0] == 900
+    assert np.array_equal(knots.opacity, [[300, 0], [900, .5]])
+    percent = subvol.TransferFunction("grey", opacity="0%:0,50%:.2,100%:.9").knots(10, 20)
+    assert percent.opacity == pytest.approx(np.array([[10, 0], [15, .2], [20, .9]]))
+    assert "<svg" in tf.legend("T") and tf.legend("T") == tf._repr_svg_().replace("></svg>", "></svg>") or "T" in tf.legend("T")
+    for wrong in ({"opacity": [(1, 0), (0, 1)]}, {"opacity": [(0, 2)]}, {"opacity": [1, 2]}, {"opacity": "x"}, {"range": (2, 1)},
+                  {"range": (np.nan, 1)}, {"name": "nothing"}):
+        with pytest.raises(subvol.InvalidInput):
+            subvol.TransferFunction(**wrong)
+    with pytest.raises(subvol.FileError):
+        subvol.TransferFunction("no/such.json")
+
+
+def test_a_camera(ball):
+    camera = subvol.Camera(eye=(0, -4, 0), target=(0, 0, 0), fovy_deg=35)
+    assert camera.up == (0, 0, 1) and camera.ortho_height == 0
+    image = subvol.render(ball, camera=camera, size=(32, 32))
+    assert np.asarray(image)[16, 16, 3] > .9
+    turn = camera.turntable((0, 0, 0), 4)
+    assert len(turn) == 4 and turn[2].eye == pytest.approx((0, 4, 0), abs=1e-12)
+    assert camera.orthographic(ball.bounds).ortho_height > 0
+    assert subvol.Camera.parse("+x", ball.bounds).eye[0] > 0
+    for wrong in ({"target": (0, -4, 0)}, {"up": (0, 1, 0)}, {"fovy_deg": 180}, {"eye": (0, 0)}, {"eye": "abc"}, {"eye": (np.nan, 0, 0)}):
+        with pytest.raises((subvol.InvalidInput, TypeError)):
+            subvol.Camera(**{"eye": (0, -4, 0), "target": (0, 0, 0), **wrong})
+
+
+def decoded(png):
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    at, parts = 8, {}
+    while at < len(png):
+        size, kind = struct.unpack(">I4s", png[at:at + 8])
+        body = png[at + 8:at + 8 + size]
+        assert struct.unpack(">I", png[at + 8 + size:at + 12 + size])[0] == zlib.crc32(kind + body)
+        parts[kind] = body
+        at += 12 + size
+    width, height = struct.unpack(">II", parts[b"IHDR"][:8])
+    rows = np.frombuffer(zlib.decompress(parts[b"IDAT"]), np.uint8).reshape(height, 1 + 3 * width)
+    return rows[:, 1:].reshape(height, width, 3)
+
+
+def test_a_notebook_shows_what_the_file_has(tmp_path, ball):
+    image = subvol.render(ball, size=(20, 10))
+    image.write(tmp_path / "a.png")
+    shown = decoded(image._repr_png_())
+    assert shown.shape == (10, 20, 3)
+    back = np.asarray(subvol.read_image(tmp_path / "a.png"))
+    expected = subvol.Image((shown / 255.0).astype("f8"))
+    linear = np.where(np.asarray(expected) <= 0.04045, np.asarray(expected) / 12.92, ((np.asarray(expected) + .055) / 1.055) ** 2.4)
+    assert back[..., :3] == pytest.approx(linear[..., :3], abs=2e-3)
+    assert decoded(image.png((1, 0, 0)))[0, 0].tolist() == [255, 0, 0]
+
+
+def test_pictures_are_compared():
+    rng = np.random.default_rng(0)
+    a = rng.random((24, 32, 4)).astype("f4")
+    b = a.copy()
+    b[0, 0, 0] += .5
+    same, different = subvol.compare(a, a), subvol.compare(a, subvol.Image(b))
+    assert same.psnr == np.inf and same.mse == 0 and same.ssim == pytest.approx(1) and same.flip == 0
+    assert different.max == pytest.approx(.5) and different.mse == pytest.approx(.25 / (24 * 32 * 3), rel=1e-5)
+    assert different.rmse == pytest.approx(different.mse ** .5) and different.ssim < 1 and different.flip > 0
+    assert different.ssim_map.shape == (24, 32) and different.flip_map[0, 0] > 0
+    assert different.heatmap().height == 24 + 30
+    assert subvol.compare(a[..., :3], a).psnr == np.inf
+    for wrong in (a[1:], np.zeros((24, 32)), np.zeros((24, 32, 2)), np.zeros((24, 32, 4), int), np.zeros((0, 3, 4)), "picture", None):
+        with pytest.raises((subvol.InvalidInput, TypeError)):
+            subvol.compare(a, wrong)
+
+
+def test_fields_are_compared(cube):
+    doubled = subvol.HexMesh(cube.points, cube.cells, {"x": 2 * cube.fields["x"]})
+    difference = subvol.compare(doubled, cube, field="x", samples=20_000)
+    assert difference.l1 == pytest.approx(.5, abs=.01) and difference.linf <= 1 + 1e-9
+    assert difference.l2 == pytest.approx(3 ** -.5, abs=.01)
+    assert difference.gradient_rmse == pytest.approx(1, abs=1e-6) and difference.uncovered == 0
+    assert subvol.compare(cube, cube, field="x", samples=100).linf == 0
+    with pytest.raises(subvol.InvalidInput):
+        subvol.compare(cube, np.zeros((2, 2, 4)))
+    with pytest.raises(subvol.InvalidInput):
+        subvol.compare(cube, cube, samples=0)
+
+
+def test_colours_of_a_second_channel(ball, ball_points):
+    both = subvol.RbfVolume(ball_points.centers, ball_points.frames,
+                            {"a": ball_points.values["density"], "b": ball_points.centers[:, 0].astype("f4")}, kernel=ball_points.kernel,
+                            boundary=ball_points.boundary)
+    one = np.asarray(subvol.render(both, field="a", size=(32, 32), backend="cpu"))
+    two = np.asarray(subvol.render(both, field="a", color_field="b", size=(32, 32), backend="cpu"))
+    assert one[..., 3] == pytest.approx(two[..., 3], abs=2e-3)
+    assert not np.allclose(one[..., :3], two[..., :3], atol=.01)
+
+
+def test_what_cannot_be_drawn(ball, ball_points, cube):
+    for what, options in [(ball_points, {"method": "tets"}), (ball, {"method": "grid"}), (ball, {"method": "tets", "shade": True}),
+                          (ball, {"size": (0, 5)}), (ball, {"size": (5, 70000)}), (ball, {"samples": 0}), (ball, {"samples": 17}),
+                          (ball, {"levels": -1}), (ball, {"levels": 11}), (ball, {"opacity_unit": -1}), (ball, {"sheets": -5}),
+                          (subvol.as_field(cube, "x"), {})]:
+        with pytest.raises((subvol.InvalidInput, TypeError)):
+            subvol.render(what, **options)
+    with pytest.raises(TypeError):
+        subvol.render("ball.vtu")
