@@ -18,25 +18,6 @@ py::str text_of(std::string_view bytes) {  // file names may be any bytes
         PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "backslashreplace"));
 }
 
-/// The parts of "where: message (allowed)", as error.h describes what(). A place that holds a colon is cut at it.
-struct Parts {
-    std::string_view where, allowed;
-};
-
-Parts parts_of(std::string_view what) {
-    Parts parts;
-    if (const std::size_t colon = what.find(": "); colon != std::string_view::npos) parts.where = what.substr(0, colon);
-    if (!what.ends_with(')')) return parts;
-    int open = 0;
-    for (std::size_t i = what.size(); i-- > 1;) {
-        open += what[i] == ')' ? 1 : what[i] == '(' ? -1 : 0;
-        if (open > 0) continue;
-        if (what[i - 1] == ' ') parts.allowed = what.substr(i + 1, what.size() - i - 2);
-        break;
-    }
-    return parts;
-}
-
 /// The exceptions are classes of Python (subvol/_errors.py).
 void raise(const Error& error) {
     const auto code = [&]() -> const char* {
@@ -53,8 +34,7 @@ void raise(const Error& error) {
         return "Error";
     }();
     const py::object type = py::module_::import("subvol._errors").attr(code);
-    const Parts parts = parts_of(error.what());
-    const py::object value = type(text_of(error.what()), text_of(parts.where), text_of(parts.allowed));
+    const py::object value = type(text_of(error.what()), text_of(error.where()), text_of(error.allowed()));
     PyErr_SetObject(type.ptr(), value.ptr());
 }
 
