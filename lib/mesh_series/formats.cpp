@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats.h"
+#include "format_table.h"
 
 #include <algorithm>
 
-#include "series/collection.h"
+#include "collection.h"
+#include "openfoam/foam_case.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
@@ -23,7 +25,7 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-constexpr std::array<MeshFormat, 14> kFormats{{
+constexpr std::array<MeshFormat, 15> kFormats{{
     {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
     {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
@@ -38,6 +40,7 @@ constexpr std::array<MeshFormat, 14> kFormats{{
     {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr, true},
     {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
     {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr, false, true, exodus_times},
+    {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times},
 }};
 
 }  // namespace
@@ -47,7 +50,9 @@ std::span<const MeshFormat> mesh_formats() {
 }
 
 const MeshFormat* format_of(const std::filesystem::path& path) {
-    const std::string extension = upper_case(path.extension().string());
+    std::error_code none;
+    const bool folder = std::filesystem::is_directory(path, none);
+    const std::string extension = folder ? ".FOAM" : upper_case(path.extension().string());
     const auto has_it = [&](const MeshFormat& format) {
         return std::ranges::any_of(format.extensions,
                                    [&](std::string_view e) { return !e.empty() && upper_case(e) == extension; });

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "formats.h"
-#include "series/steps.h"
+#include "format_table.h"
+#include "steps.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
