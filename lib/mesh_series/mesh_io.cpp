@@ -68,7 +68,7 @@ void detail::check_options(const MeshFormat& format, const std::filesystem::path
     }
     if (!options.blocks.empty() && !format.blocks) {
         throw Error(ErrorCode::InvalidInput, "such files have no named blocks", path.string(),
-                    "blocks come from Exodus II and .vtm files");
+                    "blocks come from Exodus II, .inp and .vtm files");
     }
 }
 

@@ -23,7 +23,7 @@ std::optional<Number> number_of(std::string_view text) {
     return number;
 }
 
-bool exists(const fs::path& file) {
+bool is_there(const fs::path& file) {
     std::error_code none;
     return fs::exists(file, none) || fs::exists(file.string() + ".gz", none);
 }
@@ -42,9 +42,9 @@ std::map<double, std::string> numbered(const fs::path& folder, std::string_view 
 }
 
 bool has_mesh(const fs::path& part) {
-    if (exists(part / "constant/polyMesh/faces")) return true;
+    if (is_there(part / "constant/polyMesh/faces")) return true;
     return std::ranges::any_of(numbered(part, ""),
-                               [&](const auto& time) { return exists(part / time.second / "polyMesh/faces"); });
+                               [&](const auto& time) { return is_there(part / time.second / "polyMesh/faces"); });
 }
 
 double last_time(const fs::path& part) {
@@ -57,7 +57,7 @@ double last_time(const fs::path& part) {
 fs::path FoamCase::mesh_file(std::size_t part, std::size_t step, const std::string& name) const {
     for (std::size_t k = std::min(step + 1, folders.size()); k-- > 0;) {
         const fs::path file = parts[part] / folders[k] / "polyMesh" / name;
-        if (exists(file)) return file;
+        if (is_there(file)) return file;
     }
     return parts[part] / "constant/polyMesh" / name;
 }
