@@ -54,12 +54,16 @@ std::span<const MeshFormat> mesh_formats() {
 const MeshFormat* format_of(const std::filesystem::path& path) {
     std::error_code none;
     const bool folder = std::filesystem::is_directory(path, none);
-    const std::string extension = folder ? ".FOAM" : upper_case(path.extension().string());
+    std::string extension = upper_case(path.extension().string());
     const auto has_it = [&](const MeshFormat& format) {
         return std::ranges::any_of(format.extensions,
                                    [&](std::string_view e) { return !e.empty() && upper_case(e) == extension; });
     };
-    const auto found = std::ranges::find_if(kFormats, has_it);
+    auto found = std::ranges::find_if(kFormats, has_it);
+    if (folder && found == kFormats.end()) {
+        extension = ".FOAM";
+        found = std::ranges::find_if(kFormats, has_it);
+    }
     return found == kFormats.end() ? nullptr : &*found;
 }
 

@@ -2,6 +2,7 @@
 #include "foam_cells.h"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 namespace subvol::detail {
@@ -139,12 +140,21 @@ private:
         for (const Index p : points_) middle += found_.points[p] / static_cast<double>(points_.size());
         const auto apex = static_cast<Index>(found_.points.size());
         found_.points.push_back(middle);
+        std::map<std::array<Index, 3>, std::array<Index, 3>> triangles;
         for (auto& face : faces_) {
             std::rotate(face.begin(), std::ranges::min_element(face), face.end());
             for (std::size_t k = 1; k + 1 < face.size(); ++k) {
-                put(found_.tets, std::optional(std::array<Index, 4>{face[0], face[k + 1], face[k], apex}));
-                ++tets_;
+                const std::array<Index, 3> triangle{face[0], face[k + 1], face[k]};
+                auto key = triangle;
+                std::sort(key.begin(), key.end());
+                // Two faces of a cell may share three points: its part between them is flat, and the neighbours meet there.
+                const auto [same, is_new] = triangles.try_emplace(key, triangle);
+                if (!is_new) triangles.erase(same);
             }
+        }
+        for (const auto& [key, t] : triangles) {
+            put(found_.tets, std::optional(std::array<Index, 4>{t[0], t[1], t[2], apex}));
+            ++tets_;
         }
     }
 

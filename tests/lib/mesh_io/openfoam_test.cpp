@@ -240,8 +240,8 @@ TEST_F(OpenFoam, PolyhedraWithHangingNodesFitToTheirNeighbours) {
         }
     }
     const auto at = [](int i, int j, int k) { return 4 + 9 * i + 3 * k + j; };
-    std::vector<std::vector<std::vector<int>>> cells{{{0, 2, 3, 1}}};
-    auto& large = cells[0];
+    std::vector<std::vector<std::vector<int>>> cells;
+    std::vector<std::vector<int>> large{{0, 2, 3, 1}};
     large.push_back({0, at(0, 0, 0), at(0, 0, 1), at(0, 0, 2), 2});
     large.push_back({1, 3, at(0, 2, 2), at(0, 2, 1), at(0, 2, 0)});
     large.push_back({0, 1, at(0, 2, 0), at(0, 1, 0), at(0, 0, 0)});
@@ -254,6 +254,7 @@ TEST_F(OpenFoam, PolyhedraWithHangingNodesFitToTheirNeighbours) {
                 faces_of_hex({p(0, 0, 0), p(1, 0, 0), p(1, 1, 0), p(0, 1, 0), p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}));
         }
     }
+    cells.insert(cells.begin(), large);
     put_mesh("constant/polyMesh", polyhedra(points, cells), {});
     const ReadResult result = read_mesh(path("a.foam"));
     EXPECT_EQ(result.warnings[0], "1 polyhedron split from the middle into 22 tetrahedra");
