@@ -64,6 +64,7 @@ std::optional<std::uint64_t> number_attribute(const pugi::xml_node& node, const 
     const std::size_t begin = text.find_first_not_of(" \t\r\n");
     if (begin == std::string_view::npos) return std::nullopt;
     text = text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+    if (text.starts_with('+')) text.remove_prefix(1);  // some programs write it
     std::uint64_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;

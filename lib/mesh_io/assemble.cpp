@@ -248,7 +248,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     EntityNames names = names_in_file;
     if (options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names)) names.point_numbers = {};
     found.curved = {};
-    const bool cut = take_collapsed(found, options.other_cells, file, names);
+    const bool cut = take_collapsed(found, options.other_cells, file, names) || found.cut;
     Origin origin{used_points(found), {}, {}};
     ReadResult result;
     result.mesh.points = std::move(found.points);

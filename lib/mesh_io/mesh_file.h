@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "curved_cells.h"
 #include "subvol/index.h"
 #include "subvol/mesh_io.h"
 #include "subvol/vec.h"
@@ -29,9 +30,6 @@ struct FileCells {
     std::vector<std::array<Index, N>> corners;
     std::vector<Index> numbers;
 };
-
-/// The order of a curved hexahedron's nodes. Vtk8, VtkBezier8: before VTK 9, where two edges were exchanged
-enum class CurvedOrder : std::uint8_t { Vtk, Vtk8, VtkBezier, VtkBezier8, Exodus, Gmsh };
 
 /// All nodes of the curved ones among the hexahedra, which have their corners as all others.
 ///
@@ -67,6 +65,7 @@ struct FileTags {
 /// The contents of a file as a reader found them; `assemble` makes a mesh of them.
 ///
 /// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
+/// cut:        the cells fit together only if all are cut into tetrahedra
 /// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
 struct MeshFile {
     struct NotFinite {
@@ -84,6 +83,7 @@ struct MeshFile {
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
     std::vector<MeshBlock> blocks;
+    bool cut = false;
 };
 
 /// Calls call(cells) for the FileCells of each kind.

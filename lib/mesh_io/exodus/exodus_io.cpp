@@ -6,7 +6,7 @@
 #include "assemble.h"
 #include "exodus_file.h"
 #include "formats.h"
-#include "series/steps.h"
+#include "steps.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {

@@ -395,8 +395,10 @@ TEST_F(MeshIo, AWarningListsWhatAFormatCannotHold) {
 TEST_F(MeshIo, UnknownFormatsAndMissingFilesAreRefused) {
     EXPECT_THAT(
         error_of([&] { static_cast<void>(read_mesh(path("a.obj"))); }),
-        HasSubstr("\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti: VTK XML; "
-                  ".msh: Gmsh; .xyz, .p3d: Plot3D; .e, .exo, .ex2, .g: Exodus II)"));
+        HasSubstr(
+            "\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti, .pvtu, .pvts, "
+            ".pvtr, .pvti, .vtm: VTK XML; .pvd, .series: ParaView; .msh: Gmsh; .xyz, .p3d: Plot3D; .e, .exo, .ex2, .g: "
+            "Exodus II; .foam, .openfoam: OpenFOAM; .inp: Abaqus)"));
     EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }),
                 HasSubstr("\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML)"));
     const auto missing = [&] { static_cast<void>(read_mesh(path("none.mesh"))); };

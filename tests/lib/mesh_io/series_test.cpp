@@ -85,7 +85,9 @@ protected:
 };
 
 TEST_F(Series, PiecesAreJoinedWhereTheirPointsAreAtTheSamePlace) {
-    write("a.vtu", row(0, 2));
+    std::string a = row(0, 2);
+    a.replace(a.find("NumberOfPoints=\""), 16, "NumberOfPoints=\"+");  // as some programs write it
+    write("a.vtu", a);
     write("b.vtu", row(2, 3));
     const ReadResult result = read_mesh(write("all.pvtu", pieces({"a.vtu", "b.vtu"})));
     expect_row(result, 5);

@@ -70,7 +70,7 @@ struct ReadResult {
 ///   .e, .exo, .ex2, .g     Exodus II
 ///   .pvtu, .pvts, .pvtr, .pvti, .vtm  the pieces or blocks of VTK, in files of their own
 ///   .pvd, .series          steps of VTK and ParaView, in files of their own
-///   .foam                  an OpenFOAM case, as its folder
+///   .foam, .inp            an OpenFOAM case, as its folder; Abaqus and CalculiX decks
 ///
 /// Cells of lower dimension are left out; curved hexahedra are split as ReadOptions says, and of other curved cells only the
 /// corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that it looks like, and left out

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats.h"
+#include "format_table.h"
 
 namespace subvol {
 

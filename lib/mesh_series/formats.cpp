@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "formats.h"
+#include "format_table.h"
 
 #include <algorithm>
 
-#include "series/collection.h"
+#include "abaqus/inp_io.h"
+#include "collection.h"
+#include "openfoam/foam_case.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
@@ -23,7 +26,7 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-constexpr std::array<MeshFormat, 14> kFormats{{
+constexpr std::array<MeshFormat, 16> kFormats{{
     {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
     {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
@@ -38,6 +41,8 @@ constexpr std::array<MeshFormat, 14> kFormats{{
     {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr, true},
     {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
     {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr, false, true, exodus_times},
+    {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times},
+    {{".inp"}, "Abaqus", read_inp, nullptr, false, true},
 }};
 
 }  // namespace
@@ -47,12 +52,18 @@ std::span<const MeshFormat> mesh_formats() {
 }
 
 const MeshFormat* format_of(const std::filesystem::path& path) {
-    const std::string extension = upper_case(path.extension().string());
+    std::error_code none;
+    const bool folder = std::filesystem::is_directory(path, none);
+    std::string extension = upper_case(path.extension().string());
     const auto has_it = [&](const MeshFormat& format) {
         return std::ranges::any_of(format.extensions,
                                    [&](std::string_view e) { return !e.empty() && upper_case(e) == extension; });
     };
-    const auto found = std::ranges::find_if(kFormats, has_it);
+    auto found = std::ranges::find_if(kFormats, has_it);
+    if (folder && found == kFormats.end()) {
+        extension = ".FOAM";
+        found = std::ranges::find_if(kFormats, has_it);
+    }
     return found == kFormats.end() ? nullptr : &*found;
 }
 

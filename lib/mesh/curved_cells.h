@@ -3,13 +3,15 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "mesh_file.h"
-
 namespace subvol::detail {
+
+/// The order of a curved hexahedron's nodes. Vtk8, VtkBezier8: before VTK 9, where two edges were exchanged
+enum class CurvedOrder : std::uint8_t { Vtk, Vtk8, VtkBezier, VtkBezier8, Exodus, Gmsh };
 
 /// The nodes of a curved hexahedron as a grid of (p+1)(q+1)(r+1) places, the first direction fastest.
 ///

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "formats.h"
-#include "series/steps.h"
+#include "format_table.h"
+#include "steps.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -68,7 +68,7 @@ void detail::check_options(const MeshFormat& format, const std::filesystem::path
     }
     if (!options.blocks.empty() && !format.blocks) {
         throw Error(ErrorCode::InvalidInput, "such files have no named blocks", path.string(),
-                    "blocks come from Exodus II and .vtm files");
+                    "blocks come from Exodus II, .inp and .vtm files");
     }
 }
 

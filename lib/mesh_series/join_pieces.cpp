@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <unordered_map>
@@ -69,6 +70,7 @@ public:
             for (const std::string& warning : piece.warnings) {
                 if (said.insert(warning).second) all_.warnings.push_back(warning);
             }
+            all_.cut = all_.cut || piece.cut;
             all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
         }
         all_.warnings.push_back(counted(pieces_.size(), word_, std::string(word_) + "s") + " put together; " +
@@ -133,7 +135,28 @@ private:
             return false;
         }
         by_ = in_quotes(numbers[0]->name);
+        sort_by(numbers);
         return true;
+    }
+
+    // Puts the points in the order of their numbers, so that cells are cut as they would be in the whole mesh.
+    void sort_by(const std::vector<const FileArray*>& numbers) {
+        std::vector<Index> order(all_.points.size()), place(order.size());
+        std::iota(order.begin(), order.end(), Index{0});
+        const auto number = [&](Index p) { return numbers[sources_[p].first]->values[sources_[p].second]; };
+        std::ranges::sort(order, [&](Index a, Index b) { return number(a) < number(b); });
+        std::vector<Vec3> points;
+        std::vector<std::pair<std::size_t, std::size_t>> sources;
+        for (const Index p : order) {
+            place[p] = static_cast<Index>(points.size());
+            points.push_back(all_.points[p]);
+            sources.push_back(sources_[p]);
+        }
+        all_.points = std::move(points);
+        sources_ = std::move(sources);
+        for (auto& of_piece : places_) {
+            for (Index& p : of_piece) p = place[p];
+        }
     }
 
     void join_by_places() {

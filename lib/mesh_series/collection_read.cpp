@@ -5,7 +5,7 @@
 
 #include "assemble.h"
 #include "collection.h"
-#include "formats.h"
+#include "format_table.h"
 #include "join_pieces.h"
 #include "steps.h"
 #include "subvol/error.h"

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "inp_deck.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "subvol/error.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr int kMostIncludes = 16;
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kSpace = " \t\r\n\f\v";
+    const std::size_t begin = text.find_first_not_of(kSpace);
+    return begin == std::string_view::npos ? std::string_view() : text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin);
+}
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+    std::vector<std::string_view> fields;
+    for (std::size_t begin = 0; begin <= line.size();) {
+        const std::size_t end = std::min(line.find(',', begin), line.size());
+        fields.push_back(trimmed(line.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    if (fields.back().empty()) fields.pop_back();  // after a comma at the end
+    return fields;
+}
+
+// The nodes of an element of a volume; 0 if it is another type.
+std::size_t nodes_of(std::string_view type) {
+    if (!type.starts_with("C3D") && !type.starts_with("DC3D")) return 0;
+    const std::size_t digits = type.find("3D") + 2;
+    std::size_t nodes = 0;
+    std::from_chars(type.data() + digits, type.data() + type.size(), nodes);
+    return nodes;
+}
+
+// The number of nodes is in the names of types; of others a line is an element.
+class DeckReader {
+public:
+    explicit DeckReader(InpDeck& deck) : deck_(deck) {}
+
+    void read(const std::filesystem::path& path, int depth) {
+        const std::string text = read_text(path), file = path.string();
+        TextScanner in(text, file, TextScanner::Comments::None);
+        const auto* const outer = std::exchange(in_, &in);
+        const std::string outer_file = std::exchange(file_, file);
+        std::size_t position = 0;
+        while (position < text.size()) {
+            const std::size_t end = std::min(text.find('\n', position), text.size());
+            const std::string_view line = trimmed(std::string_view(text).substr(position, end - position));
+            position_ = position;
+            position = end + 1;
+            if (line.empty() || line.starts_with("**")) continue;
+            if (line.front() != '*') {
+                take_data(line);
+                continue;
+            }
+            finish_element();
+            if (const auto included = take_keyword(line)) {
+                if (depth == kMostIncludes)
+                    fail("files include each other, more than " + std::to_string(kMostIncludes) + " deep");
+                const std::filesystem::path next = path.parent_path() / *included;
+                std::error_code none;
+                if (!std::filesystem::is_regular_file(next, none)) fail("there is no file " + in_quotes(*included));
+                read(next, depth + 1);
+            }
+        }
+        finish_element();
+        in_ = outer;
+        file_ = outer_file;
+    }
+
+private:
+    enum class Section { Other, Node, Element, ElementSet, Instance };
+
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const {
+        in_->fail_at(position_, message, allowed);
+    }
+
+    // Returns the file that *INCLUDE names.
+    std::optional<std::string> take_keyword(std::string_view line) {
+        const auto fields = fields_of(line);
+        const std::string keyword = upper_case(fields.front());
+        values_.clear();
+        for (std::size_t i = 1; i < fields.size(); ++i) {
+            const std::size_t equals = fields[i].find('=');
+            const auto value = equals == std::string_view::npos ? std::string_view() : trimmed(fields[i].substr(equals + 1));
+            values_[upper_case(trimmed(fields[i].substr(0, equals)))] = std::string(value);
+        }
+        section_ = Section::Other;
+        if (keyword == "*INCLUDE") return values_["INPUT"];
+        if (keyword == "*PART") {
+            part_ = upper_case(values_["NAME"]);
+        } else if (keyword == "*END PART" || keyword == "*END INSTANCE") {
+            part_.clear();
+        } else if (keyword == "*INSTANCE") {
+            section_ = Section::Instance;
+            deck_.instances.push_back({upper_case(values_["PART"])});
+            lines_ = 0;
+        } else if (keyword == "*NODE") {
+            section_ = Section::Node;
+        } else if (keyword == "*ELEMENT") {
+            start_elements();
+        } else if (keyword == "*ELSET") {
+            section_ = Section::ElementSet;
+            if (values_["ELSET"].empty()) fail("the *ELSET has no name");
+        }
+        return std::nullopt;
+    }
+
+    void start_elements() {
+        section_ = Section::Element;
+        const std::string type = upper_case(values_["TYPE"]);
+        if (type.empty()) fail("the *ELEMENT has no TYPE");
+        type_ = deck_.types.try_emplace(type, type).first->second;
+        nodes_ = nodes_of(type_);
+    }
+
+    void take_data(std::string_view line) {
+        if (section_ == Section::Node) take_node(fields_of(line));
+        if (section_ == Section::Element) take_element(line);
+        if (section_ == Section::ElementSet) take_set(fields_of(line));
+        if (section_ == Section::Instance) take_place(fields_of(line));
+    }
+
+    [[nodiscard]] std::int64_t integer(std::string_view word) const {
+        std::int64_t value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (word.empty() || error != std::errc() || end != word.data() + word.size()) {
+            fail("an integer is expected, not " + in_quotes(std::string(word)));
+        }
+        return value;
+    }
+
+    [[nodiscard]] double real(std::string_view word) const {
+        if (word.empty()) return 0;  // as Abaqus takes it
+        std::string text(word.front() == '+' ? word.substr(1) : word);
+        std::ranges::replace_if(
+            text, [](char c) { return c == 'd' || c == 'D'; }, 'e');
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error == std::errc::invalid_argument || end != text.data() + text.size() || !std::isfinite(value)) {
+            fail("a number is expected, not " + in_quotes(std::string(word)));
+        }
+        return value;
+    }
+
+    void take_node(const std::vector<std::string_view>& fields) {
+        InpPart& part = deck_.parts[part_];
+        part.numbers.push_back(integer(fields.empty() ? std::string_view() : fields[0]));
+        Vec3 x(0.0);
+        for (std::size_t a = 0; a < 3 && a + 1 < fields.size(); ++a) x[static_cast<int>(a)] = real(fields[a + 1]);
+        part.points.push_back(x);
+    }
+
+    // An element goes on in the next line until it has all its nodes.
+    void take_element(std::string_view line) {
+        for (const std::string_view field : fields_of(line)) numbers_.push_back(integer(field));
+        if (numbers_.size() > nodes_) finish_element();
+    }
+
+    void finish_element() {
+        if (numbers_.empty()) return;
+        if (nodes_ > 0 && numbers_.size() != nodes_ + 1) {
+            fail("element " + std::to_string(numbers_[0]) + " of type " + std::string(type_) + " has " +
+                 counted(numbers_.size() - 1, "node", "nodes"));
+        }
+        InpPart& part = deck_.parts[part_];
+        if (!values_["ELSET"].empty()) part.sets[values_["ELSET"]].push_back(numbers_[0]);
+        part.elements.push_back({numbers_[0], type_, {numbers_.begin() + 1, numbers_.end()}, file_});
+        numbers_.clear();
+    }
+
+    void take_set(const std::vector<std::string_view>& fields) {
+        InpPart& part = deck_.parts[part_];
+        std::vector<std::int64_t>& set = part.sets[values_["ELSET"]];
+        if (values_.contains("GENERATE")) {
+            if (fields.size() < 2) fail("GENERATE needs a first and a last number");
+            const std::int64_t first = integer(fields[0]), last = integer(fields[1]);
+            const std::int64_t step = fields.size() > 2 ? integer(fields[2]) : 1;
+            if (step < 1 || last < first || (last - first) / step > static_cast<std::int64_t>(part.elements.size())) {
+                fail("the numbers " + std::to_string(first) + " to " + std::to_string(last) + " are not those of elements");
+            }
+            for (std::int64_t number = first; number <= last; number += step) set.push_back(number);
+            return;
+        }
+        for (const std::string_view field : fields) {
+            std::int64_t number = 0;
+            const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+            if (error == std::errc() && end == field.data() + field.size()) {
+                set.push_back(number);
+                continue;
+            }
+            const auto other = part.sets.find(std::string(field));
+            if (other == part.sets.end()) continue;
+            const std::vector<std::int64_t> copy = other->second;
+            set.insert(set.end(), copy.begin(), copy.end());
+        }
+    }
+
+    void take_place(const std::vector<std::string_view>& fields) {
+        InpInstance& instance = deck_.instances.back();
+        const auto at = [&](std::size_t i) { return i < fields.size() ? real(fields[i]) : 0; };
+        if (++lines_ == 1) {
+            instance.move = {at(0), at(1), at(2)};
+        } else if (lines_ == 2) {
+            instance.axis = {Vec3(at(0), at(1), at(2)), Vec3(at(3), at(4), at(5))};
+            instance.angle_deg = at(6);
+        }
+    }
+
+    InpDeck& deck_;
+    const TextScanner* in_ = nullptr;
+    std::string file_;
+    std::size_t position_ = 0;  // of the line
+    Section section_ = Section::Other;
+    std::map<std::string, std::string> values_;  // of the keyword
+    std::string part_;
+    std::string_view type_;
+    std::size_t nodes_ = 0;
+    std::vector<std::int64_t> numbers_;  // of the element so far
+    int lines_ = 0;
+};
+
+}  // namespace
+
+Vec3 InpInstance::operator()(const Vec3& x) const {
+    const Vec3 moved = x + move, along = axis[1] - axis[0];
+    const double length = glm::length(along);
+    if (angle_deg == 0 || length == 0) return moved;
+    const Vec3 u = along / length, v = moved - axis[0];
+    const double angle = angle_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+    return axis[0] + c * v + s * glm::cross(u, v) + (1 - c) * glm::dot(u, v) * u;
+}
+
+InpDeck read_inp_deck(const std::filesystem::path& path) {
+    InpDeck deck;
+    DeckReader(deck).read(path, 0);
+    if (deck.instances.empty()) deck.instances.emplace_back();
+    return deck;
+}
+
+}  // namespace subvol::detail

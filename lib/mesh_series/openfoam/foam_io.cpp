@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <set>
+
+#include "assemble.h"
+#include "foam_case.h"
+#include "foam_cells.h"
+#include "gzip.h"
+#include "join_pieces.h"
+#include "steps.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr EntityNames kNames{"point", "cell", 0};
+
+std::size_t components_of(std::string_view type) {
+    return type == "volScalarField"       ? 1
+           : type == "volVectorField"     ? 3
+           : type == "volSymmTensorField" ? 6
+           : type == "volTensorField"     ? 9
+                                          : 0;
+}
+
+// The files of a folder that may be fields: each once, without .gz.
+std::set<std::string> names_in(const fs::path& folder) {
+    std::set<std::string> names;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+        if (!entry.is_regular_file(none)) continue;
+        const std::string name = entry.path().filename().string();
+        names.insert(name.ends_with(".gz") ? name.substr(0, name.size() - 3) : name);
+    }
+    return names;
+}
+
+class PartReader {
+public:
+    PartReader(const FoamCase& of, std::size_t part, std::size_t step, const ReadOptions& options)
+        : case_(of), part_(part), step_(step), options_(options) {}
+
+    MeshFile read() {
+        read_points();
+        read_cells();
+        if (case_.decomposed) read_numbers();
+        if (step_ < case_.folders.size()) {
+            const fs::path folder = case_.parts[part_] / case_.folders[step_];
+            for (const std::string& name : names_in(folder)) read_field(folder / name, name);
+        }
+        return std::move(found_);
+    }
+
+private:
+    [[nodiscard]] fs::path file(const std::string& name) const { return case_.mesh_file(part_, step_, name); }
+
+    void read_points() {
+        const fs::path path = file("points");
+        FoamText text(path);
+        const auto values = text.reals(3);
+        for (std::size_t i = 0; i + 2 < values.size(); i += 3) add_point(found_, {values[i], values[i + 1], values[i + 2]}, 0);
+        points_ = found_.points.size();
+        if (points_ >= kNone / 2) text.fail("there are too many points");
+    }
+
+    void read_cells() {
+        FoamMesh mesh;
+        FoamText faces(file("faces"));
+        mesh.faces = faces.faces();
+        mesh.owner = FoamText(file("owner")).labels();
+        mesh.neighbour = FoamText(file("neighbour")).labels();
+        const std::string name = file("faces").string();
+        check_foam_mesh(mesh, points_,
+                        [&](const std::string& message) { throw Error(ErrorCode::InvalidInput, message, name); });
+        if (mesh.cells >= kNone / 2) faces.fail("there are too many cells");
+        cells_ = mesh.cells;
+        add_foam_cells(mesh, options_.other_cells == OtherCells::Ignore, found_);
+        const std::string of_points = file("points").string();
+        TextScanner in(std::string_view(), of_points, TextScanner::Comments::None);
+        in.name_no_place();
+        refuse_not_finite(found_, in, kNames);
+    }
+
+    // Those of the points in the whole mesh; points that were added in the middle of cells belong to no other part.
+    void read_numbers() {
+        const fs::path path = file("pointProcAddressing");
+        std::error_code none;
+        if (!fs::exists(path, none) && !fs::exists(path.string() + ".gz", none)) return;
+        FoamText text(path);
+        const auto numbers = text.labels();
+        if (numbers.size() != points_) {
+            text.fail(counted(numbers.size(), "number", "numbers") + " of points", std::to_string(points_) + " are needed");
+        }
+        FileArray array{"GlobalNodeId", 1, false, {}};
+        for (const std::int64_t number : numbers) array.values.push_back(static_cast<double>(number));
+        for (std::size_t p = points_; p < found_.points.size(); ++p) {
+            array.values.push_back(static_cast<double>(part_ + 1) * 4294967296.0 + static_cast<double>(p));
+        }
+        found_.arrays.push_back(std::move(array));
+    }
+
+    void read_field(const fs::path& path, const std::string& name) {
+        constexpr std::size_t kHeader = 4096;
+        if (std::string_view(read_maybe_gzipped(path)).substr(0, kHeader).find("FoamFile") == std::string_view::npos) return;
+        FoamText text(path);
+        const std::size_t components = components_of(text.type());
+        if (components == 0) return;
+        found_.arrays.push_back({name, static_cast<int>(components), true, text.internal_field(components, cells_)});
+    }
+
+    const FoamCase& case_;
+    std::size_t part_, step_;
+    ReadOptions options_;
+    MeshFile found_;
+    std::size_t points_ = 0, cells_ = 0;
+};
+
+}  // namespace
+
+ReadResult read_foam(const fs::path& path, const ReadOptions& options) {
+    const FoamCase of = find_foam_case(path);
+    const std::string file = path.string();
+    std::vector<std::string> warnings;
+    const std::size_t step = chosen_step(options, std::max<std::size_t>(1, of.times.size()), file, warnings);
+    std::vector<MeshFile> parts;
+    for (std::size_t part = 0; part < of.parts.size(); ++part) parts.push_back(PartReader(of, part, step, options).read());
+    MeshFile found = parts.size() == 1 ? std::move(parts.front()) : join_pieces(std::move(parts), "processor", file);
+    if (of.decomposed) {
+        std::erase_if(found.arrays, [](const FileArray& array) { return array.name == "GlobalNodeId"; });
+    }
+    found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
+    add_left_out_warning(found, {}, file);
+    return assemble(std::move(found), file, kNames, options);
+}
+
+}  // namespace subvol::detail

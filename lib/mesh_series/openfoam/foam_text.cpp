@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "foam_text.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "gzip.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::string_view kMarks = "(){}[];";
+
+bool is_space(char c) {
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
+}
+
+}  // namespace
+
+FoamText::FoamText(const std::filesystem::path& path)
+    : file_(path.string()), text_(read_maybe_gzipped(path)), in_(text_, file_, TextScanner::Comments::None) {
+    read_header();
+}
+
+void FoamText::fail(const std::string& message, const std::string& allowed) const {
+    in_.fail_at(std::min(next_, text_.size()), message, allowed);
+}
+
+void FoamText::skip_space() {
+    const std::string_view all = text_;
+    while (next_ < all.size()) {
+        const std::string_view rest = all.substr(next_);
+        if (is_space(rest.front())) {
+            ++next_;
+        } else if (rest.starts_with("//")) {
+            next_ = std::min(all.find('\n', next_), all.size());
+        } else if (rest.starts_with("/*")) {
+            const std::size_t end = all.find("*/", next_ + 2);
+            next_ = end == std::string_view::npos ? all.size() : end + 2;
+        } else {
+            return;
+        }
+    }
+}
+
+std::string_view FoamText::token() {
+    skip_space();
+    if (next_ == text_.size()) return {};
+    const std::size_t begin = next_;
+    if (kMarks.find(text_[begin]) != std::string_view::npos) {
+        ++next_;
+    } else if (text_[begin] == '"') {
+        const std::size_t end = text_.find('"', begin + 1);
+        next_ = end == std::string::npos ? text_.size() : end + 1;
+    } else {
+        while (next_ < text_.size() && !is_space(text_[next_]) && kMarks.find(text_[next_]) == std::string_view::npos) ++next_;
+    }
+    return std::string_view(text_).substr(begin, next_ - begin);
+}
+
+void FoamText::expect(std::string_view mark) {
+    const std::string_view found = token();
+    if (found != mark) {
+        fail(in_quotes(std::string(mark)) + " is expected" +
+             (found.empty() ? ", not the end of the file" : ", not " + in_quotes(std::string(found))));
+    }
+}
+
+double FoamText::number() {
+    const std::string_view word = token();
+    double value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (word.empty() || end != word.data() + word.size() || error == std::errc::invalid_argument) {
+        fail("a number is expected, not " + (word.empty() ? "the end of the file" : in_quotes(std::string(word))));
+    }
+    return value;
+}
+
+std::int64_t FoamText::label() {
+    const std::string_view word = token();
+    std::int64_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (word.empty() || end != word.data() + word.size() || error != std::errc()) {
+        fail("an integer is expected, not " + (word.empty() ? "the end of the file" : in_quotes(std::string(word))));
+    }
+    return value;
+}
+
+std::size_t FoamText::count(std::size_t width, std::size_t expected) {
+    const std::int64_t count = label();
+    const std::size_t room = std::max(expected, (text_.size() - next_) / width);
+    if (count < 0 || static_cast<std::uint64_t>(count) > room) {
+        fail("count out of range: " + std::to_string(count), "the file has " + counted(text_.size(), "byte", "bytes"));
+    }
+    return static_cast<std::size_t>(count);
+}
+
+std::string_view FoamText::bytes(std::size_t size) {
+    if (size > text_.size() - next_) {
+        in_.name_bytes();
+        fail("unexpected end of file");
+    }
+    next_ += size;
+    return std::string_view(text_).substr(next_ - size, size);
+}
+
+void FoamText::read_header() {
+    if (text_.empty()) fail("the file is empty");
+    if (token() != "FoamFile") fail("not a file of OpenFOAM: it does not begin with FoamFile");
+    expect("{");
+    for (std::string_view key = token(); key != "}"; key = token()) {
+        if (key.empty()) fail("the header does not end");
+        const std::string_view value = token();
+        if (key == "format") binary_ = value == "binary";
+        if (key == "class") type_ = std::string(value);
+        if (key == "arch") {
+            if (value.find("MSB") != std::string_view::npos) order_ = std::endian::big;
+            wide_labels_ = value.find("label=64") != std::string_view::npos;
+            wide_reals_ = value.find("scalar=32") == std::string_view::npos;
+        }
+        for (std::string_view rest = value; rest != ";"; rest = token()) {
+            if (rest.empty()) fail("the header does not end");
+        }
+    }
+}
+
+std::vector<std::int64_t> FoamText::labels() {
+    const std::size_t width = size_of(label_type()), entries = count(binary_ ? width : 2);
+    std::vector<std::int64_t> list;
+    const std::string_view mark = token();
+    if (mark == "{") {
+        list.assign(entries, label());
+        expect("}");
+        return list;
+    }
+    if (mark != "(") fail("a list is expected");
+    if (binary_) {
+        list = integers_from(bytes(entries * width), label_type(), order_);
+    } else {
+        for (std::size_t i = 0; i < entries; ++i) list.push_back(label());
+    }
+    expect(")");
+    return list;
+}
+
+void FoamText::read_tuple(std::size_t components, std::vector<double>& values) {
+    if (components > 1) expect("(");
+    for (std::size_t c = 0; c < components; ++c) values.push_back(number());
+    if (components > 1) expect(")");
+}
+
+std::vector<double> FoamText::reals(std::size_t components, std::size_t expected) {
+    const std::size_t width = components * size_of(real_type()), entries = count(binary_ ? width : 2 * components, expected);
+    std::vector<double> list;
+    const std::string_view mark = token();
+    if (mark == "{") {
+        std::vector<double> one;
+        read_tuple(components, one);
+        for (std::size_t i = 0; i < entries; ++i) list.insert(list.end(), one.begin(), one.end());
+        expect("}");
+        return list;
+    }
+    if (mark != "(") fail("a list is expected");
+    if (binary_) {
+        list = reals_from(bytes(entries * width), real_type(), order_);
+    } else {
+        list.reserve(entries * components);
+        for (std::size_t i = 0; i < entries; ++i) read_tuple(components, list);
+    }
+    expect(")");
+    return list;
+}
+
+FoamFaces FoamText::faces() {
+    FoamFaces faces;
+    if (type_ == "faceCompactList") {
+        const auto starts = labels();
+        faces.points = labels();
+        for (std::size_t f = 0; f < starts.size(); ++f) {
+            const std::int64_t last = f == 0 ? 0 : starts[f - 1];
+            if (starts[f] < last || static_cast<std::size_t>(starts[f]) > faces.points.size() || (f == 0 && starts[f] != 0)) {
+                fail("the start of face " + std::to_string(f) + " is " + std::to_string(starts[f]),
+                     "from 0 to " + std::to_string(faces.points.size()) + ", never falling");
+            }
+            if (f > 0) faces.ends.push_back(static_cast<std::size_t>(starts[f]));
+        }
+        return faces;
+    }
+    if (binary_) fail("faces in binary of the class " + in_quotes(type_) + " are not supported", "faceCompactList is");
+    const std::size_t entries = count(4);
+    expect("(");
+    for (std::size_t f = 0; f < entries; ++f) {
+        const auto points = labels();
+        faces.points.insert(faces.points.end(), points.begin(), points.end());
+        faces.ends.push_back(faces.points.size());
+    }
+    expect(")");
+    return faces;
+}
+
+std::vector<double> FoamText::internal_field(std::size_t components, std::size_t cells) {
+    int depth = 0;
+    for (std::string_view word = token(); word != "internalField" || depth > 0; word = token()) {
+        if (word.empty()) fail("there is no internalField");
+        if (word == "{") ++depth;
+        if (word == "}") --depth;
+    }
+    const std::string_view kind = token();
+    std::vector<double> values;
+    if (kind == "uniform") {
+        std::vector<double> one;
+        read_tuple(components, one);
+        for (std::size_t c = 0; c < cells; ++c) values.insert(values.end(), one.begin(), one.end());
+        return values;
+    }
+    if (kind != "nonuniform") fail("the internalField is " + in_quotes(std::string(kind)), "uniform or nonuniform");
+    skip_space();
+    if (next_ < text_.size() && (text_[next_] < '0' || text_[next_] > '9')) static_cast<void>(token());  // List<vector>
+    values = reals(components, cells);
+    if (values.size() != cells * components) {
+        fail("the internalField has " + counted(values.size() / components, "value", "values"),
+             "the mesh has " + counted(cells, "cell", "cells"));
+    }
+    return values;
+}
+
+}  // namespace subvol::detail

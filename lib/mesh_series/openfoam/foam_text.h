@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "number_type.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+/// The faces of a mesh: those of face f are points[ends[f - 1]] to points[ends[f] - 1].
+struct FoamFaces {
+    std::vector<std::size_t> ends;
+    std::vector<std::int64_t> points;
+
+    [[nodiscard]] std::size_t size() const { return ends.size(); }
+    [[nodiscard]] std::span<const std::int64_t> operator[](std::size_t f) const {
+        const std::size_t begin = f == 0 ? 0 : ends[f - 1];
+        return std::span(points).subspan(begin, ends[f] - begin);
+    }
+};
+
+/// A file of OpenFOAM: its header and the list or field that follows, as text or in binary numbers of the widths that the
+/// header gives. Every failure is an Error(InvalidInput) that names the file and the line, in binary files the byte.
+class FoamText {
+public:
+    /// Reads the file, or the one with .gz, and its header.
+    explicit FoamText(const std::filesystem::path& path);
+    FoamText(const FoamText&) = delete;
+    FoamText& operator=(const FoamText&) = delete;
+
+    /// The header's class, such as volScalarField.
+    [[nodiscard]] const std::string& type() const { return type_; }
+
+    [[nodiscard]] std::vector<std::int64_t> labels();
+    /// Numbers, `components` for each entry. expected: entries that may be one value repeated, however short the file
+    [[nodiscard]] std::vector<double> reals(std::size_t components, std::size_t expected = 0);
+    [[nodiscard]] FoamFaces faces();
+
+    /// The internalField of a field file, for so many cells.
+    [[nodiscard]] std::vector<double> internal_field(std::size_t components, std::size_t cells);
+
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const;
+
+private:
+    void skip_space();
+    /// A word, or one of the marks ( ) { } [ ] ;. Empty at the end.
+    std::string_view token();
+    void expect(std::string_view mark);
+    double number();
+    std::int64_t label();
+    /// The count before a list. width: of an entry in bytes; expected: allowed in any case
+    std::size_t count(std::size_t width, std::size_t expected = 0);
+    std::string_view bytes(std::size_t size);
+    void read_header();
+    [[nodiscard]] NumberType label_type() const { return wide_labels_ ? NumberType::Int64 : NumberType::Int32; }
+    [[nodiscard]] NumberType real_type() const { return wide_reals_ ? NumberType::Float64 : NumberType::Float32; }
+    void read_tuple(std::size_t components, std::vector<double>& values);
+
+    std::string file_, text_;
+    TextScanner in_;
+    std::size_t next_ = 0;
+    std::string type_;
+    bool binary_ = false, wide_labels_ = false, wide_reals_ = true;
+    std::endian order_ = std::endian::little;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Abaqus and CalculiX decks.
+
+#include <gmock/gmock.h>
+
+#include "lib/temp_folder.h"
+#include "subvol/mesh_io.h"
+#include "subvol/mesh_report.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Two unit cubes beside each other, whose nodes have numbers with gaps.
+constexpr const char* kNodes =
+    "*Node, NSET=all\n"
+    " 10, 0, 0, 0\n 20, 1., 0, 0\n 30, 1.D0, 1, 0\n 40, 0, 1, 0\n50,,,1\n60,1,,1\n70,1,1,1\n80,0,1,1\n"
+    "** a comment\n 90, 2, 0, 0\n 100, 2, 1\n 110, 2, 0, 1\n 120, 2, 1, 1\n";
+
+class Abaqus : public TempFolder {
+protected:
+    [[nodiscard]] std::string error(const std::string& text) const {
+        return error_of([&] { static_cast<void>(read_mesh(write("a.inp", text))); });
+    }
+};
+
+TEST_F(Abaqus, NodesElementsAndSets) {
+    const std::string text = std::string("*HEADING\n anything, 1, 2\n") + kNodes +
+                             "*ELEMENT, TYPE=C3D8R, ELSET=left\n1, 10, 20, 30, 40, 50, 60, 70, 80\n"
+                             "*element, type = c3d8I\n7, 20, 90, 100, 30, 60,\n 110, 120, 70\n"
+                             "*ELEMENT, TYPE=S4R, ELSET=skin\n9, 10, 20, 30, 40\n"
+                             "*ELSET, ELSET=right\n7\n*ELSET, ELSET=both\nleft, right\n*ELSET, ELSET=every, GENERATE\n1, 7, 6\n"
+                             "*STEP\n*NODE PRINT\nU\n*END STEP\n";
+    const ReadResult result = read_mesh(write("a.inp", text));
+    EXPECT_NEAR(inspect(result.mesh).volume, 2, 1e-12);
+    EXPECT_EQ(inspect(result.mesh).interior_edges, 0u);
+    EXPECT_EQ(inspect(result.mesh).faces, 11u);
+    EXPECT_THAT(result.warnings, ElementsAre("1 element of type S4R ignored"));
+    std::vector<std::string> blocks;
+    for (const MeshBlock& block : result.blocks) blocks.push_back(block.name + " " + std::to_string(block.cells));
+    EXPECT_THAT(blocks, ElementsAre("both 2", "every 2", "left 1", "right 1"));
+    EXPECT_EQ(read_mesh(path("a.inp"), {.blocks = {"right"}}).mesh.cells.size(), 1u);
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("a.inp"), {.blocks = {"x"}})); }),
+                HasSubstr("a.inp: there is no block \"x\" (it has: both, every, left, right, skin)"));
+}
+
+TEST_F(Abaqus, InstancesArePlacedAndFilesIncluded) {
+    write("nodes.inp", kNodes);
+    const ReadResult result =
+        read_mesh(write("a.inp",
+                        "*PART, NAME=cube\n*INCLUDE, INPUT=nodes.inp\n*ELEMENT, TYPE=C3D8\n1, 10, 20, 30, 40, 50, 60, 70, 80\n"
+                        "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=Cube\n*END INSTANCE\n"
+                        "*INSTANCE, NAME=j, PART=cube\n5, 0, 0\n5, 0, 0, 5, 0, 1, 90\n*END INSTANCE\n*END ASSEMBLY\n"));
+    const MeshReport report = inspect(result.mesh);
+    EXPECT_EQ(report.cells, 2u);
+    EXPECT_NEAR(report.volume, 2, 1e-12);
+    // Moved to x from 5 to 6, then turned by 90° about x = 5, y = 0: x from 4 to 5.
+    EXPECT_NEAR(report.bounds.upper.x, 5, 1e-12);
+    EXPECT_NEAR(report.bounds.lower.x, 0, 1e-12);
+}
+
+TEST_F(Abaqus, CurvedHexahedraHaveTheirShape) {
+    // A cube whose edge 1–2 bulges out to y = -0.1: its parabola adds 2/3 · 0.1 at one edge of one face.
+    std::string text = "*NODE\n";
+    const std::vector<std::array<int, 2>> edges{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                                {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+    const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    std::vector<Vec3> nodes = corners;
+    for (const auto& [a, b] : edges)
+        nodes.push_back(.5 * (corners[static_cast<std::size_t>(a)] + corners[static_cast<std::size_t>(b)]));
+    nodes[8].y = -.1;
+    std::string element = "1";
+    for (std::size_t p = 0; p < nodes.size(); ++p) {
+        text += std::to_string(p + 1) + "," + std::to_string(nodes[p].x) + "," + std::to_string(nodes[p].y) + "," +
+                std::to_string(nodes[p].z) + "\n";
+        element += "," + std::string(p % 10 == 9 ? "\n" : "") + std::to_string(p + 1);
+    }
+    const ReadResult result = read_mesh(write("a.inp", text + "*ELEMENT, TYPE=C3D20R\n" + element + "\n"));
+    // The edge's displacement 0.4 x (1 - x) falls linearly to the opposite edges: its mean over the face is half of 1/15.
+    EXPECT_NEAR(inspect(result.mesh).volume, 1 + .1 * 2 / 3 / 2, 1e-4);
+    EXPECT_GT(result.mesh.cells.size(), 1u);
+}
+
+TEST_F(Abaqus, WrongDecksGetASentenceWithTheLine) {
+    const std::string nodes = kNodes;
+    EXPECT_THAT(error(""), HasSubstr("a.inp: it has no nodes"));
+    EXPECT_THAT(error("*NODE\n1, 2, x\n"), HasSubstr("a.inp, line 2: a number is expected, not \"x\""));
+    EXPECT_THAT(error("*NODE\nx, 2\n"), HasSubstr("a.inp, line 2: an integer is expected, not \"x\""));
+    EXPECT_THAT(error(nodes), HasSubstr("a.inp: no hexahedra"));
+    EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D8\n5, 10, 20, 30, 40, 50, 60, 70, 99\n"),
+                HasSubstr("a.inp: element 5: there is no node 99"));
+    EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D8\n5, 10, 20, 30\n*STEP\n"), HasSubstr("element 5 of type C3D8 has 3 nodes"));
+    EXPECT_THAT(error(nodes + "*ELEMENT\n5, 10\n"), HasSubstr("the *ELEMENT has no TYPE"));
+    EXPECT_THAT(error("*INCLUDE, INPUT=b.inp\n"), HasSubstr("a.inp, line 1: there is no file \"b.inp\""));
+    EXPECT_THAT(error("*INCLUDE, INPUT=a.inp\n"), HasSubstr("files include each other, more than 16 deep"));
+    EXPECT_THAT(error("*INSTANCE, PART=p\n"), HasSubstr("there is no part \"P\""));
+    EXPECT_THAT(error(nodes + "*ELSET, ELSET=e, GENERATE\n1, 9000000000, 1\n"), HasSubstr("are not those of elements"));
+}
+
+}  // namespace
+
+}  // namespace subvol::test

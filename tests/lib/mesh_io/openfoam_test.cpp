@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenFOAM cases, written as text and in binary of all widths.
+
+#include <gmock/gmock.h>
+#include <zlib.h>
+
+#include <cstring>
+
+#include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
+#include "mesh_texts.h"
+#include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
+#include "subvol/surface.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// How numbers are written.
+struct Form {
+    bool binary = false;
+    bool wide_labels = false, wide_reals = true;
+    bool gzipped = false;
+};
+
+template <class Number>
+std::string raw(const std::vector<Number>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)};
+}
+
+std::string header(const std::string& type, const Form& form) {
+    return std::string("/* a comment */\nFoamFile\n{\n    version 2.0;\n    format ") + (form.binary ? "binary" : "ascii") +
+           ";\n    class " + type + ";\n    arch \"LSB;label=" + (form.wide_labels ? "64" : "32") +
+           ";scalar=" + (form.wide_reals ? "64" : "32") + "\";\n    object x;\n}\n// * * //\n\n";
+}
+
+std::string labels(const std::vector<int>& values, const Form& form) {
+    std::string text = std::to_string(values.size()) + "\n(";
+    if (form.binary) {
+        text += form.wide_labels ? raw(std::vector<std::int64_t>(values.begin(), values.end()))
+                                 : raw(std::vector<std::int32_t>(values.begin(), values.end()));
+    } else {
+        for (const int value : values) text += " " + std::to_string(value);
+    }
+    return text + ")\n";
+}
+
+std::string reals(const std::vector<double>& values, std::size_t components, const Form& form) {
+    std::string text = std::to_string(values.size() / components) + "\n(";
+    if (form.binary)
+        return text + (form.wide_reals ? raw(values) : raw(std::vector<float>(values.begin(), values.end()))) + ")\n";
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        text += (components > 1 && i % components == 0 ? "(" : " ") + number(values[i]);
+        if (components > 1 && i % components == components - 1) text += ")\n";
+    }
+    return text + ")\n";
+}
+
+// Polyhedra by their faces, outward normals, as OpenFOAM orders them: faces between cells first.
+struct Polyhedra {
+    std::vector<Vec3> points;
+    std::vector<std::vector<int>> faces;
+    std::vector<int> owner, neighbour;
+};
+
+// cells: each a list of faces whose normals point out of it
+Polyhedra polyhedra(const std::vector<Vec3>& points, const std::vector<std::vector<std::vector<int>>>& cells) {
+    Polyhedra mesh{points, {}, {}, {}};
+    const auto sorted = [](std::vector<int> face) {
+        std::sort(face.begin(), face.end());
+        return face;
+    };
+    for (const bool inside : {true, false}) {
+        for (std::size_t c = 0; c < cells.size(); ++c) {
+            for (const auto& face : cells[c]) {
+                int other = -1;
+                for (std::size_t d = 0; d < cells.size(); ++d) {
+                    for (const auto& of_other : cells[d]) {
+                        if (d != c && sorted(of_other) == sorted(face)) other = static_cast<int>(d);
+                    }
+                }
+                if ((other >= 0) != inside || (inside && other < static_cast<int>(c))) continue;
+                mesh.faces.push_back(face);
+                mesh.owner.push_back(static_cast<int>(c));
+                if (inside) mesh.neighbour.push_back(other);
+            }
+        }
+    }
+    return mesh;
+}
+
+std::vector<std::vector<int>> faces_of_hex(const std::array<Index, 8>& c) {
+    std::vector<std::vector<int>> faces;
+    for (const std::array<int, 4> f : {std::array{0, 3, 2, 1}, std::array{4, 5, 6, 7}, std::array{0, 1, 5, 4},
+                                       std::array{1, 2, 6, 5}, std::array{2, 3, 7, 6}, std::array{3, 0, 4, 7}}) {
+        auto& face = faces.emplace_back();
+        for (const int k : f) face.push_back(static_cast<int>(c[static_cast<std::size_t>(k)]));
+    }
+    return faces;
+}
+
+class OpenFoam : public TempFolder {
+protected:
+    void put(const std::string& name, const std::string& text, const Form& form) const {
+        std::filesystem::create_directories(path(name).parent_path());
+        if (!form.gzipped) {
+            write(name, text);
+            return;
+        }
+        const gzFile file = gzopen((path(name).string() + ".gz").c_str(), "wb");
+        gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+        gzclose(file);
+    }
+
+    void put_mesh(const std::string& folder, const Polyhedra& mesh, const Form& form) const {
+        put_points(folder, mesh.points, form);
+        std::vector<int> starts{0}, all;
+        std::string list = std::to_string(mesh.faces.size()) + "\n(\n";
+        for (const auto& face : mesh.faces) {
+            all.insert(all.end(), face.begin(), face.end());
+            starts.push_back(static_cast<int>(all.size()));
+            list += labels(face, {});
+        }
+        put(folder + "/faces",
+            form.binary ? header("faceCompactList", form) + labels(starts, form) + labels(all, form)
+                        : header("faceList", form) + list + ")\n",
+            form);
+        put(folder + "/owner", header("labelList", form) + labels(mesh.owner, form), form);
+        put(folder + "/neighbour", header("labelList", form) + labels(mesh.neighbour, form), form);
+    }
+
+    void put_points(const std::string& folder, const std::vector<Vec3>& points, const Form& form) const {
+        std::vector<double> coordinates;
+        for (const Vec3& x : points) coordinates.insert(coordinates.end(), {x.x, x.y, x.z});
+        put(folder + "/points", header("vectorField", form) + reals(coordinates, 3, form), form);
+    }
+
+    [[nodiscard]] std::string error() const {
+        return error_of([&] { static_cast<void>(read_mesh(path("a.foam"))); });
+    }
+};
+
+double boundary_area(const HexMesh& mesh) {
+    const Surface surface = boundary_surface(mesh);
+    double area = 0;
+    for (const auto& t : surface.triangles) {
+        const auto x = [&](std::size_t k) { return Vec3(surface.points[t[k]]); };
+        area += glm::length(glm::cross(x(1) - x(0), x(2) - x(0))) / 2;
+    }
+    return area;
+}
+
+Polyhedra box(int n) {
+    const HexMesh mesh = make_box(n, 2, 1);
+    std::vector<std::vector<std::vector<int>>> cells;
+    for (const auto& cell : mesh.cells) cells.push_back(faces_of_hex(cell));
+    return polyhedra(mesh.points, cells);
+}
+
+TEST_F(OpenFoam, HexahedraAndTheirFieldsInEveryForm) {
+    const Polyhedra mesh = box(3);
+    const std::vector<double> p{1, 2, 3, 4, 5, 6};
+    write("a.foam", "");
+    for (const Form form :
+         {Form{}, Form{.binary = true}, Form{.binary = true, .wide_labels = true}, Form{.binary = true, .wide_reals = false},
+          Form{.gzipped = true}, Form{.binary = true, .gzipped = true}}) {
+        for (const std::string part : {"constant", "0", "0.5"}) std::filesystem::remove_all(path(part));
+        put_mesh("constant/polyMesh", mesh, form);
+        put("0/p", header("volScalarField", form) + "dimensions [0 2 -2 0 0 0 0];\ninternalField uniform 7;\nboundaryField{}",
+            form);
+        put("0.5/p",
+            header("volScalarField", form) + "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar> " +
+                reals(p, 1, form) + ";\nboundaryField { a { value uniform 0; } }",
+            form);
+        put("0.5/U", header("volVectorField", form) + "internalField uniform (1 2 3);", form);
+        put("0.5/phi", header("surfaceScalarField", form) + "internalField nonuniform List<scalar> 0();", form);
+        for (const auto& input : {path("a.foam"), path("")}) {
+            EXPECT_THAT(open_series(input).times, ElementsAre(0, .5));
+            const ReadResult result = read_mesh(input);
+            const MeshReport report = inspect(result.mesh);
+            EXPECT_EQ(report.cells, 6u);
+            EXPECT_EQ(report.inverted_cells, 0u);
+            EXPECT_NEAR(report.volume, 6, 1e-6);
+            EXPECT_THAT(result.warnings, Contains("of 2 steps the last one is taken"));
+            ASSERT_EQ(result.fields.size(), 2u);
+            EXPECT_EQ(result.fields[1].name, "p");
+            EXPECT_EQ(result.fields[1].max, 6);
+            EXPECT_EQ(result.mesh.find_attribute("U")->values[5], 3);
+            EXPECT_EQ(read_mesh(input, {.step = 0}).fields[0].max, 7);
+        }
+    }
+}
+
+TEST_F(OpenFoam, PointsThatMoveAreThoseOfTheirTime) {
+    write("a.foam", "");
+    const Polyhedra mesh = box(1);
+    put_mesh("constant/polyMesh", mesh, {});
+    std::vector<Vec3> moved = mesh.points;
+    for (Vec3& x : moved) x *= 2;
+    put_points("2/polyMesh", moved, {});
+    for (const std::string time : {"1", "2", "10"}) std::filesystem::create_directories(path(time));
+    EXPECT_THAT(open_series(path("a.foam")).times, ElementsAre(1, 2, 10));
+    for (const auto& [step, volume] : std::vector<std::pair<std::size_t, double>>{{0, 2}, {1, 16}, {2, 16}}) {
+        EXPECT_NEAR(inspect(read_mesh(path("a.foam"), {.step = step}).mesh).volume, volume, 1e-12);
+    }
+}
+
+// A cube with a prism, a pyramid and a tetrahedron on it, and a cube one of whose faces is in four parts, beside small cubes.
+TEST_F(OpenFoam, CellsAreTakenByTheirShapes) {
+    write("a.foam", "");
+    const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1},   {1, 0, 1},
+                                   {1, 1, 1}, {0, 1, 1}, {2, 0, 0}, {2, 0, 1}, {.5, .5, 2}, {.5, -1, 1.5}};
+    const auto cube = faces_of_hex({0, 1, 2, 3, 4, 5, 6, 7});
+    const std::vector<std::vector<int>> prism{{1, 2, 8}, {5, 9, 6}, {1, 5, 6, 2}, {1, 8, 9, 5}, {2, 6, 9, 8}};
+    const std::vector<std::vector<int>> pyramid{{4, 7, 6, 5}, {4, 5, 10}, {5, 6, 10}, {6, 7, 10}, {7, 4, 10}};
+    const std::vector<std::vector<int>> tet{{4, 10, 5}, {4, 5, 11}, {5, 10, 11}, {10, 4, 11}};
+    put_mesh("constant/polyMesh", polyhedra(points, {cube, prism, pyramid, tet}), {});
+    const ReadResult result = read_mesh(path("a.foam"));
+    EXPECT_THAT(result.warnings[0], HasSubstr("1 hexahedron, 1 tetrahedron, 1 prism and 1 pyramid"));
+    const MeshReport report = inspect(result.mesh);
+    EXPECT_EQ(report.inverted_cells, 0u);
+    const double of_tet =
+        std::abs(glm::dot(points[5] - points[4], glm::cross(points[10] - points[4], points[11] - points[4]))) / 6;
+    EXPECT_NEAR(report.volume, 1 + .5 + 1. / 3 + of_tet, 1e-12);
+    EXPECT_EQ(read_mesh(path("a.foam"), {.other_cells = OtherCells::Ignore}).mesh.cells.size(), 1u);
+}
+
+TEST_F(OpenFoam, PolyhedraWithHangingNodesFitToTheirNeighbours) {
+    write("a.foam", "");
+    // A cube of edge 2, beside four of edge 1 on its face x = 2.
+    std::vector<Vec3> points{{0, 0, 0}, {0, 2, 0}, {0, 0, 2}, {0, 2, 2}};
+    for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k < 3; ++k) {
+            for (int j = 0; j < 3; ++j) points.push_back({2 + i, j, k});
+        }
+    }
+    const auto at = [](int i, int j, int k) { return 4 + 9 * i + 3 * k + j; };
+    std::vector<std::vector<std::vector<int>>> cells;
+    std::vector<std::vector<int>> large{{0, 2, 3, 1}};
+    large.push_back({0, at(0, 0, 0), at(0, 0, 1), at(0, 0, 2), 2});
+    large.push_back({1, 3, at(0, 2, 2), at(0, 2, 1), at(0, 2, 0)});
+    large.push_back({0, 1, at(0, 2, 0), at(0, 1, 0), at(0, 0, 0)});
+    large.push_back({2, at(0, 0, 2), at(0, 1, 2), at(0, 2, 2), 3});
+    for (int j = 0; j < 2; ++j) {
+        for (int k = 0; k < 2; ++k) {
+            large.push_back({at(0, j, k), at(0, j + 1, k), at(0, j + 1, k + 1), at(0, j, k + 1)});
+            const auto p = [&](int i, int dj, int dk) { return static_cast<Index>(at(i, j + dj, k + dk)); };
+            cells.push_back(
+                faces_of_hex({p(0, 0, 0), p(1, 0, 0), p(1, 1, 0), p(0, 1, 0), p(0, 0, 1), p(1, 0, 1), p(1, 1, 1), p(0, 1, 1)}));
+        }
+    }
+    cells.insert(cells.begin(), large);
+    put_mesh("constant/polyMesh", polyhedra(points, cells), {});
+    const ReadResult result = read_mesh(path("a.foam"));
+    EXPECT_EQ(result.warnings[0], "1 polyhedron split from the middle into 22 tetrahedra");
+    const MeshReport report = inspect(result.mesh);
+    EXPECT_NEAR(report.volume, 8 + 4, 1e-12);
+    EXPECT_EQ(report.inverted_cells, 0u);
+    EXPECT_EQ(report.nonmanifold_faces, 0u);
+    // No gap: the boundary is that of the solid, whose faces are cut into triangles of three quads each.
+    EXPECT_NEAR(boundary_area(result.mesh), 4 + 4 * 4 + 4 + 4 * 2, 1e-12);
+}
+
+TEST_F(OpenFoam, DecomposedCasesAreJoined) {
+    write("a.foam", "");
+    const HexMesh whole = make_box(4, 2, 1);
+    for (int part = 0; part < 2; ++part) {
+        std::vector<std::vector<std::vector<int>>> cells;
+        std::vector<int> numbers;
+        std::vector<Vec3> points;
+        for (std::size_t c = 0; c < whole.cells.size(); ++c) {
+            const bool left = whole.points[whole.cells[c][0]].x < 2;
+            if (left != (part == 0)) continue;
+            for (const Index p : whole.cells[c]) numbers.push_back(static_cast<int>(p));
+        }
+        std::sort(numbers.begin(), numbers.end());
+        numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+        for (const int p : numbers) points.push_back(whole.points[static_cast<std::size_t>(p)]);
+        for (const auto& cell : whole.cells) {
+            std::array<Index, 8> local;
+            bool here = true;
+            for (std::size_t k = 0; k < 8; ++k) {
+                const auto found = std::ranges::lower_bound(numbers, static_cast<int>(cell[k]));
+                here = here && found != numbers.end() && *found == static_cast<int>(cell[k]);
+                local[k] = static_cast<Index>(found - numbers.begin());
+            }
+            if (here) cells.push_back(faces_of_hex(local));
+        }
+        const std::string folder = "processor" + std::to_string(part);
+        put_mesh(folder + "/constant/polyMesh", polyhedra(points, cells), {});
+        put(folder + "/constant/polyMesh/pointProcAddressing", header("labelList", {}) + labels(numbers, {}), {});
+        put(folder + "/3/p", header("volScalarField", {}) + "internalField uniform " + std::to_string(part) + ";", {});
+    }
+    const ReadResult result = read_mesh(path("a.foam"));
+    EXPECT_EQ(result.warnings[0], "2 processors put together; 6 points joined with those of another, by \"GlobalNodeId\"");
+    EXPECT_EQ(result.mesh.points, whole.points);
+    EXPECT_EQ(inspect(result.mesh).boundary_faces, inspect(whole).boundary_faces);
+    EXPECT_EQ(result.fields.size(), 1u);
+    EXPECT_EQ(result.fields[0].max, 1);
+}
+
+TEST_F(OpenFoam, WrongFilesGetASentence) {
+    write("a.foam", "");
+    EXPECT_THAT(error(), HasSubstr("a.foam: there is no mesh of OpenFOAM (constant/polyMesh/faces is needed"));
+    const Polyhedra mesh = box(1);
+    const auto good = [&] { put_mesh("constant/polyMesh", mesh, {}); };
+    const auto with = [&](const std::string& name, const std::string& text) {
+        good();
+        put("constant/polyMesh/" + name, text, {});
+        return error();
+    };
+    EXPECT_THAT(with("points", ""), HasSubstr("points, line 1: the file is empty"));
+    EXPECT_THAT(with("points", "solid"), HasSubstr("it does not begin with FoamFile"));
+    EXPECT_THAT(with("points", "FoamFile {"), HasSubstr("the header does not end"));
+    EXPECT_THAT(with("points", header("vectorField", {}) + "99999999(("), HasSubstr("count out of range: 99999999"));
+    EXPECT_THAT(with("points", header("vectorField", {}) + "1\n((0 0 a))"), HasSubstr("a number is expected, not \"a\""));
+    EXPECT_THAT(with("points", header("vectorField", {}) + "1\n((0 0 1))"), HasSubstr("faces: face 0: there is no point"));
+    EXPECT_THAT(with("owner", header("labelList", {}) + labels({0, 0}, {})), HasSubstr("there are 2 owners for 11 faces"));
+    EXPECT_THAT(with("owner", header("labelList", {}) + labels(std::vector<int>(11, 1000), {})),
+                HasSubstr("face 0 belongs to cell 1000"));
+    EXPECT_THAT(with("faces", header("faceList", {}) + "1\n(2(0 1))"), HasSubstr("owners for 1 face"));
+    EXPECT_THAT(with("faces", header("faceCompactList", {}) + "2(0 9) 3(0 1 2)"), HasSubstr("the start of face 1 is 9"));
+    std::vector<Vec3> points = mesh.points;
+    points[2].y = std::numeric_limits<double>::quiet_NaN();
+    good();
+    put_points("constant/polyMesh", points, {});
+    EXPECT_THAT(error(), HasSubstr("points: non-finite coordinate at point 2"));
+    good();
+    put("1/p", header("volScalarField", {}) + "internalField nonuniform List<scalar> 3(1 2 3);", {});
+    EXPECT_THAT(error(), HasSubstr("p, line 12: the internalField has 3 values (the mesh has 2 cells)"));
+    put("1/p", header("volScalarField", {}) + "dimensions [];", {});
+    EXPECT_THAT(error(), HasSubstr("there is no internalField"));
+    put("1/p", "notes", {});
+    EXPECT_EQ(error(), "no error");
+    write("1/q.gz", "no gzip");
+    EXPECT_THAT(error(), HasSubstr("q.gz: not a whole gzip file"));
+}
+
+}  // namespace
+
+}  // namespace subvol::test
