@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits at random places of meshes. Arguments: mesh files, or models as NAME:RESOLUTION; options before them: --places N a mesh
-// (1,000,000), --tolerance T (1e-6), --scheme mcq|cc|bsxw|linear (mcq).
+// Limits at random places of meshes. Arguments: mesh files, or models as NAME:RESOLUTION; options before them: --places N a
+// mesh (1,000,000), --tolerance T (1e-6), --scheme mcq|cc|bsxw|linear (mcq).
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -26,7 +26,10 @@ HexMesh load(const std::string& name) {
 }
 
 Scheme scheme_of(const std::string& name) {
-    return name == "cc" ? Scheme::CatmullClark : name == "bsxw" ? Scheme::Bsxw : name == "linear" ? Scheme::Linear : Scheme::Mcq;
+    return name == "cc"       ? Scheme::CatmullClark
+           : name == "bsxw"   ? Scheme::Bsxw
+           : name == "linear" ? Scheme::Linear
+                              : Scheme::Mcq;
 }
 
 }  // namespace
