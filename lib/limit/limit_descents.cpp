@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// More than 400 lines: the walk down, the batches that lead into it and the order of both share one state.
 #include "limit_descents.h"
 
 #include <tbb/enumerable_thread_specific.h>
