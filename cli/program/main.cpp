@@ -19,6 +19,7 @@
 #include "manual.h"
 #include "mistakes.h"
 #include "subvol/detail/printable.h"
+#include "subvol/detail/unfinished_files.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -144,6 +145,7 @@ void keep_standard_streams() {
 
 /// Libraries may throw where exceptions cannot be caught, as OpenVDB does when it frees a grid and memory is short.
 [[noreturn]] void end_with_a_sentence() {
+    subvol::detail::remove_unfinished_files();
     std::fputs("subvol: a library failed; memory may be short\n", stderr);
     std::_Exit(kEnvironment);
 }
