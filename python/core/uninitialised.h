@@ -5,8 +5,8 @@
 
 namespace subvol::python {
 
-/// Makes uses of objects that `__new__` made and no `__init__` a TypeError, for all classes of a module. pybind11 would allocate
-/// memory for them, and read whatever is in it.
+/// Makes uses of objects that `__new__` made and no `__init__` a TypeError, for all classes of a module. pybind11 would
+/// allocate memory for them, and read whatever is in it.
 inline void refuse_uninitialised(const pybind11::module_& module) {
     for (const auto& item : pybind11::reinterpret_borrow<pybind11::dict>(module.attr("__dict__"))) {
         if (PyType_Check(item.second.ptr()) == 0) continue;
