@@ -4,6 +4,9 @@
 # The interpreter is Debian's, whose modules Debian's packages are for; SUBVOL_PYTHON_EXECUTABLE names another. CMake's own
 # FindPython would find the first one of the PATH, and tests have others.
 set(SUBVOL_PYTHON AUTO CACHE STRING "Build the Python package: ON, OFF, or AUTO for ON if pybind11 and numpy are installed")
+if(DEFINED SKBUILD) # a wheel is for the interpreter that builds it
+  set(SUBVOL_PYTHON_EXECUTABLE ${Python_EXECUTABLE})
+endif()
 find_program(SUBVOL_PYTHON_EXECUTABLE python3 PATHS /usr/bin NO_DEFAULT_PATH)
 
 set(SUBVOL_PYTHON_FOUND OFF)
