@@ -19,8 +19,8 @@ constexpr int kBySignal = 128;  // as shells count
 
 volatile std::sig_atomic_t interrupted = 0;
 volatile std::sig_atomic_t extensions = 0;
-volatile std::sig_atomic_t silent = 0;
 std::atomic<int> children = 0;
+std::atomic<bool> speaks = false, has_spoken = false;  // whoever is first says the last words
 
 struct LastWords {
     int signal;
@@ -37,6 +37,12 @@ void write_all(int stream, std::string_view words) {
     (void)!write(stream, words.data(), words.size());
 }
 
+/// The files are removed last: other threads still run, and may open one.
+[[noreturn]] void end_now() {
+    detail::remove_unfinished_files();
+    _exit(kBySignal + interrupted);
+}
+
 /// Some stages cannot stop in time: libraries that read and write files, a mesh of millions of cells that is freed.
 void on_timer(int /*signal*/) {
     constexpr int kMostExtensions = 4;
@@ -44,13 +50,18 @@ void on_timer(int /*signal*/) {
         extensions = extensions + 1;
         return start_timer();
     }
-    detail::remove_unfinished_files();
-    if (silent != 0) _exit(kBySignal + interrupted);
+    if (speaks.exchange(true)) {
+        if (!has_spoken && extensions < kMostExtensions) {
+            extensions = extensions + 1;
+            return start_timer();
+        }
+        end_now();
+    }
     write_all(STDERR_FILENO, isatty(STDERR_FILENO) != 0 ? "\r\033[Ksubvol: cancelled\n" : "subvol: cancelled\n");
     for (const LastWords& last : last_words) {
         if (last.signal == interrupted) write_all(STDOUT_FILENO, last.words.data());
     }
-    _exit(kBySignal + interrupted);
+    end_now();
 }
 
 void on_interrupt(int signal) {
@@ -75,8 +86,10 @@ void say_when_interrupted(const std::function<std::string(int code)>& json) {
     }
 }
 
-void all_said() {
-    silent = 1;
+void say_at_last(const std::function<void()>& say) {
+    while (speaks.exchange(true)) pause();  // until the timer ends the program
+    say();
+    has_spoken = true;
 }
 
 WaitsForChild::WaitsForChild() {

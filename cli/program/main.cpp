@@ -60,9 +60,10 @@ int exit_code(ErrorCode code) {
 
 /// Says what is wrong on standard error; with --json an object on standard output says it, too.
 int complain(const Error& error, int code, bool json) {
-    subvol::cli::all_said();
-    std::cerr << "subvol: " << printable(error.what()) << '\n';
-    if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
+    subvol::cli::say_at_last([&] {
+        std::cerr << "subvol: " << printable(error.what()) << '\n';
+        if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
+    });
     return code;
 }
 

@@ -4,6 +4,7 @@
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
 #include "subvol/model.h"
 #include "subvol/surface.h"
 #include "subvol/topology.h"
@@ -95,7 +96,8 @@ py::dict figures_of(const HexMesh& mesh) {
 }
 
 py::tuple read(const std::string& path, const std::string& other_cells, const std::optional<double>& weld,
-               const std::vector<std::string>& sharp) {
+               const std::vector<std::string>& sharp, const std::optional<std::size_t>& step,
+               const std::vector<std::string>& blocks) {
     if (other_cells != "split" && other_cells != "ignore" && other_cells != "refuse") {
         throw unknown_word(other_cells, "other_cells", "split, ignore or refuse");
     }
@@ -104,7 +106,7 @@ py::tuple read(const std::string& path, const std::string& other_cells, const st
                                                       : OtherCells::Split;
     ReadResult result = [&] {
         const py::gil_scoped_release without_gil;
-        return read_mesh(path, {.other_cells = rule, .weld = weld, .sharp = sharp});
+        return read_mesh(path, {.other_cells = rule, .weld = weld, .sharp = sharp, .step = step, .blocks = blocks});
     }();
     return py::make_tuple(std::move(result.mesh), result.warnings);
 }
@@ -174,7 +176,15 @@ void bind_mesh(py::module_& module) {
             }));
 
     module.def("read_mesh", &read, py::arg("path"), py::arg("other_cells") = "split", py::arg("weld") = py::none(),
-               py::arg("sharp") = std::vector<std::string>{});
+               py::arg("sharp") = std::vector<std::string>{}, py::arg("step") = py::none(),
+               py::arg("blocks") = std::vector<std::string>{});
+    module.def(
+        "series_times",
+        [](const std::string& path) {
+            const py::gil_scoped_release without_gil;
+            return open_series(path).times;
+        },
+        py::arg("path"));
     module.def(
         "write_mesh",
         [](const std::string& path, const HexMesh& mesh) {

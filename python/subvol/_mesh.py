@@ -8,20 +8,26 @@ from typing import Optional
 from . import _core
 from ._arguments import Path, path_bytes, warn
 from ._core import HexMesh
+from ._errors import InvalidInput
 from ._progress import Progress, listening
 
 
-def read_mesh(path: Path, *, other_cells: str = "split", weld: Optional[float] = None, sharp: Sequence[str] = ()) -> HexMesh:
-    """Reads a mesh. The extension of the file name decides the format: .mesh .meshb .vtk .vtu .vts .vtr .vti .msh .xyz .p3d .e .exo
+def read_mesh(path: Path, *, other_cells: str = "split", weld: Optional[float] = None, sharp: Sequence[str] = (),
+              step: Optional[int] = None, blocks: Sequence[str] = ()) -> HexMesh:
+    """Reads a mesh. The extension of the file name decides the format; docs/formats.md has the list.
 
     other_cells: "split" (tetrahedra, prisms and pyramids become hexahedra, with a warning), "ignore" or "refuse"
     weld:        joins points no farther apart than this (world units; 0: at the same place)
     sharp:       names of groups of faces and edges that stay sharp (MEDIT, Gmsh)
+    step:        of a series (`open_series`), from 0; None: the last one
+    blocks:      names of the parts that are read; none: all
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
     Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.
     """
-    mesh, said = _core.read_mesh(path_bytes(path), other_cells, weld, list(sharp))
+    if step is not None and step < 0:
+        raise InvalidInput(f"step: {step} is not a step", "step", "0 or more")
+    mesh, said = _core.read_mesh(path_bytes(path), other_cells, weld, list(sharp), step, list(blocks))
     for text in said:
         warn(text)
     return mesh
@@ -66,38 +72,40 @@ def subdivide(mesh: HexMesh, levels: int = 1, scheme: str = "mcq", *, tension: f
 
 
 class Series:
-    """The steps of a series: pairs of a time and a mesh, read one after the other.
+    """The steps of a series: pairs of a time and a mesh. Each is read when it is asked for, so that one is in memory at a time."""
 
-    Until the library reads series itself, this is a list of mesh files: one, or several in the order of their steps.
-    """
-
-    def __init__(self, paths: Sequence[Path], times: Sequence[float]) -> None:
-        self._paths = list(paths)
+    def __init__(self, steps: Sequence[tuple[Path, Optional[int]]], times: Sequence[float]) -> None:
+        self._steps = list(steps)
         self.times = list(times)
 
     def __len__(self) -> int:
-        return len(self._paths)
+        return len(self._steps)
 
     def __getitem__(self, step: int) -> HexMesh:
-        return read_mesh(self._paths[step])
+        path, number = self._steps[step]
+        return read_mesh(path, step=number)
 
     def __iter__(self) -> Iterator[tuple[float, HexMesh]]:
-        for time, path in zip(self.times, self._paths):
-            yield time, read_mesh(path)
+        for time, (path, number) in zip(self.times, self._steps):
+            yield time, read_mesh(path, step=number)
 
     def __repr__(self) -> str:
         return f"<subvol.Series: {len(self)} {'step' if len(self) == 1 else 'steps'}>"
 
 
 def open_series(path: Path | Sequence[Path], times: Optional[Sequence[float]] = None) -> Series:
-    """The steps of a mesh that moves: one file, or a list of files in the order of their steps.
+    """The steps of a mesh that moves: a file with steps (.pvd, .vtu.series, Exodus II, OpenFOAM), or a list of mesh files.
 
-    times: of the steps; without them their numbers, from 0
+    times: of the files of a list; without them their numbers, from 0
+
+    Raises InvalidInput if a file is malformed or the times are not one for each file; FileError if it cannot be opened.
     """
-    from ._errors import InvalidInput
-
-    paths: list[Path] = list(path) if isinstance(path, Sequence) and not isinstance(path, (str, bytes)) else [path]
-    steps = [float(t) for t in (range(len(paths)) if times is None else times)]
-    if len(steps) != len(paths):
-        raise InvalidInput(f"times: there are {len(steps)} for {len(paths)} files", "times", "one for each file")
-    return Series(paths, steps)
+    if not isinstance(path, Sequence) or isinstance(path, (str, bytes)):
+        found = _core.series_times(path_bytes(path))
+        if times is not None:
+            raise InvalidInput("times: the file has its own", "times", "none, or a list of files")
+        return Series([(path, step) for step in range(len(found))], found)
+    given = [float(t) for t in (range(len(path)) if times is None else times)]
+    if len(given) != len(path):
+        raise InvalidInput(f"times: there are {len(given)} for {len(path)} files", "times", "one for each file")
+    return Series([(file, None) for file in path], given)

@@ -192,6 +192,26 @@ def test_a_series_of_files(tmp_path, cube):
         subvol.open_series([tmp_path / "0.vtu"], times=[0, 1])
 
 
+def test_a_file_with_steps(tmp_path, cube):
+    for k in range(3):
+        subvol.write_mesh(subvol.HexMesh(cube.points + k, cube.cells, cube.fields), tmp_path / f"{k}.vtu")
+    sets = "".join(f'<DataSet timestep="{k / 4}" file="{k}.vtu"/>' for k in range(3))
+    pvd = tmp_path / "run.pvd"
+    pvd.write_text(f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>')
+    series = subvol.open_series(pvd)
+    assert series.times == [0, .25, .5] and "3 steps" in repr(series)
+    assert [mesh.bounds[0, 0] for _, mesh in series] == [0, 1, 2]
+    assert series[1].bounds[0, 0] == 1 == subvol.read_mesh(pvd, step=1).bounds[0, 0]
+    assert subvol.read_mesh(pvd).bounds[0, 0] == 2  # the last one
+    for wrong in (3, -1):
+        with pytest.raises(subvol.InvalidInput):
+            subvol.read_mesh(pvd, step=wrong)
+    with pytest.raises(subvol.InvalidInput):
+        subvol.open_series(pvd, times=[0, 1, 2])
+    with pytest.raises(subvol.InvalidInput):
+        subvol.read_mesh(pvd, blocks=["nothing"])
+
+
 def test_models():
     assert {"pawn", "ball", "twist"} <= set(subvol.models())
     assert subvol.model("twist", 4).report()["cells"] == 64

@@ -22,7 +22,7 @@ tf = subvol.TransferFunction("viridis", range=(300, 900), opacity=[(300, 0), (90
 image = subvol.render(points, view="iso", size=(512, 512), tf=tf); rgba = np.asarray(image)   # (512,512,4) float32, no copy
 subvol.write_vdb(mesh, "part.vdb", resolution=400, fields=["T"])
 table = subvol.Refinement(mesh, levels=1)                    # topology once
-for t, step in subvol.open_series("run.vtu"): fine = table.apply(step)
+for t, step in subvol.open_series("run.pvd"): fine = table.apply(step)
 print(subvol.compare(image, subvol.render(mesh, method="tets", view="iso", tf=tf)).psnr)
 '''
 
@@ -44,7 +44,9 @@ def test_the_lines(tmp_path, monkeypatch, capsys):
     mesh = subvol.HexMesh(ball.points, ball.cells, {"T": 600 + 300 * ball.fields["density"]})
     monkeypatch.chdir(tmp_path)
     write_legacy(mesh, "part.vtk")
-    subvol.write_mesh(mesh, "run.vtu")
+    subvol.write_mesh(mesh, "run_0.vtu")
+    (tmp_path / "run.pvd").write_text('<VTKFile type="Collection"><Collection><DataSet timestep="2.5" file="run_0.vtu"/>'
+                                      "</Collection></VTKFile>")
     found = {}
     exec(LINES, found)
     assert np.array_equal(found["same"].cells, found["mesh"].cells)
