@@ -87,7 +87,9 @@ void say_when_interrupted(const std::function<std::string(int code)>& json) {
 }
 
 void say_at_last(const std::function<void()>& say) {
-    while (speaks.exchange(true)) pause();  // until the timer ends the program
+    static bool ours = false;                        // words may be followed by others: that these could not be written
+    while (!ours && speaks.exchange(true)) pause();  // until the timer ends the program
+    ours = true;
     say();
     has_spoken = true;
 }

@@ -17,7 +17,7 @@ inline constexpr int kGrace_ms = 300;
 /// What standard output gets if the program ends in the midst of its work: the object of --json, for its exit code.
 void say_when_interrupted(const std::function<std::string(int code)>& json);
 
-/// Says the program's last words: an interrupt waits for them, and adds none.
+/// Says the program's last words: an interrupt waits for them, and adds none. Words that follow are said, too.
 void say_at_last(const std::function<void()>& say);
 
 /// While it exists, the program waits for a child that was told to stop: twice the time.

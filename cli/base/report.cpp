@@ -104,15 +104,16 @@ void Report::say(const std::string& line) {
 
 void Report::finish() {
     progress_.clear();
-    cli::all_said();  // not a second object
     if (json_.contains("seconds")) json_["peak_bytes"] = peak_memory_bytes();
-    if (print_json_) {
-        if (!json_.contains("warnings")) json_["warnings"] = Json::array();
-        std::cout << json_.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
-    } else if (!quiet_ && !all_said_) {
-        json_.erase("warnings");
-        print_table(json_);
-    }
+    say_at_last([&] {
+        if (print_json_) {
+            if (!json_.contains("warnings")) json_["warnings"] = Json::array();
+            std::cout << json_.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
+        } else if (!quiet_ && !all_said_) {
+            json_.erase("warnings");
+            print_table(json_);
+        }
+    });
     if (!std::cout.flush()) throw Error(ErrorCode::Io, "could not be written", "standard output");
 }
 
