@@ -32,6 +32,6 @@ if(SUBVOL_PYTHON_FOUND)
   # A wheel has everything in its own folder; Debian's packages install into dist-packages.
   set(SUBVOL_PYTHON_INSTALLED lib/python3/dist-packages CACHE STRING "Where the Python package is installed, below the prefix")
 elseif(SUBVOL_PYTHON AND NOT SUBVOL_PYTHON STREQUAL "AUTO")
-  message(FATAL_ERROR "subvol: the Python package needs every component, numpy, Python.h and pybind11 (scripts/setup installs them)")
+  message(FATAL_ERROR "subvol: the Python package needs every component, numpy, Python.h and pybind11 (scripts/setup --python installs them)")
 endif()
 message(STATUS "subvol: Python package: ${SUBVOL_PYTHON_FOUND} (SUBVOL_PYTHON)")
