@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bind.h"
 #include "subvol/boundary_shading.h"
+#include "subvol/boundary_values.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
@@ -162,10 +163,24 @@ Picture grid(const Voxels& voxels, const Scene& scene, int samples, const py::ob
     return picture;
 }
 
-Picture lit(const Picture& picture, const RbfVolume& body, const Scene& scene, int samples) {
+/// The boundary of a body that is lit, and the limit's values on it, as the command has them.
+BoundaryValues skin(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
+                    const std::optional<int>& levels) {
+    constexpr std::size_t kManyTriangles = 16000;  // of a boundary that is refined once rather than twice
+    const py::gil_scoped_release without_gil;
+    const int finest = levels ? std::min(2, *levels) : boundary_surface(mesh).triangles.size() > kManyTriangles ? 1 : 2;
+    return boundary_values(mesh, refine_options(scheme, finest, tension, crease_angle));
+}
+
+/// colored: the body's values give the colours; else the picture keeps its own
+Picture lit(const Picture& picture, const BoundaryValues& skin, const Scene& scene, int samples, bool colored) {
     Picture result{picture.image, picture.depth, picture.report.attr("copy")()};
     const py::gil_scoped_release without_gil;
-    light_boundary(result.image, body.boundary, scene.view, Shading{}, samples);
+    if (colored) {
+        color_boundary(result.image, skin.surface, skin.values.back(), scene.view, scene.optics, Shading{}, samples);
+    } else {
+        light_boundary(result.image, skin.surface, scene.view, Shading{}, samples);
+    }
     return result;
 }
 
@@ -203,7 +218,10 @@ void bind_render(py::module_& module) {
     module.def("dense", &dense, py::arg("mesh"), py::arg("field"), py::arg("scene"), py::arg("scheme"), py::arg("tension"),
                py::arg("crease_angle"), py::arg("levels"), py::arg("image_tolerance"), py::arg("samples"), py::arg("progress"));
     module.def("grid", &grid, py::arg("voxels"), py::arg("scene"), py::arg("samples"), py::arg("progress"));
-    module.def("lit", &lit, py::arg("picture"), py::arg("body"), py::arg("scene"), py::arg("samples"));
+    py::class_<BoundaryValues>(module, "BoundaryValues", "A boundary with the limit's values on it.");
+    module.def("skin", &skin, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
+               py::arg("levels"));
+    module.def("lit", &lit, py::arg("picture"), py::arg("skin"), py::arg("scene"), py::arg("samples"), py::arg("colored"));
     module.def("gl_devices", &devices);
 }
 

@@ -147,7 +147,8 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
            tension: float = 1 / 16, crease_angle: Optional[float] = None, per_edge: int = 1, seconds: Optional[float] = None,
            order: str = "topological", image_tolerance: float = 1e-3, backend: str = "auto", device: Optional[int] = None,
            progress: Progress = None) -> Image:
-    """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
+    """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit; but views of volumes of
+    which only a part is visible frame the whole.
 
     method:       "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "tets" (rays through tetrahedra), "pt" (tetrahedra
                   projected by OpenGL), "dense" (rays through the limit's cells), "grid" (rays through voxels)
@@ -235,6 +236,10 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
         elif splats:
             volume = _sampled(mesh, levels, scheme, tension, crease_angle, per_edge, listener)
             image = _core.splat(volume, scene, way, device, many, sheets, 0, None, shade or lit, listener)
+            own_opacity = isinstance(tf, TransferFunction) and tf.opacity is not None
+            if kind == "solid" and levels is None and opacity_unit is None and sheets == 0 and per_edge == 1 and not own_opacity:
+                skin = _core.skin(mesh, scheme, tension, crease_angle, None)
+                image = _core.lit(image, skin, scene, many, True)
         else:
             name = next(iter(mesh.fields))
             if method == "dense":
@@ -247,8 +252,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
                 else:
                     image = _core.projected(fine, name, scene, order, device, many, seconds, listener)
             if lit:
-                skin = _sampled(mesh, None, scheme, tension, crease_angle, per_edge, listener)
-                image = _core.lit(image, skin, scene, many)
+                image = _core.lit(image, _core.skin(mesh, scheme, tension, crease_angle, levels), scene, many, False)
     image.report["method"] = method
     image.report["background"] = _linear(_LIGHT_GREY) if lit else (1.0, 1.0, 1.0) if kind == "xray" else (0.0, 0.0, 0.0)
     lost = image.report.get("lost_rays", 0)
