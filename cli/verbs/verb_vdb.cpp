@@ -58,7 +58,7 @@ public:
         : Verb(program, "vdb", "Turn a mesh, a sequence or points into an OpenVDB file: one grid per field.",
                "  subvol vdb model:ball -o ball.vdb\n"
                "  subvol vdb flow.vtk -o flow.vdb --fields Temp,V --resolution 400 --half\n"
-               "  subvol vdb fire.vtu -o fire.vdb --fields \"density=soot,heat=(Temp-293)/620\" --remap 0,.02 --up y\n"
+               "  subvol vdb fire.vtu -o fire.vdb --fields \"heat=(Temp-293)/620\" --up y\n"
                "  subvol vdb part.vtu -o part.vdb --sdf --half-width 4\n"
                "  subvol vdb 'run_####.vtu' -o 'run_####.vdb' --frames 1-240 --velocity --fps 24\n"
                "  subvol vdb run.pvd -o 'run_####.vdb' --step all --velocity\n"
