@@ -43,6 +43,7 @@ set(SUBVOL_LZMA LibLZMA::LibLZMA)
 set(SUBVOL_MUPARSER PkgConfig::muparser)
 set(SUBVOL_NANOVDB "")
 set(SUBVOL_OPENVDB OpenVDB::openvdb)
+set(SUBVOL_PNG PNG::PNG)
 set(SUBVOL_PUGIXML pugixml::pugixml)
 set(SUBVOL_ZLIB ZLIB::ZLIB)
 

@@ -39,6 +39,9 @@ if(SUBVOL_RENDER)
   pkg_check_modules(epoxy REQUIRED IMPORTED_TARGET epoxy)
 endif()
 
+if(SUBVOL_COMPARE)
+  find_package(PNG REQUIRED)
+endif()
 if(SUBVOL_COMPARE AND NOT CMAKE_FIND_PACKAGE_NAME STREQUAL "subvol") # an installed library has its modules linked
   find_package(OpenImageIO CONFIG REQUIRED)
   # Debian's package names an include folder (opencv4) that does not exist.

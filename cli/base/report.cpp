@@ -41,18 +41,50 @@ std::string stages(const Json& seconds) {
     return join(parts);
 }
 
+/// The columns that a text takes on a terminal: its characters, not its bytes.
+std::size_t width_of(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; }));
+}
+
+/// The rows of a list of objects under the names of their keys, in columns.
+std::vector<std::string> columns_of(const Json& rows) {
+    std::vector<std::string> keys;
+    for (const Json& row : rows) {
+        for (const auto& [key, value] : row.items()) {
+            if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+        }
+    }
+    std::vector<std::string> lines(rows.size() + 1);
+    for (const std::string& key : keys) {
+        std::vector<std::string> cells{key};
+        for (const Json& row : rows) {
+            const bool bytes = key == "bytes" && row.contains(key);
+            cells.push_back(!row.contains(key) ? "" : bytes ? bytes_text(row[key].get<double>()) : for_people(row[key]));
+        }
+        std::size_t width = 0;
+        for (const std::string& cell : cells) width = std::max(width, width_of(cell));
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            if (key != keys.back()) cells[i].append(width + 2 - width_of(cells[i]), ' ');
+            lines[i] += cells[i];
+        }
+    }
+    return lines;
+}
+
 void print_table(const Json& json) {
     Lines lines;
     for (const auto& [key, value] : json.items()) {
-        const bool list = value.is_array() && !value.empty() && value.front().is_object();
-        const Json rows = list ? value : Json::array({value});
-        for (const Json& row : rows) {
-            const bool bytes = key.ends_with("bytes") && row.is_number();
-            const std::string name = key.ends_with("_bytes") ? key.substr(0, key.size() - 6) + "_memory" : key;
-            lines.emplace_back(name, key == "seconds" && row.is_object() ? stages(row)
-                                     : bytes                             ? bytes_text(row.get<double>())
-                                                                         : for_people(row));
+        if (value.is_array() && !value.empty() && value.front().is_object()) {
+            std::string name = key;
+            for (const std::string& line : columns_of(value)) lines.emplace_back(std::exchange(name, ""), line);
+            continue;
         }
+        const bool bytes = key.ends_with("bytes") && value.is_number();
+        const std::string name = key.ends_with("_bytes") ? key.substr(0, key.size() - 6) + "_memory" : key;
+        lines.emplace_back(name, key == "seconds" && value.is_object() ? stages(value)
+                                 : bytes                               ? bytes_text(value.get<double>())
+                                                                       : for_people(value));
     }
     std::cout << aligned(lines);
 }

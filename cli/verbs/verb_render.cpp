@@ -28,7 +28,6 @@ namespace subvol::cli {
 namespace {
 
 constexpr int kTetsLevel = 1;
-constexpr std::size_t kManyTriangles = 16000;  // of a boundary that is refined once rather than twice
 
 void check_coordinates(const HexMesh& mesh) {
     constexpr double kMost_world = 1e18;  // as of splats; far beyond it, squares and volumes overflow
@@ -234,9 +233,7 @@ private:
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " lights the boundary only", "--look isosurface",
                         "use --method splat or sheets, or --tf isosurface for surfaces without light");
         }
-        const int levels = refine_.levels                                             ? std::min(2, *refine_.levels)
-                           : boundary_surface(mesh).triangles.size() > kManyTriangles ? 1
-                                                                                      : 2;
+        const int levels = picture_levels(mesh, refine_.levels);
         RefineOptions options = refine_.options(levels, report);
         options.levels = levels;
         return report.timed("boundary", [&] { return boundary_values(mesh, options); });

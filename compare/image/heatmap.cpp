@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <string_view>
 
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/image_metrics.h"
+#include "subvol/overlay.h"
 #include "subvol/srgb.h"
 
 namespace subvol {
@@ -26,65 +26,10 @@ constexpr std::array<std::array<int, 3>, 10> kInferno{{{0, 0, 4},
                                                        {247, 209, 61},
                                                        {252, 255, 164}}};
 
-constexpr int kTextScale = 2;  // pixels per dot
-constexpr int kColumns = 3, kRows = 5, kTextHeight = kRows * kTextScale;
-
-// Built-in digits of 3 × 5 dots: the program needs no font file.
-struct Glyph {
-    char character;
-    std::array<std::string_view, kRows> rows;
-};
-constexpr std::array<Glyph, 14> kGlyphs{{{'0', {"###", "# #", "# #", "# #", "###"}},
-                                         {'1', {" # ", "## ", " # ", " # ", "###"}},
-                                         {'2', {"###", "  #", "###", "#  ", "###"}},
-                                         {'3', {"###", "  #", " ##", "  #", "###"}},
-                                         {'4', {"# #", "# #", "###", "  #", "  #"}},
-                                         {'5', {"###", "#  ", "###", "  #", "###"}},
-                                         {'6', {"###", "#  ", "###", "# #", "###"}},
-                                         {'7', {"###", "  #", "  #", " # ", " # "}},
-                                         {'8', {"###", "# #", "###", "# #", "###"}},
-                                         {'9', {"###", "# #", "###", "  #", "###"}},
-                                         {'.', {"   ", "   ", "   ", "   ", " # "}},
-                                         {'-', {"   ", "   ", "###", "   ", "   "}},
-                                         {'+', {"   ", " # ", "###", " # ", "   "}},
-                                         {'e', {"   ", "###", "###", "#  ", "###"}}}};
-
-void draw_dot(Image& image, int left, int top) {
-    for (int y = top; y < top + kTextScale; ++y) {
-        for (int x = left; x < left + kTextScale; ++x) {
-            if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
-            for (float& component : image.pixel(x, y)) component = 1.0f;
-        }
-    }
-}
-
-void draw_glyph(Image& image, const Glyph& glyph, int left, int top) {
-    for (int row = 0; row < kRows; ++row) {
-        for (int column = 0; column < kColumns; ++column) {
-            const bool set = glyph.rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] == '#';
-            if (set) draw_dot(image, left + column * kTextScale, top + row * kTextScale);
-        }
-    }
-}
-
-/// The width of a number in pixels.
-int text_width(std::string_view text) {
-    return (static_cast<int>(text.size()) * (kColumns + 1) - 1) * kTextScale;
-}
-
-/// Writes a number (digits, '.', '-', '+', 'e') in white with its top left pixel at x, y, clipped to the picture.
-void draw_text(Image& image, std::string_view text, int x, int y) {
-    for (const char character : text) {
-        for (const Glyph& glyph : kGlyphs) {
-            if (glyph.character == character) draw_glyph(image, glyph, x, y);
-        }
-        x += (kColumns + 1) * kTextScale;
-    }
-}
-
 // The legend, from top to bottom: the bar, ticks, numbers, a margin.
-constexpr int kBarHeight = 12, kTickHeight = 4, kRim = 4;
+constexpr int kBarHeight = 12, kTickHeight = 4, kTextHeight = 10, kRim = 4;
 constexpr int kLegendHeight = kBarHeight + kTickHeight + kTextHeight + kRim;
+constexpr double kTextSize = 14;  // of an em, pixels; capitals are .73 of it high
 
 std::array<float, 4> heat_color(double fraction) {
     const double place = (kInferno.size() - 1) * (std::isnan(fraction) ? 1.0 : std::clamp(fraction, 0.0, 1.0));
@@ -121,15 +66,18 @@ void draw_ticks(Image& image, int top, double scale) {
         for (int y = top; y < top + kTickHeight - 1; ++y) set_pixel(image, x, y, {1, 1, 1, 1});
     }
     const std::string first = tick_text(0), middle = tick_text(scale / 2), last = tick_text(scale);
-    const int text_top = top + kTickHeight;
-    const int margin = kRim / 2, first_end = margin + text_width(first) + kRim;
-    const int last_start = image.width - text_width(last) - margin;
-    const int middle_start = (image.width - text_width(middle)) / 2;
-    draw_text(image, first, margin, text_top);
+    const auto width = [](const std::string& text) { return text_width_px(text, kTextSize); };
+    const auto write = [&](const std::string& text, double x, TextAnchor anchor) {
+        draw_text(image, {x, top + kTickHeight + kTextHeight}, text,
+                  {.size_px = kTextSize, .color = Vec3(1), .anchor = anchor});
+    };
+    const double margin = kRim / 2.0, center = image.width / 2.0, right = image.width - margin;
+    const double first_end = margin + width(first) + kRim, last_start = right - width(last) - kRim;
+    write(first, margin, TextAnchor::Start);
     // Numbers that would overlap are left out, so a narrow image has fewer.
-    if (last_start >= first_end) draw_text(image, last, last_start, text_top);
-    const bool fits = middle_start >= first_end && middle_start + text_width(middle) + kRim <= last_start;
-    if (fits) draw_text(image, middle, middle_start, text_top);
+    if (last_start >= first_end - kRim) write(last, right, TextAnchor::End);
+    const bool fits = center - width(middle) / 2 >= first_end && center + width(middle) / 2 <= last_start;
+    if (fits) write(middle, center, TextAnchor::Middle);
 }
 
 }  // namespace

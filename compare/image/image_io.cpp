@@ -6,11 +6,14 @@
 #include <cctype>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "openimageio.h"
+#include "png_file.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
 #include "subvol/srgb.h"
@@ -43,23 +46,26 @@ std::uint8_t encoded_byte(double linear) {
     return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::min(linear, 1.0))));
 }
 
-void write_pixels(const fs::path& path, const PictureValues& picture) {
+/// write: to the path that it is given
+void write_file(const fs::path& path, const std::function<std::optional<PictureFault>(const std::string&)>& write) {
     AtomicFile file(path);
-    if (const auto fault = openimageio().write(file.path().string(), picture)) {
-        throw Error(fault->code, fault->why, path.string());
-    }
+    if (const auto fault = write(file.path().string())) throw Error(fault->code, fault->why, path.string());
     file.commit();
 }
 
+void write_floats(const fs::path& path, const PictureValues& picture) {
+    write_file(path, [&](const std::string& name) { return openimageio().write(name, picture); });
+}
+
 void write_exr(const fs::path& path, const Image& image, std::span<const float> depth) {
-    if (depth.empty()) return write_pixels(path, {image.width, image.height, 4, false, image.rgba.data()});
+    if (depth.empty()) return write_floats(path, {image.width, image.height, 4, image.rgba.data()});
     std::vector<float> pixels;
     pixels.reserve(5 * depth.size());
     for (std::size_t i = 0; i < depth.size(); ++i) {
         for (std::size_t c = 0; c < 4; ++c) pixels.push_back(image.rgba[4 * i + c]);
         pixels.push_back(depth[i]);
     }
-    write_pixels(path, {image.width, image.height, 5, false, pixels.data()});
+    write_floats(path, {image.width, image.height, 5, pixels.data()});
 }
 
 // Which of the channels are red, green, blue and alpha (-1: opaque); a file with one or two colours is grey.
@@ -115,7 +121,8 @@ void write_image(const fs::path& path, const Image& image, const Vec3& backgroun
     if (extension == ".exr") {
         write_exr(path, image, depth);
     } else if (extension == ".png") {
-        write_pixels(path, {image.width, image.height, 3, true, srgb_bytes(image, background).data()});
+        const std::vector<std::uint8_t> rgb = srgb_bytes(image, background);
+        write_file(path, [&](const std::string& name) { return write_png(name, image.width, image.height, rgb); });
     } else {
         throw Error(ErrorCode::InvalidInput, "images are not written as \"" + extension + "\" files", path.string(),
                     ".exr or .png");

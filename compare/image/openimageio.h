@@ -25,11 +25,10 @@ struct DecodedPicture {
     std::vector<float> values;
 };
 
-/// Pixels for a file: 8-bit sRGB, or linear floats whose channels are R, G, B, A and, if there are five, Z.
+/// Pixels for a file: linear floats whose channels are R, G, B, A and, if there are five, Z.
 struct PictureValues {
     int width = 0, height = 0, channels = 0;
-    bool bytes = false;
-    const void* values = nullptr;
+    const float* values = nullptr;
 };
 
 struct PictureFault {

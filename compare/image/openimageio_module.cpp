@@ -39,12 +39,7 @@ bool is_whole(const std::string& path, const OIIO::ImageSpec& spec) {
 }
 
 OIIO::ImageSpec spec_of(const PictureValues& picture) {
-    OIIO::ImageSpec spec(picture.width, picture.height, picture.channels,
-                         picture.bytes ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
-    if (picture.bytes) {
-        spec.attribute("oiio:ColorSpace", "sRGB");
-        return spec;
-    }
+    OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::FLOAT);
     spec.attribute("DateTime", "");  // otherwise the time of writing: the same picture must give the same file
     if (picture.channels == 5) {
         spec.channelnames = {"R", "G", "B", "A", "Z"};
@@ -55,7 +50,7 @@ OIIO::ImageSpec spec_of(const PictureValues& picture) {
 
 Outcome write(const std::string& path, const PictureValues& picture) {
     const OIIO::ImageSpec spec = spec_of(picture);
-    // OpenImageIO does not report a full disk when it writes .png; the stream does.
+    // OpenImageIO does not report a full disk in every format; the stream does.
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "wb"), &std::fclose);
     if (!stream) return io_fault(std::generic_category().message(errno));
     OIIO::Filesystem::IOFile proxy(stream.get(), OIIO::Filesystem::IOProxy::Write);

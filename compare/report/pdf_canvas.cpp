@@ -35,13 +35,27 @@ constexpr std::array<int, 95> kAdvances{
     667, 778, 722, 667, 611, 722, 667, 944, 667,  667, 611, 278, 278, 278, 469, 556, 333, 556, 556, 500, 556, 556, 278, 556,
     556, 222, 222, 500, 222, 833, 556, 556, 556,  556, 333, 500, 278, 556, 500, 722, 500, 500, 500, 334, 260, 334, 584};
 
-/// What is not ASCII: bytes of the font's encoding with their advance, or digits that are raised.
+enum class Face { Plain, Raised, Symbol };  // Helvetica, the same small and raised, and the font Symbol
+
+/// What is not ASCII: bytes of the font's encoding with their advance.
 struct Special {
     std::string_view utf8, bytes;
     int advance;
-    bool raised = false;
+    Face face = Face::Plain;
 };
-constexpr std::array<Special, 19> kSpecials{{{"·", "\\267", 278},
+constexpr std::array<Special, 31> kSpecials{{{"≤", "\\243", 549, Face::Symbol},
+                                             {"≥", "\\263", 549, Face::Symbol},
+                                             {"≈", "\\273", 549, Face::Symbol},
+                                             {"∞", "\\245", 713, Face::Symbol},
+                                             {"√", "\\326", 549, Face::Symbol},
+                                             {"α", "a", 631, Face::Symbol},
+                                             {"ε", "e", 439, Face::Symbol},
+                                             {"λ", "l", 549, Face::Symbol},
+                                             {"π", "p", 549, Face::Symbol},
+                                             {"ρ", "r", 549, Face::Symbol},
+                                             {"σ", "s", 603, Face::Symbol},
+                                             {"Δ", "D", 612, Face::Symbol},
+                                             {"·", "\\267", 278},
                                              {"×", "\\327", 584},
                                              {"–", "\\226", 556},
                                              {"−", "-", 333},
@@ -49,45 +63,51 @@ constexpr std::array<Special, 19> kSpecials{{{"·", "\\267", 278},
                                              {"µ", "\\265", 556},
                                              {"½", "\\275", 834},
                                              {"…", "\\205", 1000},
-                                             {"⁰", "0", 556, true},
-                                             {"¹", "1", 556, true},
-                                             {"²", "2", 556, true},
-                                             {"³", "3", 556, true},
-                                             {"⁴", "4", 556, true},
-                                             {"⁵", "5", 556, true},
-                                             {"⁶", "6", 556, true},
-                                             {"⁷", "7", 556, true},
-                                             {"⁸", "8", 556, true},
-                                             {"⁹", "9", 556, true},
-                                             {"⁻", "-", 333, true}}};
+                                             {"⁰", "0", 556, Face::Raised},
+                                             {"¹", "1", 556, Face::Raised},
+                                             {"²", "2", 556, Face::Raised},
+                                             {"³", "3", 556, Face::Raised},
+                                             {"⁴", "4", 556, Face::Raised},
+                                             {"⁵", "5", 556, Face::Raised},
+                                             {"⁶", "6", 556, Face::Raised},
+                                             {"⁷", "7", 556, Face::Raised},
+                                             {"⁸", "8", 556, Face::Raised},
+                                             {"⁹", "9", 556, Face::Raised},
+                                             {"⁻", "-", 333, Face::Raised}}};
 constexpr double kRaised = .65;  // of the font's size
 
 /// A part of a text that is set at once. width: of an em of the text's size
 struct Run {
     std::string bytes;
     double width = 0;
-    bool raised = false;
+    Face face = Face::Plain;
 };
 
 std::vector<Run> runs_of(std::string_view utf8) {
     std::vector<Run> runs;
-    const auto add = [&](const std::string& bytes, int advance, bool raised) {
-        if (runs.empty() || runs.back().raised != raised) runs.push_back({.bytes = {}, .width = 0, .raised = raised});
+    const auto add = [&](const std::string& bytes, int advance, Face face) {
+        if (runs.empty() || runs.back().face != face) runs.push_back({.bytes = {}, .width = 0, .face = face});
         runs.back().bytes += bytes;
-        runs.back().width += advance / 1000. * (raised ? kRaised : 1);
+        runs.back().width += advance / 1000. * (face == Face::Raised ? kRaised : 1);
     };
     while (!utf8.empty()) {
         const auto byte = static_cast<unsigned char>(utf8.front());
         const auto* special = std::ranges::find_if(kSpecials, [&](const Special& s) { return utf8.starts_with(s.utf8); });
         if (special != kSpecials.end()) {
-            add(std::string(special->bytes), special->advance, special->raised);
+            add(std::string(special->bytes), special->advance, special->face);
             utf8.remove_prefix(special->utf8.size());
         } else if (byte >= 32 && byte < 127) {
             const bool escaped = byte == '(' || byte == ')' || byte == '\\';
-            add((escaped ? "\\" : "") + std::string(1, utf8.front()), kAdvances[byte - 32U], false);
+            add((escaped ? "\\" : "") + std::string(1, utf8.front()), kAdvances[byte - 32U], Face::Plain);
             utf8.remove_prefix(1);
+        } else if ((byte == 0xC2 || byte == 0xC3) && utf8.size() > 1) {  // a letter of Latin-1: most are as wide as a digit
+            const unsigned code = (byte & 3U) << 6U | (static_cast<unsigned char>(utf8[1]) & 0x3FU);
+            add({'\\', static_cast<char>('0' + (code >> 6U)), static_cast<char>('0' + (code >> 3U & 7U)),
+                 static_cast<char>('0' + (code & 7U))},
+                kAdvances['0' - ' '], Face::Plain);
+            utf8.remove_prefix(2);
         } else {
-            add("?", kAdvances['?' - ' '], false);
+            add("?", kAdvances['?' - ' '], Face::Plain);
             do {
                 utf8.remove_prefix(1);
             } while (!utf8.empty() && (static_cast<unsigned char>(utf8.front()) & 0xC0U) == 0x80);
@@ -175,8 +195,9 @@ void PdfCanvas::text(const Vec2& place, Anchor anchor, const std::string& words,
     page_ += "q .11 g " + std::string(upward ? "0 1 -1 0 " : "1 0 0 1 ") + at(place) + " cm BT " + coordinate(-back * size) +
              " 0 Td\n";
     for (const Run& run : runs) {
-        page_ += "/F " + coordinate(run.raised ? kRaised * size : size) + " Tf " + coordinate(run.raised ? .38 * size : 0) +
-                 " Ts (" + run.bytes + ") Tj\n";
+        const bool raised = run.face == Face::Raised;
+        page_ += (run.face == Face::Symbol ? "/S " : "/F ") + coordinate(raised ? kRaised * size : size) + " Tf " +
+                 coordinate(raised ? .38 * size : 0) + " Ts (" + run.bytes + ") Tj\n";
     }
     page_ += "ET Q\n";
 }
@@ -186,10 +207,11 @@ std::string PdfCanvas::file(const std::string& title) const {
                                            "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
                                            "<< /Type /Page /Parent 2 0 R /MediaBox [0 0 " + coordinate(size_.x) + " " +
                                                coordinate(size_.y) +
-                                               "] /Contents 4 0 R /Resources << /Font << /F 6 0 R >> >> >>",
+                                               "] /Contents 4 0 R /Resources << /Font << /F 6 0 R /S 7 0 R >> >> >>",
                                            stream("", page_),
                                            "<< /Title " + title_hex(title) + " /Producer (OpenSubVol) >>",
-                                           "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica /Encoding /WinAnsiEncoding >>"};
+                                           "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica /Encoding /WinAnsiEncoding >>",
+                                           "<< /Type /Font /Subtype /Type1 /BaseFont /Symbol >>"};
     std::string file = "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n";
     std::string places;
     for (std::size_t i = 0; i < objects.size(); ++i) {

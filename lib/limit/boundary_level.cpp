@@ -184,4 +184,10 @@ BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options) {
     return boundary;
 }
 
+int picture_levels(const HexMesh& mesh, std::optional<int> most) {
+    constexpr std::size_t kManyTriangles = 8000;
+    if (most) return std::min(2, *most);
+    return boundary_surface(mesh).triangles.size() > kManyTriangles ? 1 : 2;
+}
+
 }  // namespace subvol

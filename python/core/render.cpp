@@ -166,10 +166,8 @@ Picture grid(const Voxels& voxels, const Scene& scene, int samples, const py::ob
 /// The boundary of a body that is lit, and the limit's values on it, as the command has them.
 BoundaryValues skin(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
                     const std::optional<int>& levels) {
-    constexpr std::size_t kManyTriangles = 16000;  // of a boundary that is refined once rather than twice
     const py::gil_scoped_release without_gil;
-    const int finest = levels ? std::min(2, *levels) : boundary_surface(mesh).triangles.size() > kManyTriangles ? 1 : 2;
-    return boundary_values(mesh, refine_options(scheme, finest, tension, crease_angle));
+    return boundary_values(mesh, refine_options(scheme, picture_levels(mesh, levels), tension, crease_angle));
 }
 
 /// colored: the body's values give the colours; else the picture keeps its own

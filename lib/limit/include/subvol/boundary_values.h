@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "subvol/refine.h"
@@ -22,5 +23,10 @@ struct BoundaryValues {
 /// throws: Error(InvalidInput) as `refine`, or if an attribute has more than one channel
 /// cost:   about 20 points for each point of the boundary of the last level
 [[nodiscard]] BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options);
+
+/// The levels of boundary_values that a picture of the body needs: 2, but 1 for a boundary of more than 8,000 triangles.
+///
+/// most: no more than these, if given
+[[nodiscard]] int picture_levels(const HexMesh& mesh, std::optional<int> most = {});
 
 }  // namespace subvol
