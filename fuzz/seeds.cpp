@@ -75,6 +75,16 @@ void add_exodus(Seeds& seeds, const HexMesh& mesh) {
 }
 #endif
 
+void add_vtkhdf(Seeds& seeds) {
+    const std::string mesh =
+        "NumberOfPoints 1 : 8\nNumberOfCells 1 : 1\nNumberOfConnectivityIds 1 : 8\nOffsets 2 : 0 8\nTypes 1 : 12\n"
+        "Points 8 3 : 0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\nConnectivity 8 : 0 1 2 3 4 5 6 7\n";
+    seeds.add("vtkhdf", mesh + "PointData/T 8 : 1 2 3 4 5 6 7 8\nCellData/c 1 2 : 1 2\n");
+    seeds.add("vtkhdf", mesh +
+                            "PointData/T 16 : 1 2 3 4 5 6 7 8 9\nSteps/Values 2 : 0 1\nSteps/PartOffsets 2 : 0 0\n"
+                            "Steps/NumberOfParts 2 : 1 1\nSteps/PointDataOffsets/T 2 : 0 8\nSteps/CellOffsets 2 1 : 0 0\n");
+}
+
 void add_plot3d(Seeds& seeds, const HexMesh& mesh) {
     seeds.add("plot3d", "2 2 2\n" + point_lines(mesh));
     seeds.add("plot3d", "2\n2 2 2 2 2 2\n" + point_lines(mesh) + point_lines(mesh) + "1 1 1 1 0 1 1 1\n1 1 1 1 1 1 1 1\n");
@@ -105,6 +115,7 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
                           "$ElementData\n1\n\"e\"\n0\n3\n0\n1\n1\n1 5\n$EndElementData\n");
     add_binary_meshes(seeds, mesh);
     add_plot3d(seeds, mesh);
+    add_vtkhdf(seeds);
 #ifdef SUBVOL_FUZZ_EXODUS
     add_exodus(seeds, mesh);
 #endif
