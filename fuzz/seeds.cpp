@@ -75,6 +75,55 @@ void add_exodus(Seeds& seeds, const HexMesh& mesh) {
 }
 #endif
 
+void add_vtkhdf(Seeds& seeds) {
+    const std::string mesh =
+        "NumberOfPoints 1 : 8\nNumberOfCells 1 : 1\nNumberOfConnectivityIds 1 : 8\nOffsets 2 : 0 8\nTypes 1 : 12\n"
+        "Points 8 3 : 0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\nConnectivity 8 : 0 1 2 3 4 5 6 7\n";
+    seeds.add("vtkhdf", mesh + "PointData/T 8 : 1 2 3 4 5 6 7 8\nCellData/c 1 2 : 1 2\n");
+    seeds.add("vtkhdf", mesh +
+                            "PointData/T 16 : 1 2 3 4 5 6 7 8 9\nSteps/Values 2 : 0 1\nSteps/PartOffsets 2 : 0 0\n"
+                            "Steps/NumberOfParts 2 : 1 1\nSteps/PointDataOffsets/T 2 : 0 8\nSteps/CellOffsets 2 1 : 0 0\n");
+}
+
+void add_results(Seeds& seeds, const HexMesh& mesh) {
+    std::string nodes = "    2C                             8                                     1\n", values;
+    for (std::size_t p = 0; p < 8; ++p) {
+        const Vec3& x = mesh.points[p];
+        const std::string line = " -1         " + std::to_string(p + 1);
+        nodes += line + "    " + std::to_string(x.x) + "    " + std::to_string(x.y) + "    " + std::to_string(x.z) + "\n";
+        values += line + " 1.00000E+00\n";
+    }
+    const std::string step =
+        "  100CL  101 1.000000000           8                     0    1           1\n -4  T           1    1\n"
+        " -5  T           1    1    0    0\n" +
+        values + " -3\n";
+    seeds.add("frd", nodes +
+                         " -3\n    3C                             1                                     1\n"
+                         " -1         1    1    0    1\n -2         1         2         3         4         5         6        "
+                         " 7         8\n"
+                         " -3\n" +
+                         step + step + " 9999\n");
+    const std::string grid =
+        "<Topology TopologyType=\"Mixed\"><DataItem>9 0 1 2 3 4 5 6 7</DataItem></Topology><Geometry GeometryType=\"XYZ\">"
+        "<DataItem Dimensions=\"8 3\">" +
+        point_lines(mesh) +
+        "</DataItem></Geometry><Attribute Name=\"T\" Center=\"Node\">"
+        "<DataItem>1 2 3 4 5 6 7 8</DataItem></Attribute>";
+    const std::string run = "<Xdmf><Domain><Grid GridType=\"Collection\" CollectionType=\"Temporal\"><Grid Name=\"a\">";
+    seeds.add("xdmf",
+              run + grid +
+                  "<Time Value=\"1\"/></Grid><Grid><xi:include xpointer=\"xpointer(//Grid[@Name='a']/*[self::Topology])\"/>"
+                  "<Topology Reference=\"/Xdmf/Domain/Grid/Grid/Topology\"/></Grid></Grid></Domain></Xdmf>");
+    seeds.add("xdmf",
+              "<Xdmf><Domain><Grid><Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"2 2 2\"/><Geometry "
+              "GeometryType=\"ORIGIN_DXDYDZ\">"
+              "<DataItem>0 0 0</DataItem><DataItem>1 1 1</DataItem></Geometry><Attribute Center=\"Node\"><DataItem "
+              "ItemType=\"HyperSlab\" "
+              "Dimensions=\"8\"><DataItem>0 1 8</DataItem><DataItem Dimensions=\"8\">1 2 3 4 5 6 7 "
+              "8</DataItem></DataItem></Attribute>"
+              "</Grid></Domain></Xdmf>");
+}
+
 void add_plot3d(Seeds& seeds, const HexMesh& mesh) {
     seeds.add("plot3d", "2 2 2\n" + point_lines(mesh));
     seeds.add("plot3d", "2\n2 2 2 2 2 2\n" + point_lines(mesh) + point_lines(mesh) + "1 1 1 1 0 1 1 1\n1 1 1 1 1 1 1 1\n");
@@ -105,6 +154,8 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
                           "$ElementData\n1\n\"e\"\n0\n3\n0\n1\n1\n1 5\n$EndElementData\n");
     add_binary_meshes(seeds, mesh);
     add_plot3d(seeds, mesh);
+    add_vtkhdf(seeds);
+    add_results(seeds, mesh);
 #ifdef SUBVOL_FUZZ_EXODUS
     add_exodus(seeds, mesh);
 #endif

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "hdf5_file.h"
 #include "netcdf_functions.h"
 #include "subvol/detail/module.h"
 
@@ -24,12 +25,6 @@ const NetcdfFunctions& library() {
 
 constexpr std::size_t kMostOfDeflate = 1040;  // 1032, and some bytes for the blocks
 
-// The library is not thread-safe: only one thread at a time may use it.
-std::mutex& library_mutex() {
-    static std::mutex mutex;
-    return mutex;
-}
-
 constexpr std::array<std::pair<nc_type, NumberType>, 11> kTypes{{{NC_BYTE, NumberType::Int8},
                                                                  {NC_CHAR, NumberType::UInt8},
                                                                  {NC_SHORT, NumberType::Int16},
@@ -44,7 +39,7 @@ constexpr std::array<std::pair<nc_type, NumberType>, 11> kTypes{{{NC_BYTE, Numbe
 
 class Netcdf4 : public NetcdfSource {
 public:
-    Netcdf4(std::string_view bytes, std::string_view file) : lock_(library_mutex()), file_(file) {
+    Netcdf4(std::string_view bytes, std::string_view file) : lock_(hdf5_mutex()), file_(file) {
         // The library takes a pointer to non-const, but does not change a file that is opened for reading.
         void* memory = const_cast<char*>(bytes.data());
         check(library().open_mem(std::string(file).c_str(), NC_NOWRITE, bytes.size(), memory, &id_));

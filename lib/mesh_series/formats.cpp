@@ -7,7 +7,9 @@
 #include "abaqus/inp_io.h"
 #include "collection.h"
 #include "openfoam/foam_case.h"
+#include "text_readers.h"
 #include "text_scanner.h"
+#include "vtkhdf/vtkhdf_io.h"
 
 namespace subvol::detail {
 
@@ -26,7 +28,7 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-constexpr std::array<MeshFormat, 16> kFormats{{
+constexpr std::array<MeshFormat, 19> kFormats{{
     {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
     {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
@@ -41,6 +43,9 @@ constexpr std::array<MeshFormat, 16> kFormats{{
     {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr, true},
     {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
     {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr, false, true, exodus_times},
+    {{".vtkhdf", ".hdf"}, "VTKHDF", read_vtkhdf, nullptr, false, false, vtkhdf_times},
+    {{".xdmf", ".xmf", ".xdmf2", ".xdmf3"}, "XDMF", read_file<read_xdmf>, nullptr, false, false, xdmf_times},
+    {{".frd"}, "CalculiX", read_file<read_frd>, nullptr, false, false, frd_times},
     {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times},
     {{".inp"}, "Abaqus", read_inp, nullptr, false, true},
 }};

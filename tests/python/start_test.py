@@ -14,7 +14,7 @@ def python(program):
 def test_import_loads_neither_openvdb_nor_openimageio():
     libraries = python("import subvol; print(open('/proc/self/maps').read())")
     assert "_core" in libraries
-    for late in ("libopenvdb", "libOpenImageIO", "_grids", "libnetcdf"):
+    for late in ("libopenvdb", "libOpenImageIO", "_grids", "libnetcdf", "libhdf5"):
         assert late not in libraries, late
 
 

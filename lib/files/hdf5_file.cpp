@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hdf5_file.h"
+
+#include "subvol/detail/printable.h"
+#include "subvol/error.h"
+#include "text_scanner.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kMostColumns = 1 << 16;
+
+std::size_t columns_of(const Hdf5Dataset& dataset) {
+    std::size_t columns = 1;
+    for (std::size_t d = 1; d < dataset.lengths.size(); ++d) {
+        if (dataset.lengths[d] > kMostColumns / columns) return kMostColumns + 1;
+        columns *= dataset.lengths[d];
+        if (columns == 0) return 0;
+    }
+    return columns;
+}
+
+std::size_t rows_of(const Hdf5Dataset& dataset) {
+    return dataset.lengths.empty() ? 1 : dataset.lengths[0];
+}
+
+}  // namespace
+
+Hdf5Dataset Hdf5File::dataset(const std::string& path) const {
+    auto found = source_->find(path);
+    if (!found) fail("there is no dataset of numbers " + in_quotes(path));
+    return *std::move(found);
+}
+
+std::size_t Hdf5File::rows(const std::string& path) const {
+    return rows_of(dataset(path));
+}
+
+std::size_t Hdf5File::columns(const std::string& path) const {
+    const std::size_t columns = columns_of(dataset(path));
+    if (columns > kMostColumns) fail(in_quotes(path) + " has too many columns", "at most " + std::to_string(kMostColumns));
+    return columns;
+}
+
+std::string Hdf5File::bytes(const std::string& path, const Hdf5Dataset& dataset, std::size_t first, std::size_t count) const {
+    constexpr std::size_t kFew = 1 << 20;  // values that are not stored have a default
+    const std::size_t rows = rows_of(dataset), row = columns_of(dataset) * size_of(dataset.type);
+    if (first > rows || count > rows - first) {
+        fail(in_quotes(path) + " has " + counted(rows, "row", "rows") + "; " + std::to_string(count) + " from row " +
+             std::to_string(first) + " on are needed");
+    }
+    if (columns_of(dataset) > kMostColumns || (row > 0 && count > std::max(kFew, dataset.most_bytes) / row)) {
+        fail(in_quotes(path) + " has fewer values than its size says");
+    }
+    std::vector<std::size_t> starts(dataset.lengths.size()), counts = dataset.lengths;
+    if (!starts.empty()) {
+        starts[0] = first;
+        counts[0] = count;
+    }
+    if (row == 0 || count == 0) return {};
+    auto bytes = source_->values(path, dataset, starts, counts);
+    if (!bytes || bytes->size() != row * count) fail(in_quotes(path) + " cannot be read: the file is damaged");
+    return *std::move(bytes);
+}
+
+std::vector<double> Hdf5File::reals(const std::string& path, std::size_t first, std::size_t count) const {
+    const Hdf5Dataset found = dataset(path);
+    return reals_from(bytes(path, found, first, count), found.type, std::endian::native);
+}
+
+std::vector<std::int64_t> Hdf5File::integers(const std::string& path, std::size_t first, std::size_t count) const {
+    const Hdf5Dataset found = dataset(path);
+    if (!is_integer(found.type)) fail(in_quotes(path) + " does not consist of integers");
+    return integers_from(bytes(path, found, first, count), found.type, std::endian::native);
+}
+
+void Hdf5File::fail(const std::string& message, const std::string& allowed) const {
+    throw Error(ErrorCode::InvalidInput, message, file_, allowed);
+}
+
+}  // namespace subvol::detail

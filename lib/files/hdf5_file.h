@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "number_type.h"
+
+namespace subvol::detail {
+
+/// A dataset of an HDF5 file. lengths: of its dimensions, the slowest first; most_bytes: of values that its storage can have
+struct Hdf5Dataset {
+    NumberType type = NumberType::Float64;
+    std::vector<std::size_t> lengths;
+    std::size_t most_bytes = 0;
+};
+
+/// An open HDF5 file. Paths are those inside of it, such as "/VTKHDF/Points".
+class Hdf5Source {
+public:
+    virtual ~Hdf5Source() = default;
+
+    /// The names in a group, in order; none if there is no such group.
+    [[nodiscard]] virtual std::vector<std::string> names(const std::string& group) const = 0;
+    /// Nothing if there is no such dataset, or it does not consist of numbers.
+    [[nodiscard]] virtual std::optional<Hdf5Dataset> find(const std::string& path) const = 0;
+    /// The bytes of a block of values, in this machine's byte order. starts, counts: along each dimension, checked by the
+    /// caller
+    ///
+    /// returns: nothing if the file is damaged there
+    [[nodiscard]] virtual std::optional<std::string> values(const std::string& path, const Hdf5Dataset& dataset,
+                                                            std::span<const std::size_t> starts,
+                                                            std::span<const std::size_t> counts) const = 0;
+    [[nodiscard]] virtual std::optional<std::string> text(const std::string& object, const std::string& attribute) const = 0;
+    [[nodiscard]] virtual std::vector<std::int64_t> integers(const std::string& object, const std::string& attribute) const = 0;
+};
+
+/// throws: Error(Io) if the file cannot be opened, Error(InvalidInput) if it is not an HDF5 file, Error(MissingCapability) if
+///         the build has no HDF5 library
+[[nodiscard]] std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& path);
+
+/// HDF5's library is not thread-safe: only one thread at a time may use it, by whatever module.
+[[nodiscard]] std::mutex& hdf5_mutex();
+
+/// Datasets of numbers in an HDF5 file, checked. Every failure is an Error(InvalidInput) that names the dataset.
+///
+/// Never reads more values than the storage of a dataset can have. A row is all values at a place along the first dimension.
+class Hdf5File {
+public:
+    Hdf5File(std::unique_ptr<Hdf5Source> source, std::string file) : source_(std::move(source)), file_(std::move(file)) {}
+
+    [[nodiscard]] bool has(const std::string& path) const { return source_->find(path).has_value(); }
+    [[nodiscard]] std::vector<std::string> names(const std::string& group) const { return source_->names(group); }
+    [[nodiscard]] Hdf5Dataset dataset(const std::string& path) const;
+    [[nodiscard]] std::size_t rows(const std::string& path) const;
+    /// The number of values in a row.
+    [[nodiscard]] std::size_t columns(const std::string& path) const;
+
+    /// So many rows.
+    [[nodiscard]] std::vector<double> reals(const std::string& path, std::size_t first, std::size_t count) const;
+    [[nodiscard]] std::vector<std::int64_t> integers(const std::string& path, std::size_t first, std::size_t count) const;
+    /// All values.
+    [[nodiscard]] std::vector<double> reals(const std::string& path) const { return reals(path, 0, rows(path)); }
+    [[nodiscard]] std::vector<std::int64_t> integers(const std::string& path) const { return integers(path, 0, rows(path)); }
+
+    [[nodiscard]] std::optional<std::string> text(const std::string& object, const std::string& attribute) const {
+        return source_->text(object, attribute);
+    }
+    [[nodiscard]] std::vector<std::int64_t> numbers(const std::string& object, const std::string& attribute) const {
+        return source_->integers(object, attribute);
+    }
+
+    [[nodiscard]] const std::string& name() const { return file_; }
+    [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const;
+
+private:
+    [[nodiscard]] std::string bytes(const std::string& path, const Hdf5Dataset& dataset, std::size_t first,
+                                    std::size_t count) const;
+
+    std::unique_ptr<Hdf5Source> source_;
+    std::string file_;
+};
+
+}  // namespace subvol::detail

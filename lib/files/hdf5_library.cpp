@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <fstream>
+
+#include "hdf5_file.h"
+#include "hdf5_functions.h"
+#include "subvol/detail/module.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+std::mutex& hdf5_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+namespace {
+
+void expect_hdf5(const std::filesystem::path& path) {
+    constexpr std::string_view kBegin = "\x89HDF\r\n\x1a\n";
+    std::array<char, kBegin.size()> begin{};
+    std::ifstream in(path, std::ios::binary);
+    std::error_code none;
+    if (!in || std::filesystem::is_directory(path, none)) throw Error(ErrorCode::Io, "cannot be opened", path.string());
+    in.read(begin.data(), begin.size());
+    if (std::string_view(begin.data(), begin.size()) != kBegin) {
+        throw Error(ErrorCode::InvalidInput, "not an HDF5 file", path.string());
+    }
+}
+
+#ifdef SUBVOL_FOREIGN_HDF5
+
+constexpr std::size_t kMostOfDeflate = 1040;  // 1032, and some bytes for the blocks
+
+const Hdf5Functions& library() {
+    using Entry = const Hdf5Functions* (*)();
+    static const Hdf5Functions& functions = *reinterpret_cast<Entry>(load_module("hdf5", "reading files of HDF5"))();
+    return functions;
+}
+
+using Lock = std::scoped_lock<std::mutex>;
+
+class Hdf5Library : public Hdf5Source {
+public:
+    explicit Hdf5Library(const std::filesystem::path& path) : size_(std::filesystem::file_size(path)) {
+        const Lock lock(hdf5_mutex());
+        file_ = library().open(path.c_str());
+        if (file_ < 0) throw Error(ErrorCode::InvalidInput, "the HDF5 file is damaged or not complete", path.string());
+    }
+    ~Hdf5Library() override {
+        const Lock lock(hdf5_mutex());
+        library().close(file_);
+    }
+    Hdf5Library(const Hdf5Library&) = delete;
+    Hdf5Library& operator=(const Hdf5Library&) = delete;
+
+    [[nodiscard]] std::vector<std::string> names(const std::string& group) const override {
+        const Lock lock(hdf5_mutex());
+        std::vector<std::string> names;
+        library().each_name(file_, group.c_str(), &names, [](void* into, const char* name) {
+            static_cast<std::vector<std::string>*>(into)->emplace_back(name);
+        });
+        return names;
+    }
+
+    [[nodiscard]] std::optional<Hdf5Dataset> find(const std::string& path) const override {
+        const Lock lock(hdf5_mutex());
+        Hdf5Shape shape;
+        if (library().shape(file_, path.c_str(), &shape) < 0 || shape.type < 0) return std::nullopt;
+        const std::size_t stored = std::min<std::size_t>(shape.stored, size_);
+        return Hdf5Dataset{static_cast<NumberType>(shape.type),
+                           {shape.lengths, shape.lengths + shape.rank},
+                           stored * (shape.filtered ? kMostOfDeflate : 1)};
+    }
+
+    [[nodiscard]] std::optional<std::string> values(const std::string& path, const Hdf5Dataset& dataset,
+                                                    std::span<const std::size_t> starts,
+                                                    std::span<const std::size_t> counts) const override {
+        const Lock lock(hdf5_mutex());
+        std::size_t size = size_of(dataset.type);
+        for (const std::size_t count : counts) size *= count;
+        std::string bytes(size, '\0');
+        const std::vector<std::uint64_t> first(starts.begin(), starts.end()), lengths(counts.begin(), counts.end());
+        const auto rank = static_cast<unsigned>(counts.size());
+        if (library().read(file_, path.c_str(), rank, first.data(), lengths.data(), bytes.data()) < 0) return std::nullopt;
+        return bytes;
+    }
+
+    [[nodiscard]] std::optional<std::string> text(const std::string& object, const std::string& attribute) const override {
+        const Lock lock(hdf5_mutex());
+        std::array<char, 256> text{};
+        const auto length = library().text(file_, object.c_str(), attribute.c_str(), text.data(), text.size());
+        if (length < 0) return std::nullopt;
+        return std::string(text.data(), static_cast<std::size_t>(length));
+    }
+
+    [[nodiscard]] std::vector<std::int64_t> integers(const std::string& object, const std::string& attribute) const override {
+        const Lock lock(hdf5_mutex());
+        std::array<std::int64_t, 16> numbers{};
+        const auto count = library().integers(file_, object.c_str(), attribute.c_str(), numbers.data(), numbers.size());
+        return {numbers.begin(), numbers.begin() + std::max<std::int64_t>(0, count)};
+    }
+
+private:
+    std::size_t size_;
+    std::int64_t file_ = -1;
+};
+
+}  // namespace
+
+std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& path) {
+    expect_hdf5(path);
+    return std::make_unique<Hdf5Library>(path);
+}
+
+#else
+
+}  // namespace
+
+std::unique_ptr<Hdf5Source> open_hdf5(const std::filesystem::path& path) {
+    expect_hdf5(path);
+    throw Error(ErrorCode::MissingCapability, "this build cannot read HDF5 files", path.string(),
+                "it needs the HDF5 library and the build option SUBVOL_HDF5");
+}
+
+#endif
+
+}  // namespace subvol::detail

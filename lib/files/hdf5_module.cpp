@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module subvol_hdf5.so: HDF5's library, which is 5 MB and brings those of compression and of the network.
+#include <hdf5.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "hdf5_functions.h"
+#include "number_type.h"
+#include "subvol/version.h"
+
+namespace subvol::detail {
+
+namespace {
+
+// An identifier of the library, with the function that closes it.
+class Handle {
+public:
+    Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+    ~Handle() {
+        if (id_ >= 0) close_(id_);
+    }
+    Handle(const Handle&) = delete;
+    Handle& operator=(const Handle&) = delete;
+    operator hid_t() const { return id_; }
+
+private:
+    hid_t id_;
+    herr_t (*close_)(hid_t);
+};
+
+herr_t refuse_file(const char*, const char*, const char*, const char*, unsigned*, hid_t, void*) {
+    return -1;
+}
+
+// A link could name any file of this machine.
+hid_t in_this_file(hid_t kind) {
+    const hid_t properties = H5Pcreate(kind);
+    H5Pset_elink_cb(properties, refuse_file, nullptr);
+    return properties;
+}
+
+std::int64_t open(const char* path) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it prints what went wrong
+    const Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    H5Pset_fclose_degree(properties, H5F_CLOSE_STRONG);
+#if H5_VERSION_GE(1, 10, 7)
+    H5Pset_file_locking(properties, false, true);  // a file system may not allow it, and nothing is written
+#endif
+    return H5Fopen(path, H5F_ACC_RDONLY, properties);
+}
+
+void close(std::int64_t file) {
+    H5Fclose(file);
+}
+
+hid_t open_dataset(hid_t file, const char* path) {
+    const Handle access(in_this_file(H5P_DATASET_ACCESS), H5Pclose);
+    return H5Dopen2(file, path, access);
+}
+
+struct NameTaker {
+    void* into;
+    void (*take)(void* into, const char* name);
+};
+
+herr_t take_name(hid_t, const char* name, const H5L_info_t*, void* data) {
+    const auto& taker = *static_cast<const NameTaker*>(data);
+    taker.take(taker.into, name);
+    return 0;
+}
+
+int each_name(std::int64_t file, const char* path, void* into, void (*take)(void* into, const char* name)) {
+    const Handle access(in_this_file(H5P_GROUP_ACCESS), H5Pclose);
+    const Handle group(H5Gopen2(file, path, access), H5Gclose);
+    if (group < 0) return -1;
+    NameTaker taker{into, take};
+    return H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, take_name, &taker);
+}
+
+// The library's type for a number, in this machine's byte order.
+hid_t native_type(NumberType type) {
+    switch (type) {
+        case NumberType::Int8:
+            return H5T_NATIVE_INT8;
+        case NumberType::UInt8:
+            return H5T_NATIVE_UINT8;
+        case NumberType::Int16:
+            return H5T_NATIVE_INT16;
+        case NumberType::UInt16:
+            return H5T_NATIVE_UINT16;
+        case NumberType::Int32:
+            return H5T_NATIVE_INT32;
+        case NumberType::UInt32:
+            return H5T_NATIVE_UINT32;
+        case NumberType::Int64:
+            return H5T_NATIVE_INT64;
+        case NumberType::UInt64:
+            return H5T_NATIVE_UINT64;
+        case NumberType::Float32:
+            return H5T_NATIVE_FLOAT;
+        case NumberType::Float64:
+            return H5T_NATIVE_DOUBLE;
+    }
+    return -1;
+}
+
+int number_type(hid_t type) {
+    const std::size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) == H5T_FLOAT) return static_cast<int>(size <= 4 ? NumberType::Float32 : NumberType::Float64);
+    if (H5Tget_class(type) != H5T_INTEGER) return -1;
+    const bool has_sign = H5Tget_sign(type) == H5T_SGN_2;
+    switch (size) {
+        case 1:
+            return static_cast<int>(has_sign ? NumberType::Int8 : NumberType::UInt8);
+        case 2:
+            return static_cast<int>(has_sign ? NumberType::Int16 : NumberType::UInt16);
+        case 4:
+            return static_cast<int>(has_sign ? NumberType::Int32 : NumberType::UInt32);
+        case 8:
+            return static_cast<int>(has_sign ? NumberType::Int64 : NumberType::UInt64);
+        default:
+            return -1;
+    }
+}
+
+// Whether its values are in this file.
+bool is_here(hid_t properties) {
+    const H5D_layout_t layout = H5Pget_layout(properties);
+    return (layout == H5D_COMPACT || layout == H5D_CONTIGUOUS || layout == H5D_CHUNKED) &&
+           H5Pget_external_count(properties) == 0;
+}
+
+int shape(std::int64_t file, const char* path, Hdf5Shape* into) {
+    const Handle dataset(open_dataset(file, path), H5Dclose);
+    if (dataset < 0) return -1;
+    const Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
+    const Handle properties(H5Dget_create_plist(dataset), H5Pclose);
+    if (space < 0 || type < 0 || properties < 0) return -1;
+    const int rank = H5Sget_simple_extent_ndims(space);
+    if (rank < 0 || rank > static_cast<int>(Hdf5Shape::kMostRank)) return -1;
+    std::array<hsize_t, Hdf5Shape::kMostRank> lengths{};
+    if (H5Sget_simple_extent_dims(space, lengths.data(), nullptr) < 0) return -1;
+    into->type = is_here(properties) ? number_type(type) : -1;
+    into->rank = static_cast<unsigned>(rank);
+    std::copy(lengths.begin(), lengths.end(), into->lengths);
+    into->stored = H5Dget_storage_size(dataset);
+    into->filtered = H5Pget_nfilters(properties) != 0;
+    return 0;
+}
+
+int read(std::int64_t file, const char* path, unsigned rank, const std::uint64_t* starts, const std::uint64_t* lengths,
+         void* into) {
+    const Handle dataset(open_dataset(file, path), H5Dclose);
+    if (dataset < 0) return -1;
+    const Handle space(H5Dget_space(dataset), H5Sclose), type(H5Dget_type(dataset), H5Tclose);
+    const int number = number_type(type);
+    if (number < 0 || H5Sget_simple_extent_ndims(space) != static_cast<int>(rank)) return -1;
+    if (rank == 0) return H5Dread(dataset, native_type(static_cast<NumberType>(number)), H5S_ALL, H5S_ALL, H5P_DEFAULT, into);
+    std::array<hsize_t, Hdf5Shape::kMostRank> first{}, count{};
+    std::copy_n(starts, rank, first.begin());
+    std::copy_n(lengths, rank, count.begin());
+    if (H5Sselect_hyperslab(space, H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) < 0) return -1;
+    const Handle memory(H5Screate_simple(static_cast<int>(rank), count.data(), nullptr), H5Sclose);
+    return H5Dread(dataset, native_type(static_cast<NumberType>(number)), memory, space, H5P_DEFAULT, into);
+}
+
+hid_t open_attribute(hid_t file, const char* object, const char* name) {
+    const Handle access(in_this_file(H5P_LINK_ACCESS), H5Pclose);
+    return H5Aopen_by_name(file, object, name, H5P_DEFAULT, access);
+}
+
+std::int64_t text(std::int64_t file, const char* object, const char* name, char* into, std::size_t most) {
+    const Handle attribute(open_attribute(file, object, name), H5Aclose);
+    if (attribute < 0) return -1;
+    const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+    if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) return -1;
+    if (H5Tis_variable_str(type) > 0) {
+        char* found = nullptr;
+        if (H5Aread(attribute, type, &found) < 0 || found == nullptr) return -1;
+        const std::size_t length = std::min(std::strlen(found), most);
+        std::copy_n(found, length, into);
+        H5free_memory(found);
+        return static_cast<std::int64_t>(length);
+    }
+    const std::size_t size = H5Tget_size(type);
+    if (size == 0 || size > most || H5Aread(attribute, type, into) < 0) return -1;
+    return static_cast<std::int64_t>(std::find(into, into + size, '\0') - into);
+}
+
+std::int64_t integers(std::int64_t file, const char* object, const char* name, std::int64_t* into, std::size_t most) {
+    const Handle attribute(open_attribute(file, object, name), H5Aclose);
+    if (attribute < 0) return -1;
+    const Handle type(H5Aget_type(attribute), H5Tclose), space(H5Aget_space(attribute), H5Sclose);
+    const hssize_t count = H5Sget_simple_extent_npoints(space);
+    if (H5Tget_class(type) != H5T_INTEGER || count < 0 || static_cast<std::size_t>(count) > most) return -1;
+    return H5Aread(attribute, H5T_NATIVE_INT64, into) < 0 ? -1 : count;
+}
+
+}  // namespace
+
+}  // namespace subvol::detail
+
+extern "C" {
+extern const char subvol_module_version[];
+const char subvol_module_version[] = SUBVOL_VERSION;
+
+const subvol::detail::Hdf5Functions* subvol_hdf5() {
+    namespace own = subvol::detail;
+    static const own::Hdf5Functions functions{.open = &own::open,
+                                              .close = &own::close,
+                                              .each_name = &own::each_name,
+                                              .shape = &own::shape,
+                                              .read = &own::read,
+                                              .text = &own::text,
+                                              .integers = &own::integers};
+    return &functions;
+}
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// A build without HDF5's library.
+
+#include <gmock/gmock.h>
+
+#include "lib/temp_folder.h"
+#include "subvol/mesh_io.h"
+
+namespace subvol::test {
+
+namespace {
+
+using Hdf5Missing = TempFolder;
+
+TEST_F(Hdf5Missing, IsSaid) {
+    const auto file = write("a.vtkhdf", "\x89HDF\r\n\x1a\n");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(file)); }, ErrorCode::MissingCapability),
+                testing::HasSubstr("a.vtkhdf: this build cannot read HDF5 files"));
+}
+
+}  // namespace
+
+}  // namespace subvol::test

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// VTKHDF files, written by HDF5's library.
+
+#include <gmock/gmock.h>
+
+#include <functional>
+
+#include "hdf5_texts.h"
+#include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
+#include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Numbers = std::vector<std::int64_t>;
+
+// A row of cubes along x.
+struct Row {
+    std::vector<double> points;
+    Numbers connectivity, offsets{0};
+    std::vector<std::uint8_t> types;
+    std::int64_t cells = 0;
+};
+
+Row row(Index cells, double first_x = 0) {
+    const HexMesh mesh = make_box(cells, 1, 1);
+    Row row;
+    for (const Vec3& x : mesh.points) row.points.insert(row.points.end(), {first_x + x.x, x.y, x.z});
+    for (const auto& cell : mesh.cells) {
+        row.connectivity.insert(row.connectivity.end(), cell.begin(), cell.end());
+        row.offsets.push_back(static_cast<std::int64_t>(row.connectivity.size()));
+        row.types.push_back(12);
+    }
+    row.cells = cells;
+    return row;
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+class VtkHdf : public TempFolder {
+protected:
+    // parts: one after the other in the arrays
+    void start(Hdf5Writer& file, const std::vector<Row>& parts, bool deflated = false) const {
+        Row all{{}, {}, {}, {}, 0};
+        Numbers points, cells, corners;
+        for (const Row& part : parts) {
+            append(all.points, part.points);
+            append(all.connectivity, part.connectivity);
+            append(all.offsets, part.offsets);
+            append(all.types, part.types);
+            points.push_back(static_cast<std::int64_t>(part.points.size() / 3));
+            cells.push_back(part.cells);
+            corners.push_back(static_cast<std::int64_t>(part.connectivity.size()));
+        }
+        file.group("/VTKHDF");
+        file.attribute("/VTKHDF", "Version", Numbers{2, 0});
+        file.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+        file.put("/VTKHDF/NumberOfPoints", points);
+        file.put("/VTKHDF/NumberOfCells", cells);
+        file.put("/VTKHDF/NumberOfConnectivityIds", corners);
+        file.put("/VTKHDF/Points", all.points, {all.points.size() / 3, 3}, deflated);
+        file.put("/VTKHDF/Connectivity", all.connectivity, {}, deflated);
+        file.put("/VTKHDF/Offsets", all.offsets);
+        file.put("/VTKHDF/Types", all.types);
+    }
+    [[nodiscard]] std::string error(const std::function<void(Hdf5Writer&)>& write) const {
+        {
+            Hdf5Writer file(path("bad.vtkhdf"));
+            write(file);
+        }
+        return error_of([&] { static_cast<void>(read_mesh(path("bad.vtkhdf"))); });
+    }
+};
+
+TEST_F(VtkHdf, CellsAndFieldsOfAGrid) {
+    for (const bool deflated : {false, true}) {
+        {
+            Hdf5Writer file(path("a.vtkhdf"));
+            start(file, {row(2)}, deflated);
+            file.put("/VTKHDF/PointData/T", std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {}, deflated);
+            file.put("/VTKHDF/PointData/U", std::vector<double>(36, 1), {12, 3});
+            file.put("/VTKHDF/CellData/c", std::vector<std::int32_t>{4, 4});
+        }
+        const ReadResult result = read_mesh(path("a.vtkhdf"));
+        EXPECT_EQ(result.mesh.points, make_box(2, 1, 1).points);
+        EXPECT_EQ(result.mesh.cells, make_box(2, 1, 1).cells);
+        ASSERT_EQ(result.fields.size(), 3u);
+        EXPECT_EQ(result.mesh.find_attribute("T")->values[7], 7);
+        EXPECT_EQ(result.mesh.find_attribute("U")->channels, 3);
+        EXPECT_EQ(result.mesh.find_attribute("c")->values[0], 4);
+        EXPECT_EQ(open_series(path("a.vtkhdf")).size(), 1u);
+    }
+}
+
+TEST_F(VtkHdf, PartitionsAreJoined) {
+    {
+        Hdf5Writer file(path("a.hdf"));
+        start(file, {row(2), row(1, 2)});
+        file.put("/VTKHDF/CellData/part", Numbers{1, 1, 2});
+    }
+    const ReadResult result = read_mesh(path("a.hdf"));
+    EXPECT_EQ(inspect(result.mesh).points_used, 16u);
+    EXPECT_NEAR(inspect(result.mesh).volume, 3, 1e-12);
+    EXPECT_THAT(result.warnings, Contains("2 parts put together; 4 points joined with those of another, by their places"));
+    EXPECT_EQ(result.mesh.find_attribute("part")->values.back(), 2);
+}
+
+// The mesh of the first two steps is the same, the third one has two other partitions.
+TEST_F(VtkHdf, StepsHaveTheirOffsets) {
+    {
+        Hdf5Writer file(path("a.vtkhdf"));
+        start(file, {row(1), row(1), row(2, 1)});
+        std::vector<double> t(8 + 8 + 20);
+        for (std::size_t i = 0; i < t.size(); ++i) t[i] = static_cast<double>(i);
+        file.put("/VTKHDF/PointData/T", t);
+        file.group("/VTKHDF/Steps");
+        file.attribute("/VTKHDF/Steps", "NSteps", Numbers{3});
+        file.put("/VTKHDF/Steps/Values", std::vector<double>{0, .5, 2});
+        file.put("/VTKHDF/Steps/PartOffsets", Numbers{0, 0, 1});
+        file.put("/VTKHDF/Steps/NumberOfParts", Numbers{1, 1, 2});
+        file.put("/VTKHDF/Steps/PointOffsets", Numbers{0, 0, 8});
+        file.put("/VTKHDF/Steps/CellOffsets", Numbers{0, 0, 1}, {3, 1});
+        file.put("/VTKHDF/Steps/ConnectivityIdOffsets", Numbers{0, 0, 8}, {3, 1});
+        file.put("/VTKHDF/Steps/PointDataOffsets/T", Numbers{0, 8, 16});
+    }
+    EXPECT_THAT(open_series(path("a.vtkhdf")).times, ElementsAre(0, .5, 2));
+    const std::vector<double> first{0, 8, 16}, volume{1, 1, 3};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const ReadResult result = read_mesh(path("a.vtkhdf"), {.step = k});
+        EXPECT_EQ(result.mesh.find_attribute("T")->values[0], first[k]);
+        EXPECT_NEAR(inspect(result.mesh).volume, volume[k], 1e-12);
+    }
+    EXPECT_THAT(read_mesh(path("a.vtkhdf")).warnings, Contains("of 3 steps the last one is taken"));
+}
+
+TEST_F(VtkHdf, WrongFilesGetASentence) {
+    EXPECT_THAT(error([](Hdf5Writer&) {}), HasSubstr("bad.vtkhdf: not a VTKHDF file"));
+    EXPECT_THAT(error([](Hdf5Writer& file) {
+                    file.group("/VTKHDF");
+                    file.attribute("/VTKHDF", "Version", Numbers{1, 0});
+                    file.attribute("/VTKHDF", "Type", "ImageData");
+                }),
+                HasSubstr("\"ImageData\" is not an UnstructuredGrid"));
+    EXPECT_THAT(error([&](Hdf5Writer& file) {
+                    Row bad = row(1);
+                    bad.connectivity[3] = 8;
+                    start(file, {bad});
+                }),
+                HasSubstr("cell 0: there is no point with index 8 (there are 8 points, counted from 0)"));
+    EXPECT_THAT(error([&](Hdf5Writer& file) {
+                    Row bad = row(1);
+                    bad.offsets[1] = 9;
+                    start(file, {bad});
+                }),
+                HasSubstr("cell 0 ends at 9"));
+    EXPECT_THAT(error([&](Hdf5Writer& file) {
+                    Row bad = row(1);
+                    bad.cells = 1000000000;
+                    start(file, {bad});
+                }),
+                HasSubstr("\"/VTKHDF/Types\" has 1 row; 1000000000 from row 0 on are needed"));
+    EXPECT_THAT(error([&](Hdf5Writer& file) {
+                    start(file, {row(1)});
+                    file.put("/VTKHDF/PointData/T", std::vector<double>{1, 2, 3});
+                }),
+                HasSubstr("\"/VTKHDF/PointData/T\" has 3 rows; 8 from row 0 on are needed"));
+    write("no.vtkhdf", "\x89HDF\r\n\x1a\nand nothing more");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("no.vtkhdf"))); }), HasSubstr("damaged or not complete"));
+    write("no.vtkhdf", "text");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("no.vtkhdf"))); }), HasSubstr("not an HDF5 file"));
+}
+
+TEST_F(VtkHdf, RealFile) {
+    const auto file = data_folder().value_or("") / "../series/can.vtkhdf";
+    if (!data_folder() || !std::filesystem::exists(file))
+        GTEST_SKIP() << "no folder series beside the one that SUBVOL_DATA names";
+    const ReadResult result = read_mesh(file);
+    EXPECT_EQ(result.mesh.points.size(), 6724u);
+    EXPECT_EQ(result.mesh.cells.size(), 4800u);
+    for (const std::string name : {"ACCL", "DISPL", "VEL"}) EXPECT_EQ(result.mesh.find_attribute(name)->channels, 3) << name;
+    EXPECT_NE(result.mesh.find_attribute("EQPS"), nullptr);
+}
+
+}  // namespace
+
+}  // namespace subvol::test

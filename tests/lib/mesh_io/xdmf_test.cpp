@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// XDMF, with values in the text and in binary files.
+
+#include <gmock/gmock.h>
+
+#include "lib/test_meshes.h"
+#include "mesh_damage.h"
+#include "mesh_texts.h"
+#include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+template <class Values>
+std::string item(const Values& values, const std::string& dimensions, const std::string& attributes = "") {
+    std::string text = "<DataItem Dimensions=\"" + dimensions + "\" Format=\"XML\" " + attributes + ">";
+    for (const auto value : values) text += number(static_cast<double>(value)) + " ";
+    return text + "</DataItem>\n";
+}
+
+std::string geometry(const HexMesh& mesh, const Vec3& shift = Vec3(0)) {
+    std::vector<double> values;
+    for (const Vec3& x : mesh.points) values.insert(values.end(), {x.x + shift.x, x.y + shift.y, x.z + shift.z});
+    return "<Geometry GeometryType=\"XYZ\">" + item(values, std::to_string(mesh.points.size()) + " 3") + "</Geometry>\n";
+}
+
+std::string topology(const HexMesh& mesh) {
+    std::vector<Index> corners;
+    for (const auto& cell : mesh.cells) corners.insert(corners.end(), cell.begin(), cell.end());
+    const std::string count = std::to_string(mesh.cells.size());
+    return "<Topology TopologyType=\"Hexahedron\" NumberOfElements=\"" + count + "\">" + item(corners, count + " 8") +
+           "</Topology>\n";
+}
+
+std::string array(const std::string& name, const std::string& center, const std::vector<double>& values) {
+    return "<Attribute Name=\"" + name + "\" Center=\"" + center + "\" AttributeType=\"Scalar\">" +
+           item(values, std::to_string(values.size())) + "</Attribute>\n";
+}
+
+std::string grid(const std::string& content, const std::string& attributes = "Name=\"g\" GridType=\"Uniform\"") {
+    return "<Grid " + attributes + ">\n" + content + "</Grid>\n";
+}
+
+std::string document(const std::string& content) {
+    return "<?xml version=\"1.0\" ?>\n<!DOCTYPE Xdmf SYSTEM \"Xdmf.dtd\" []>\n<Xdmf Version=\"3.0\" "
+           "xmlns:xi=\"http://www.w3.org/2001/XInclude\"><Domain>\n" +
+           content + "</Domain></Xdmf>\n";
+}
+
+const std::string kTemporal = "Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\"";
+
+class Xdmf : public TempFolder {
+protected:
+    [[nodiscard]] ReadResult read(const std::string& content, const ReadOptions& options = {}) const {
+        return read_mesh(write("a.xdmf", document(content)), options);
+    }
+    [[nodiscard]] std::string error(const std::string& content) const {
+        return error_of([&] { static_cast<void>(read(content)); });
+    }
+};
+
+TEST_F(Xdmf, CellsAndFieldsOfAGrid) {
+    const HexMesh mesh = make_box(2, 1, 1);
+    const ReadResult result =
+        read(grid(topology(mesh) + geometry(mesh) + array("T", "Node", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}) +
+                  array("c", "Cell", {3, 3}) + "<Attribute Name=\"U\" Center=\"Node\" AttributeType=\"Vector\">" +
+                  item(std::vector<double>(36, 2), "12 3") + "</Attribute>"));
+    EXPECT_EQ(result.mesh.points, mesh.points);
+    EXPECT_EQ(result.mesh.cells, mesh.cells);
+    EXPECT_EQ(result.mesh.find_attribute("T")->values[7], 7);
+    EXPECT_EQ(result.mesh.find_attribute("c")->values[0], 3);
+    EXPECT_EQ(result.mesh.find_attribute("U")->channels, 3);
+}
+
+TEST_F(Xdmf, MixedCellsAreTakenByTheirTypes) {
+    HexMesh mesh = make_box(1, 1, 1);
+    mesh.points.insert(mesh.points.end(), {{.5, .5, 2}, {2, 0, 0}, {2, 0, 1}});
+    const std::vector<int> cells{9, 0, 1,  3, 2, 4, 5,  7, 6, 7, 4, 5, 7, 6, 8, 8, 1, 9,
+                                 3, 5, 10, 7, 6, 5, 10, 7, 8, 2, 2, 0, 1, 5, 0, 1, 3, 2};
+    const ReadResult result = read(grid("<Topology TopologyType=\"Mixed\">" + item(cells, std::to_string(cells.size())) +
+                                        "</Topology>" + geometry(mesh) + array("c", "Cell", {1, 2, 3, 4, 5, 6})));
+    EXPECT_NEAR(inspect(result.mesh).volume, 1 + 1. / 3 + .5 + 1. / 6, 1e-12);
+    EXPECT_THAT(result.warnings, Contains(HasSubstr("1 hexahedron, 1 tetrahedron, 1 prism and 1 pyramid")));
+}
+
+TEST_F(Xdmf, StructuredGridsCountZFirst) {
+    const HexMesh mesh = make_box(3, 2, 1);
+    std::vector<double> x(24);
+    for (std::size_t p = 0; p < 24; ++p) x[p] = mesh.points[p].x;
+    const std::string field = "<Attribute Name=\"x\" Center=\"Node\">" + item(x, "2 3 4") + "</Attribute>";
+    const std::string cuts =
+        item(std::vector{0, 1, 2, 3}, "4") + item(std::vector{0, 1, 2}, "3") + item(std::vector{0, 1}, "2");
+    for (const std::string content :
+         {"<Topology TopologyType=\"3DSMesh\" Dimensions=\"2 3 4\"/>" + geometry(mesh),
+          "<Topology TopologyType=\"3DRectMesh\" Dimensions=\"2 3 4\"/><Geometry GeometryType=\"VXVYVZ\">" + cuts +
+              "</Geometry>",
+          "<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"2 3 4\"/><Geometry GeometryType=\"ORIGIN_DXDYDZ\">" +
+              item(std::vector{0, 0, 0}, "3") + item(std::vector{1, 1, 1}, "3") + "</Geometry>"}) {
+        const ReadResult result = read(grid(content + field));
+        EXPECT_EQ(result.mesh.points, mesh.points);
+        EXPECT_EQ(result.mesh.cells, mesh.cells);
+        for (std::size_t p = 0; p < 24; ++p) EXPECT_EQ(result.mesh.attributes[0].values[p], mesh.points[p].x);
+    }
+}
+
+TEST_F(Xdmf, StepsAreInTheOrderOfTheirTimesAndShareTheirMesh) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const auto step = [&](double time, double value) {
+        return grid(
+            "<ns0:include xpointer=\"xpointer(//Grid[@Name=&quot;mesh&quot;]/*[self::Topology or self::Geometry])\"/>"
+            "<Time Value=\"" +
+            number(time) + "\"/>" + array("T", "Node", std::vector<double>(8, value)));
+    };
+    const std::string common = grid(topology(mesh) + geometry(mesh), "Name=\"mesh\" GridType=\"Uniform\"");
+    write("a.xdmf", document(common + grid(step(1, 10) + step(0, 0) + step(.5, 5), kTemporal)));
+    EXPECT_THAT(open_series(path("a.xdmf")).times, ElementsAre(0, .5, 1));
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(read_mesh(path("a.xdmf"), {.step = k}).mesh.attributes[0].values[0], 5. * static_cast<double>(k));
+    }
+    EXPECT_THAT(read_mesh(path("a.xdmf")).warnings, ElementsAre("of 3 steps the last one is taken"));
+    // Times in one list; cells and points in the first step alone.
+    const auto plain = [&](double value) { return grid(array("T", "Node", std::vector<double>(8, value))); };
+    write("a.xdmf",
+          document(grid("<Time TimeType=\"List\">" + item(std::vector<double>{2, 4}, "2") + "</Time>" +
+                            grid(topology(mesh) + geometry(mesh) + array("T", "Node", std::vector<double>(8, 1))) + plain(7),
+                        kTemporal)));
+    EXPECT_THAT(open_series(path("a.xdmf")).times, ElementsAre(2, 4));
+    EXPECT_EQ(read_mesh(path("a.xdmf")).mesh.attributes[0].values[0], 7);
+}
+
+TEST_F(Xdmf, SpatialCollectionsAreJoined) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const std::string parts = grid(topology(mesh) + geometry(mesh)) + grid(topology(mesh) + geometry(mesh, {1, 0, 0}));
+    const ReadResult result = read(grid(parts, "GridType=\"Collection\" CollectionType=\"Spatial\""));
+    EXPECT_EQ(inspect(result.mesh).points_used, 12u);
+    EXPECT_THAT(result.warnings, ElementsAre("2 grids put together; 4 points joined with those of another, by their places"));
+}
+
+TEST_F(Xdmf, ValuesInBinaryFilesAndPartsOfThem) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const std::vector<float> values{9, 9, 0, 1, 2, 3, 4, 5, 6, 7};
+    write("t.bin", std::string(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
+    const std::string whole =
+        "<DataItem Dimensions=\"10\" Format=\"Binary\" Precision=\"4\" NumberType=\"Float\">t.bin</DataItem>";
+    const std::string later = "<DataItem Dimensions=\"8\" Format=\"Binary\" Precision=\"4\" Seek=\"8\">t.bin</DataItem>";
+    const std::string slab =
+        "<DataItem ItemType=\"HyperSlab\" Dimensions=\"8\">" + item(std::vector{2, 1, 8}, "3 1") + whole + "</DataItem>";
+    for (const std::string& values_of : {later, slab}) {
+        const ReadResult result =
+            read(grid(topology(mesh) + geometry(mesh) + "<Attribute Name=\"T\" Center=\"Node\">" + values_of + "</Attribute>"));
+        EXPECT_THAT(result.mesh.attributes[0].values, ElementsAre(0, 1, 2, 3, 4, 5, 6, 7));
+    }
+}
+
+TEST_F(Xdmf, WrongFilesGetASentenceWithTheLine) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    EXPECT_THAT(error(""), HasSubstr("a.xdmf, line 3: it has no grids"));
+    EXPECT_THAT(error(grid(geometry(mesh))), HasSubstr("the grid has no Topology"));
+    EXPECT_THAT(error(grid(topology(mesh) + geometry(mesh) + array("T", "Node", {1, 2, 3}))),
+                HasSubstr("array \"T\" has 3 values for 8 points"));
+    EXPECT_THAT(error(grid("<Topology TopologyType=\"Hexahedron\">" + item(std::vector{0, 1, 2, 3, 4, 5, 6, 8}, "8") +
+                           "</Topology>" + geometry(mesh))),
+                HasSubstr("cell 0: there is no point with index 8 (there are 8 points)"));
+    EXPECT_THAT(error(grid("<Topology TopologyType=\"Mixed\">" + item(std::vector{77}, "1") + "</Topology>" + geometry(mesh))),
+                HasSubstr("cell 0 is of type 77"));
+    EXPECT_THAT(error(grid("<Topology TopologyType=\"2DSMesh\"/>" + geometry(mesh))),
+                HasSubstr("\"2DSMESH\" are not supported"));
+    EXPECT_THAT(error(grid("<Topology TopologyType=\"3DCoRectMesh\" Dimensions=\"9000 9000 9\"/><Geometry "
+                           "GeometryType=\"ORIGIN_DXDYDZ\"/>")),
+                HasSubstr("its points are more than its values"));
+    const std::string heavy = "<Geometry GeometryType=\"XYZ\"><DataItem Dimensions=\"8 3\" Format=\"HDF\">";
+    EXPECT_THAT(error(grid(topology(mesh) + heavy + "a.h5:/x</DataItem></Geometry>")), HasSubstr("there is no file \"a.h5\""));
+    EXPECT_THAT(error(grid("<Topology Reference=\"//Grid//Grid//*\"/>" + geometry(mesh))),
+                HasSubstr("not a part of this file"));
+    EXPECT_THAT(error(grid("<Topology Reference=\"/Xdmf/Domain/Grid/Topology\"/>" + geometry(mesh))),
+                HasSubstr("elements refer to each other"));
+    write("no.xmf", "<Xdmf>");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("no.xmf"))); }), HasSubstr("not well-formed XML"));
+}
+
+using XdmfFuzz = MeshFuzz;
+
+TEST_F(XdmfFuzz, StepsAndMixedCells) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const std::string step =
+        grid(topology(mesh) + geometry(mesh) + "<Time Value=\"1\"/>" + array("T", "Node", {1, 2, 3, 4, 5, 6, 7, 8}));
+    const std::string mixed =
+        grid("<Topology TopologyType=\"Mixed\">" + item(std::vector{9, 0, 1, 3, 2, 4, 5, 7, 6, 1, 1, 0}, "12") + "</Topology>" +
+             geometry(mesh) + array("c", "Cell", {1, 2}));
+    expect_sound_or_refused(".xdmf", document(grid(step + mixed, kTemporal)), 31);
+    expect_sound_or_refused(".xdmf",
+                            document(grid("<Topology TopologyType=\"3DSMesh\" Dimensions=\"2 2 2\"/>" + geometry(mesh))), 32);
+}
+
+}  // namespace
+
+}  // namespace subvol::test
