@@ -141,15 +141,23 @@ struct ClassGraph::State {
             }
         }
         Neighborhood found;
+        std::vector<Index> row_of(refined.child().points.size(), kNone);
         for (std::size_t octant = 0; octant < 8; ++octant) {
             bool is_regular = false;
             if (!refined.find(octant, found, is_regular)) continue;
             ClassEntry::Child& child = entry.children[octant];
             child.to = is_regular ? &regular : class_of(found);
             child.turn = found.turn;
-            for (const Index p : found.points) child.points.push_back(corner_of[p]);
-            bytes += child.points.size() * sizeof(ClassEntry::Corner);
+            for (const Index p : found.points) {
+                if (row_of[p] == kNone) {
+                    row_of[p] = static_cast<Index>(entry.points.size());
+                    entry.points.push_back(corner_of[p]);
+                }
+                child.rows.push_back(static_cast<std::uint16_t>(row_of[p]));
+            }
+            bytes += sizeof(child) + child.rows.size() * sizeof(child.rows[0]);
         }
+        bytes += entry.points.size() * sizeof(ClassEntry::Corner);
     }
 
     SchemeOptions scheme;

@@ -54,7 +54,8 @@ struct DescentClass {
 /// would depend on two layers.
 ///
 /// on_grid: whether the cell's surroundings are regular_grid, whose numbers among the walk's points `grid` has
-/// points:  of the child's neighbourhood, as corners of children of the cells that the walk about the parent visits
+/// points:  of the children's neighbourhoods, each once, as corners of children of the cells that the walk about the parent
+///          visits
 struct ClassEntry {
     struct Corner {
         std::uint16_t cell;          // in the order of the walk
@@ -63,10 +64,11 @@ struct ClassEntry {
     struct Child {
         const DescentClass* to = nullptr;
         std::uint8_t turn = kIdentityTurn;  // from the axes of the child's walk to those of the parent's
-        std::vector<Corner> points{};
+        std::vector<std::uint16_t> rows{};  // of `points`
     };
     bool on_grid = false;
     GridPoints grid{};
+    std::vector<Corner> points{};
     std::array<Child, 8> children{};  // by octants
 };
 

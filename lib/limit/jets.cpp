@@ -45,7 +45,7 @@ CellJets::CellJets(Scheme scheme, std::size_t stride) : spline_(!interpolates(sc
 }
 
 void CellJets::load_grid(const double* points, const GridPoints& grid) {
-    linear_ = false;
+    form_ = Form::Grid;
     points_ = points;
     grid_ = grid;
     if (std::ranges::find(grid, kNone) == grid.end()) return;
@@ -57,15 +57,21 @@ void CellJets::load_grid(const double* points, const GridPoints& grid) {
     for (std::size_t along = 1; along <= 16; along *= 4) fill_missing(grid, along);
 }
 
+void CellJets::load_block(const GridRows& points) {
+    form_ = Form::Block;
+    block_ = points;
+}
+
 void CellJets::load_corners(const double* points, std::span<const Index, 8> corners) {
-    linear_ = true;
+    form_ = Form::Corners;
     for (std::size_t k = 0; k < 8; ++k) std::copy_n(points + corners[k] * stride_, stride_, &data_[k * stride_]);
 }
 
 void CellJets::evaluate(const Vec3& uvw, double scale, double* jet) const {
-    if (!linear_) {
+    if (form_ != Form::Corners) {
         std::array<CubicWeights, 3> weights;
         for (int a = 0; a < 3; ++a) weights[static_cast<std::size_t>(a)] = spline_ ? spline(uvw[a]) : lagrange(uvw[a]);
+        if (form_ == Form::Block) return sum_tricubic(block_, weights, scale, jet);
         return sum_tricubic(points_, grid_, stride_, weights, scale, jet);
     }
     std::fill_n(jet, 4 * stride_, 0.0);
@@ -132,6 +138,16 @@ bool Settling::is_close(const double* a, const double* b, int level) const {
         }
     }
     return true;
+}
+
+void Settling::prefetch(std::size_t query) const {
+    __builtin_prefetch(&samples_.positions[query], 1);
+    __builtin_prefetch(&samples_.jacobians[query], 1);
+    __builtin_prefetch(&samples_.jacobians[query][2], 1);
+    for (const LimitAttribute& attribute : samples_.attributes) {
+        __builtin_prefetch(&attribute.values[query * attribute.channels], 1);
+        __builtin_prefetch(&attribute.derivatives[query * attribute.channels], 1);
+    }
 }
 
 void Settling::write(std::size_t query, const double* jet) {

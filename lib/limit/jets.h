@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "mcq_block.h"
 #include "regular_grid.h"
 #include "subvol/limit.h"
 
@@ -26,6 +28,12 @@ private:
     std::size_t count_, stride_;
 };
 
+/// Copies a row of channels; returns the end of the copy.
+inline double* copy_row(const double* from, std::size_t stride, double* to) {
+    if (stride == 4) return std::copy_n(from, 4, to);  // positions and one value: a known size, no call
+    return std::copy_n(from, stride, to);
+}
+
 // A *jet* is the values of all channels at one place, then their derivatives by u, by v and by w: 4 × stride numbers.
 
 /// Evaluates places in a cell from the points about it.
@@ -37,6 +45,8 @@ public:
     ///
     /// points: rows of channels, kept by reference; grid: numbers of the rows, kNone beyond a flat boundary
     void load_grid(const double* points, const GridPoints& grid);
+    /// The same where the rows lie in a block, from (0, 0, 0) to (3, 3, 3).
+    void load_block(const GridRows& points);
     /// By trilinear interpolation between the cell's corners, octant by octant.
     void load_corners(const double* points, std::span<const Index, 8> corners);
 
@@ -46,7 +56,11 @@ public:
 private:
     void fill_missing(const GridPoints& grid, std::size_t axis_stride);
 
-    bool spline_, linear_ = false;
+    enum class Form : std::uint8_t { Grid, Block, Corners };
+
+    bool spline_;
+    Form form_ = Form::Grid;
+    GridRows block_{};
     std::size_t stride_;
     const double* points_ = nullptr;
     GridPoints grid_{};
@@ -77,6 +91,9 @@ public:
     ///
     /// jet: along the axes of the control cell
     [[nodiscard]] bool settle(OpenPlace& at, const double* jet, int level, bool regular, bool exact);
+
+    /// Fetches the memory that a query's results will be written to.
+    void prefetch(std::size_t query) const;
 
     [[nodiscard]] LimitReport& report() { return report_; }
 

@@ -2,7 +2,6 @@
 #include "subvol/limit.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +60,15 @@ LimitSamples make_samples(const HexMesh& mesh, std::size_t count) {
     return samples;
 }
 
+/// The numbers of the queries, those of one cell after those of another.
+std::vector<std::size_t> sorted_by_cells(std::span<const LimitQuery> queries, std::size_t cells) {
+    std::vector<std::size_t> next(cells + 1, 0), order(queries.size());
+    for (const LimitQuery& query : queries) ++next[query.cell + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (std::size_t q = 0; q < queries.size(); ++q) order[next[queries[q].cell]++] = q;
+    return order;
+}
+
 /// The queries of each cell, by their places in `order`.
 std::vector<CellPlaces> places_of_cells(std::span<const LimitQuery> queries, std::span<const std::size_t> order) {
     std::vector<CellPlaces> cells;
@@ -97,13 +105,9 @@ LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> que
     const auto scales = channel_scales(control);
     LimitSamples samples = make_samples(control, queries.size());
 
-    std::vector<std::size_t> order(queries.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    tbb::parallel_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return std::pair(queries[a].cell, a) < std::pair(queries[b].cell, b);
-    });
+    const auto order = sorted_by_cells(queries, control.cells.size());
     const auto cells = places_of_cells(queries, order);
-    const auto rest = detail::LimitDescents(control, queries, order, options, scales, samples).run(cells);
+    const auto rest = detail::LimitDescents({control, queries, order, options, scales, samples}).run(cells);
     if (!rest.empty()) refine_rest(control, queries, rest, options, scales, samples);
     return samples;
 }

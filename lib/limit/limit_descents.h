@@ -2,20 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <vector>
 
-#include "class_graph.h"
-#include "jets.h"
-#include "patch.h"
+#include "descent_worker.h"
 
 namespace subvol::detail {
-
-/// The places of one control cell: queries[first .. last) of a list that is sorted by cells.
-struct CellPlaces {
-    Index cell;
-    std::size_t first, last;
-};
 
 /// Evaluates the limit at places, from class to class (`ClassGraph`).
 ///
@@ -29,9 +20,8 @@ struct CellPlaces {
 /// Places in one cell share its descendants; the arithmetic of a place does not depend on the others.
 class LimitDescents {
 public:
-    /// scales: of each channel, what tolerances are relative to. All references are kept.
-    LimitDescents(const HexMesh& control, std::span<const LimitQuery> queries, std::span<const std::size_t> order,
-                  const LimitOptions& options, std::span<const double> scales, LimitSamples& samples);
+    /// What the task refers to is kept by reference.
+    explicit LimitDescents(const DescentTask& task);
     ~LimitDescents();
     LimitDescents(const LimitDescents&) = delete;
     LimitDescents& operator=(const LimitDescents&) = delete;

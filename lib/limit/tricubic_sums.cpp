@@ -13,21 +13,21 @@ namespace subvol::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void sum(const double* HWY_RESTRICT points, const GridPoints& grid, std::size_t stride,
-         const std::array<CubicWeights, 3>& weights, double scale, double* HWY_RESTRICT jet) {
+/// row_at: where row i + 4j + 16k begins, from i, j, k
+template <class RowAt>
+HWY_INLINE void sum(const RowAt& row_at, std::size_t stride, const std::array<CubicWeights, 3>& weights, double scale,
+                    double* HWY_RESTRICT jet) {
     const hn::CappedTag<double, 4> d;
     const std::size_t step = hn::Lanes(d);
     const auto& [u, v, w] = weights;
     for (std::size_t block = 0; block < stride; block += step) {
         auto f = hn::Zero(d), fu = hn::Zero(d), fv = hn::Zero(d), fw = hn::Zero(d);
-        const double* HWY_RESTRICT from = points + block;
-        const Index* HWY_RESTRICT number = grid.data();
         for (std::size_t k = 0; k < 4; ++k) {
             auto g = hn::Zero(d), gu = hn::Zero(d), gv = hn::Zero(d);  // of a plane
             for (std::size_t j = 0; j < 4; ++j) {
                 auto h = hn::Zero(d), hu = hn::Zero(d);  // of a line
-                for (std::size_t i = 0; i < 4; ++i, ++number) {
-                    const auto x = hn::LoadU(d, from + *number * stride);
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const auto x = hn::LoadU(d, row_at(i, j, k) + block);
                     h = hn::MulAdd(hn::Set(d, u.value[i]), x, h);
                     hu = hn::MulAdd(hn::Set(d, u.first[i]), x, hu);
                 }
@@ -50,17 +50,49 @@ void sum(const double* HWY_RESTRICT points, const GridPoints& grid, std::size_t 
     }
 }
 
+struct NumberedRows {
+    const double* points;
+    const Index* numbers;
+    std::size_t stride;
+    HWY_INLINE const double* operator()(std::size_t i, std::size_t j, std::size_t k) const {
+        return points + numbers[i + 4 * j + 16 * k] * stride;
+    }
+};
+
+void sum_numbered(const double* points, const GridPoints& grid, std::size_t stride, const std::array<CubicWeights, 3>& weights,
+                  double scale, double* jet) {
+    sum(NumberedRows{points, grid.data(), stride}, stride, weights, scale, jet);
+}
+
+struct BlockRows {
+    const double* rows;
+    std::size_t along_u, along_v, along_w;
+    HWY_INLINE const double* operator()(std::size_t i, std::size_t j, std::size_t k) const {
+        return rows + i * along_u + j * along_v + k * along_w;
+    }
+};
+
+void sum_block(const GridRows& grid, const std::array<CubicWeights, 3>& weights, double scale, double* jet) {
+    const std::size_t line = grid.side * grid.stride;
+    sum(BlockRows{grid.rows, grid.stride, line, grid.side * line}, grid.stride, weights, scale, jet);
+}
+
 }  // namespace subvol::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace subvol::detail {
 
-HWY_EXPORT(sum);
+HWY_EXPORT(sum_numbered);
+HWY_EXPORT(sum_block);
 
 void sum_tricubic(const double* points, const GridPoints& grid, std::size_t stride, const std::array<CubicWeights, 3>& weights,
                   double scale, double* jet) {
-    HWY_DYNAMIC_DISPATCH(sum)(points, grid, stride, weights, scale, jet);
+    HWY_DYNAMIC_DISPATCH(sum_numbered)(points, grid, stride, weights, scale, jet);
+}
+
+void sum_tricubic(const GridRows& grid, const std::array<CubicWeights, 3>& weights, double scale, double* jet) {
+    HWY_DYNAMIC_DISPATCH(sum_block)(grid, weights, scale, jet);
 }
 
 }  // namespace subvol::detail

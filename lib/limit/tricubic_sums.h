@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "mcq_block.h"
 #include "regular_grid.h"
 
 namespace subvol::detail {
@@ -18,5 +19,8 @@ struct CubicWeights {
 /// points: rows of `stride` channels, a multiple of 4; grid: the numbers of the rows, u fastest; scale: of the derivatives
 void sum_tricubic(const double* points, const GridPoints& grid, std::size_t stride, const std::array<CubicWeights, 3>& weights,
                   double scale, double* jet);
+
+/// The same over the points at (0, 0, 0) to (3, 3, 3) of a grid.
+void sum_tricubic(const GridRows& grid, const std::array<CubicWeights, 3>& weights, double scale, double* jet);
 
 }  // namespace subvol::detail

@@ -121,5 +121,36 @@ TEST(LimitInOneCell, IsTheSameForManyPlaces) {
     EXPECT_EQ(samples.report.refined, queries.size());
 }
 
+/// Asserts that the first of many places in a cell are the same as alone, to the bit.
+void expect_the_same_alone(const HexMesh& mesh, Index cell, const LimitOptions& options) {
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> t(0, 1);
+    std::vector<LimitQuery> queries;
+    for (int i = 0; i < 300; ++i) queries.push_back({cell, {t(random), t(random), t(random)}});
+    const LimitSamples samples = evaluate_limit(mesh, queries, options);
+    for (std::size_t q = 0; q < 40; ++q) {
+        const LimitSamples alone = evaluate_limit(mesh, std::span(queries).subspan(q, 1), options);
+        EXPECT_EQ(alone.positions[0], samples.positions[q]);
+        EXPECT_EQ(alone.jacobians[0], samples.jacobians[q]);
+        EXPECT_EQ(alone.attributes[0].values[0], samples.attributes[0].values[q]);
+    }
+}
+
+TEST(LimitInOneCellOfAGrid, IsTheSameForManyPlaces) {
+    // Many places share two levels of the cell's refinement; a single one has only those points made that it needs.
+    HexMesh mesh = test::make_box(5, 5, 5);
+    test::jitter(mesh, .2, 5);
+    test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(2 * p.x) * p.y + p.z; });
+    expect_the_same_alone(mesh, 62, {.tolerance = 1e-9, .max_levels = 8});  // in the middle
+    expect_the_same_alone(mesh, 0, {.tolerance = 1e-9, .max_levels = 8});   // at the boundary
+}
+
+TEST(LimitInAGrid, IsTheSameByBlocksAsByRefinement) {
+    // The regular masks in blocks against the rows of the scheme, with more channels than a vector has and another tension.
+    HexMesh mesh = test::make_box(5, 5, 5);
+    test::jitter(mesh, .2, 5);
+    expect_fine_vertices(mesh, {.tension = 1. / 20}, tolerance_of(Scheme::Mcq));
+}
+
 }  // namespace
 }  // namespace subvol

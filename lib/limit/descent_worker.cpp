@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "descent_worker.h"
+
+#include <cmath>
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kMostLevels = 24;
+constexpr std::size_t kManyPlaces = 6;  // in one cell of a grid: two levels of all its children cost less than those of each
+constexpr std::array<Index, 8> kFirstEight{0, 1, 2, 3, 4, 5, 6, 7};
+
+std::array<std::size_t, 3> bits_of(std::size_t octant) {
+    return {octant & 1, octant >> 1 & 1, octant >> 2};
+}
+
+std::array<std::size_t, 3> plus(const std::array<std::size_t, 3>& a, const std::array<std::size_t, 3>& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+}  // namespace
+
+std::size_t walk_octant(std::uint8_t turn, std::size_t octant) {
+    if (turn == kIdentityTurn) return octant;
+    const auto& octants = cell_turns()[turn].octants;
+    return static_cast<std::size_t>(std::find(octants.begin(), octants.end(), octant) - octants.begin());
+}
+
+DescentWorker::DescentWorker(const DescentTask& task)
+    : task_(task),
+      stride_(task.channels.stride()),
+      settling_(task.options, task.scales, stride_, task.samples),
+      jets_(task.options.scheme.kind, stride_),
+      values_(kMostLevels),
+      rows_(kMostLevels),
+      jet_(4 * stride_),
+      turned_(4 * stride_),
+      child_(64 * stride_) {
+}
+
+std::span<OpenPlace> DescentWorker::open(const CellPlaces& in) {
+    const std::size_t size = 4 * stride_, count = in.last - in.first;
+    places_.resize(count);
+    if (lasts_.size() < count * size) lasts_.resize(count * size);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t query = task_.order[in.first + i];
+        settling_.prefetch(query);
+        places_[i] = {.query = query, .uvw = task_.queries[query].uvw, .last = &lasts_[i * size]};
+    }
+    return places_;
+}
+
+double* DescentWorker::values(int level, std::size_t rows) {
+    auto& values = values_[static_cast<std::size_t>(level)];
+    if (values.size() < rows * stride_) values.resize(rows * stride_);
+    return values.data();
+}
+
+std::span<OpenPlace> DescentWorker::evaluate(std::span<OpenPlace> places, std::uint8_t turn, int level, bool on_grid) {
+    settling_.report().deepest_level = std::max(settling_.report().deepest_level, level);
+    const bool exact = task_.options.scheme.kind == Scheme::Linear || (on_grid && task_.is_spline());
+    const double scale = std::ldexp(1.0, level);
+    std::size_t kept = 0;
+    for (OpenPlace& at : places) {
+        const double* jet = jet_.data();
+        if (turn == kIdentityTurn) {
+            jets_.evaluate(at.uvw, scale, jet_.data());
+        } else {
+            const auto& sides = cell_turns()[turn].sides;
+            Vec3 uvw;
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double t = at.uvw[static_cast<int>(sides[2 * a] / 2)];
+                uvw[static_cast<int>(a)] = (sides[2 * a] & 1) != 0 ? 1 - t : t;
+            }
+            jets_.evaluate(uvw, scale, jet_.data());
+            std::copy_n(jet_.data(), stride_, turned_.data());
+            for (std::size_t a = 0; a < 3; ++a) {
+                const double sign = (sides[2 * a] & 1) != 0 ? -1 : 1;
+                const double* from = &jet_[(1 + a) * stride_];
+                double* to = &turned_[(1 + static_cast<std::size_t>(sides[2 * a] / 2)) * stride_];
+                for (std::size_t c = 0; c < stride_; ++c) to[c] = sign * from[c];
+            }
+            jet = turned_.data();
+        }
+        if (settling_.settle(at, jet, level, on_grid, exact)) continue;
+        if (&places[kept] != &at) places[kept] = at;
+        ++kept;
+    }
+    return places.first(kept);
+}
+
+void DescentWorker::leave(std::span<const OpenPlace> places) {
+    for (const OpenPlace& at : places) left_.push_back(at.query);
+}
+
+void DescentWorker::begin(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places,
+                          ClassGraph& classes) {
+    const double* rows = values_[static_cast<std::size_t>(level)].data();
+    if (level == 0 && &is == &classes.regular()) {  // levels 1 and 2 decide, as the descendants of the cell are on a grid too
+        return descend(is, turn, level, places, classes);
+    }
+    is.on_grid ? jets_.load_grid(rows, is.grid) : jets_.load_corners(rows, kFirstEight);
+    places = evaluate(places, turn, level, is.on_grid);
+    if (!places.empty()) descend(is, turn, level, places, classes);
+}
+
+/// Only those points are computed that a place is evaluated from; the rest of a child's neighbourhood if it goes on.
+void DescentWorker::descend(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places,
+                            ClassGraph& classes) {
+    const double* from = values_[static_cast<std::size_t>(level)].data();
+    if (&is == &classes.regular() && task_.options.scheme.kind == Scheme::Mcq) {
+        return descend_grid({from, 6, stride_}, turn, level, places);
+    }
+    StepRows& rows = rows_[static_cast<std::size_t>(level)];
+    const auto& [table, children] = classes.children(is);
+    rows.begin(table, stride_);
+    each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
+        const ClassChildren::Child& child = children[walk_octant(turn, octant)];
+        if (child.to == nullptr) return leave(inside);
+        apply_step(table, child.near, stride_, from, rows);
+        if (child.to->on_grid) {
+            jets_.load_grid(rows.values.data(), child.grid);
+        } else {
+            jets_.load_corners(rows.values.data(), child.corners);
+        }
+        const std::uint8_t child_turn = composed(child.turn, turn);
+        inside = evaluate(inside, child_turn, level + 1, child.to->on_grid);
+        if (inside.empty()) return;
+        apply_step(table, child.rows, stride_, from, rows);
+        double* to = values(level + 1, child.rows.size());
+        for (const std::uint16_t row : child.rows) to = copy_row(&rows.values[row * stride_], stride_, to);
+        descend(*child.to, child_turn, level + 1, inside, classes);
+    });
+}
+
+/// Below a cell in the middle of a grid, by the masks of MCQ. about: begins two points before the cell
+void DescentWorker::descend_grid(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places) {
+    if (places.size() >= kManyPlaces) return descend_twice(about, turn, level, places);
+    const double tension = task_.options.scheme.tension;
+    GridRows block{};  // of all children, once a place goes on from one of them
+    each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
+        const std::size_t in_grid = walk_octant(turn, octant);
+        refine_mcq_child(tension, about, in_grid, child_.data());
+        jets_.load_block({child_.data(), 4, stride_});
+        inside = evaluate(inside, turn, level + 1, true);
+        if (inside.empty()) return;
+        if (block.rows == nullptr) {
+            double* to = values(level + 1, 7 * 7 * 7);
+            refine_mcq_cell(tension, about, to);
+            block = {to, 7, stride_};
+        }
+        descend_grid(block.from(bits_of(in_grid)), turn, level + 1, inside);
+    });
+}
+
+/// The same, with two levels of all descendants at once.
+void DescentWorker::descend_twice(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places) {
+    const double tension = task_.options.scheme.tension;
+    const GridRows first{values(level + 1, 7 * 7 * 7), 7, stride_}, second{values(level + 2, 9 * 9 * 9), 9, stride_};
+    refine_mcq_cell(tension, about, values(level + 1, 0));
+    refine_mcq_cells(tension, first, values(level + 2, 0));
+    constexpr std::array<std::size_t, 3> kOne{1, 1, 1};
+    each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
+        const auto child = bits_of(walk_octant(turn, octant));
+        jets_.load_block(first.from(plus(child, kOne)));
+        inside = evaluate(inside, turn, level + 1, true);
+        each_octant(inside, [&](std::size_t next, std::span<OpenPlace> deeper) {
+            const auto at = plus(plus(child, child), bits_of(walk_octant(turn, next)));
+            jets_.load_block(second.from(plus(at, kOne)));
+            deeper = evaluate(deeper, turn, level + 2, true);
+            if (!deeper.empty()) descend_grid(second.from(at), turn, level + 2, deeper);
+        });
+    });
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "class_graph.h"
+#include "jets.h"
+#include "mcq_block.h"
+
+namespace subvol::detail {
+
+/// The places of one control cell: queries[first .. last) of a list that is sorted by cells.
+struct CellPlaces {
+    Index cell;
+    std::size_t first, last;
+};
+
+/// What is asked for, of which mesh. order: the numbers of the queries, sorted by cells; scales: of each channel, what
+/// tolerances are relative to
+struct DescentTask {
+    const HexMesh& control;
+    std::span<const LimitQuery> queries;
+    std::span<const std::size_t> order;
+    const LimitOptions& options;
+    std::span<const double> scales;
+    LimitSamples& samples;
+    Channels channels{control};
+
+    [[nodiscard]] bool is_spline() const { return !interpolates(options.scheme.kind); }
+};
+
+/// Evaluates places in a cell of a class, and in its descendants as deep as they ask for it. Each thread has its own.
+///
+///     a class   its children's neighbourhoods by the class's table, row by row as they are needed
+///     a grid    by the masks of MCQ, block by block: no table, no rows
+///
+/// The arithmetic of a place does not depend on the others.
+class DescentWorker {
+public:
+    /// The task is kept by reference.
+    explicit DescentWorker(const DescentTask& task);
+
+    /// The places of a cell, with memory for their jets.
+    [[nodiscard]] std::span<OpenPlace> open(const CellPlaces& in);
+
+    /// Memory for the rows of a neighbourhood at a level.
+    [[nodiscard]] double* values(int level, std::size_t rows);
+
+    /// Loads the cell that is evaluated next.
+    CellJets& jets() { return jets_; }
+    /// Evaluates places in the cell that is loaded. Those that are open are moved to the front and returned.
+    ///
+    /// turn: from the axes of the loaded cell to those of the control cell
+    [[nodiscard]] std::span<OpenPlace> evaluate(std::span<OpenPlace> places, std::uint8_t turn, int level, bool on_grid);
+
+    /// Places in a cell of a class, the rows of whose neighbourhood are in values(level).
+    void begin(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes);
+
+    /// Notes places whose surroundings have no class.
+    void leave(std::span<const OpenPlace> places);
+    [[nodiscard]] const std::vector<std::size_t>& left() const { return left_; }
+
+    [[nodiscard]] LimitReport& report() { return settling_.report(); }
+
+private:
+    void descend(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes);
+    void descend_grid(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places);
+    void descend_twice(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places);
+
+    const DescentTask& task_;
+    std::size_t stride_;
+    Settling settling_;
+    CellJets jets_;
+    std::vector<std::vector<double>> values_;  // of the neighbourhoods on the way down
+    std::vector<StepRows> rows_;               // of the children of these
+    std::vector<OpenPlace> places_;
+    std::vector<double> lasts_, jet_, turned_, child_;
+    std::vector<std::size_t> left_;
+};
+
+/// The octant of the walk that is a cell's octant `octant`.
+[[nodiscard]] std::size_t walk_octant(std::uint8_t turn, std::size_t octant);
+
+/// Moves the places into the children of their cell and calls visit(octant, places) for those that have any.
+template <class Visit>
+void each_octant(std::span<OpenPlace> places, const Visit& visit) {
+    for (OpenPlace& at : places) at.octant = static_cast<std::uint8_t>(step_into_octant(at.uvw));
+    if (places.size() > 1) std::ranges::sort(places, {}, &OpenPlace::octant);
+    for (std::size_t first = 0; first < places.size();) {
+        std::size_t last = first + 1;
+        while (last < places.size() && places[last].octant == places[first].octant) ++last;
+        visit(std::size_t{places[first].octant}, places.subspan(first, last - first));
+        first = last;
+    }
+}
+
+}  // namespace subvol::detail
