@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scripts of examples/python, and the 25 lines that the interface was designed from."""
 import importlib.util
+import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
+import types
 
 import numpy as np
 import pytest
 import subvol
 
-EXAMPLES = sorted((pathlib.Path(__file__).resolve().parents[2] / "examples/python").glob("[0-9]*.py"))
+TOP = pathlib.Path(__file__).resolve().parents[2]
+EXAMPLES = sorted((TOP / "examples/python").glob("[0-9]*.py"))
 LINES = '''
 import numpy as np, subvol
 mesh = subvol.read_mesh("part.vtk")                          # InvalidInput says file and line
@@ -67,3 +71,27 @@ def test_the_tutorials_run(tmp_path, script):
                           env={**os.environ, "MPLBACKEND": "Agg"})
     assert done.returncode == 0, done.stderr
     assert list(tmp_path.iterdir()), "it writes a file"
+
+
+def test_the_notebooks_are_those_of_the_scripts():
+    assert len(EXAMPLES) == len(list((TOP / "examples/python").glob("*.ipynb"))) == 5
+    subprocess.run([sys.executable, TOP / "scripts/notebooks", "--check"], check=True)
+
+
+@pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
+def test_the_notebooks_run(tmp_path, monkeypatch, script):
+    cells = [cell for cell in json.loads(script.with_suffix(".ipynb").read_text())["cells"] if cell["cell_type"] == "code"]
+    if len(cells) == 1:  # the script itself, which has been run
+        assert "".join(cells[0]["source"]) in script.read_text()
+        return
+    shown = []
+    monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: None))
+    monkeypatch.setitem(sys.modules, "IPython.display", types.SimpleNamespace(
+        display=lambda *pictures: shown.extend(picture._repr_png_() for picture in pictures),
+        Image=lambda name: shown.append(pathlib.Path(name).read_bytes())))
+    monkeypatch.chdir(tmp_path)
+    variables = {}
+    for cell in cells:
+        exec(re.sub(r"^size = \d+", "size = 96", "".join(cell["source"]), flags=re.M), variables)
+    assert list(tmp_path.glob("*.png"))
+    assert shown and all(picture.startswith(b"\x89PNG") for picture in shown)
