@@ -81,9 +81,8 @@ def test_the_notebooks_are_those_of_the_scripts():
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
 def test_the_notebooks_run(tmp_path, monkeypatch, script):
     cells = [cell for cell in json.loads(script.with_suffix(".ipynb").read_text())["cells"] if cell["cell_type"] == "code"]
-    if len(cells) == 1:  # the script itself, which has been run
-        assert "".join(cells[0]["source"]) in script.read_text()
-        return
+    if "".join(cells[0]["source"]) in script.read_text() and len(cells) == 1:
+        return  # the script itself, which has been run
     shown = []
     monkeypatch.setitem(sys.modules, "IPython", types.SimpleNamespace(get_ipython=lambda: None))
     monkeypatch.setitem(sys.modules, "IPython.display", types.SimpleNamespace(
