@@ -86,7 +86,7 @@ private:
 /// Moves the places into the children of their cell and calls visit(octant, places) for those that have any.
 template <class Visit>
 void each_octant(std::span<OpenPlace> places, const Visit& visit) {
-    for (OpenPlace& at : places) at.octant = static_cast<std::uint8_t>(step_into_octant(at.uvw));
+    for (OpenPlace& at : places) at.step_down();
     if (places.size() > 1) std::ranges::sort(places, {}, &OpenPlace::octant);
     for (std::size_t first = 0; first < places.size();) {
         std::size_t last = first + 1;

@@ -112,8 +112,13 @@ void CellJets::fill_missing(const GridPoints& grid, std::size_t along) {
 
 bool Settling::settle(OpenPlace& at, const double* jet, int level, bool regular, bool exact) {
     at.agreed = level >= 1 && is_close(jet, at.last, level) ? static_cast<std::uint8_t>(at.agreed + 1) : std::uint8_t{0};
-    // At the centre of a cell whose cell point is the mean of its corners, a trilinear value does not change for one level.
-    const bool settled = level >= 2 && at.agreed >= (regular ? 1 : 2);
+    // At the centre of a cell whose cell point is the mean of its corners, a trilinear value does not change for one level. In
+    // the corner of a body all new points of a spline are means: there it changes on no level, though it is not the limit, and
+    // agreement does not count.
+    const bool in_doubt = !interpolates(options_.scheme.kind) && !regular && at.stays;
+    const int needed = regular || in_doubt ? 1 : 2;
+    const bool settled = level >= 2 && at.agreed >= needed && (!in_doubt || level >= options_.max_levels);
+    if (in_doubt) at.agreed = 0;
     if (!exact && !settled && level < options_.max_levels) {
         std::copy_n(jet, 4 * stride_, at.last);
         return false;
@@ -161,6 +166,12 @@ void Settling::write(std::size_t query, const double* jet) {
             attribute.derivatives[query * attribute.channels + c] = {du[from], dv[from], dw[from]};
         }
     }
+}
+
+void OpenPlace::step_down() {
+    const auto next = static_cast<std::uint8_t>(step_into_octant(uvw));
+    stays = next == octant;
+    octant = next;
 }
 
 std::size_t step_into_octant(Vec3& uvw) {

@@ -72,12 +72,18 @@ private:
 /// uvw:    its place in the cell that is looked at
 /// last:   its jet at the level before
 /// agreed: number of consecutive levels whose jets agreed within the tolerance
+/// octant: of the child that it is in; at first none
+/// stays:  whether the last two cells that it was in meet at a vertex of the cell before them
 struct OpenPlace {
     std::size_t query;
     Vec3 uvw;
     double* last;
     std::uint8_t agreed = 0;
-    std::uint8_t octant = 0;  // of the child that it is in
+    std::uint8_t octant = 8;
+    bool stays = false;
+
+    /// Moves it into the child that it is in.
+    void step_down();
 };
 
 /// Decides when a place has converged, and writes it down.

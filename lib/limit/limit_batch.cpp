@@ -41,7 +41,10 @@ void BatchEvaluator::run(const PatchSource& source, std::span<const LimitQuery> 
         evaluate_level(patch.mesh, level, open);
         if (open.empty()) return;
         patch = refine_patch(sub_patch(patch, number_cells(open), 2), options_.scheme, 2);
-        for (InPatch& at : open) at.cell = 8 * at.cell + static_cast<Index>(kCornerOctants[step_into_octant(at.place.uvw)]);
+        for (InPatch& at : open) {
+            at.place.step_down();
+            at.cell = 8 * at.cell + static_cast<Index>(kCornerOctants[at.place.octant]);
+        }
     }
 }
 

@@ -83,7 +83,7 @@ TEST_P(LimitPlaces, AreFineVerticesWhateverTheAxesOfTheCells) {
     expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
 }
 
-TEST(LimitPlacesOfMcq, AreFineVerticesAtCreasesAndSharpFaces) {
+TEST_P(LimitPlaces, AreFineVerticesAtCreasesAndSharpFaces) {
     HexMesh mesh = test::make_box(4, 3, 3);
     const auto id = [](Index i, Index j, Index k) { return i + 5 * (j + 4 * k); };
     for (Index i = 0; i < 4; ++i) mesh.creases.push_back({id(i, 1, 3), id(i + 1, 1, 3)});  // along the top
@@ -92,7 +92,30 @@ TEST(LimitPlacesOfMcq, AreFineVerticesAtCreasesAndSharpFaces) {
             mesh.sharp_faces.push_back({id(2, j, k), id(2, j + 1, k), id(2, j + 1, k + 1), id(2, j, k + 1)});
     }
     test::jitter(mesh, .1, 6);
-    expect_fine_vertices(mesh, {Scheme::Mcq}, tolerance_of(Scheme::Mcq));
+    expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
+}
+
+TEST_P(LimitPlaces, AreFineVerticesInTheCornersThatSharpFacesMake) {
+    // On either side of the sharp faces is the corner of a box, in which no new point of a spline leaves the trilinear cell.
+    HexMesh mesh = test::make_box(2, 2, 2);
+    for (const Index j : {0U, 1U}) mesh.sharp_faces.push_back({1 + 3 * j, 4 + 3 * j, 13 + 3 * j, 10 + 3 * j});
+    test::jitter(mesh, .1, 2);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.y - p.z * p.z; });
+    const HexMesh fine = on_limit(refine(mesh, {.scheme = {GetParam()}, .levels = kLevels}), GetParam());
+    std::vector<LimitQuery> queries;
+    std::vector<Index> vertices;
+    for (Index c = 0; c < mesh.cells.size(); ++c) {
+        for (Index n = 0; n < 64; ++n) {  // about every corner, a sixteenth or two from it
+            const auto near = [&](Index k) { return std::array<Index, 4>{1, 2, 14, 15}[n >> 2 * k & 3]; };
+            const std::array<Index, 3> at{near(0), near(1), near(2)};
+            queries.push_back({c, Vec3(at[0], at[1], at[2]) / 16.0});
+            vertices.push_back(vertex_at(fine, c, at));
+        }
+    }
+    const LimitSamples samples = evaluate_limit(mesh, queries, {.scheme = {GetParam()}, .tolerance = 1e-9, .max_levels = 14});
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        EXPECT_NEAR(glm::distance(samples.positions[q], fine.points[vertices[q]]), 0, tolerance_of(GetParam())) << q;
+    }
 }
 
 TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAnEdgeOnly) {
