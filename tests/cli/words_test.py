@@ -145,6 +145,26 @@ class Lines(InFolder):
         done = self.run_ok("render", "model:ball:4", "-o", "a.png", "--size", 32, "--tf", "constant", "--background", "black")
         self.assertNotIn("blank", done.err)
 
+    def test_the_field_that_is_drawn_is_a_sensible_one_and_is_said(self):
+        arrays = "".join(f"SCALARS {name} double 1\nLOOKUP_TABLE default\n{values}\n" for name, values in (
+            ("GlobalNodeId", "1 2 3 4 5 6 7 8"), ("flat", "3 3 3 3 3 3 3 3"), ("Temp", "20 20 20 20 90 90 90 90")))
+        corners = "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1"
+        (self.folder / "a.vtk").write_text(
+            "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+            f"POINTS 8 double\n{corners}\nCELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\nPOINT_DATA 8\n{arrays}")
+        done = self.run_ok("render", "a.vtk", "-o", "a.png", "--size", 16)
+        self.assertIn("drawing Temp (of 3 fields; --field chooses)", done.err)
+        self.assertNotIn("drawing", self.run_ok("render", "a.vtk", "-o", "a.png", "--size", 16, "--field", "flat").err)
+
+    def test_lists_are_columns(self):
+        self.run_ok("points", "model:ball:4", "-o", "a.vtp")
+        lines = self.run_ok("info", "a.vtp").out.splitlines()
+        first = next(k for k, line in enumerate(lines) if line.startswith("channels"))
+        names, values = lines[first].split(), lines[first + 1].split()
+        self.assertEqual(names, ["channels", "name", "min", "max"])
+        self.assertEqual(values[0], "density")
+        self.assertEqual(lines[first].index("min"), lines[first + 1].index(values[1]))
+
     def test_many_arrays_make_one_line(self):
         arrays = "".join(f"SCALARS a{k} double 1\nLOOKUP_TABLE default\n{k}\n" for k in range(9))
         corners = "0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1"
