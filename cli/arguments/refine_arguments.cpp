@@ -38,7 +38,7 @@ Scheme scheme_named(const std::string& name) {
     return name == "linear" ? Scheme::Linear : Scheme::Mcq;
 }
 
-void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
+void RefineArguments::add_scheme_to(CLI::App& app) {
     app.add_option(
            "--scheme", scheme,
            "mcq (smooth, through the control points; the default), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), "
@@ -48,10 +48,14 @@ void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
     app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
         ->type_name("W")
         ->check(CLI::Range(0.0, 0.125));
-    app.add_option("--levels", levels, levels_help)->type_name("L")->check(CLI::Range(0, 10));
     app.add_option("--crease-angle", crease_angle_deg, "keep boundary edges sharp that bend by more than this, in degrees")
         ->type_name("DEG")
         ->check(CLI::Range(0.0, 180.0));
+}
+
+void RefineArguments::add_to(CLI::App& app, const std::string& levels_help) {
+    add_scheme_to(app);
+    app.add_option("--levels", levels, levels_help)->type_name("L")->check(CLI::Range(0, 10));
 }
 
 RefineOptions RefineArguments::options(int default_levels, Report& report) const {

@@ -23,6 +23,8 @@ struct RefineArguments {
     std::optional<int> levels;
     std::optional<double> crease_angle_deg;
 
+    /// All but --levels, for verbs that evaluate the limit.
+    void add_scheme_to(CLI::App& app);
     /// levels_help: what --levels means for the verb
     void add_to(CLI::App& app, const std::string& levels_help);
 

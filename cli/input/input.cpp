@@ -86,7 +86,11 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
 }
 
 HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report) {
-    HexMesh mesh = without_unused_points(read_input(input, options, report).mesh);
+    return used_mesh(read_input(input, options, report).mesh, options);
+}
+
+HexMesh used_mesh(HexMesh read, const CommonOptions& options) {
+    HexMesh mesh = without_unused_points(std::move(read));
     if (options.density) put_density_first(mesh, *options.density);
     return mesh;
 }

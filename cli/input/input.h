@@ -24,6 +24,9 @@ namespace subvol::cli {
 /// `read_input` without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
 
+/// A mesh that was read, without the unused points; --density becomes the first attribute.
+[[nodiscard]] HexMesh used_mesh(HexMesh read, const CommonOptions& options);
+
 /// The mesh with only the field that the options select, as a scalar, and with the field `second` if that is given.
 [[nodiscard]] HexMesh with_selected_field(HexMesh mesh, const CommonOptions& options, Report& report,
                                           const std::optional<std::string>& second = {});

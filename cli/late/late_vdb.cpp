@@ -53,6 +53,10 @@ VdbGrid sample_at_voxels(const VdbGrid& where, const std::string& name,
     return vdb().sample_at_voxels(where, name, field);
 }
 
+GridError grid_error(const VdbGrid& grid, const HexMesh& mesh, std::string_view field, const GridErrorOptions& options) {
+    return vdb().grid_error(grid, mesh, field, options);
+}
+
 VdbGrid spread_vectors(const VdbGrid& grid, int layers) {
     return vdb().spread_vectors(grid, layers);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "subvol/detail/vdb_file.h"
+#include "subvol/grid_error.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 #include "subvol/spread_vectors.h"
@@ -30,6 +31,7 @@ struct VdbFunctions {
     std::vector<VdbGrid> (*rasterize_points)(const RbfVolume&, std::span<const std::size_t>, const RasterizeOptions&);
     VdbGrid (*sample_at_voxels)(const VdbGrid&, const std::string&,
                                 const std::function<std::vector<double>(std::span<const Vec3>)>&);
+    GridError (*grid_error)(const VdbGrid&, const HexMesh&, std::string_view, const GridErrorOptions&);
     VdbGrid (*spread_vectors)(const VdbGrid&, int);
 
     void (*write_vdb)(const std::filesystem::path&, std::span<const VdbGrid>, VdbCompression);

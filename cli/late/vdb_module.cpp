@@ -16,6 +16,7 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .rasterize_parts = &rasterize_parts,
         .rasterize_points = &rasterize_points,
         .sample_at_voxels = &sample_at_voxels,
+        .grid_error = &grid_error,
         .spread_vectors = &spread_vectors,
         .write_vdb = &write_vdb,
         .write_vdb_file = &detail::write_vdb,

@@ -58,6 +58,9 @@ private:
 [[nodiscard]] std::unique_ptr<Verb> make_points_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_vdb_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_render_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_probe_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_slice_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_surface_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_compare_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_study_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_demo_verb(CLI::App& program);

@@ -9,12 +9,14 @@
 #include "mesh_frames.h"
 #include "outputs.h"
 #include "points_input.h"
+#include "quantities.h"
 #include "refine_arguments.h"
 #include "steps.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/field_expression.h"
 #include "subvol/field_range.h"
+#include "subvol/grid_error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
@@ -76,7 +78,7 @@ public:
                         "--to", "--velocity", "--memory", "--nano"});
         group("Voxels", {"--voxel-size", "--resolution", "--like", "--budget"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle", "--from", "--per-edge"});
-        group("Grids", {"--fields", "--cell-ids", "--mask", "--coverage", "--sdf", "--half-width", "--half"});
+        group("Grids", {"--fields", "--cell-ids", "--mask", "--coverage", "--error", "--sdf", "--half-width", "--half"});
         group("Files", {"--compression", "--memory", "--nano"});
         group("Sequences", {"--frames", "--to", "--velocity", "--fps"});
     }
@@ -146,6 +148,8 @@ private:
         app().add_option("--scale", scale_, "multiply all coordinates by this")->type_name("S")->check(CLI::PositiveNumber);
         app().add_flag("--cell-ids", cell_numbers_, "also write a grid: the number of the control cell");
         app().add_flag("--mask", mask_, "also write a grid: a mask of the volume");
+        app().add_flag("--error", error_,
+                       "also write for each field a grid NAME_error: an upper bound of |value - limit| at each voxel");
         app().add_flag("--coverage", coverage_, "also write a grid: the part of each voxel that the volume fills");
         level_set_option_ =
             app().add_option("--sdf", level_set_.name,
@@ -221,18 +225,53 @@ private:
         const HexMesh mesh = load(input_, report);
         const RasterizeOptions options = set_up(mesh, report);
         if (output_.memory_bytes > 0) {
+            if (error_) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
             refuse_with_memory();
             write_parts(input_, mesh, names_of(mesh), options, output_, report,
                         [&](std::vector<VdbGrid>& grids) { clamp_grids(mesh, grids); });
             return;
         }
-        const std::vector<VdbGrid> grids = grids_of(mesh, options, report);
+        std::vector<VdbGrid> grids = grids_of(mesh, options, report);
         if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
         note_overshoot(mesh, grids, report);
+        const auto errors = error_ ? add_errors(mesh, options, grids, report) : std::vector<GridErrorFigures>();
         write_reported(grids, output_, report);
+        for (const auto& [grid, max, rms] : errors) {
+            report["grids"][grid]["error_max"] = max;
+            report["grids"][grid]["error_rms"] = rms;
+        }
+    }
+
+    struct GridErrorFigures {
+        std::size_t grid;
+        double max, rms;
+    };
+
+    /// Adds a grid of errors for each grid of a scalar field.
+    std::vector<GridErrorFigures> add_errors(const HexMesh& mesh, const RasterizeOptions& options, std::vector<VdbGrid>& grids,
+                                             Report& report) const {
+        std::vector<GridErrorFigures> figures;
+        const std::size_t count = grids.size();
+        std::size_t outside = 0;
+        for (std::size_t g = 0; g < count; ++g) {
+            const Attribute* field = mesh.find_attribute(grids[g].report().name);
+            if (field == nullptr || field->channels != 1) continue;
+            GridError error = report.timed("error", [&] {
+                return grid_error(grids[g], mesh, field->name,
+                                  {.scheme = options.refine.scheme, .half = half_, .progress = report.progress()});
+            });
+            figures.push_back({g, error.max, error.rms});
+            outside = std::max(outside, error.outside);
+            grids.push_back(std::move(error.grid));
+        }
+        if (outside > 0) {
+            report.note(text(count_text(outside), " voxels' centres lie outside the limit, by less than the grid resolves"));
+        }
+        return figures;
     }
 
     void run_points(Report& report) {
+        if (error_) throw Error(ErrorCode::InvalidInput, "needs a mesh; these are points", "--error");
         if (velocity_) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         from_ = "points";
         RasterizeOptions options = options_of_grids(report);
@@ -256,6 +295,7 @@ private:
     }
 
     void run_frames(Report& report) {
+        if (error_) throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--error");
         check_frame_names();
         const FrameRange range = parse_frames(frames_);
         if (to_.empty()) check_frames(input_, range);
@@ -265,6 +305,7 @@ private:
     }
 
     void run_steps(Report& report) {
+        if (error_) throw Error(ErrorCode::InvalidInput, "works with one step only", "--error", "--step N");
         if (!frames_.empty() || !to_.empty()) {
             throw Error(ErrorCode::InvalidInput, "a series has steps", frames_.empty() ? "--to" : "--frames", "--step A-B");
         }
@@ -512,7 +553,7 @@ private:
     bool clamp_ = false;
     std::string up_ = "z";
     double scale_ = 1;
-    bool half_ = false, cell_numbers_ = false, mask_ = false, coverage_ = false;
+    bool half_ = false, cell_numbers_ = false, mask_ = false, coverage_ = false, error_ = false;
     LevelSetOptions level_set_{.name = {}};
     CLI::Option* level_set_option_ = nullptr;
     std::string from_ = "mesh", compression_ = "blosc";

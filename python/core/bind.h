@@ -101,6 +101,7 @@ template <class Work>
 
 void bind_mesh(py::module_& module);
 void bind_refine(py::module_& module);
+void bind_measure(py::module_& module);
 void bind_points(py::module_& module);
 void bind_look(py::module_& module);
 void bind_render(py::module_& module);

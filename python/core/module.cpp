@@ -85,6 +85,7 @@ PYBIND11_MODULE(_core, module) {
     bind_mesh(module);
     bind_look(module);
     bind_refine(module);
+    bind_measure(module);
     bind_points(module);
     bind_render(module);
     bind_compare(module);

@@ -10,6 +10,7 @@ from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, 
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
 from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
+from ._measure import ProbeSamples, Slice, SurfaceMesh, measure, probe, slice, surface
 from ._mesh import Series, model, models, open_series, read_mesh, subdivide, write_mesh
 from ._pictures import (FieldComparison, ImageComparison, TransferFunction, compare, compare_fields, compare_images, read_image, render,
                         write_image)
@@ -24,10 +25,11 @@ for _class in (Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, Stud
 del _class
 
 __all__ = [
-    "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "Grid", "HexMesh", "Image", "ImageComparison",
-    "InvalidInput", "LimitSamples", "MissingCapability", "RbfVolume", "Refinement", "Series", "Study", "StudyCase", "StudyResults",
-    "SubvolWarning", "TransferFunction", "as_field", "compare", "compare_fields", "compare_images", "evaluate", "evaluate_limit", "fit",
-    "from_meshio", "from_pyvista", "gl_devices", "kernels", "model", "models", "open_series", "rasterize", "read_image", "read_mesh",
-    "read_points", "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid", "set_threads", "studies", "study",
-    "subdivide", "to_meshio", "to_pyvista", "write_image", "write_mesh", "write_points", "write_vdb",
+    "Camera", "Cancelled", "Error", "Field", "FieldComparison", "FileError", "Grid", "HexMesh", "Image", "ImageComparison", "InvalidInput",
+    "LimitSamples", "MissingCapability", "ProbeSamples", "RbfVolume", "Refinement", "Series", "Slice", "Study", "StudyCase", "StudyResults",
+    "SubvolWarning", "SurfaceMesh", "TransferFunction", "as_field", "compare", "compare_fields", "compare_images", "evaluate",
+    "evaluate_limit", "fit", "from_meshio", "from_pyvista", "gl_devices", "kernels", "measure", "model", "models", "open_series", "probe",
+    "rasterize", "read_image", "read_mesh", "read_points", "read_vdb", "reduce", "render", "run_study", "sample", "sample_grid",
+    "set_threads", "slice", "studies", "study", "subdivide", "surface", "to_meshio", "to_pyvista", "write_image", "write_mesh",
+    "write_points", "write_vdb",
 ]

@@ -3,6 +3,7 @@
 
 /// All of subvol::vdb: OpenVDB grids and files.
 
+#include "subvol/grid_error.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
 #include "subvol/spread_vectors.h"

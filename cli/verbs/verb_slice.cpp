@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "input.h"
+#include "outputs.h"
+#include "picture_arguments.h"
+#include "places_input.h"
+#include "refine_arguments.h"
+#include "subvol/error.h"
+#include "subvol/image_io.h"
+#include "subvol/limit_slice.h"
+#include "subvol/overlay.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class SliceVerb : public Verb {
+public:
+    explicit SliceVerb(CLI::App& program)
+        : Verb(program, "slice", "A field of the limit on a plane, as a picture, a surface or a table.",
+               "  subvol slice part.vtu -o slice.png --plane 0,0,0,0,0,1\n"
+               "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10 --resolution 1024\n"
+               "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"
+               "\n"
+               "The picture is seen from where the normal points, with z up (y in planes of constant z). .png: coloured by "
+               "value, with a legend. .exr: the same in linear light, without one. .csv: a row for each place inside. .vtp: "
+               "squares, and the contour lines.") {
+        app().add_option("FILE", input_, input_help())->required();
+        app().add_option("-o,--output", output_, "the file to write (.png, .exr, .vtp, .csv)")->type_name("FILE")->required();
+        app()
+            .add_option("--plane", plane_, "a point of the plane and its normal (default: the box's centre, and z)")
+            ->type_name("PX,PY,PZ,NX,NY,NZ");
+        app()
+            .add_option("--resolution", resolution_, "places along the longer side (default 512)")
+            ->type_name("N")
+            ->check(CLI::Range(2, 20000));
+        app()
+            .add_option("--contours", contours_, "lines at this many values between the least and the largest on the plane")
+            ->type_name("N")
+            ->check(CLI::Range(1, 1000));
+        app()
+            .add_option("--tf", function_, "the colours: a preset, or a colour map of ParaView (default viridis)")
+            ->type_name("FILE|NAME");
+        app()
+            .add_option("--range", range_, "the values of the first and of the last colour (default: those on the plane)")
+            ->type_name("MIN,MAX");
+        app()
+            .add_option("--background", background_, "the colour outside the volume, of a .png (default white)")
+            ->type_name("COLOR");
+        app().add_flag("--no-legend", no_legend_, "the picture alone");
+        app().add_option("--unit", unit_, "of the field, for the legend")->type_name("TEXT");
+        scheme_.add_scheme_to(app());
+        set_essentials({"--output", "--plane", "--resolution", "--contours", "--tf", "--range", "--field", "--json"});
+    }
+
+    int run(Report& report) override {
+        check_output(output_, {".png", ".exr", ".vtp", ".csv"});
+        const Vec3 background = parse_background(background_);
+        std::vector<double> range;
+        if (!range_.empty()) range = parse_numbers("--range", range_, 2, "0,1");
+        if (!range.empty() && !(range[0] <= range[1])) {
+            throw Error(ErrorCode::InvalidInput, "'" + range_ + "' is no range", "--range", "the smaller value first");
+        }
+        std::vector<double> plane;
+        if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
+        report.if_long("a lower --resolution");
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        const Vec3 center = bounds(mesh).center();
+        if (plane.empty()) plane = {center.x, center.y, center.z, 0, 0, 1};
+        const LimitSlice slice = report.timed("slice", [&] {
+            return slice_limit(mesh, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]},
+                               {.resolution = resolution_,
+                                .limit = {.scheme = scheme_.options(0, report).scheme, .progress = report.progress()},
+                                .progress = report.progress()});
+        });
+        std::vector<double> values;
+        for (int c = 0; c < contours_; ++c) values.push_back(slice.min + (slice.max - slice.min) * (c + 1) / (contours_ + 1));
+        const auto lines = contour_lines(slice, values);
+        if (output_.ends_with(".vtp") || output_.ends_with(".csv")) {
+            write_slice(output_, slice, lines);
+        } else {
+            if (range.empty()) range = {slice.min, slice.max};
+            write_picture(slice, lines, {range[0], range[1]}, background, report);
+        }
+        report["output"] = output_;
+        report["plane"] = plane;
+        report["width"] = slice.width;
+        report["height"] = slice.height;
+        report["step"] = glm::length(slice.right);
+        report["inside"] = slice.inside;
+        report["min"] = slice.min;
+        report["max"] = slice.max;
+        if (contours_ > 0) report["contours"] = values;
+        return 0;
+    }
+
+private:
+    void write_picture(const LimitSlice& slice, const std::vector<ContourLine>& lines, const Range& range,
+                       const Vec3& background, Report& report) const {
+        TransferFunction function = find_transfer_function(function_, range);
+        function.opacity = {{range.min, 1}, {range.max, 1}};  // a slice is opaque
+        const bool png = output_.ends_with(".png");
+        const LegendOptions legend{
+            .title = slice.field + (unit_.empty() ? "" : " (" + unit_ + ")"), .min = range.min, .max = range.max};
+        int extra = 0;
+        int height = slice.height;
+        if (png && !no_legend_) {
+            height = std::max(height, kLeastLegend_px);
+            extra = legend_width_px(function, legend, height);
+        }
+        Image image(slice.width + extra, height);
+        const int top = (height - slice.height) / 2;
+        for (int row = 0; row < slice.height; ++row) {
+            for (int column = 0; column < slice.width; ++column) {
+                const auto p =
+                    static_cast<std::size_t>(row) * static_cast<std::size_t>(slice.width) + static_cast<std::size_t>(column);
+                if (slice.cells[p] == kNone) continue;
+                const Vec3 rgb = color_at(function, slice.values[p]);
+                const auto pixel = image.pixel(column, row + top);
+                for (int k = 0; k < 3; ++k) pixel[static_cast<std::size_t>(k)] = static_cast<float>(rgb[k]);
+                pixel[3] = 1;
+            }
+        }
+        for (const ContourLine& line : lines) {
+            const Vec3 rgb = color_at(function, line.value);
+            const bool dark = glm::dot(rgb, Vec3(.2126, .7152, .0722)) < 0.18;
+            const Vec2 middle(0.5, 0.5 + top);
+            for (std::size_t i = 1; i < line.places.size(); ++i) {
+                draw_line(image, line.places[i - 1] + middle, line.places[i] + middle,
+                          {.width_px = 1.25, .color = dark ? Vec3(1.0) : Vec3(0.0), .alpha = 0.75});
+            }
+        }
+        if (extra > 0) {
+            const bool dark = glm::dot(background, Vec3(.2126, .7152, .0722)) < 0.18;
+            draw_legend(image, function, legend, dark ? Vec3(1.0) : Vec3(0.0));
+        }
+        report.timed("write", [&] { write_image(output_, image, background); });
+    }
+
+    static constexpr int kLeastLegend_px = 200;
+    std::string input_, output_, plane_, function_ = "viridis", range_, background_ = "white", unit_;
+    int resolution_ = 512, contours_ = 0;
+    bool no_legend_ = false;
+    RefineArguments scheme_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_slice_verb(CLI::App& program) {
+    return std::make_unique<SliceVerb>(program);
+}
+
+}  // namespace subvol::cli

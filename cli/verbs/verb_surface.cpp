@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "input.h"
+#include "outputs.h"
+#include "picture_arguments.h"
+#include "quantities.h"
+#include "refine_arguments.h"
+#include "subvol/error.h"
+#include "subvol/limit_surface.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class SurfaceVerb : public Verb {
+public:
+    explicit SurfaceVerb(CLI::App& program)
+        : Verb(program, "surface", "Isosurfaces of the limit, and its boundary, as triangles.",
+               "  subvol surface part.vtu -o part.stl --boundary\n"
+               "  subvol surface part.vtu -o iso.ply --iso 300 --iso 350 --field Temp\n"
+               "  subvol surface part.vtu -o hot.stl --iso 350 --cap --tolerance 3e-4\n"
+               "  subvol surface part.vtu -o skin.glb --boundary --color-field Temp --tf viridis\n"
+               "\n"
+               "The points lie on the limit, with normals from its exact gradients. Cells are refined where the surface is, "
+               "until the triangles are within the tolerance. JSON: points, triangles, area, volume (of what a watertight "
+               "surface encloses), watertight, euler, components, min_angle (degrees), deviation (world), level.") {
+        app().add_option("FILE", input_, input_help())->required();
+        app()
+            .add_option("-o,--output", output_, "the surface to write (.ply, .stl, .vtp, .obj, .glb)")
+            ->type_name("FILE")
+            ->required();
+        auto* iso = app().add_option("--iso", isos_, "the value of an isosurface (repeatable)");
+        iso->type_name("V")->allow_extra_args(false);
+        app().add_flag("--boundary", boundary_, "the boundary of the volume (the default without --iso)");
+        app()
+            .add_flag("--cap", cap_,
+                      "close each isosurface with the part of the boundary where the field is at least its value")
+            ->needs(iso);
+        app()
+            .add_option("--tolerance", tolerance_,
+                        "how far triangles may lie from the limit, as a part of the longest side of the box (default 1e-3)")
+            ->type_name("E")
+            ->check(CLI::Range(1e-9, 1.0));
+        app().add_option("--max-level", max_level_, "refine no further (default 6)")->type_name("L")->check(CLI::Range(1, 8));
+        app().add_flag("--keep-slivers", keep_slivers_, "leave triangles with small angles as they are");
+        app()
+            .add_option("--color-field", color_field_, "colour the points by this field (default in .ply, .obj, .glb: none)")
+            ->type_name("NAME");
+        app()
+            .add_option("--tf", function_, "the colours: a preset, or a colour map of ParaView (default viridis)")
+            ->type_name("FILE|NAME");
+        scheme_.add_scheme_to(app());
+        set_essentials({"--output", "--iso", "--boundary", "--cap", "--tolerance", "--color-field", "--field", "--json"});
+    }
+
+    int run(Report& report) override {
+        check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb"});
+        if (output_.ends_with(".stl") && !color_field_.empty()) {
+            throw Error(ErrorCode::InvalidInput, ".stl has no colours", "--color-field", ".ply, .vtp, .obj, .glb");
+        }
+        report.if_long("a larger --tolerance");
+        SurfaceOptions options{.scheme = scheme_.options(0, report).scheme,
+                               .isos = isos_,
+                               .boundary = boundary_ || isos_.empty(),
+                               .cap = cap_,
+                               .tolerance = tolerance_,
+                               .max_level = max_level_,
+                               .improve = !keep_slivers_,
+                               .progress = report.progress()};
+        const HexMesh mesh = load_mesh(input_, common(), report);
+        HexMesh chosen = with_selected_field(mesh, common(), report);
+        const std::string field = chosen.attributes.front().name;
+        for (const Attribute& attribute : mesh.attributes) {
+            if (attribute.name != field) chosen.attributes.push_back(attribute);
+        }
+        SurfaceFileOptions file;
+        if (!color_field_.empty()) file = colors(chosen);
+        const LimitSurface surface = report.timed("surface", [&] { return limit_surface(chosen, field, options); });
+        if (surface.surface.triangles.empty()) throw nothing(chosen);
+        report.timed("write", [&] { write_limit_surface(output_, surface, file); });
+        put(surface, report);
+        return 0;
+    }
+
+private:
+    [[nodiscard]] SurfaceFileOptions colors(HexMesh& mesh) const {
+        const auto named = [&] {
+            return std::ranges::find(mesh.attributes, color_field_, &Attribute::name) - mesh.attributes.begin();
+        };
+        if (named() == std::ssize(mesh.attributes)) mesh.attributes.push_back(select_field(mesh, color_field_).scalar);
+        const auto number = static_cast<std::size_t>(named());
+        if (mesh.attributes[number].channels > 1) mesh.attributes[number] = select_field(mesh, color_field_).scalar;
+        return {number, find_transfer_function(function_, field_range(mesh, number))};
+    }
+
+    [[nodiscard]] Error nothing(const HexMesh& mesh) const {
+        const Range range = field_range(mesh);
+        return {ErrorCode::InvalidInput,
+                text("the limit does not take ", isos_.size() == 1 ? "this value" : "these values", "; ",
+                     mesh.attributes.front().name, " has control values from ", range.min, " to ", range.max),
+                "--iso"};
+    }
+
+    void put(const LimitSurface& surface, Report& report) const {
+        const SurfaceReport& found = surface.report;
+        report["output"] = output_;
+        report["points"] = surface.surface.points.size();
+        report["triangles"] = surface.surface.triangles.size();
+        report["area"] = found.area;
+        report["volume"] = found.volume;
+        report["watertight"] = found.watertight;
+        report["euler"] = found.euler;
+        report["components"] = found.components;
+        report["min_angle"] = found.min_angle_deg;
+        report["angles_below_10"] = found.small_angles;
+        report["deviation"] = found.deviation_world;
+        report["level"] = found.level;
+        report["cells"] = found.cells;
+        if (!found.converged) {
+            report.warn(text("the triangles may be ", found.deviation_world, " from the limit, more than the tolerance (level ",
+                             found.level, "; --max-level, or a larger --tolerance)"));
+        }
+    }
+
+    std::string input_, output_, color_field_, function_ = "viridis";
+    std::vector<double> isos_;
+    bool boundary_ = false, cap_ = false, keep_slivers_ = false;
+    double tolerance_ = 1e-3;
+    int max_level_ = 6;
+    RefineArguments scheme_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_surface_verb(CLI::App& program) {
+    return std::make_unique<SurfaceVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "subvol/probe.h"
+
+namespace subvol {
+
+/// resolution: places along the longer side of the part of the plane that is in the mesh's box, 2 to 20,000
+struct SliceOptions {
+    int resolution = 512;
+    LimitOptions limit{};
+    Progress* progress = nullptr;
+};
+
+/// A field of the limit at a grid of places on a plane.
+///
+/// origin:        the place of column 0 in row 0
+/// right, down:   from a place to the next one in its row, and to the one in the next row; they are of the same length, and
+///                right × down points away from where the plane's normal points: the picture is seen from there
+/// values:        row by row; NaN outside the volume; gradients: by world position, 0 outside
+/// cells:         the control cells, kNone outside
+struct LimitSlice {
+    std::string field;
+    int width = 0, height = 0;
+    Vec3 origin{0.0}, right{0.0}, down{0.0};
+    std::vector<double> values;
+    std::vector<Vec3> gradients;
+    std::vector<Index> cells;
+    double min = 0, max = 0;
+    std::size_t inside = 0;
+
+    [[nodiscard]] Vec3 place(double column, double row) const { return origin + column * right + row * down; }
+};
+
+/// Samples a field where a plane cuts the volume. The picture's upper edge is where z is greater, or y for a plane z =
+/// constant.
+///
+/// field:  name of an attribute with one channel; empty: the first
+/// throws: Error(InvalidInput) as `scalar_field` and `LimitProbe`, if the normal has no length, an option is out of range, or
+///         the plane misses the volume
+/// cost:   as `LimitProbe::at` for all places
+[[nodiscard]] LimitSlice slice_limit(const HexMesh& mesh, std::string_view field, const Vec3& point, const Vec3& normal,
+                                     const SliceOptions& options = {});
+
+/// A line along which the field of a slice has one value. places: in columns and rows of the slice
+struct ContourLine {
+    double value = 0;
+    std::vector<Vec2> places;
+};
+
+/// Contour lines of a slice, by linear interpolation between its places. Closed lines end where they begin.
+[[nodiscard]] std::vector<ContourLine> contour_lines(const LimitSlice& slice, std::span<const double> values);
+
+/// Writes a slice: .csv has a row for each place inside; .vtp has these as squares, with the contour lines.
+///
+/// throws: Error(InvalidInput) for an unknown extension, Error(Io)
+void write_slice(const std::filesystem::path& path, const LimitSlice& slice, std::span<const ContourLine> lines = {});
+
+}  // namespace subvol

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/limit.h"
+
+namespace subvol {
+
+/// tolerance: of the pieces that the limit is cut into, as a part of the longest side of the box and of each field's range
+/// bins:      of the histograms, 1 to 100,000
+/// groups:    the number of the part to which each cell belongs, e.g. its block; empty: all cells are of part 0
+/// names:     of the parts
+struct MeasureOptions {
+    SchemeOptions scheme{};
+    double tolerance = 1e-4;
+    int bins = 32;
+    std::span<const Index> groups{};
+    std::vector<std::string> names{};
+    Progress* progress = nullptr;
+};
+
+/// An extreme value of the limit. uvw: in the cell
+struct LimitExtreme {
+    double value = 0;
+    Vec3 place{0.0};
+    Index cell = kNone;
+    Vec3 uvw{0.0};
+};
+
+/// One channel of an attribute over a volume.
+///
+/// integral:  over the volume (value × world³); mean: divided by the volume
+/// histogram: the volume (world³) where the value is in each of equal intervals from the limit's minimum to its maximum
+struct FieldMeasure {
+    std::string name;
+    double integral = 0;
+    double mean = 0;
+    LimitExtreme min, max;
+    std::vector<double> histogram;
+};
+
+/// cells: control cells; fields: one for each channel, with ".k" after the name where an attribute has several
+struct PartMeasure {
+    std::string name;
+    std::size_t cells = 0;
+    double volume = 0;
+    std::vector<FieldMeasure> fields;
+};
+
+/// parts:  of the groups, in their order; empty without groups
+/// pieces: that the limit was cut into
+struct LimitMeasure {
+    PartMeasure whole;
+    std::vector<PartMeasure> parts;
+    std::size_t pieces = 0;
+};
+
+/// Integrals, means, extremes and histograms of the limit.
+///
+/// The limit is cut into triquadratic pieces within the tolerance, and these are integrated by 27 Gauss points each (exact for
+/// volumes). The extremes are then searched for on the limit itself, to its own tolerance, from the largest and the smallest
+/// values at the nodes and Gauss points of the pieces.
+///
+/// throws: Error(InvalidInput) as `evaluate_limit`, or if an option is out of range; Error(MissingCapability) if the pieces
+/// take
+///         more than 4 GB
+/// cost:   parallel; the same bits for any number of threads
+[[nodiscard]] LimitMeasure measure_limit(const HexMesh& mesh, const MeasureOptions& options = {});
+
+}  // namespace subvol

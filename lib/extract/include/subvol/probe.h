@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/limit.h"
+
+namespace subvol {
+
+/// limit:       the scheme, and how exact the limit is: options of `evaluate_limit`
+/// reach_world: places outside that are no farther than this from the boundary get the values of its nearest point; ≥ 0
+struct ProbeOptions {
+    LimitOptions limit{};
+    double reach_world = 0;
+};
+
+/// Values of one attribute: channel c of place p at p × channels + c; its gradients by world position (per world unit). 0 where
+/// the place is outside.
+struct ProbedField {
+    std::string name;
+    std::size_t channels = 1;
+    std::vector<double> values;
+    std::vector<Vec3> gradients;
+};
+
+/// One entry per place.
+///
+/// cells:      the control cell, kNone outside the volume; where cells meet, one of them
+/// parameters: the place in the cell, (u,v,w) in [0,1]³
+/// distances:  0 inside; with `reach_world` how far outside (world)
+/// rounds:     how often the limit was evaluated for the last of the places
+struct ProbeResult {
+    std::vector<Index> cells;
+    std::vector<Vec3> parameters;
+    std::vector<double> distances;
+    std::vector<ProbedField> fields;
+    int rounds = 0;
+
+    [[nodiscard]] bool inside(std::size_t place) const { return cells[place] != kNone; }
+};
+
+/// The limit of a mesh as a function of places in the world.
+///
+/// The volume is cut into curved pieces that are near the limit (`find_limit_cells`), in a tree of boxes. A place is found in a
+/// piece, and then in the limit by Newton's method, from cell to cell where it lies near a face.
+class LimitProbe {
+public:
+    /// The mesh is copied.
+    ///
+    /// throws: Error(InvalidInput) as `evaluate_limit`, or if an option is out of range
+    /// cost:   one search for the limit's pieces, about 1.5 kB for each
+    explicit LimitProbe(HexMesh mesh, const ProbeOptions& options = {});
+    ~LimitProbe();
+    LimitProbe(LimitProbe&&) noexcept;
+    LimitProbe& operator=(LimitProbe&&) noexcept;
+
+    /// Values and gradients of all attributes at places: those of `evaluate_limit` at the place's parameters. A place counts as
+    /// inside if it is within the tolerance of `evaluate_limit` of the volume.
+    ///
+    /// throws: Error(InvalidInput) if a place is not finite; Error(Cancelled)
+    /// cost:   parallel; best are many places in one call. Bitwise the same for any number of threads
+    [[nodiscard]] ProbeResult at(std::span<const Vec3> places, Progress* progress = nullptr) const;
+
+    [[nodiscard]] const HexMesh& mesh() const;
+    /// Of the limit, a little larger.
+    [[nodiscard]] Box box() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+/// `count` places on a line, its ends included, equally far apart.
+///
+/// throws: Error(InvalidInput) if count is 0 or an end is not finite
+[[nodiscard]] std::vector<Vec3> places_on_line(const Vec3& from, const Vec3& to, std::size_t count);
+
+}  // namespace subvol

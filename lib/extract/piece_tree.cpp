@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "piece_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/vector_relational.hpp>
+
+#include "subvol/detail/parallel_each.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kStartTolerance = 1e-3;  // of the diagonal: Newton's method needs two or three steps from there
+constexpr int kStartLevels = 4;
+constexpr std::size_t kMostBytes = std::size_t{2} << 30;
+constexpr std::size_t kLeafSize = 4;
+constexpr std::size_t kMostCandidates = 8;
+constexpr int kMostSteps = 12;
+constexpr double kNearEnough = 1e-5;  // of a piece's side
+constexpr double kFarOutside = 0.5;   // of a piece's side
+
+HexMesh bare(const HexMesh& mesh) {
+    HexMesh copy = mesh;
+    copy.attributes.clear();
+    return copy;
+}
+
+}  // namespace
+
+PieceTree::PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double reach, Progress* progress) {
+    const HexMesh geometry = bare(mesh);
+    LimitCellsOptions options{.position_world = kStartTolerance * std::max(bounds(mesh).diagonal(), 1e-300),
+                              .max_levels = kStartLevels,
+                              .max_bytes = kMostBytes};
+    LimitCells limit;
+    for (int again = 0; again < 4; ++again) {
+        limit = find_limit_cells(geometry, {.scheme = scheme, .levels = 0, .progress = progress}, options);
+        if (limit.pieces) break;
+        options.position_world *= 8;
+    }
+    if (!limit.pieces) {
+        throw Error(ErrorCode::MissingCapability, "the pieces of the limit take more than 2 GB", "probe", "a smaller mesh");
+    }
+    pieces_ = limit.pieces;
+    distance_ = 2 * limit.position_world + 1e-6 * bounds(mesh).diagonal();
+    reach_ = reach + distance_;
+    std::vector<Vec3> centers(pieces_->cells.size());
+    parallel_each(centers.size(), [&](std::size_t p) { centers[p] = pieces_->position(p, LimitPieces::kNodes / 2); });
+    tree_.emplace(centers, kLeafSize, [this](Index piece) { return box_of(piece); });
+}
+
+/// Of the control points of the piece, along one axis after the other.
+Box PieceTree::box_of(std::size_t piece) const {
+    Box box;
+    for (int c = 0; c < 3; ++c) {
+        std::array<double, LimitPieces::kNodes> x;
+        for (std::size_t n = 0; n < x.size(); ++n) x[n] = static_cast<double>(pieces_->node(piece, n)[c]);
+        for (const std::size_t stride : {1, 3, 9}) {
+            for (std::size_t n = 0; n < x.size(); ++n) {
+                if (n / stride % 3 == 1) x[n] = 2 * x[n] - 0.5 * (x[n - stride] + x[n + stride]);
+            }
+        }
+        const auto [lower, upper] = std::minmax_element(x.begin(), x.end());
+        box.lower[c] = pieces_->origins[piece][c] + *lower - reach_;
+        box.upper[c] = pieces_->origins[piece][c] + *upper + reach_;
+    }
+    return box;
+}
+
+std::optional<NearPlace> PieceTree::invert(std::size_t piece, const Vec3& x) const {
+    const Vec3 offset = x - pieces_->origins[piece];
+    Vec3 t(0.5);
+    for (int step = 0; step < kMostSteps; ++step) {
+        const QuadraticWeights u(t.x), v(t.y), w(t.z);
+        Vec3 at(0.0);
+        Mat3 jacobian(0.0);
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            for (std::size_t j = 0; j < 3; ++j) {
+                const double vw = v.values[j] * w.values[k], dv = v.slopes[j] * w.values[k], dw = v.values[j] * w.slopes[k];
+                for (std::size_t i = 0; i < 3; ++i, ++n) {
+                    const float* node = pieces_->node(piece, n);
+                    const Vec3 p(node[0], node[1], node[2]);
+                    at += u.values[i] * vw * p;
+                    jacobian[0] += u.slopes[i] * vw * p;
+                    jacobian[1] += u.values[i] * dv * p;
+                    jacobian[2] += u.values[i] * dw * p;
+                }
+            }
+        }
+        const double determinant = glm::determinant(jacobian);
+        if (!(std::abs(determinant) > 0)) return std::nullopt;
+        Vec3 by = glm::inverse(jacobian) * (offset - at);
+        const double longest = std::max({std::abs(by.x), std::abs(by.y), std::abs(by.z)});
+        if (!(longest < 1e6)) return std::nullopt;
+        if (longest > 1) by /= longest;
+        t = glm::clamp(t + by, Vec3(-1.0), Vec3(2.0));
+        if (longest < kNearEnough) break;
+    }
+    const Vec3 beyond = glm::max(glm::max(-t, t - Vec3(1.0)), Vec3(0.0));
+    const double excess = std::max({beyond.x, beyond.y, beyond.z});
+    if (excess > kFarOutside) return std::nullopt;
+    const auto& lowest = pieces_->lowest[piece];
+    const double size = std::ldexp(1.0, -pieces_->levels[piece]);
+    const Vec3 uvw = size * (Vec3(lowest[0], lowest[1], lowest[2]) + glm::clamp(t, Vec3(0.0), Vec3(1.0)));
+    return NearPlace{{pieces_->cells[piece], uvw}, excess * size};
+}
+
+void PieceTree::find(const Vec3& x, std::vector<NearPlace>& found) const {
+    found.clear();
+    thread_local std::vector<Index> pieces;
+    pieces.clear();
+    tree_->visit_leaves(
+        [&](const Box& box) {
+            return glm::all(glm::lessThanEqual(box.lower, x)) && glm::all(glm::lessThanEqual(x, box.upper));
+        },
+        [&](std::size_t first, std::size_t last) {
+            for (std::size_t slot = first; slot < last; ++slot) pieces.push_back(tree_->item(slot));
+            return false;
+        });
+    std::ranges::sort(pieces);
+    for (const Index piece : pieces) {
+        if (const auto near = invert(piece, x)) found.push_back(*near);
+        if (!found.empty() && found.back().excess == 0) {
+            std::swap(found.front(), found.back());
+            found.resize(1);
+            return;
+        }
+    }
+    std::ranges::stable_sort(found, {}, &NearPlace::excess);
+    if (found.size() > kMostCandidates) found.resize(kMostCandidates);
+}
+
+}  // namespace subvol::detail

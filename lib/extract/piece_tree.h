@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "limit_place.h"
+#include "subvol/detail/median_tree.h"
+#include "subvol/limit_level.h"
+
+namespace subvol::detail {
+
+/// A place of the limit near a place in the world. excess: how far outside the piece its parameters are, in sides of the cell
+struct NearPlace {
+    LimitPlace place;
+    double excess = 0;
+};
+
+/// The pieces of a limit in a tree of their boxes.
+class PieceTree {
+public:
+    /// mesh:  its attributes are not used
+    /// reach: boxes are larger by this (world), besides the distance of the pieces from the limit
+    PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double reach, Progress* progress);
+
+    /// How far the pieces may be from the limit (world).
+    [[nodiscard]] double distance() const { return distance_; }
+    /// Of all pieces.
+    [[nodiscard]] const Box& box() const { return tree_->box(0); }
+
+    /// The pieces that may contain x, the likeliest first, at most a few.
+    void find(const Vec3& x, std::vector<NearPlace>& found) const;
+
+private:
+    [[nodiscard]] Box box_of(std::size_t piece) const;
+    [[nodiscard]] std::optional<NearPlace> invert(std::size_t piece, const Vec3& x) const;
+
+    std::shared_ptr<const LimitPieces> pieces_;
+    double distance_ = 0, reach_ = 0;
+    std::optional<MedianTree<Box>> tree_;
+};
+
+/// The weights of the three nodes at 0, ½ and 1 of a quadratic, and their derivatives.
+struct QuadraticWeights {
+    explicit QuadraticWeights(double t)
+        : values{(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)}, slopes{4 * t - 3, 4 - 8 * t, 4 * t - 1} {}
+    std::array<double, 3> values, slopes;
+};
+
+}  // namespace subvol::detail

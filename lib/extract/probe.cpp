@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/probe.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/vector_relational.hpp>
+#include <optional>
+
+#include "limit_place.h"
+#include "piece_tree.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using detail::LimitPlace;
+using detail::NearPlace;
+
+namespace {
+
+constexpr std::size_t kBatch = std::size_t{1} << 19;  // places that are open at a time
+constexpr int kMostRounds = 24;                       // for all candidates of a place together
+// A step this small (in parameters) is the last: what it changes is linear to within 1e-8 of the field's change in a cell.
+constexpr double kLastStep = 1e-4;
+
+/// A place that has not been found yet.
+///
+/// first, last: its candidates; the one that is looked at is `first`
+struct Open {
+    std::size_t place;
+    LimitPlace at;
+    std::size_t first, last;
+    double left = 0;  // how far it was after the last step
+    bool done = false;
+};
+
+void check(std::span<const Vec3> places) {
+    for (std::size_t p = 0; p < places.size(); ++p) {
+        if (std::isfinite(places[p].x) && std::isfinite(places[p].y) && std::isfinite(places[p].z)) continue;
+        throw Error(ErrorCode::InvalidInput, "the place is not finite", "place " + std::to_string(p));
+    }
+}
+
+}  // namespace
+
+struct LimitProbe::State {
+    State(HexMesh given, const ProbeOptions& wanted)
+        : mesh(std::move(given)), options(wanted), topology((check_options(), build_topology(mesh))), steps(mesh, topology) {
+        tree.emplace(mesh, options.limit.scheme, options.reach_world, options.limit.progress);
+        const double diagonal = bounds(mesh).diagonal();
+        on_boundary = std::max(options.limit.tolerance, 1e-9) * diagonal;
+    }
+
+    void check_options() const {
+        validate(mesh);
+        if (!(options.reach_world >= 0)) {
+            throw Error(ErrorCode::InvalidInput, "the reach is " + std::to_string(options.reach_world), "probe", "at least 0");
+        }
+    }
+
+    void run(std::span<const Vec3> places, std::size_t begin, Progress* progress, ProbeResult& result) const;
+    [[nodiscard]] std::vector<Open> find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const;
+    void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::size_t begin,
+                std::span<const NearPlace> candidates, ProbeResult& result) const;
+    static void write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step,
+                      double distance, std::size_t to, ProbeResult& result);
+
+    HexMesh mesh;
+    ProbeOptions options;
+    Topology topology;
+    detail::CellSteps steps;
+    std::optional<detail::PieceTree> tree;
+    double on_boundary = 0;  // places this near count as inside (world)
+};
+
+LimitProbe::LimitProbe(HexMesh mesh, const ProbeOptions& options) : state_(std::make_unique<State>(std::move(mesh), options)) {
+}
+LimitProbe::~LimitProbe() = default;
+LimitProbe::LimitProbe(LimitProbe&&) noexcept = default;
+LimitProbe& LimitProbe::operator=(LimitProbe&&) noexcept = default;
+
+const HexMesh& LimitProbe::mesh() const {
+    return state_->mesh;
+}
+
+Box LimitProbe::box() const {
+    return state_->tree->box();
+}
+
+/// The places that have candidates, with the first of these.
+std::vector<Open> LimitProbe::State::find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const {
+    constexpr std::size_t kPart = 1024;
+    struct Part {
+        std::vector<NearPlace> candidates;
+        std::vector<Open> open;
+    };
+    std::vector<Part> parts((places.size() + kPart - 1) / kPart);
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+        auto& [all, open] = parts[part];
+        std::vector<NearPlace> found;
+        for (std::size_t p = part * kPart; p < std::min(places.size(), (part + 1) * kPart); ++p) {
+            tree->find(places[p], found);
+            if (found.empty()) continue;
+            open.push_back({p, found.front().place, all.size(), all.size() + found.size()});
+            all.insert(all.end(), found.begin(), found.end());
+        }
+    });
+    std::vector<Open> open;
+    for (const Part& part : parts) {
+        const std::size_t before = candidates.size();
+        for (Open more : part.open) {
+            more.first += before;
+            more.last += before;
+            open.push_back(more);
+        }
+        candidates.insert(candidates.end(), part.candidates.begin(), part.candidates.end());
+    }
+    return open;
+}
+
+void LimitProbe::State::run(std::span<const Vec3> places, std::size_t begin, Progress* progress, ProbeResult& result) const {
+    std::vector<NearPlace> candidates;
+    std::vector<Open> open = find(places, candidates);
+    LimitOptions limit = options.limit;
+    limit.progress = nullptr;
+    std::vector<LimitQuery> queries;
+    for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
+        report_progress(progress, "probe", static_cast<double>(begin) / static_cast<double>(result.cells.size()));
+        queries.clear();
+        for (const Open& one : open) queries.push_back(one.at);
+        const LimitSamples samples = evaluate_limit(mesh, queries, limit);
+        detail::parallel_each(
+            open.size(), [&](std::size_t i) { settle(open[i], i, samples, places[open[i].place], begin, candidates, result); });
+        std::erase_if(open, [](const Open& one) { return one.done; });
+        result.rounds = std::max(result.rounds, round + 1);
+    }
+}
+
+/// One step of Newton's method; the last one is written down.
+void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::size_t begin,
+                               std::span<const NearPlace> candidates, ProbeResult& result) const {
+    const Vec3 offset = place - samples.positions[query];
+    const detail::LimitStep step = detail::step_towards(offset, samples.jacobians[query], open.at, steps);
+    const double size = std::max({std::abs(step.by.x), std::abs(step.by.y), std::abs(step.by.z)});
+    const double left = glm::length(step.left);
+    LimitPlace next{open.at.cell, open.at.uvw + step.by};
+    const bool stays = glm::all(glm::greaterThanEqual(next.uvw, Vec3(-kLastStep))) &&
+                       glm::all(glm::lessThanEqual(next.uvw, Vec3(1 + kLastStep)));
+    const bool found = left <= on_boundary;
+    if (size < kLastStep && stays) {
+        if (found || left <= options.reach_world) {
+            write(open, query, samples, step, found ? 0 : left, begin + open.place, result);
+            open.done = true;
+            return;
+        }
+        if (step.held || open.left == left) {  // the nearest place of this candidate is outside
+            open.done = ++open.first == open.last;
+            if (!open.done) open.at = candidates[open.first].place;
+            open.left = 0;
+            return;
+        }
+    }
+    open.left = left;
+    open.at = next;
+    steps.enter(open.at);
+}
+
+void LimitProbe::State::write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step,
+                              double distance, std::size_t to, ProbeResult& result) {
+    result.cells[to] = open.at.cell;
+    result.parameters[to] = glm::clamp(open.at.uvw + step.by, Vec3(0.0), Vec3(1.0));
+    result.distances[to] = distance;
+    for (std::size_t f = 0; f < result.fields.size(); ++f) {
+        ProbedField& field = result.fields[f];
+        const LimitAttribute& from = samples.attributes[f];
+        for (std::size_t c = 0; c < field.channels; ++c) {
+            const Vec3& derivatives = from.derivatives[query * field.channels + c];
+            field.values[to * field.channels + c] = from.values[query * field.channels + c] + glm::dot(derivatives, step.by);
+            field.gradients[to * field.channels + c] = detail::world_gradient(samples.jacobians[query], derivatives);
+        }
+    }
+}
+
+ProbeResult LimitProbe::at(std::span<const Vec3> places, Progress* progress) const {
+    check(places);
+    ProbeResult result;
+    result.cells.assign(places.size(), kNone);
+    result.parameters.assign(places.size(), Vec3(0.0));
+    result.distances.assign(places.size(), 0);
+    for (const Attribute& attribute : state_->mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        result.fields.push_back({attribute.name, channels, std::vector<double>(places.size() * channels),
+                                 std::vector<Vec3>(places.size() * channels, Vec3(0.0))});
+    }
+    for (std::size_t begin = 0; begin < places.size(); begin += kBatch) {
+        state_->run(places.subspan(begin, std::min(kBatch, places.size() - begin)), begin, progress, result);
+    }
+    report_progress(progress, "probe", 1);
+    return result;
+}
+
+std::vector<Vec3> places_on_line(const Vec3& from, const Vec3& to, std::size_t count) {
+    check(std::array{from, to});
+    if (count == 0) throw Error(ErrorCode::InvalidInput, "a line of no places", "places_on_line", "a count of at least 1");
+    std::vector<Vec3> places(count, from);
+    for (std::size_t i = 1; i < count; ++i) {
+        const double t = static_cast<double>(i) / static_cast<double>(count - 1);
+        places[i] = (1 - t) * from + t * to;
+    }
+    return places;
+}
+
+}  // namespace subvol

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "output_file.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
+#include "subvol/error.h"
+#include "subvol/limit_surface.h"
+#include "subvol/srgb.h"
+#include "vtk_xml_writer.h"
+
+namespace subvol {
+
+namespace {
+
+using detail::OutputFile;
+using Bytes3 = std::array<std::uint8_t, 3>;
+
+/// Numbers one after the other, as they lie in memory.
+class Bytes {
+public:
+    explicit Bytes(OutputFile& out) : out_(out) {}
+    template <class Number>
+    void put(Number number) {
+        buffer_.append(reinterpret_cast<const char*>(&number), sizeof number);
+        if (buffer_.size() > kFlush) flush();
+    }
+    template <class Number>
+    void put_vector(const Vec3& v) {
+        for (int k = 0; k < 3; ++k) put(static_cast<Number>(v[k]));
+    }
+    void flush() {
+        out_.write(buffer_);
+        buffer_.clear();
+    }
+
+private:
+    static constexpr std::size_t kFlush = 1 << 16;
+    OutputFile& out_;
+    std::string buffer_;
+};
+
+/// The colours of the points in sRGB; empty without.
+std::vector<Bytes3> colors_of(const LimitSurface& surface, const SurfaceFileOptions& options) {
+    std::vector<Bytes3> colors;
+    if (!options.color) return colors;
+    const ProbedField& field = surface.fields[*options.color];
+    for (std::size_t p = 0; p < surface.surface.points.size(); ++p) {
+        const Vec3 rgb = color_at(options.function, field.values[p * field.channels]);
+        Bytes3 bytes;
+        for (int k = 0; k < 3; ++k) {
+            bytes[static_cast<std::size_t>(k)] =
+                static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::clamp(rgb[k], 0.0, 1.0))));
+        }
+        colors.push_back(bytes);
+    }
+    return colors;
+}
+
+/// A field's name as one word.
+std::string word(const std::string& name) {
+    std::string made;
+    for (const char c : name) made += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' ? c : '_';
+    return made.empty() ? "field" : made;
+}
+
+void write_ply(OutputFile& out, const LimitSurface& surface, const std::vector<Bytes3>& colors) {
+    static_assert(std::endian::native == std::endian::little);
+    const std::size_t count = surface.surface.points.size();
+    std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(count) +
+                       "\nproperty double x\nproperty double y\nproperty double z\n"
+                       "property float nx\nproperty float ny\nproperty float nz\n";
+    if (!colors.empty()) head += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    for (const ProbedField& field : surface.fields) {
+        for (std::size_t c = 0; c < field.channels; ++c) {
+            head += "property double " + word(field.name) + (field.channels > 1 ? "_" + std::to_string(c) : "") + "\n";
+        }
+    }
+    head += "element face " + std::to_string(surface.surface.triangles.size()) +
+            "\nproperty list uchar int vertex_indices\nend_header\n";
+    out.write(head);
+    Bytes bytes(out);
+    for (std::size_t p = 0; p < count; ++p) {
+        bytes.put_vector<double>(surface.surface.points[p]);
+        bytes.put_vector<float>(surface.normals[p]);
+        if (!colors.empty()) {
+            for (const std::uint8_t byte : colors[p]) bytes.put(byte);
+        }
+        for (const ProbedField& field : surface.fields) {
+            for (std::size_t c = 0; c < field.channels; ++c) bytes.put(field.values[p * field.channels + c]);
+        }
+    }
+    for (const auto& t : surface.surface.triangles) {
+        bytes.put(std::uint8_t{3});
+        for (const Index p : t) bytes.put(static_cast<std::int32_t>(p));
+    }
+    bytes.flush();
+}
+
+void write_stl(OutputFile& out, const LimitSurface& surface) {
+    std::string head = "binary STL of OpenSubVol";
+    head.resize(80, ' ');
+    out.write(head);
+    Bytes bytes(out);
+    bytes.put(static_cast<std::uint32_t>(surface.surface.triangles.size()));
+    for (const auto& t : surface.surface.triangles) {
+        const Vec3 &a = surface.surface.points[t[0]], &b = surface.surface.points[t[1]], &c = surface.surface.points[t[2]];
+        const Vec3 normal = glm::cross(b - a, c - a);
+        const double length = glm::length(normal);
+        bytes.put_vector<float>(length > 0 ? normal / length : Vec3(0.0));
+        for (const Vec3* p : {&a, &b, &c}) bytes.put_vector<float>(*p);
+        bytes.put(std::uint16_t{0});
+    }
+    bytes.flush();
+}
+
+void write_vtp(OutputFile& out, const LimitSurface& surface, const std::optional<std::size_t>& color) {
+    const auto& [points, triangles] = surface.surface;
+    detail::VtkXmlWriter xml(out, "PolyData");
+    xml.line("<Piece NumberOfPoints=\"" + std::to_string(points.size()) +
+             "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+             std::to_string(triangles.size()) + "\">\n<Points>");
+    xml.made_array<double>("Points", 3, 3 * points.size(),
+                           [&](std::size_t i) { return points[i / 3][static_cast<int>(i % 3)]; });
+    xml.line("</Points>\n<Polys>");
+    xml.made_array<std::int64_t>("connectivity", 1, 3 * triangles.size(),
+                                 [&](std::size_t i) { return static_cast<std::int64_t>(triangles[i / 3][i % 3]); });
+    xml.made_array<std::int64_t>("offsets", 1, triangles.size(),
+                                 [](std::size_t t) { return static_cast<std::int64_t>(3 * t + 3); });
+    xml.line("</Polys>");
+    const std::string scalars = surface.fields.empty() ? "" : surface.fields[color.value_or(0)].name;
+    xml.line(std::string("<PointData Normals=\"Normals\"") +
+             (scalars.empty() ? "" : " Scalars=\"" + detail::attribute_value(scalars) + "\"") + ">");
+    xml.made_array<float>("Normals", 3, 3 * points.size(),
+                          [&](std::size_t i) { return static_cast<float>(surface.normals[i / 3][static_cast<int>(i % 3)]); });
+    for (const ProbedField& field : surface.fields) xml.array<double>(field.name, field.channels, field.values);
+    xml.line("</PointData>\n</Piece>");
+    xml.end();
+}
+
+void write_obj(OutputFile& out, const LimitSurface& surface, const std::vector<Bytes3>& colors) {
+    using detail::exact_text;
+    using detail::number_text;
+    std::string lines = "# OpenSubVol\n";
+    const auto flush = [&](bool always) {
+        if (!always && lines.size() < (1U << 16)) return;
+        out.write(lines);
+        lines.clear();
+    };
+    for (std::size_t p = 0; p < surface.surface.points.size(); ++p) {
+        const Vec3& x = surface.surface.points[p];
+        lines += "v " + exact_text(x.x) + " " + exact_text(x.y) + " " + exact_text(x.z);
+        if (!colors.empty()) {
+            for (const std::uint8_t byte : colors[p]) lines += " " + number_text(byte / 255.0, 4);
+        }
+        const Vec3& n = surface.normals[p];
+        lines += "\nvn " + number_text(n.x) + " " + number_text(n.y) + " " + number_text(n.z) + "\n";
+        flush(false);
+    }
+    for (const auto& t : surface.surface.triangles) {
+        lines += "f";
+        for (const Index p : t) {
+            const std::string number = std::to_string(p + 1);
+            lines += " " + number + "//" + number;
+        }
+        lines += "\n";
+        flush(false);
+    }
+    flush(true);
+}
+
+/// Positions relative to the centre of the box, so that floats are enough; the node has the centre, and turns z up into y up.
+void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<Bytes3>& colors) {
+    using detail::exact_text;
+    const auto& [points, triangles] = surface.surface;
+    Box box;
+    for (const Vec3& p : points) box.add(p);
+    const Vec3 center = box.center();
+    Vec3 least(0.0), most(0.0);
+    for (const Vec3& p : points) {
+        const Vec3 at = p - center;
+        least = glm::min(least, at);
+        most = glm::max(most, at);
+    }
+    const auto triple = [](const Vec3& v) {
+        const auto number = [](double x) { return exact_text(static_cast<double>(static_cast<float>(x))); };
+        return "[" + number(v.x) + "," + number(v.y) + "," + number(v.z) + "]";
+    };
+    const std::size_t count = points.size(), vectors = 12 * count, color_bytes = colors.empty() ? 0 : 4 * count;
+    const std::size_t total = 2 * vectors + color_bytes + 12 * triangles.size();
+    if (total > 0xF0000000U) {
+        throw Error(ErrorCode::InvalidInput, "a .glb file has less than 4 GB", "surface", "a larger tolerance, or .ply");
+    }
+    const auto view = [](std::size_t offset, std::size_t length, int target) {
+        return "{\"buffer\":0,\"byteOffset\":" + std::to_string(offset) + ",\"byteLength\":" + std::to_string(length) +
+               ",\"target\":" + std::to_string(target) + "}";
+    };
+    const std::string points_text = std::to_string(count), corners = std::to_string(3 * triangles.size());
+    std::string json =
+        R"({"asset":{"version":"2.0","generator":"OpenSubVol"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)";
+    json += R"("rotation":[-0.7071067811865476,0,0,0.7071067811865476],"translation":)" +
+            triple({center.x, center.z, -center.y}) + "}],";
+    json += R"("materials":[{"doubleSided":true,"pbrMetallicRoughness":{"metallicFactor":0,"roughnessFactor":0.6}}],)";
+    json += std::string(R"("meshes":[{"primitives":[{"material":0,"attributes":{"POSITION":0,"NORMAL":1)") +
+            (colors.empty() ? "" : R"(,"COLOR_0":3)") + R"(},"indices":2}]}],"accessors":[)";
+    json += R"({"bufferView":0,"componentType":5126,"count":)" + points_text + R"(,"type":"VEC3","min":)" + triple(least) +
+            ",\"max\":" + triple(most) + "},";
+    json += R"({"bufferView":1,"componentType":5126,"count":)" + points_text + R"(,"type":"VEC3"},)";
+    json += R"({"bufferView":2,"componentType":5125,"count":)" + corners + R"(,"type":"SCALAR"})";
+    if (!colors.empty()) {
+        json += R"(,{"bufferView":3,"componentType":5121,"normalized":true,"count":)" + points_text + R"(,"type":"VEC4"})";
+    }
+    json += "],\"bufferViews\":[" + view(0, vectors, 34962) + "," + view(vectors, vectors, 34962) + "," +
+            view(2 * vectors, 12 * triangles.size(), 34963);
+    if (!colors.empty()) json += "," + view(2 * vectors + 12 * triangles.size(), color_bytes, 34962);
+    json += "],\"buffers\":[{\"byteLength\":" + std::to_string(total) + "}]}";
+    while (json.size() % 4 != 0) json += ' ';
+
+    Bytes bytes(out);
+    bytes.put(std::uint32_t{0x46546C67});  // "glTF"
+    bytes.put(std::uint32_t{2});
+    bytes.put(static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + total));
+    bytes.put(static_cast<std::uint32_t>(json.size()));
+    bytes.put(std::uint32_t{0x4E4F534A});  // "JSON"
+    bytes.flush();
+    out.write(json);
+    bytes.put(static_cast<std::uint32_t>(total));
+    bytes.put(std::uint32_t{0x004E4942});  // "BIN"
+    for (const Vec3& p : points) bytes.put_vector<float>(p - center);
+    for (const Vec3& n : surface.normals) bytes.put_vector<float>(n);
+    for (const auto& t : triangles) {
+        for (const Index p : t) bytes.put(static_cast<std::uint32_t>(p));
+    }
+    // glTF's vertex colours are linear, and 8 bits are too few for that near black; they are what viewers expect of files of
+    // this size.
+    for (const Bytes3& color : colors) {
+        for (const std::uint8_t byte : color) {
+            bytes.put(static_cast<std::uint8_t>(std::lround(255 * linear_from_srgb(byte / 255.0))));
+        }
+        bytes.put(std::uint8_t{255});
+    }
+    bytes.flush();
+}
+
+}  // namespace
+
+void write_limit_surface(const std::filesystem::path& path, const LimitSurface& surface, const SurfaceFileOptions& options) {
+    const std::string extension = path.extension().string();
+    if (extension != ".ply" && extension != ".stl" && extension != ".vtp" && extension != ".obj" && extension != ".glb") {
+        throw Error(ErrorCode::InvalidInput, "'" + detail::printable(extension) + "' is no format of surfaces", path.string(),
+                    ".ply, .stl, .vtp, .obj, .glb");
+    }
+    if (surface.surface.triangles.empty()) {
+        throw Error(ErrorCode::InvalidInput, "the surface has no triangles", path.string());
+    }
+    if (options.color && *options.color >= surface.fields.size()) {
+        throw Error(ErrorCode::InvalidInput, "there is no field " + std::to_string(*options.color), path.string(),
+                    "below " + std::to_string(surface.fields.size()));
+    }
+    const auto colors = colors_of(surface, options);
+    OutputFile out(path);
+    if (extension == ".ply") write_ply(out, surface, colors);
+    if (extension == ".stl") write_stl(out, surface);
+    if (extension == ".vtp") write_vtp(out, surface, options.color);
+    if (extension == ".obj") write_obj(out, surface, colors);
+    if (extension == ".glb") write_glb(out, surface, colors);
+    out.commit();
+}
+
+}  // namespace subvol

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "subvol/limit_surface.h"
+
+namespace subvol::detail {
+
+/// Fills in area, volume, watertight, euler, components and angles.
+void measure_surface(const Surface& surface, SurfaceReport& report);
+
+/// Collapses edges of triangles with small angles on to one of their ends, where the surface stays what it is: manifold, with
+/// the same holes and borders, its triangles facing as their points do, and within tolerance. Points keep their places.
+///
+/// fixed:  points that stay (on creases); slack_world: how far new edges may bend away from the limit, by the normals
+/// returns: how many edges; points that are no longer used are kept
+std::size_t collapse_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
+                             std::span<const std::uint8_t> fixed, double slack_world,
+                             std::vector<std::array<Index, 3>>& triangles);
+
+/// How far the limit is from the middle of an edge, by the normals at its ends: exact for circles.
+[[nodiscard]] inline double bend(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
+    return std::abs(glm::dot(b - a, normal_b - normal_a)) / 8;
+}
+
+}  // namespace subvol::detail

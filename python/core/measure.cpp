@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <limits>
+
+#include "bind.h"
+#include "subvol/limit_slice.h"
+#include "subvol/limit_surface.h"
+#include "subvol/measure.h"
+#include "subvol/probe.h"
+
+namespace subvol::python {
+namespace {
+
+SchemeOptions scheme_of(const std::string& scheme, double tension, const std::optional<double>& crease_angle) {
+    return {.kind = scheme_named(scheme), .tension = tension, .crease_angle_deg = crease_angle};
+}
+
+/// Cells as numbers, −1 outside.
+py::array cells_of(const std::vector<Index>& cells, std::vector<py::ssize_t> shape) {
+    std::vector<std::int64_t> numbers(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) numbers[i] = cells[i] == kNone ? -1 : static_cast<std::int64_t>(cells[i]);
+    return owned(std::move(numbers), std::move(shape));
+}
+
+/// Values and gradients by the fields' names; not a number where the places are outside.
+void put_fields(std::vector<ProbedField> fields, const std::vector<Index>* cells, py::dict& result) {
+    constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+    py::dict values, gradients;
+    for (ProbedField& field : fields) {
+        for (std::size_t i = 0; cells != nullptr && i < field.values.size(); ++i) {
+            if ((*cells)[i / field.channels] != kNone) continue;
+            field.values[i] = kNothing;
+            field.gradients[i] = Vec3(kNothing);
+        }
+        const py::ssize_t count = length(field.values.size() / field.channels), channels = length(field.channels);
+        const bool scalar = channels == 1;
+        values[py::str(field.name)] = owned(
+            std::move(field.values), scalar ? std::vector<py::ssize_t>{count} : std::vector<py::ssize_t>{count, channels});
+        py::array rows = owned(std::move(field.gradients));
+        gradients[py::str(field.name)] = scalar ? rows : rows.reshape({count, channels, py::ssize_t(3)});
+    }
+    result["fields"] = values;
+    result["gradients"] = gradients;
+}
+
+py::dict probe(const HexMesh& mesh, const py::object& given, const std::string& scheme, double tension,
+               const std::optional<double>& crease_angle, double reach, const py::object& progress) {
+    const std::vector<Vec3> places = vectors(given, "places");
+    ProbeOptions options{.limit = {.scheme = scheme_of(scheme, tension, crease_angle)}, .reach_world = reach};
+    ProbeResult found = result_of(progress, [&](Progress* listener) {
+        options.limit.progress = listener;
+        return LimitProbe(mesh, options).at(places, listener);
+    });
+    py::dict result;
+    put_fields(std::move(found.fields), &found.cells, result);
+    result["cells"] = cells_of(found.cells, {length(places.size())});
+    result["parameters"] = owned(std::move(found.parameters));
+    return result;
+}
+
+py::dict as_dict(PartMeasure part) {
+    py::dict result, fields;
+    for (FieldMeasure& field : part.fields) {
+        py::dict one;
+        one["integral"] = field.integral;
+        one["mean"] = field.mean;
+        one["min"] = field.min.value;
+        one["min_at"] = as_tuple(field.min.place);
+        one["max"] = field.max.value;
+        one["max_at"] = as_tuple(field.max.place);
+        const py::ssize_t bins = length(field.histogram.size());
+        one["histogram"] = owned(std::move(field.histogram), {bins});
+        fields[py::str(field.name)] = one;
+    }
+    result["cells"] = part.cells;
+    result["volume"] = part.volume;
+    result["fields"] = fields;
+    return result;
+}
+
+py::dict measure(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
+                 double tolerance, int bins, const py::object& progress) {
+    MeasureOptions options{.scheme = scheme_of(scheme, tension, crease_angle), .tolerance = tolerance, .bins = bins};
+    LimitMeasure found = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return measure_limit(mesh, options);
+    });
+    return as_dict(std::move(found.whole));
+}
+
+py::dict slice(const HexMesh& mesh, const std::string& field, const std::array<double, 3>& point,
+               const std::array<double, 3>& normal, int resolution, const std::string& scheme, double tension,
+               const std::optional<double>& crease_angle, const py::object& progress) {
+    SliceOptions options{.resolution = resolution, .limit = {.scheme = scheme_of(scheme, tension, crease_angle)}};
+    LimitSlice found = result_of(progress, [&](Progress* listener) {
+        options.progress = options.limit.progress = listener;
+        return slice_limit(mesh, field, {point[0], point[1], point[2]}, {normal[0], normal[1], normal[2]}, options);
+    });
+    const std::vector<py::ssize_t> shape{found.height, found.width};
+    py::dict result;
+    result["field"] = found.field;
+    result["values"] = owned(std::move(found.values), shape);
+    result["gradients"] = owned(std::move(found.gradients)).reshape({shape[0], shape[1], py::ssize_t(3)});
+    result["cells"] = cells_of(found.cells, shape);
+    result["origin"] = owned(std::vector{found.origin.x, found.origin.y, found.origin.z}, {3});
+    result["right"] = owned(std::vector{found.right.x, found.right.y, found.right.z}, {3});
+    result["down"] = owned(std::vector{found.down.x, found.down.y, found.down.z}, {3});
+    return result;
+}
+
+py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<double> isos, bool boundary, bool cap,
+                 double tolerance, int max_level, const std::string& scheme, double tension,
+                 const std::optional<double>& crease_angle, const std::optional<std::string>& path,
+                 const py::object& progress) {
+    SurfaceOptions options{.scheme = scheme_of(scheme, tension, crease_angle),
+                           .isos = std::move(isos),
+                           .boundary = boundary,
+                           .cap = cap,
+                           .tolerance = tolerance,
+                           .max_level = max_level};
+    LimitSurface found = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        LimitSurface made = limit_surface(mesh, field, options);
+        if (path) write_limit_surface(*path, made);
+        return made;
+    });
+    py::dict result, report;
+    report["area"] = found.report.area;
+    report["volume"] = found.report.volume;
+    report["watertight"] = found.report.watertight;
+    report["euler"] = found.report.euler;
+    report["components"] = found.report.components;
+    report["min_angle"] = found.report.min_angle_deg;
+    report["deviation"] = found.report.deviation_world;
+    report["converged"] = found.report.converged;
+    report["level"] = found.report.level;
+    result["report"] = report;
+    std::vector<std::int64_t> corners;
+    corners.reserve(3 * found.surface.triangles.size());
+    for (const auto& t : found.surface.triangles) corners.insert(corners.end(), t.begin(), t.end());
+    const py::ssize_t triangles = length(found.surface.triangles.size());
+    result["triangles"] = owned(std::move(corners), {triangles, 3});
+    result["points"] = owned(std::move(found.surface.points));
+    result["normals"] = owned(std::move(found.normals));
+    put_fields(std::move(found.fields), nullptr, result);
+    return result;
+}
+
+}  // namespace
+
+void bind_measure(py::module_& module) {
+    module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("scheme"), py::arg("tension"),
+               py::arg("crease_angle"), py::arg("reach"), py::arg("progress"));
+    module.def("measure", &measure, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
+               py::arg("tolerance"), py::arg("bins"), py::arg("progress"));
+    module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("resolution"),
+               py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"), py::arg("progress"));
+    module.def("surface", &surface, py::arg("mesh"), py::arg("field"), py::arg("isos"), py::arg("boundary"), py::arg("cap"),
+               py::arg("tolerance"), py::arg("max_level"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
+               py::arg("path"), py::arg("progress"));
+}
+
+}  // namespace subvol::python

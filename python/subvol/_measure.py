@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers and surfaces of the limit: values at places, integrals, slices, isosurfaces."""
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._core import HexMesh
+from ._points import _selected
+from ._progress import Progress, listening
+
+
+@dataclass(frozen=True)
+class ProbeSamples:
+    """fields: (n,) or (n,channels) by name, nan outside; gradients: by position, (n,3) or (n,channels,3); cells: (n,), -1 outside;
+    parameters: (n,3) in the cell"""
+
+    fields: dict[str, npt.NDArray[np.float64]]
+    gradients: dict[str, npt.NDArray[np.float64]]
+    cells: npt.NDArray[np.int64]
+    parameters: npt.NDArray[np.float64]
+
+    @property
+    def inside(self) -> npt.NDArray[np.bool_]:
+        """Whether each place is in the volume."""
+        return np.asarray(self.cells >= 0)
+
+
+def probe(mesh: HexMesh, places: npt.ArrayLike, *, scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None,
+          reach: float = 0, progress: Progress = None) -> ProbeSamples:
+    """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
+
+    reach: places outside that are no farther than this from the boundary get the values of its nearest point
+    """
+    places = np.asarray(places)
+    with listening(progress) as listener:
+        found: dict[str, Any] = _core.probe(mesh, np.empty((0, 3)) if places.size == 0 else places, scheme, tension, crease_angle, reach,
+                                            listener)
+    return ProbeSamples(**found)
+
+
+def measure(mesh: HexMesh, *, scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None, tolerance: float = 1e-4,
+            bins: int = 32, progress: Progress = None) -> dict[str, Any]:
+    """The volume of the limit, and of each field its integral, mean, extremes with their places, and histogram.
+
+    Returns cells, volume, and fields: a dictionary by name of integral, mean, min, min_at, max, max_at, histogram (the volume in each
+    of `bins` equal intervals from min to max).
+
+    tolerance: of the pieces that are integrated, as a part of the longest side and of each field's range
+    """
+    with listening(progress) as listener:
+        found: dict[str, Any] = _core.measure(mesh, scheme, tension, crease_angle, tolerance, bins, listener)
+    return found
+
+
+@dataclass(frozen=True)
+class Slice:
+    """field: its name; values: (height,width), nan outside; gradients: (height,width,3); cells: (height,width), -1 outside; the place of
+    values[row, column] is origin + column * right + row * down"""
+
+    field: str
+    values: npt.NDArray[np.float64]
+    gradients: npt.NDArray[np.float64]
+    cells: npt.NDArray[np.int64]
+    origin: npt.NDArray[np.float64]
+    right: npt.NDArray[np.float64]
+    down: npt.NDArray[np.float64]
+
+
+def slice(mesh: HexMesh, point: Sequence[float], normal: Sequence[float], field: Optional[str] = None, *, resolution: int = 512,
+          scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None, progress: Progress = None) -> Slice:
+    """A field of the limit where a plane cuts it, seen from where the normal points.
+
+    resolution: places along the longer side
+    """
+    chosen = _selected(mesh, field)
+    with listening(progress) as listener:
+        found: dict[str, Any] = _core.slice(chosen, next(iter(chosen.fields)), [float(x) for x in point], [float(x) for x in normal], resolution, scheme, tension,
+                                            crease_angle, listener)
+    return Slice(**found)
+
+
+@dataclass(frozen=True)
+class SurfaceMesh:
+    """points: (n,3); triangles: (m,3); normals: (n,3), from exact gradients; fields, gradients: at the points, by name; report: area,
+    volume, watertight, euler, components, min_angle (degrees), deviation (world), converged, level"""
+
+    points: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.int64]
+    normals: npt.NDArray[np.float64]
+    fields: dict[str, npt.NDArray[np.float64]]
+    gradients: dict[str, npt.NDArray[np.float64]]
+    report: dict[str, Any]
+
+
+def surface(mesh: HexMesh, iso: Union[float, Sequence[float], None] = None, field: Optional[str] = None, *, boundary: Optional[bool] = None,
+            cap: bool = False, tolerance: float = 1e-3, max_level: int = 6, scheme: str = "mcq", tension: float = 1 / 16,
+            crease_angle: Optional[float] = None, path: Union[str, os.PathLike[str], None] = None, progress: Progress = None) -> SurfaceMesh:
+    """Isosurfaces of a field of the limit, and its boundary, as triangles.
+
+    iso:       a value, or several; None: the boundary alone
+    boundary:  also the boundary; None: only without `iso`
+    cap:       close each isosurface with the part of the boundary where the field is at least its value
+    tolerance: how far triangles may lie from the limit, as a part of the longest side
+    path:      also write it: .ply, .stl, .vtp, .obj, .glb
+    """
+    isos = [] if iso is None else [float(value) for value in np.atleast_1d(np.asarray(iso, dtype=float))]
+    chosen = _selected(mesh, field)
+    with listening(progress) as listener:
+        found: dict[str, Any] = _core.surface(chosen, next(iter(chosen.fields)), isos, not isos if boundary is None else boundary, cap, tolerance, max_level, scheme,
+                                              tension, crease_angle, None if path is None else os.fspath(path), listener)
+    return SurfaceMesh(**found)

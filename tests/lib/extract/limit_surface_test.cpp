@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/limit_surface.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "lib/expect_error.h"
+#include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
+#include "subvol/model.h"
+
+namespace subvol {
+namespace {
+
+/// The ball with the squared distance from its centre: isosurfaces are spheres as far as the limit has the field.
+HexMesh ball_with_radius(int resolution) {
+    HexMesh mesh = make_model("ball", resolution);
+    mesh.attributes.clear();
+    test::add_field(mesh, "r2", [](const Vec3& p) { return glm::dot(p, p); });
+    return mesh;
+}
+
+/// The distance of the triangles' centres from the isosurface of the limit, by its value and gradient there.
+struct Distance {
+    double rms = 0, largest = 0;
+};
+Distance distance_to_limit(const HexMesh& mesh, const Surface& surface, double iso) {
+    std::vector<Vec3> centers;
+    for (const auto& t : surface.triangles)
+        centers.push_back((surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3.0);
+    const ProbeResult found = LimitProbe(mesh).at(centers);
+    Distance distance;
+    for (std::size_t p = 0; p < centers.size(); ++p) {
+        EXPECT_TRUE(found.inside(p));
+        const double one = std::abs(found.fields[0].values[p] - iso) / glm::length(found.fields[0].gradients[p]);
+        distance.largest = std::max(distance.largest, one);
+        distance.rms += one * one / static_cast<double>(centers.size());
+    }
+    distance.rms = std::sqrt(distance.rms);
+    return distance;
+}
+
+TEST(LimitSurface, PointsLieOnTheLimitAndHaveItsGradient) {
+    const HexMesh mesh = make_model("ball", 4);
+    const LimitSurface found = limit_surface(mesh, "density", {.isos = {0.2}});
+    ASSERT_GT(found.surface.triangles.size(), 100u);
+    const LimitSamples samples = evaluate_limit(mesh, found.places, {.tolerance = 1e-8, .max_levels = 14});
+    for (std::size_t p = 0; p < found.places.size(); ++p) {
+        // The tolerance of the limit (1e-6 of the diagonal and of the range), and of the last step.
+        ASSERT_NEAR(samples.attributes[0].values[p], 0.2, 5e-5) << p;
+        ASSERT_NEAR(glm::distance(samples.positions[p], found.surface.points[p]), 0, 3e-5) << p;
+        const Vec3& gradient = found.fields[0].gradients[p];
+        EXPECT_GT(glm::dot(found.normals[p], -gradient / glm::length(gradient)), 0.999) << p;
+    }
+}
+
+TEST(LimitSurface, SphereIsClosedAndRightToSecondOrder) {
+    // Triangles with corners on a sphere are nearer to it by the square of their edges: four times for each level.
+    const HexMesh mesh = ball_with_radius(4);
+    Distance last;
+    for (const int level : {1, 2, 3}) {
+        const LimitSurface found =
+            limit_surface(mesh, "r2", {.isos = {0.25}, .tolerance = 1e-9, .max_level = level, .improve = false});
+        EXPECT_EQ(found.report.level, level);
+        EXPECT_FALSE(found.report.converged);
+        EXPECT_TRUE(found.report.watertight);
+        EXPECT_EQ(found.report.euler, 2);
+        EXPECT_EQ(found.report.components, 1u);
+        EXPECT_LT(found.report.volume, 0) << "the field is at least the value outside the sphere: normals point inwards";
+        const Distance distance = distance_to_limit(mesh, found.surface, 0.25);
+        EXPECT_LT(distance.largest, 3 * found.report.deviation_world) << "the estimate is of the right size";
+        if (level > 1) {
+            EXPECT_GT(std::log2(last.rms / distance.rms), 1.8);
+            EXPECT_GT(std::log2(last.largest / distance.largest), 1.4) << "the limit has no curvature at irregular edges";
+        }
+        last = distance;
+    }
+}
+
+TEST(LimitSurface, SpheresOfAFineMeshAreThoseOfTheClosedForm) {
+    const LimitSurface found = limit_surface(ball_with_radius(12), "r2", {.isos = {0.25}, .tolerance = 1e-4});
+    EXPECT_TRUE(found.report.converged);
+    EXPECT_NEAR(found.report.area / std::numbers::pi, 1, 2e-3);
+    EXPECT_NEAR(-found.report.volume / (std::numbers::pi / 6), 1, 2e-3);
+}
+
+TEST(LimitSurface, BoundaryOfTheBallHasItsAreaAndVolume) {
+    const LimitSurface found = limit_surface(make_model("ball", 12), {}, {.boundary = true, .tolerance = 2e-5, .max_level = 3});
+    EXPECT_TRUE(found.report.watertight);
+    EXPECT_EQ(found.report.euler, 2);
+    EXPECT_NEAR(found.report.volume / (4.0 / 3 * std::numbers::pi), 1, 1e-4);
+    EXPECT_NEAR(found.report.area / (4 * std::numbers::pi), 1, 1e-4);
+    double worst = 1;
+    for (std::size_t p = 0; p < found.normals.size(); ++p)
+        worst = std::min(worst, glm::dot(found.normals[p], glm::normalize(found.surface.points[p])));
+    EXPECT_GT(worst, std::cos(2 * std::numbers::pi / 180)) << "normals are those of the sphere to two degrees";
+}
+
+TEST(LimitSurface, BoundaryOfTheNozzleIsThatOfABody) {
+    const LimitSurface found = limit_surface(make_model("nozzle", 16), {}, {.boundary = true});
+    EXPECT_TRUE(found.report.watertight);
+    EXPECT_GT(found.report.volume, 0);
+    EXPECT_EQ(found.report.euler % 2, 0);
+}
+
+TEST(LimitSurface, BoundaryOfARingHasEulerCharacteristicZero) {
+    HexMesh mesh = test::make_box(3, 3, 1);
+    mesh.cells.erase(mesh.cells.begin() + 4);  // the middle
+    mesh = without_unused_points(std::move(mesh));
+    const LimitSurface found = limit_surface(mesh, {}, {.boundary = true});
+    EXPECT_TRUE(found.report.watertight);
+    EXPECT_EQ(found.report.euler, 0);
+    EXPECT_NEAR(found.report.volume, 8, 0.3);
+}
+
+TEST(LimitSurface, ACapClosesAnIsosurfaceThatLeavesTheVolume) {
+    HexMesh mesh = test::make_box(4, 4, 4);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x + 0.3 * p.y; });
+    const LimitSurface open = limit_surface(mesh, "f", {.isos = {2.1}});
+    EXPECT_FALSE(open.report.watertight);
+    EXPECT_EQ(open.report.euler, 1);  // a disk
+    const LimitSurface closed = limit_surface(mesh, "f", {.isos = {2.1}, .cap = true});
+    EXPECT_TRUE(closed.report.watertight);
+    EXPECT_EQ(closed.report.euler, 2);
+    // The part with x ≥ 2.1 − .3 y.
+    EXPECT_NEAR(closed.report.volume, 4 * (4 * (4 - 2.1) + 0.3 * 16 / 2), 1e-6);
+    EXPECT_NEAR(open.report.area, 4 * std::hypot(4, 1.2), 1e-6);
+}
+
+TEST(LimitSurface, ValuesAtVerticesDoNotBreakIt) {
+    // The isovalue is that of a whole layer of control points.
+    HexMesh mesh = test::make_box(4, 4, 4);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x; });
+    const LimitSurface closed = limit_surface(mesh, "f", {.isos = {2}, .cap = true});
+    EXPECT_TRUE(closed.report.watertight);
+    EXPECT_NEAR(closed.report.volume, 32, 1e-9);
+}
+
+TEST(LimitSurface, IsClosedAndManifoldOnIrregularMeshes) {
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Linear}) {
+        HexMesh mesh = test::irregular();
+        test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(5 * p.x) * std::cos(4 * p.y) + p.z; });
+        const LimitSurface found =
+            limit_surface(mesh, "f", {.scheme = {.kind = scheme}, .isos = {0.1, 0.4}, .cap = true, .max_level = 3});
+        EXPECT_TRUE(found.report.watertight);
+        EXPECT_GT(found.report.volume, 0);
+    }
+}
+
+TEST(LimitSurface, CollapsingLeavesFewerSlivers) {
+    const HexMesh mesh = ball_with_radius(6);
+    const LimitSurface before = limit_surface(mesh, "r2", {.isos = {0.3}, .improve = false});
+    const LimitSurface after = limit_surface(mesh, "r2", {.isos = {0.3}});
+    EXPECT_TRUE(before.report.watertight);
+    EXPECT_TRUE(after.report.watertight);
+    EXPECT_EQ(before.report.euler, after.report.euler);
+    EXPECT_GT(after.report.min_angle_deg, before.report.min_angle_deg);
+    EXPECT_LT(after.surface.triangles.size(), before.surface.triangles.size());
+    EXPECT_NEAR(after.report.volume / before.report.volume, 1, 5e-3);
+}
+
+TEST(LimitSurface, IsTheSameForAnyNumberOfThreads) {
+    const HexMesh mesh = make_model("pawn", 12);
+    const auto surface = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return limit_surface(mesh, "density", {.isos = {0.1}, .boundary = true});
+    };
+    const LimitSurface one = surface(1), four = surface(4);
+    EXPECT_EQ(one.surface.triangles, four.surface.triangles);
+    EXPECT_EQ(one.surface.points, four.surface.points);
+    EXPECT_EQ(one.normals, four.normals);
+}
+
+class LimitSurfaceFiles : public test::TempFolder {};
+
+TEST_F(LimitSurfaceFiles, FilesHaveAllTriangles) {
+    HexMesh mesh = test::make_box(2, 2, 2);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x; });
+    const LimitSurface found = limit_surface(mesh, {}, {.boundary = true});
+    const SurfaceFileOptions colors{0, transfer_function_preset("viridis", 0, 2)};
+    for (const char* name : {"a.ply", "a.stl", "a.vtp", "a.obj", "a.glb"}) {
+        write_limit_surface(path(name), found, colors);
+        EXPECT_GT(std::filesystem::file_size(path(name)), 400u) << name;
+    }
+    EXPECT_EQ(std::filesystem::file_size(path("a.stl")), 84 + 50 * found.surface.triangles.size());
+    test::expect_error(ErrorCode::InvalidInput, ".glb", [&] { write_limit_surface(path("a.png"), found); });
+}
+
+TEST(LimitSurface, RefusesWhatMakesNoSense) {
+    HexMesh mesh = test::make_box(1, 1, 1);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x; });
+    const auto refused = [&](const std::string& what, const SurfaceOptions& options) {
+        test::expect_error(ErrorCode::InvalidInput, what, [&] { (void)limit_surface(mesh, {}, options); });
+    };
+    refused("nothing", {});
+    refused("finite", {.isos = {NAN}});
+    refused("cap", {.boundary = true, .cap = true});
+    refused("tolerance", {.boundary = true, .tolerance = 0});
+    refused("level", {.boundary = true, .max_level = 9});
+    test::expect_error(ErrorCode::InvalidInput, "g", [&] { (void)limit_surface(mesh, "g", {.isos = {0.5}}); });
+    EXPECT_TRUE(limit_surface(mesh, "f", {.isos = {7}}).surface.triangles.empty());
+}
+
+}  // namespace
+}  // namespace subvol

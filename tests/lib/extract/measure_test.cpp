@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/measure.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "lib/expect_error.h"
+#include "lib/test_meshes.h"
+#include "subvol/model.h"
+
+namespace subvol {
+namespace {
+
+TEST(Measure, IntegralOfALinearFieldOverABox) {
+    HexMesh mesh = test::make_box(3, 2, 4);
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x + 2 * p.z; });
+    const LimitMeasure found = measure_limit(mesh, {.bins = 10});
+    const FieldMeasure& field = found.whole.fields.at(0);
+    EXPECT_NEAR(found.whole.volume, 24, 1e-9);
+    EXPECT_NEAR(field.integral, 24 * (1.5 + 4), 1e-8);
+    EXPECT_NEAR(field.mean, 5.5, 1e-9);
+    EXPECT_NEAR(field.min.value, 0, 1e-9);
+    EXPECT_NEAR(field.max.value, 11, 1e-9);
+    EXPECT_NEAR(field.max.place.x, 3, 1e-9);
+    EXPECT_NEAR(field.max.place.z, 4, 1e-9);
+    EXPECT_NEAR(std::accumulate(field.histogram.begin(), field.histogram.end(), 0.0), 24, 1e-9);
+}
+
+TEST(Measure, VolumeOfTheBallConvergesToItsClosedForm) {
+    // The control points lie on the sphere, and so do the limit's vertices: what is between them converges.
+    const double exact = 4.0 / 3 * std::numbers::pi;
+    double last = 1;
+    for (const int resolution : {4, 8}) {
+        const double error = std::abs(measure_limit(make_model("ball", resolution)).whole.volume / exact - 1);
+        EXPECT_LT(error, last / 4) << resolution;
+        last = error;
+    }
+    EXPECT_LT(last, 1e-3);
+}
+
+TEST(Measure, IntegralOfTheTwistIsThatOfItsClosedForm) {
+    // Midpoints of 60³ parameters, which are of second order: 1e-4 of the integral.
+    constexpr int kSide = 60;
+    const double h = 2.0 / kSide;
+    double volume = 0, integral = 0;
+    for (int i = 0; i < kSide * kSide * kSide; ++i) {
+        const Vec3 p = Vec3(i % kSide, i / kSide % kSide, i / kSide / kSide) * h + Vec3(h / 2 - 1);
+        Mat3 jacobian;
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3 step(0);
+            step[axis] = 1e-5;
+            jacobian[axis] = (TwistField::position(p + step) - TwistField::position(p - step)) / 2e-5;
+        }
+        const double part = glm::determinant(jacobian) * h * h * h;
+        volume += part;
+        integral += part * TwistField::density(p);
+    }
+    const LimitMeasure found = measure_limit(make_model("twist", 24));
+    EXPECT_NEAR(found.whole.volume / volume, 1, 2e-4);
+    EXPECT_NEAR(found.whole.fields[0].mean, integral / volume, 5e-4);
+}
+
+TEST(Measure, ExtremesAreThoseOfTheLimitAndLieThere) {
+    // A bump between control points, which overshoots: no vertex has the largest value.
+    HexMesh mesh = test::make_box(6, 6, 6);
+    test::add_field(mesh, "f", [](const Vec3& p) { return -glm::dot(p - Vec3(2.4, 3.1, 2.7), p - Vec3(2.4, 3.1, 2.7)); });
+    const FieldMeasure field = measure_limit(mesh).whole.fields[0];
+    EXPECT_NEAR(field.max.value, 0, 1e-5);  // quadratics are reproduced; the place is right to 1e-3
+    EXPECT_NEAR(glm::distance(field.max.place, Vec3(2.4, 3.1, 2.7)), 0, 5e-3);
+    const LimitSamples there = evaluate_limit(mesh, std::vector<LimitQuery>{{field.max.cell, field.max.uvw}});
+    EXPECT_EQ(there.attributes[0].values[0], field.max.value);
+    EXPECT_EQ(there.positions[0], field.max.place);
+}
+
+TEST(Measure, PartsAddUpToTheWhole) {
+    HexMesh mesh = test::irregular();
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.y; });
+    mesh.attributes.push_back({"v", 2, std::vector<double>(2 * mesh.points.size(), 1.5)});
+    std::vector<Index> groups;
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) groups.push_back(static_cast<Index>(c % 3));
+    const LimitMeasure found = measure_limit(mesh, {.groups = groups, .names = {"a", "b", "c"}});
+    ASSERT_EQ(found.parts.size(), 3u);
+    ASSERT_EQ(found.whole.fields.size(), 3u);
+    EXPECT_EQ(found.whole.fields[1].name, "v.0");
+    EXPECT_NEAR(found.whole.fields[1].mean, 1.5, 1e-6);
+    double volume = 0, integral = 0;
+    std::size_t cells = 0;
+    for (const PartMeasure& part : found.parts) {
+        volume += part.volume;
+        integral += part.fields[0].integral;
+        cells += part.cells;
+        EXPECT_LE(part.fields[0].max.value, found.whole.fields[0].max.value);
+    }
+    EXPECT_NEAR(volume, found.whole.volume, 1e-12 * volume);
+    EXPECT_NEAR(integral, found.whole.fields[0].integral, 1e-12);
+    EXPECT_EQ(cells, mesh.cells.size());
+    EXPECT_EQ(found.parts[1].name, "b");
+}
+
+TEST(Measure, IsTheSameForAnyNumberOfThreads) {
+    const HexMesh mesh = make_model("pawn", 12);
+    const auto integral = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return measure_limit(mesh).whole.fields[0].integral;
+    };
+    EXPECT_EQ(integral(1), integral(4));
+}
+
+TEST(Measure, RefusesOptionsOutOfRange) {
+    const HexMesh mesh = test::make_box(1, 1, 1);
+    test::expect_error(ErrorCode::InvalidInput, "tolerance", [&] { (void)measure_limit(mesh, {.tolerance = 0}); });
+    test::expect_error(ErrorCode::InvalidInput, "bins", [&] { (void)measure_limit(mesh, {.bins = 0}); });
+    const std::vector<Index> groups(2);
+    test::expect_error(ErrorCode::InvalidInput, "groups", [&] { (void)measure_limit(mesh, {.groups = groups}); });
+}
+
+}  // namespace
+}  // namespace subvol

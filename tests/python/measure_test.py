@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values at places, integrals, slices and surfaces of the limit."""
+import numpy as np
+import pytest
+import subvol
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return subvol.model("ball", 6)
+
+
+def test_values_at_places_are_those_of_the_limit(ball):
+    rng = np.random.default_rng(5)
+    cells = rng.integers(0, len(ball.cells), 200)
+    at = subvol.evaluate_limit(ball, cells, rng.random((200, 3)))
+    found = subvol.probe(ball, at.positions)
+    assert found.inside.all()
+    np.testing.assert_allclose(found.fields["density"], at.fields["density"], atol=3e-5)  # the limit's tolerance, twice
+    assert found.gradients["density"].shape == (200, 3)
+
+
+def test_outside_there_is_nothing(ball):
+    found = subvol.probe(ball, [[0, 0, 0], [1.05, 0, 0], [9, 9, 9]])
+    assert found.inside.tolist() == [True, False, False]
+    assert np.isnan(found.fields["density"][1:]).all() and found.cells[2] == -1
+    near = subvol.probe(ball, [[1.05, 0, 0], [9, 9, 9]], reach=.1)
+    assert near.inside.tolist() == [True, False]
+    assert len(subvol.probe(ball, []).cells) == 0
+
+
+def test_integrals_of_the_ball(ball):
+    found = subvol.measure(ball, bins=8)
+    assert found["volume"] == pytest.approx(4 / 3 * np.pi, rel=2e-3)
+    field = found["fields"]["density"]
+    assert field["min"] < field["mean"] < field["max"]
+    assert field["histogram"].sum() == pytest.approx(found["volume"])
+    at = subvol.probe(ball, [field["max_at"]])
+    assert at.fields["density"][0] == pytest.approx(field["max"], abs=1e-4)
+
+
+def test_a_slice_is_an_array_with_places(ball):
+    cut = subvol.slice(ball, (0, 0, .3), (0, 0, 1), resolution=40)
+    assert max(cut.values.shape) == 40 and cut.values.shape == cut.cells.shape
+    row, column = np.argwhere(cut.cells >= 0)[10]
+    place = cut.origin + column * cut.right + row * cut.down
+    assert place[2] == pytest.approx(.3)
+    assert subvol.probe(ball, [place]).fields["density"][0] == pytest.approx(cut.values[row, column], abs=1e-5)
+    assert (np.isnan(cut.values) == (cut.cells < 0)).all()
+
+
+def test_surfaces_are_closed_and_point_outwards(ball, tmp_path):
+    skin = subvol.surface(ball, path=tmp_path / "skin.ply")
+    assert skin.report["watertight"] and skin.report["euler"] == 2
+    assert (tmp_path / "skin.ply").exists()
+    assert (np.einsum("ij,ij->i", skin.normals, skin.points) > .9).all()
+    iso = subvol.surface(ball, [0, .3], cap=True)
+    assert iso.report["watertight"] and iso.triangles.max() < len(iso.points)
+    assert iso.fields["density"].shape == (len(iso.points),)
+
+
+def test_what_makes_no_sense_is_refused(ball):
+    for call in (lambda: subvol.probe(ball, [[0, 0]]), lambda: subvol.probe(ball, [[0, 0, np.nan]]), lambda: subvol.slice(ball, (0, 0, 9), (0, 0, 1)),
+                 lambda: subvol.surface(ball, tolerance=0), lambda: subvol.surface(ball, cap=True), lambda: subvol.measure(ball, bins=0),
+                 lambda: subvol.surface(ball, np.nan), lambda: subvol.surface(ball, 0, path="a.xyz")):
+        with pytest.raises(subvol.InvalidInput):
+            call()
