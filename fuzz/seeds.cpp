@@ -192,6 +192,12 @@ void add_points(Seeds& seeds, const HexMesh& mesh) {
 }
 
 void add_small_files(Seeds& seeds) {
+    seeds.add("ensight",
+              "ca\nFORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 1 geo\nVARIABLE\nscalar per node: 1 T val\nTIME\ntime set: 1\n"
+              "number of steps: 1\nfilename start number: 0\nfilename increment: 1\ntime values: 0.5\n");
+    seeds.add("ensight", "ga\nb\nnode id given\nelement id off\nextents\n0 1\n0 1\n0 1\npart\n1\np\nblock iblanked\n2 2 2\n" +
+                             std::string("0 1 0 1 0 1 0 1 0 0 1 1 0 0 1 1 0 0 0 0 1 1 1 1 1 1 1 1 1 1 1 1\n"));
+    seeds.add("ensight", "vT\npart\n1\ncoordinates undef\n-1\n1 2 3 4 5 6 7 8\n");
     seeds.add(
         "colors",
         R"([{"Name":"a","ColorSpace":"Diverging","RGBPoints":[0,1,0,0,0.5,1,1,1,1,0,0,1],"Points":[0,0,0.5,0,1,1,0.5,0]}])");

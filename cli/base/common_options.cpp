@@ -32,6 +32,12 @@ void add_mesh_options(CLI::App& app, CommonOptions& options) {
             return text == "corners" || CLI::PositiveNumber(text).empty() ? ""
                                                                           : text + " is no positive number and not corners";
         });
+    app.add_option("--cell-values", options.cell_values,
+                   "values at cells become values at points: fit (so that the volume has the cells' means; the default for "
+                   "OpenFOAM) or mean (of the cells around each point; the default for all others)")
+        ->group(group)
+        ->type_name("HOW")
+        ->check(one_of({"fit", "mean"}));
     auto* step =
         app.add_option("--step", options.step,
                        "a step of a series, from 0, or last (the default); of verbs that write a file a step also all or A-B");

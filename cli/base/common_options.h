@@ -23,12 +23,13 @@ struct CommonOptions {
     std::string other_cells = "split";   // "ignore", "refuse"
     bool weld = false;                   // join points at the same place
     std::optional<double> weld_distance_world;
-    std::string curved = "5e-6";      // of the mesh's size, or "corners"
-    std::vector<std::string> sharp;   // groups of faces and edges
-    std::optional<std::string> step;  // a number from 0, "last", "all" or a range
-    std::optional<double> time;       // the step nearest to it
-    std::vector<std::string> blocks;  // empty: all
-    int threads = 0;                  // 0: all
+    std::string curved = "5e-6";       // of the mesh's size, or "corners"
+    std::string cell_values = "auto";  // "fit", "mean"
+    std::vector<std::string> sharp;    // groups of faces and edges
+    std::optional<std::string> step;   // a number from 0, "last", "all" or a range
+    std::optional<double> time;        // the step nearest to it
+    std::vector<std::string> blocks;   // empty: all
+    int threads = 0;                   // 0: all
     bool json = false;
     bool quiet = false;
     std::string progress = "auto";

@@ -49,6 +49,11 @@ std::optional<double> weld_distance(const CommonOptions& options) {
     return options.weld ? std::optional<double>(0) : std::nullopt;
 }
 
+CellValues cell_values(const CommonOptions& options) {
+    if (options.cell_values == "fit") return CellValues::Fit;
+    return options.cell_values == "mean" ? CellValues::Mean : CellValues::Auto;
+}
+
 std::optional<double> curved_tolerance(const CommonOptions& options) {
     if (options.curved == "corners") return std::nullopt;
     double tolerance = 0;
@@ -79,7 +84,8 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
                                          .sharp = options.sharp,
                                          .curved_tolerance = curved_tolerance(options),
                                          .step = one_step(input, options),
-                                         .blocks = options.blocks});
+                                         .blocks = options.blocks,
+                                         .cell_values = cell_values(options)});
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;

@@ -12,9 +12,9 @@ namespace subvol::cli {
 namespace {
 
 constexpr std::initializer_list<const char*> kOfMeshesOnly{
-    "--density", "--other-cells",  "--curved", "--step",         "--time",      "--blocks",     "--per-edge",
-    "--scheme",  "--tension",      "--levels", "--crease-angle", "--tolerance", "--footprint",  "--footprint-size",
-    "--values",  "--value-kernel", "--reduce", "--refine",       "--seconds",   "--color-field"};
+    "--density",        "--other-cells", "--curved",       "--cell-values", "--step",         "--time",      "--blocks",
+    "--per-edge",       "--scheme",      "--tension",      "--levels",      "--crease-angle", "--tolerance", "--footprint",
+    "--footprint-size", "--values",      "--value-kernel", "--reduce",      "--refine",       "--seconds",   "--color-field"};
 
 RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
                             Report& report) {

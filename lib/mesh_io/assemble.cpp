@@ -103,8 +103,8 @@ struct Origin {
 
 class ArrayConversion {
 public:
-    ArrayConversion(ReadResult& result, const Origin& origin, std::string_view file, const EntityNames& names)
-        : result_(result), origin_(origin), file_(file), names_(names) {}
+    ArrayConversion(ReadResult& result, const Origin& origin, std::string_view file, const EntityNames& names, bool fits)
+        : result_(result), origin_(origin), file_(file), names_(names), fits_(fits) {}
 
     void take(FileArray&& array) {
         // Of all formats; from here on it is in messages, JSON and files, and is what users write to choose the field.
@@ -115,6 +115,12 @@ public:
             result_.warnings.push_back(in_quotes(array.name) + " has negative values");
         }
         Attribute attribute{unused_name(array.name), array.components, {}};
+        if (array.at_cells && fits_) {
+            attribute.values.assign(result_.mesh.points.size() * static_cast<std::size_t>(array.components), 0);
+            result_.cell_means.push_back({attribute.name, array.components, of_cells(array)});
+            result_.mesh.attributes.push_back(std::move(attribute));
+            return;
+        }
         attribute.values = array.at_cells ? from_cells(array) : from_points(std::move(array));
         result_.mesh.attributes.push_back(std::move(attribute));
     }
@@ -148,7 +154,7 @@ private:
         return origin_.sources ? means(*origin_.sources, array.values, components) : std::move(array.values);
     }
 
-    std::vector<double> from_cells(const FileArray& array) {
+    std::vector<double> of_cells(const FileArray& array) const {
         const auto components = static_cast<std::size_t>(array.components);
         const auto& numbers = origin_.cell_numbers;
         std::vector<double> of_hexes;
@@ -160,8 +166,12 @@ private:
                 if (!std::isfinite(of_hexes.back())) refuse(array.name, names_.cell(number));
             }
         }
+        return of_hexes;
+    }
+
+    std::vector<double> from_cells(const FileArray& array) {
         averaged_.push_back(in_quotes(array.name));
-        return mean_over_cells(result_.mesh, of_hexes, components);
+        return mean_over_cells(result_.mesh, of_cells(array), static_cast<std::size_t>(array.components));
     }
 
     std::string unused_name(const std::string& name) const {
@@ -178,6 +188,7 @@ private:
     const Origin& origin_;
     std::string_view file_;
     const EntityNames& names_;
+    bool fits_;
     std::vector<std::string> averaged_;
 };
 
@@ -265,9 +276,10 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     try {
         if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);
-        ArrayConversion conversion(result, origin, file, names);
+        ArrayConversion conversion(result, origin, file, names, options.cell_values == CellValues::Fit);
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish();
+        if (!result.cell_means.empty()) result.cell_parts = std::move(origin.cell_numbers);
         validate(result.mesh);
         if (!found.sharp.empty()) {
             add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);

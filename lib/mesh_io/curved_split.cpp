@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <unordered_map>
 
 #include "assemble.h"
 #include "curved_cells.h"
+#include "edge_classes.h"
 #include "subvol/cell.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
@@ -44,48 +44,6 @@ const FileArray* find_array(const MeshFile& found, std::string_view name, bool a
 std::size_t octant_corner(std::size_t x, std::size_t y, std::size_t z) {
     return kCornerOctants[x + 2 * y + 4 * z];
 }
-
-// Sets of edges that have to be split alike: opposite edges of a cell.
-class EdgeClasses {
-public:
-    explicit EdgeClasses(const std::vector<Hex>& cells) {
-        for (const Hex& cell : cells) {
-            for (std::size_t e = 0; e < 12; ++e) keys_.push_back(key(cell, e));
-        }
-        std::sort(keys_.begin(), keys_.end());
-        keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
-        parents_.resize(keys_.size());
-        std::iota(parents_.begin(), parents_.end(), std::size_t{0});
-        for (const Hex& cell : cells) {
-            for (std::size_t e = 0; e < 12; ++e) {
-                if (e % 4 != 0) join(edge(cell, e - e % 4), edge(cell, e));
-            }
-        }
-    }
-
-    [[nodiscard]] std::size_t size() const { return keys_.size(); }
-    [[nodiscard]] std::size_t edge(const Hex& cell, std::size_t e) const {
-        return static_cast<std::size_t>(std::lower_bound(keys_.begin(), keys_.end(), key(cell, e)) - keys_.begin());
-    }
-    [[nodiscard]] std::size_t class_of(std::size_t edge) const {
-        while (parents_[edge] != edge) edge = parents_[edge];
-        return edge;
-    }
-
-private:
-    static std::array<Index, 2> key(const Hex& cell, std::size_t e) {
-        const Index a = cell[static_cast<std::size_t>(kCellEdges[e][0])], b = cell[static_cast<std::size_t>(kCellEdges[e][1])];
-        return {std::min(a, b), std::max(a, b)};
-    }
-    void join(std::size_t a, std::size_t b) {
-        a = class_of(a);
-        b = class_of(b);
-        for (std::size_t* x : {&a, &b}) parents_[*x] = std::min(a, b);
-    }
-
-    std::vector<std::array<Index, 2>> keys_;
-    std::vector<std::size_t> parents_;
-};
 
 // Replaces every hexahedron of a mesh with curved ones by a grid of smaller ones, with points on the curved shape.
 class CurvedSplit {

@@ -20,6 +20,7 @@ namespace subvol::detail {
 /// groups:     whether its groups of faces and edges are read
 /// blocks:     whether it has named parts, which ReadOptions::blocks chooses
 /// times:      the times of the steps of a file; null if a file of this format is one step
+/// finite_volumes: its values at cells are means over them
 /// piece:      reads a file as a part of a mesh, before it is assembled; null if such files are no parts
 struct MeshFormat {
     std::array<std::string_view, 4> extensions;
@@ -29,6 +30,7 @@ struct MeshFormat {
     bool groups = false;
     bool blocks = false;
     std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
+    bool finite_volumes = false;
     MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
 };
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "abaqus/inp_io.h"
+#include "cgns/cgns_io.h"
 #include "collection.h"
+#include "ensight/ensight_io.h"
 #include "openfoam/foam_case.h"
 #include "text_readers.h"
 #include "text_scanner.h"
@@ -28,14 +30,14 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-constexpr std::array<MeshFormat, 19> kFormats{{
+constexpr std::array<MeshFormat, 21> kFormats{{
     {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
     {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
-    {{".vtu"}, "VTK XML", read_file<read_vtu>, write_vtu, false, false, nullptr, read_vtu_piece},
-    {{".vts"}, "VTK XML", read_file<read_vts>, nullptr, false, false, nullptr, read_vts_piece},
-    {{".vtr"}, "VTK XML", read_file<read_vtr>, nullptr, false, false, nullptr, read_vtr_piece},
-    {{".vti"}, "VTK XML", read_file<read_vti>, nullptr, false, false, nullptr, read_vti_piece},
+    {{".vtu"}, "VTK XML", read_file<read_vtu>, write_vtu, false, false, nullptr, false, read_vtu_piece},
+    {{".vts"}, "VTK XML", read_file<read_vts>, nullptr, false, false, nullptr, false, read_vts_piece},
+    {{".vtr"}, "VTK XML", read_file<read_vtr>, nullptr, false, false, nullptr, false, read_vtr_piece},
+    {{".vti"}, "VTK XML", read_file<read_vti>, nullptr, false, false, nullptr, false, read_vti_piece},
     {{".pvtu", ".pvts", ".pvtr", ".pvti"}, "VTK XML", read_pieces, nullptr},
     {{".vtm"}, "VTK XML", read_blocks, nullptr, false, true},
     {{".pvd"}, "ParaView", read_pvd_step, nullptr, false, true, pvd_times},
@@ -46,7 +48,9 @@ constexpr std::array<MeshFormat, 19> kFormats{{
     {{".vtkhdf", ".hdf"}, "VTKHDF", read_vtkhdf, nullptr, false, false, vtkhdf_times},
     {{".xdmf", ".xmf", ".xdmf2", ".xdmf3"}, "XDMF", read_file<read_xdmf>, nullptr, false, false, xdmf_times},
     {{".frd"}, "CalculiX", read_file<read_frd>, nullptr, false, false, frd_times},
-    {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times},
+    {{".cgns"}, "CGNS", read_cgns, nullptr, false, true, cgns_times},
+    {{".case", ".encas"}, "EnSight Gold", read_ensight, nullptr, false, true, ensight_times},
+    {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times, true},
     {{".inp"}, "Abaqus", read_inp, nullptr, false, true},
 }};
 

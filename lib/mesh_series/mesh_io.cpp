@@ -5,6 +5,7 @@
 
 #include "format_table.h"
 #include "steps.h"
+#include "subvol/cell_means.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -48,6 +49,21 @@ std::vector<std::string> list_extensions(bool writable_only) {
     return extensions;
 }
 
+// Puts the fitted fields in the place of those that were read.
+void fit_fields(ReadResult& result) {
+    const CellMeansFit fit = fit_cell_means(result.mesh, result.cell_means, result.cell_parts);
+    for (const Attribute& fitted : fit.fields) {
+        for (Attribute& attribute : result.mesh.attributes) {
+            if (attribute.name == fitted.name) attribute.values = fitted.values;
+        }
+    }
+    const auto percent = [](double part) { return number_text(100 * part, 2) + " %"; };
+    result.warnings.push_back(counted(fit.fields.size(), "cell array", "cell arrays") +
+                              " became values at points whose volume has the cells' means to within " +
+                              percent(fit.report.rms_off) + " of their range (root mean square; at most " +
+                              percent(fit.report.most_off) + ")");
+}
+
 [[noreturn]] void refuse_format(const std::filesystem::path& path, const std::string& verb, const std::string& allowed) {
     throw Error(ErrorCode::InvalidInput, in_quotes(path.extension().string()) + " files cannot be " + verb, path.string(),
                 allowed);
@@ -68,7 +84,7 @@ void detail::check_options(const MeshFormat& format, const std::filesystem::path
     }
     if (!options.blocks.empty() && !format.blocks) {
         throw Error(ErrorCode::InvalidInput, "such files have no named blocks", path.string(),
-                    "blocks come from Exodus II, .inp and .vtm files");
+                    "blocks come from Exodus II, CGNS, .case, .inp and .vtm files");
     }
 }
 
@@ -86,7 +102,13 @@ ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& optio
     check_options(format, path, options);
     std::vector<std::string> none;
     if (!format.times) static_cast<void>(chosen_step(options, 1, path.string(), none));
-    return format.read(path, options);
+    ReadOptions resolved = options;
+    if (options.cell_values == CellValues::Auto) {
+        resolved.cell_values = format.finite_volumes ? CellValues::Fit : CellValues::Mean;
+    }
+    ReadResult result = format.read(path, resolved);
+    if (!result.cell_means.empty()) fit_fields(result);
+    return result;
 }
 
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh) {

@@ -8,6 +8,7 @@
 #include "subvol/camera.h"
 #include "subvol/camera_fit.h"
 #include "subvol/cell.h"
+#include "subvol/cell_means.h"
 #include "subvol/clamp_channel.h"
 #include "subvol/clamped.h"
 #include "subvol/dense_cells.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <unordered_map>
 
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -15,6 +16,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr int kMostIncludes = 16;
+constexpr std::size_t kMostGenerated = std::size_t{1} << 20;  // nodes and elements: a line could ask for any number
 
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view kSpace = " \t\r\n\f\v";
@@ -79,7 +81,12 @@ public:
     }
 
 private:
-    enum class Section { Other, Node, Element, ElementSet, Instance };
+    enum class Section { Other, Node, Element, ElementSet, Instance, NodesBetween, ElementsLike };
+
+    struct Places {
+        std::unordered_map<std::int64_t, std::size_t> at;
+        std::size_t known = 0;
+    };
 
     [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const {
         in_->fail_at(position_, message, allowed);
@@ -109,6 +116,12 @@ private:
             section_ = Section::Node;
         } else if (keyword == "*ELEMENT") {
             start_elements();
+        } else if (keyword == "*NGEN") {
+            section_ = Section::NodesBetween;
+            if (!values_["LINE"].empty())
+                fail("nodes on curves (*NGEN, LINE) are not supported", "nodes on straight lines are");
+        } else if (keyword == "*ELGEN") {
+            section_ = Section::ElementsLike;
         } else if (keyword == "*ELSET") {
             section_ = Section::ElementSet;
             if (values_["ELSET"].empty()) fail("the *ELSET has no name");
@@ -127,6 +140,8 @@ private:
     void take_data(std::string_view line) {
         if (section_ == Section::Node) take_node(fields_of(line));
         if (section_ == Section::Element) take_element(line);
+        if (section_ == Section::NodesBetween) generate_nodes(fields_of(line));
+        if (section_ == Section::ElementsLike) generate_elements(fields_of(line));
         if (section_ == Section::ElementSet) take_set(fields_of(line));
         if (section_ == Section::Instance) take_place(fields_of(line));
     }
@@ -159,6 +174,86 @@ private:
         Vec3 x(0.0);
         for (std::size_t a = 0; a < 3 && a + 1 < fields.size(); ++a) x[static_cast<int>(a)] = real(fields[a + 1]);
         part.points.push_back(x);
+    }
+
+    // Where things of the part are, by their numbers; the last one if a number is repeated.
+    template <class Things, class NumberOf>
+    std::size_t find(std::map<std::string, Places>& all, const Things& things, const NumberOf& number_of, std::int64_t number,
+                     std::string_view word) {
+        Places& places = all[part_];
+        for (; places.known < things.size(); ++places.known) places.at[number_of(things[places.known])] = places.known;
+        const auto found = places.at.find(number);
+        if (found == places.at.end()) fail("there is no " + std::string(word) + " " + std::to_string(number));
+        return found->second;
+    }
+
+    void count_generated(std::size_t more) {
+        if (more > kMostGenerated || generated_ + more > kMostGenerated) {
+            fail("too many nodes or elements are generated", "at most " + std::to_string(kMostGenerated));
+        }
+        generated_ += more;
+    }
+
+    // Nodes on the straight line from one node to another, with numbers between theirs.
+    void generate_nodes(const std::vector<std::string_view>& fields) {
+        if (fields.size() < 2) fail("*NGEN needs a first and a last node");
+        const std::int64_t first = integer(fields[0]), last = integer(fields[1]);
+        const std::int64_t step = fields.size() > 2 && !fields[2].empty() ? integer(fields[2]) : 1;
+        InpPart& part = deck_.parts[part_];
+        const auto itself = [](std::int64_t number) { return number; };
+        const Vec3 from = part.points[find(nodes_at_, part.numbers, itself, first, "node")];
+        const Vec3 to = part.points[find(nodes_at_, part.numbers, itself, last, "node")];
+        constexpr std::int64_t kLargest = std::int64_t{1} << 40;
+        const bool sound =
+            first >= 0 && last >= 0 && first < kLargest && last < kLargest && step >= 1 && (last - first) % step == 0;
+        if (!sound)
+            fail("the numbers from " + std::to_string(first) + " to " + std::to_string(last) + " are not in steps of " +
+                 std::to_string(step));
+        const std::int64_t count = std::abs(last - first) / step;
+        count_generated(static_cast<std::size_t>(count));
+        for (std::int64_t k = 1; k < count; ++k) {
+            const double t = static_cast<double>(k) / static_cast<double>(count);
+            part.numbers.push_back(first + (last > first ? k : -k) * step);
+            part.points.push_back((1 - t) * from + t * to);
+        }
+    }
+
+    // Copies of an element in up to three directions: how many, and what is added to the numbers of its nodes and its own.
+    void generate_elements(const std::vector<std::string_view>& fields) {
+        InpPart& part = deck_.parts[part_];
+        const auto number_of = [](const InpElement& element) { return element.number; };
+        if (fields.size() < 2) fail("*ELGEN needs an element and how many are made of it");
+        const InpElement master = part.elements[find(elements_at_, part.elements, number_of, integer(fields[0]), "element")];
+        std::array<std::array<std::int64_t, 3>, 3> along{{{1, 1, 1}, {1, 0, 0}, {1, 0, 0}}};
+        constexpr std::int64_t kLargest = std::int64_t{1} << 40;
+        for (std::size_t i = 1; i < std::min<std::size_t>(fields.size(), 10); ++i) {
+            if (fields[i].empty()) continue;
+            auto& value = along[(i - 1) / 3][(i - 1) % 3];
+            value = integer(fields[i]);
+            if (std::abs(value) > kLargest || ((i - 1) % 3 == 0 && value < 1))
+                fail("its number " + std::to_string(i) + " is out of range");
+        }
+        std::size_t count = 1;
+        for (const auto& of : along) {
+            if (static_cast<std::size_t>(of[0]) > kMostGenerated) count_generated(kMostGenerated + 1);
+            count *= static_cast<std::size_t>(of[0]);
+            if (count > kMostGenerated) count_generated(count);
+        }
+        count_generated(count);
+        for (std::int64_t k = 0; k < along[2][0]; ++k) {
+            for (std::int64_t j = 0; j < along[1][0]; ++j) {
+                for (std::int64_t i = 0; i < along[0][0]; ++i) {
+                    if (i == 0 && j == 0 && k == 0) continue;
+                    InpElement copy = master;
+                    for (std::int64_t& node : copy.nodes) node += i * along[0][1] + j * along[1][1] + k * along[2][1];
+                    copy.number += i * along[0][2] + j * along[1][2] + k * along[2][2];
+                    copy.place = file_;
+                    if (!values_["ELSET"].empty()) part.sets[values_["ELSET"]].push_back(copy.number);
+                    part.elements.push_back(std::move(copy));
+                }
+            }
+        }
+        if (!values_["ELSET"].empty()) part.sets[values_["ELSET"]].push_back(master.number);
     }
 
     // An element goes on in the next line until it has all its nodes.
@@ -228,6 +323,8 @@ private:
     std::size_t nodes_ = 0;
     std::vector<std::int64_t> numbers_;  // of the element so far
     int lines_ = 0;
+    std::map<std::string, Places> nodes_at_, elements_at_;  // by parts
+    std::size_t generated_ = 0;
 };
 
 }  // namespace

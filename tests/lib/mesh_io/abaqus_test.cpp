@@ -85,6 +85,40 @@ TEST_F(Abaqus, CurvedHexahedraHaveTheirShape) {
     EXPECT_GT(result.mesh.cells.size(), 1u);
 }
 
+// 3 × 2 × 2 cubes of one element and the corners of the box.
+TEST_F(Abaqus, NodesAndElementsAreGenerated) {
+    std::string text = "*NODE\n";
+    for (int k = 0; k < 3; ++k) {
+        for (int j = 0; j < 3; ++j) {
+            for (const int i : {0, 3}) {
+                text += std::to_string(100 * k + 10 * j + i + 1) + "," + std::to_string(i) + "," + std::to_string(j) + "," +
+                        std::to_string(k) + "\n";
+            }
+        }
+    }
+    text += "*NGEN, NSET=ALL\n";
+    for (int k = 0; k < 3; ++k) {
+        for (int j = 0; j < 3; ++j) {
+            const int first = 100 * k + 10 * j + 1;
+            text += std::to_string(first) + "," + std::to_string(first + 3) + (j == 1 ? "\n" : ",1\n");
+        }
+    }
+    const std::string element = "*ELEMENT, TYPE=C3D8\n1, 1,2,12,11,101,102,112,111\n";
+    const ReadResult result = read_mesh(write("a.inp", text + element + "*ELGEN, ELSET=BODY\n1, 3,1,1, 2,10,10, 2,100,100\n"));
+    EXPECT_EQ(result.mesh.cells.size(), 12u);
+    EXPECT_EQ(result.mesh.points.size(), 36u);
+    EXPECT_NEAR(inspect(result.mesh).volume, 12, 1e-12);
+    ASSERT_EQ(result.blocks.size(), 1u);
+    EXPECT_EQ(result.blocks[0].cells, 12u);
+    EXPECT_THAT(error(text + "*NGEN\n1, 5\n"), HasSubstr("there is no node 5"));
+    EXPECT_THAT(error(text + "*NGEN\n1, 4, 2\n"), HasSubstr("the numbers from 1 to 4 are not in steps of 2"));
+    EXPECT_THAT(error(text + "*NODE\n2000000001, 1\n*NGEN\n1, 2000000001\n"),
+                HasSubstr("too many nodes or elements are generated"));
+    EXPECT_THAT(error(text + "*NGEN, LINE=C\n1, 4\n"), HasSubstr("nodes on curves (*NGEN, LINE) are not supported"));
+    EXPECT_THAT(error(text + element + "*ELGEN\n2, 3\n"), HasSubstr("there is no element 2"));
+    EXPECT_THAT(error(text + element + "*ELGEN\n1, 9000, 1, 1, 9000\n"), HasSubstr("too many nodes or elements are generated"));
+}
+
 TEST_F(Abaqus, WrongDecksGetASentenceWithTheLine) {
     const std::string nodes = kNodes;
     EXPECT_THAT(error(""), HasSubstr("a.inp: it has no nodes"));

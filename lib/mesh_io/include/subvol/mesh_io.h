@@ -26,6 +26,14 @@ struct FieldInfo {
 /// Refuse: they are an error
 enum class OtherCells { Split, Ignore, Refuse };
 
+/// What values at cells are taken for. They become values at points either way.
+///
+/// Mean: at each point the mean over its cells, weighted by their volumes
+/// Fit:  they are means over the cells, as finite volumes have them: the values at points are those whose limit volume (of the
+///       scheme MCQ) has these means, as `fit_cell_means` finds them. A warning says how well
+/// Auto: Fit for OpenFOAM, Mean for all others
+enum class CellValues { Auto, Mean, Fit };
+
 /// sharp: names of groups of faces and edges (MEDIT, Gmsh): their faces inside the mesh become sharp faces, their edges on the
 ///       boundary or on such faces creases. In Gmsh the name of a physical group of dimension 2 or 1, or its number; in MEDIT a
 ///       reference of quadrilaterals, triangles and edges, or "Ridges"
@@ -44,6 +52,7 @@ struct ReadOptions {
     std::optional<double> curved_tolerance = 5e-6;
     std::optional<std::size_t> step = {};
     std::vector<std::string> blocks = {};
+    CellValues cell_values = CellValues::Auto;
 };
 
 /// A named part of a mesh. cells: of all kinds, as the file has them
@@ -52,12 +61,16 @@ struct MeshBlock {
     std::size_t cells = 0;
 };
 
-/// blocks: the parts that were read, of formats that have such parts
+/// blocks:     the parts that were read, of formats that have such parts
+/// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
+/// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
 struct ReadResult {
     HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
     std::vector<FieldInfo> fields;
     std::vector<std::string> warnings;  // one sentence for each thing left out, turned round or converted
     std::vector<MeshBlock> blocks = {};
+    std::vector<Attribute> cell_means = {};
+    std::vector<Index> cell_parts = {};
 };
 
 /// Reads a mesh. The extension of the file name decides the format:
@@ -70,6 +83,11 @@ struct ReadResult {
 ///   .e, .exo, .ex2, .g     Exodus II
 ///   .pvtu, .pvts, .pvtr, .pvti, .vtm  the pieces or blocks of VTK, in files of their own
 ///   .pvd, .series          steps of VTK and ParaView, in files of their own
+///   .vtkhdf, .hdf          VTKHDF, unstructured grids
+///   .xdmf, .xmf            XDMF 2 and 3, with values in the text, in HDF5 and in binary files
+///   .cgns                  CGNS in HDF5
+///   .case                  EnSight Gold
+///   .frd                   CalculiX's results
 ///   .foam, .inp            an OpenFOAM case, as its folder; Abaqus and CalculiX decks
 ///
 /// Cells of lower dimension are left out; curved hexahedra are split as ReadOptions says, and of other curved cells only the
@@ -83,7 +101,8 @@ struct ReadResult {
 ///         Error(InvalidInput) if options.curved_tolerance is not positive, if there is no such step or block;
 ///         Error(InvalidInput) if there is no group that options.sharp names, the format has none, or one of its faces is not a
 ///         face of a cell;
-///         Error(MissingCapability) for Exodus II in HDF5 if the library is built without netCDF
+///         Error(MissingCapability) for Exodus II in HDF5 if the library is built without netCDF, and for other files of HDF5
+///         if it is built without HDF5
 [[nodiscard]] ReadResult read_mesh(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Writes a mesh: MEDIT `.mesh` (geometry only) or VTK XML `.vtu` (compressed, with all attributes). The file is written under

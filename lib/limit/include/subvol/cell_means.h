@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "subvol/refine.h"
+
+namespace subvol {
+
+/// tie:            how much a change of the first guess counts beside the means that are not met: it decides between the many
+///                 sets of values with the same means, and keeps noise of the means from growing. Greater than 0
+/// tolerance:      the search ends when no mean is off by more than this part of the means' range
+/// max_iterations: of conjugate gradients
+struct CellMeansOptions {
+    SchemeOptions scheme{};
+    double tie = 1e-4;
+    double tolerance = 1e-4;
+    int max_iterations = 60;
+    Progress* progress = nullptr;
+};
+
+/// rms_off, most_off: how far the means of the limit are from those wanted, in parts of each field's range; the largest of all
+///                    fields. first_rms_off: the same of the first guess
+struct CellMeansReport {
+    double rms_off = 0, most_off = 0, first_rms_off = 0;
+    int iterations = 0;
+    double seconds = 0;
+};
+
+/// fields: values at the mesh's points, with the names of the means
+struct CellMeansFit {
+    std::vector<Attribute> fields;
+    CellMeansReport report;
+};
+
+/// Finds values at the control points whose limit has given means over the cells, as finite volumes have them.
+///
+/// The mean of a cell is a weighted sum of control values: the integral of the product of the field and the Jacobian's
+/// determinant, of the triquadratic surroundings of the 27 limit points of the first level; exact for cubic fields in straight
+/// cells. The values start from a linear reconstruction: each cell has its mean and a gradient by its neighbours. Least squares
+/// then change them as little as possible, by a sum of the cells' weights, which is smooth.
+///
+/// means: per cell of the mesh, by field
+/// parts: for each cell the number of the whole that it is a part of, whose mean is given at all its parts; none: each its own
+/// throws: Error(InvalidInput) as `refine`, if a size is wrong or a mean is not finite; Error(Cancelled)
+/// cost:   parallel; bitwise the same for any number of threads. About 3 kB a cell for the time of the call
+[[nodiscard]] CellMeansFit fit_cell_means(const HexMesh& mesh, std::span<const Attribute> means,
+                                          std::span<const Index> parts = {}, const CellMeansOptions& options = {});
+
+}  // namespace subvol

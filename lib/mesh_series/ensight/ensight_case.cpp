@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ensight_case.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kMostSteps = 1000000;
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t\r");
+    return begin == std::string_view::npos ? std::string_view()
+                                           : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
+}
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    std::ranges::transform(lower, lower.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return lower;
+}
+
+// Words; one in quotes may have blanks.
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    for (std::size_t at = text.find_first_not_of(" \t"); at < text.size(); at = text.find_first_not_of(" \t", at)) {
+        const bool quoted = text[at] == '"';
+        const std::size_t end = std::min(text.find_first_of(quoted ? "\"" : " \t", at + 1), text.size());
+        words.emplace_back(text.substr(at + quoted, end - at - quoted));
+        at = end + quoted;
+    }
+    return words;
+}
+
+bool is_number(const std::string& word) {
+    return !word.empty() && word.size() < 9 && std::ranges::all_of(word, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+std::size_t components_of(std::string_view kind) {
+    return kind == "scalar" ? 1 : kind == "vector" ? 3 : kind == "tensor symm" ? 6 : kind == "tensor asym" ? 9 : 0;
+}
+
+}  // namespace
+
+EnsightCase::EnsightCase(std::string_view text, std::string_view file)
+    : in_(text, file, TextScanner::Comments::None), folder_(std::filesystem::path(file).parent_path()) {
+    std::string section;
+    TextScanner lines = in_;
+    while (!lines.at_end()) {
+        std::string_view line = lines.line();
+        const std::size_t position = lines.position();
+        if (line.find('#') != std::string_view::npos) line = line.substr(0, line.find('#'));
+        line = trimmed(line);
+        if (line.empty()) continue;
+        const std::size_t colon = line.find(':');
+        if (colon == std::string_view::npos) {
+            const std::string word = lower_case(line);
+            if (word == "format" || word == "geometry" || word == "variable" || word == "time" || word == "file" ||
+                word == "material" || word == "scripts" || word == "block_continuation") {
+                section = word;
+                list_.clear();
+            } else if (section == "time") {
+                take_time({}, line, position);
+            }
+            continue;
+        }
+        const std::string key = lower_case(trimmed(line.substr(0, colon)));
+        const std::string_view rest = trimmed(line.substr(colon + 1));
+        if (section == "format" && key == "type" && lower_case(rest) != "ensight gold") {
+            in_.fail_at(position, "the format is " + in_quotes(rest), "ensight gold is supported");
+        }
+        if (section == "geometry") take_geometry(key, rest, position);
+        if (section == "variable") take_variable(key, rest, position);
+        if (section == "time") take_time(key, rest, position);
+        if (section == "file") in_.fail_at(position, "files with several steps are not supported", "a file for each step is");
+    }
+    if (geometry_.name.empty()) in_.fail_at(0, "not an EnSight case, or it names no model");
+    finish_times();
+}
+
+EnsightFiles EnsightCase::files_of(std::vector<std::string> words, std::size_t position) const {
+    std::erase_if(words,
+                  [](const std::string& word) { return word == "change_coords_only" || word == "changing_geometry_per_part"; });
+    if (words.empty()) in_.fail_at(position, "it names no file");
+    EnsightFiles files{words.back(), 0, position};
+    if (words.size() > 1 && is_number(words[0])) files.time_set = std::stoi(words[0]);
+    return files;
+}
+
+void EnsightCase::take_geometry(std::string_view key, std::string_view rest, std::size_t position) {
+    if (key != "model") return;
+    if (rest.find("change_coords_only") != std::string_view::npos) {
+        in_.fail_at(position, "change_coords_only is not supported", "geometry files with their cells are");
+    }
+    geometry_ = files_of(words_of(rest), position);
+}
+
+void EnsightCase::take_variable(const std::string& key, std::string_view rest, std::size_t position) {
+    const std::size_t per = key.find(" per ");
+    if (per == std::string::npos) return;
+    const std::string place = key.substr(per + 5);
+    const std::size_t components = components_of(key.substr(0, per));
+    if (key.starts_with("constant")) return;
+    auto words = words_of(rest);
+    if (components == 0 || (place != "node" && place != "element")) {
+        warnings_.push_back("variables of the kind " + in_quotes(key) + " ignored");
+        return;
+    }
+    while (words.size() > 3 && is_number(words[1])) words.erase(words.begin() + 1);  // the file set
+    if (words.size() < 2) in_.fail_at(position, "a name and a file are needed");
+    EnsightVariable variable{words[words.size() - 2], components, place == "element", files_of(words, position)};
+    if (words.size() == 2) variable.files.time_set = 0;
+    variables_.push_back(std::move(variable));
+}
+
+void EnsightCase::take_time(std::string_view key, std::string_view rest, std::size_t position) {
+    if (!key.empty()) list_ = key;
+    TextScanner numbers(rest, {}, TextScanner::Comments::None);
+    const auto next = [&]() -> double {
+        const std::string_view word = numbers.word();
+        double value = 0;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
+            in_.fail_at(position, "a number is expected, not " + in_quotes(word));
+        }
+        return value;
+    };
+    const auto whole = [&]() -> std::int64_t {
+        const double value = next();
+        if (value != std::floor(value) || std::abs(value) > 1e12) in_.fail_at(position, "a whole number is expected");
+        return static_cast<std::int64_t>(value);
+    };
+    if (key == "time set") set_ = static_cast<int>(std::clamp<std::int64_t>(whole(), 0, 1 << 20));
+    if (key == "filename start number") spreads_[set_].start = whole();
+    if (key == "filename increment") spreads_[set_].increment = whole();
+    if (key == "number of steps") {
+        const std::int64_t steps = whole();
+        if (steps < 1 || static_cast<std::size_t>(steps) > kMostSteps)
+            in_.fail_at(position, "there cannot be " + std::to_string(steps) + " steps");
+        spreads_[set_].steps = static_cast<std::size_t>(steps);
+    }
+    if (list_ == "time values") {
+        while (!numbers.at_end()) sets_[set_].times.push_back(next());
+    } else if (list_ == "filename numbers") {
+        while (!numbers.at_end()) sets_[set_].numbers.push_back(whole());
+    }
+}
+
+void EnsightCase::finish_times() {
+    for (auto& [number, set] : sets_) {
+        const auto& spread = spreads_[number];
+        if (set.numbers.empty()) {
+            for (std::size_t k = 0; k < set.times.size(); ++k) {
+                set.numbers.push_back(spread.start + static_cast<std::int64_t>(k) * spread.increment);
+            }
+        }
+        if (set.times.empty() || set.times.size() != set.numbers.size() ||
+            (spread.steps > 0 && spread.steps != set.times.size())) {
+            in_.fail_at(0,
+                        "time set " + std::to_string(number) + " has " + counted(set.times.size(), "time", "times") + " and " +
+                            counted(set.numbers.size(), "number", "numbers") + " of files",
+                        spread.steps > 0 ? "for " + counted(spread.steps, "step", "steps") : std::string());
+        }
+        std::vector<std::size_t> order(set.times.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, {}, [&](std::size_t k) { return set.times[k]; });
+        EnsightTimes sorted;
+        for (const std::size_t k : order) {
+            sorted.times.push_back(set.times[k]);
+            sorted.numbers.push_back(set.numbers[k]);
+        }
+        set = std::move(sorted);
+        if (set.times.size() > times_.size()) times_ = set.times;
+    }
+    const auto check = [&](const EnsightFiles& files) {
+        if (files.name.find('*') != std::string::npos && !sets_.contains(files.time_set) && sets_.size() != 1) {
+            in_.fail_at(files.position, "there is no time set " + std::to_string(files.time_set));
+        }
+    };
+    check(geometry_);
+    for (const EnsightVariable& variable : variables_) check(variable.files);
+}
+
+std::filesystem::path EnsightCase::file_at(const EnsightFiles& files, double time) const {
+    std::string name = files.name;
+    const std::size_t star = name.find('*');
+    if (star != std::string::npos) {
+        const auto own = sets_.find(files.time_set);
+        const EnsightTimes& set = own != sets_.end() ? own->second : sets_.begin()->second;
+        const auto after = std::ranges::upper_bound(set.times, time);
+        const std::size_t k = after == set.times.begin() ? 0 : static_cast<std::size_t>(after - set.times.begin()) - 1;
+        const std::size_t end = std::min(name.find_first_not_of('*', star), name.size());
+        std::string number = std::to_string(set.numbers[k]);
+        if (number.size() < end - star) number.insert(0, end - star - number.size(), '0');
+        name.replace(star, end - star, number);
+    }
+    const std::filesystem::path path = folder_ / name;
+    std::error_code none;
+    if (!std::filesystem::is_regular_file(path, none)) in_.fail_at(files.position, "there is no file " + in_quotes(name));
+    return path;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// CGNS files, whose nodes are groups of HDF5.
+
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <numbers>
+
+#include "hdf5_texts.h"
+#include "lib/temp_folder.h"
+#include "lib/test_meshes.h"
+#include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+using Numbers = std::vector<std::int64_t>;
+using Reals = std::vector<double>;
+
+class CgnsWriter {
+public:
+    explicit CgnsWriter(const std::filesystem::path& path) : file_(path) {
+        node("/Base", "CGNSBase_t", std::vector<std::int32_t>{3, 3});
+    }
+
+    void node(const std::string& path, const std::string& label) {
+        file_.group(path);
+        file_.attribute(path, "label", label);
+    }
+    template <class T>
+    void node(const std::string& path, const std::string& label, const std::vector<T>& values) {
+        node(path, label);
+        file_.put(path + "/ data", values);
+    }
+    void node(const std::string& path, const std::string& label, const std::string& text) {
+        node(path, label, std::vector<std::uint8_t>(text.begin(), text.end()));
+    }
+
+    void coordinates(const std::string& path, const std::vector<Vec3>& points) {
+        node(path, "GridCoordinates_t");
+        for (int a = 0; a < 3; ++a) {
+            Reals axis;
+            for (const Vec3& x : points) axis.push_back(x[a]);
+            node(path + "/Coordinate" + "XYZ"[a], "DataArray_t", axis);
+        }
+    }
+    // A block of 3 × 2 × 1 cells.
+    void block(const std::string& name, double first_x) {
+        HexMesh mesh = make_box(3, 2, 1);
+        for (Vec3& x : mesh.points) x.x += first_x;
+        node("/Base/" + name, "Zone_t", Numbers{4, 3, 2, 3, 2, 1, 0, 0, 0});
+        node("/Base/" + name + "/ZoneType", "ZoneType_t", "Structured");
+        coordinates("/Base/" + name + "/GridCoordinates", mesh.points);
+    }
+    void zone(const std::vector<Vec3>& points, std::int64_t cells) {
+        node("/Base/Zone", "Zone_t", Numbers{static_cast<std::int64_t>(points.size()), cells, 0});
+        node("/Base/Zone/ZoneType", "ZoneType_t", "Unstructured");
+        coordinates("/Base/Zone/GridCoordinates", points);
+    }
+    void section(const std::string& name, std::int32_t type, const Numbers& range, const Numbers& nodes) {
+        node("/Base/Zone/" + name, "Elements_t", std::vector<std::int32_t>{type, 0});
+        node("/Base/Zone/" + name + "/ElementRange", "IndexRange_t", range);
+        node("/Base/Zone/" + name + "/ElementConnectivity", "DataArray_t", nodes);
+    }
+
+private:
+    Hdf5Writer file_;
+};
+
+class Cgns : public TempFolder {
+protected:
+    [[nodiscard]] std::string error(const std::function<void(CgnsWriter&)>& write) const {
+        {
+            CgnsWriter file(path("bad.cgns"));
+            write(file);
+        }
+        return error_of([&] { static_cast<void>(read_mesh(path("bad.cgns"))); });
+    }
+};
+
+TEST_F(Cgns, StructuredZonesAreBlocksThatAreJoined) {
+    {
+        CgnsWriter file(path("a.cgns"));
+        file.block("left", 0);
+        file.block("right", 3);
+        for (const std::string zone : {"left", "right"}) {
+            const std::string solution = "/Base/" + zone + "/Cells";
+            file.node(solution, "FlowSolution_t");
+            file.node(solution + "/Location", "GridLocation_t", "CellCenter");
+            file.node(solution + "/Rind", "Rind_t", std::vector<std::int32_t>{1, 1, 0, 0, 0, 0});
+            file.node(solution + "/Density", "DataArray_t", Reals{9, 1, 2, 3, 9, 9, 4, 5, 6, 9});
+            file.node("/Base/" + zone + "/Points", "FlowSolution_t");
+            for (const std::string axis : {"X", "Y", "Z"}) {
+                file.node("/Base/" + zone + "/Points/Velocity" + axis, "DataArray_t", Reals(24, axis == "Y" ? 2 : 1));
+            }
+        }
+    }
+    const ReadResult result = read_mesh(path("a.cgns"));
+    EXPECT_EQ(inspect(result.mesh).points_used, 42u);
+    EXPECT_NEAR(inspect(result.mesh).volume, 12, 1e-12);
+    EXPECT_THAT(result.warnings, Contains("2 zones put together; 6 points joined with those of another, by their places"));
+    const auto density = std::ranges::find(result.fields, "Density", &FieldInfo::name);
+    ASSERT_NE(density, result.fields.end());
+    EXPECT_EQ(density->max, 6);  // without the layers about the zone
+    EXPECT_EQ(result.mesh.find_attribute("Velocity")->values[1], 2);
+    const ReadResult right = read_mesh(path("a.cgns"), {.blocks = {"right"}});
+    EXPECT_EQ(right.mesh.cells.size(), 6u);
+    EXPECT_EQ(right.mesh.points[0].x, 3);
+}
+
+TEST_F(Cgns, StepsNameTheirSolutions) {
+    {
+        CgnsWriter file(path("a.cgns"));
+        file.block("zone", 0);
+        file.node("/Base/Steps", "BaseIterativeData_t", std::vector<std::int32_t>{2});
+        file.node("/Base/Steps/TimeValues", "DataArray_t", Reals{.25, .75});
+        file.node("/Base/zone/Steps", "ZoneIterativeData_t");
+        std::string names = "S1";
+        names.resize(32, ' ');
+        names += "S2";
+        names.resize(64, ' ');
+        file.node("/Base/zone/Steps/FlowSolutionPointers", "DataArray_t", names);
+        for (const int k : {1, 2}) {
+            file.node("/Base/zone/S" + std::to_string(k), "FlowSolution_t");
+            file.node("/Base/zone/S" + std::to_string(k) + "/p", "DataArray_t", Reals(24, k));
+        }
+    }
+    EXPECT_THAT(open_series(path("a.cgns")).times, ElementsAre(.25, .75));
+    for (std::size_t k = 0; k < 2; ++k) {
+        const ReadResult result = read_mesh(path("a.cgns"), {.step = k});
+        EXPECT_EQ(result.mesh.find_attribute("p")->values[0], static_cast<double>(k + 1));
+        EXPECT_EQ(result.fields.size(), 1u);
+    }
+}
+
+TEST_F(Cgns, MixedElementsAndTheirValues) {
+    HexMesh mesh = make_box(1, 1, 1);
+    mesh.points.insert(mesh.points.end(), {{.5, .5, 2}, {2, 0, 0}, {2, 0, 1}});
+    {
+        CgnsWriter file(path("a.cgns"));
+        file.zone(mesh.points, 3);
+        file.section("Faces", 7, {4, 4}, {1, 2, 4, 3});
+        file.section("Cells", 20, {1, 3}, {17, 1, 2, 4, 3, 5, 6, 8, 7, 12, 5, 6, 8, 7, 9, 14, 2, 10, 4, 6, 11, 8});
+        file.node("/Base/Zone/S", "FlowSolution_t");
+        file.node("/Base/Zone/S/Location", "GridLocation_t", "CellCenter");
+        file.node("/Base/Zone/S/c", "DataArray_t", Reals{1, 2, 3});
+    }
+    const ReadResult result = read_mesh(path("a.cgns"));
+    EXPECT_NEAR(inspect(result.mesh).volume, 1 + 1. / 3 + .5, 1e-12);
+    EXPECT_EQ(result.fields[0].max, 3);
+    EXPECT_THAT(result.warnings, Contains("1 element of type QUAD_4 ignored"));
+}
+
+// A part of a ring, of one element of 27 nodes in CGNS's order.
+TEST_F(Cgns, CurvedElementsAreFollowed) {
+    constexpr std::array<std::array<int, 3>, 27> kAt{
+        {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}, {1, 0, 0},
+         {2, 1, 0}, {1, 2, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 1}, {2, 2, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 2},
+         {1, 2, 2}, {0, 1, 2}, {1, 1, 0}, {1, 0, 1}, {2, 1, 1}, {1, 2, 1}, {0, 1, 1}, {1, 1, 2}, {1, 1, 1}}};
+    std::vector<Vec3> points;
+    Numbers nodes;
+    for (const auto& at : kAt) {
+        const double r = 1 + at[0] / 2., angle = at[1] / 2. * std::numbers::pi / 8;
+        points.emplace_back(r * std::cos(angle), r * std::sin(angle), at[2] / 2.);
+        nodes.push_back(static_cast<std::int64_t>(points.size()));
+    }
+    {
+        CgnsWriter file(path("a.cgns"));
+        file.zone(points, 1);
+        file.section("Cells", 19, {1, 1}, nodes);
+    }
+    // Half the difference of the squared radii, times the angle; parabolas follow the circles to 1e-5.
+    EXPECT_NEAR(inspect(read_mesh(path("a.cgns")).mesh).volume, 1.5 * std::numbers::pi / 8, 2e-4);
+}
+
+TEST_F(Cgns, WrongFilesGetASentence) {
+    EXPECT_THAT(error([](CgnsWriter&) {}), HasSubstr("no hexahedra in any of its zones"));
+    EXPECT_THAT(error([](CgnsWriter& file) {
+                    file.node("/Base/Zone", "Zone_t", Numbers{1000000000000, 1, 0});
+                }),
+                HasSubstr("node \"/Base/Zone\": size out of range: 1000000000000"));
+    EXPECT_THAT(error([](CgnsWriter& file) {
+                    file.zone(make_box(1, 1, 1).points, 1);
+                    file.section("Cells", 17, {1, 1}, {1, 2, 4, 3, 5, 6, 8, 9});
+                }),
+                HasSubstr("element 1: there is no vertex 9 (vertices are 1 to 8)"));
+    EXPECT_THAT(error([](CgnsWriter& file) {
+                    file.zone(make_box(1, 1, 1).points, 1);
+                    file.section("Cells", 17, {1, 2000000000}, {1, 2, 4, 3, 5, 6, 8, 7});
+                }),
+                HasSubstr("ends before its elements do"));
+    EXPECT_THAT(error([](CgnsWriter& file) {
+                    file.block("b", 0);
+                    file.node("/Base/b/S", "FlowSolution_t");
+                    file.node("/Base/b/S/p", "DataArray_t", Reals{1, 2});
+                }),
+                HasSubstr("node \"/Base/b/S/p\" has 2 values (24 are needed)"));
+    write("old.cgns", "@(#)ADF Database Version A02011>");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("old.cgns"))); }),
+                HasSubstr("old.cgns: the CGNS file is of the older kind ADF (cgnsconvert -h converts it to HDF5)"));
+}
+
+}  // namespace
+
+}  // namespace subvol::test

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// EnSight Gold cases, as text and in C's binary files of both byte orders.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "lib/test_meshes.h"
+#include "mesh_damage.h"
+#include "mesh_texts.h"
+#include "subvol/mesh_report.h"
+#include "subvol/mesh_series.h"
+
+namespace subvol::test {
+
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+enum class Form { Text, Little, Big };
+
+// Writes lines and numbers in one of the forms.
+class GoldText {
+public:
+    explicit GoldText(Form form, bool geometry = true) : form_(form) {
+        if (form != Form::Text && geometry) line("C Binary");
+    }
+    GoldText& line(std::string text) {
+        if (form_ == Form::Text) {
+            text_ += text + "\n";
+        } else {
+            text.resize(80, ' ');
+            text_ += text;
+        }
+        return *this;
+    }
+    template <class Values>
+    GoldText& integers(const Values& values) {
+        for (const auto value : values) put(static_cast<std::int32_t>(value), "%10d\n");
+        return *this;
+    }
+    template <class Values>
+    GoldText& reals(const Values& values) {
+        for (const auto value : values) put(static_cast<float>(value), "%12.5e\n");
+        return *this;
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+private:
+    template <class Number>
+    void put(Number value, const char* format) {
+        if (form_ == Form::Text) {
+            std::array<char, 40> word{};
+            std::snprintf(word.data(), word.size(), format, value);
+            text_ += word.data();
+            return;
+        }
+        std::array<char, 4> bytes{};
+        std::memcpy(bytes.data(), &value, 4);
+        if (form_ == Form::Big) std::ranges::reverse(bytes);
+        text_.append(bytes.data(), 4);
+    }
+    Form form_;
+    std::string text_;
+};
+
+void put_points(GoldText& out, const std::vector<Vec3>& points, double scale = 1) {
+    for (int a = 0; a < 3; ++a) {
+        std::vector<double> axis;
+        for (const Vec3& x : points) axis.push_back(scale * x[a]);
+        out.reals(axis);
+    }
+}
+
+// Two rows of cubes that meet, as two parts, and a part of surfaces.
+std::string geometry(Form form, double scale = 1) {
+    GoldText out(form);
+    out.line("made by a test").line("two parts").line("node id given").line("element id assign");
+    int number = 0;
+    for (const auto& [name, first] : std::vector<std::pair<std::string, double>>{{"left", 0}, {"right", 2}}) {
+        HexMesh mesh = make_box(2, 1, 1);
+        for (Vec3& x : mesh.points) x.x += first;
+        out.line("part").integers(std::vector{++number}).line(name).line("coordinates").integers(std::vector{12});
+        out.integers(std::vector<int>(12, 7));
+        put_points(out, mesh.points, scale);
+        out.line("hexa8").integers(std::vector{2});
+        for (const auto& cell : mesh.cells) {
+            std::vector<Index> corners(cell.begin(), cell.end());
+            for (Index& p : corners) ++p;
+            out.integers(corners);
+        }
+        out.line("quad4").integers(std::vector{1}).integers(std::vector{1, 2, 5, 4});
+    }
+    return out.text();
+}
+
+std::string at_nodes(Form form, int components, double value) {
+    GoldText out(form, false);
+    out.line("values");
+    for (const int part : {1, 2}) {
+        out.line("part").integers(std::vector{part}).line("coordinates");
+        for (int c = 0; c < components; ++c) out.reals(std::vector<double>(12, value + c));
+    }
+    return out.text();
+}
+
+std::string at_elements(Form form) {
+    GoldText out(form, false);
+    out.line("values");
+    for (const int part : {1, 2}) {
+        out.line("part").integers(std::vector{part}).line("hexa8").reals(std::vector<double>{10. * part, 10. * part});
+        out.line("quad4").reals(std::vector<double>{-1});
+    }
+    return out.text();
+}
+
+const std::string kCase =
+    "FORMAT\ntype: ensight gold\n\nGEOMETRY\nmodel: 1 a.geo**\n\nVARIABLE\nscalar per node: 1 T a.T**\n"
+    "vector per node: 1 \"U\" a.U**\nscalar per element: c a.c\n\nTIME\ntime set: 1\nnumber of steps: 3\n"
+    "filename start number: 0\nfilename increment: 5\ntime values: 0.0 0.5\n1.5\n";
+
+class Ensight : public TempFolder {
+protected:
+    void put(Form form) const {
+        write("a.case", kCase);
+        int step = 0;
+        for (const std::string number : {"00", "05", "10"}) {
+            ++step;
+            write("a.geo" + number, geometry(form, step));
+            write("a.T" + number, at_nodes(form, 1, step));
+            write("a.U" + number, at_nodes(form, 3, step));
+        }
+        write("a.c", at_elements(form));
+    }
+    [[nodiscard]] std::string error() const {
+        return error_of([&] { static_cast<void>(read_mesh(path("a.case"))); });
+    }
+};
+
+TEST_F(Ensight, PartsAndVariablesOfEachStepInEveryForm) {
+    for (const Form form : {Form::Text, Form::Little, Form::Big}) {
+        put(form);
+        EXPECT_THAT(open_series(path("a.case")).times, ElementsAre(0, .5, 1.5));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const ReadResult result = read_mesh(path("a.case"), {.step = k});
+            const double scale = static_cast<double>(k + 1);
+            EXPECT_EQ(inspect(result.mesh).points_used, 20u);
+            EXPECT_NEAR(inspect(result.mesh).volume, 4 * scale * scale * scale, 1e-5);
+            EXPECT_EQ(result.mesh.find_attribute("T")->values[5], scale);
+            EXPECT_EQ(result.mesh.find_attribute("U")->values[5], scale + 2);
+            EXPECT_EQ(result.mesh.find_attribute("c")->values[0], 10);
+            EXPECT_THAT(result.warnings, Contains("2 elements of type \"quad4\" ignored"));
+        }
+        const ReadResult right = read_mesh(path("a.case"), {.blocks = {"right"}});
+        EXPECT_EQ(right.mesh.cells.size(), 2u);
+        EXPECT_EQ(right.mesh.find_attribute("c")->values[0], 20);
+        ASSERT_EQ(right.blocks.size(), 1u);
+        EXPECT_EQ(right.blocks[0].name, "right");
+    }
+}
+
+TEST_F(Ensight, BlocksOfGrids) {
+    write("a.case", "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: a.geo\nVARIABLE\nscalar per node: T a.T\n");
+    for (const std::string kind : {"block", "block rectilinear", "block uniform", "block iblanked"}) {
+        GoldText out(Form::Text);
+        out.line("a").line("b").line("node id off").line("element id off").line("extents").reals(std::vector<double>(6, 0));
+        out.line("part").integers(std::vector{1}).line("grid").line(kind).integers(std::vector{3, 2, 2});
+        if (kind == "block rectilinear") {
+            out.reals(std::vector{0, 1, 2, 0, 1, 0, 1});
+        } else if (kind == "block uniform") {
+            out.reals(std::vector{0, 0, 0, 1, 1, 1});
+        } else {
+            put_points(out, make_box(2, 1, 1).points);
+        }
+        if (kind == "block iblanked") out.integers(std::vector{1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+        write("a.geo", out.text());
+        write("a.T", GoldText(Form::Text)
+                         .line("T")
+                         .line("part")
+                         .integers(std::vector{1})
+                         .line("block")
+                         .reals(std::vector<int>(12, 4))
+                         .text());
+        const ReadResult result = read_mesh(path("a.case"));
+        EXPECT_NEAR(inspect(result.mesh).volume, kind == "block iblanked" ? 1 : 2, 1e-6) << kind;
+        EXPECT_EQ(result.mesh.find_attribute("T")->values[0], 4);
+    }
+}
+
+TEST_F(Ensight, WrongFilesGetASentenceWithTheLine) {
+    put(Form::Text);
+    std::filesystem::remove(path("a.T10"));
+    EXPECT_THAT(error(), HasSubstr("a.case, line 8: there is no file \"a.T10\""));
+    put(Form::Text);
+    std::string bad = geometry(Form::Text);
+    write("a.geo10", bad.replace(bad.find("hexa8\n"), 6, "hexa9\n"));
+    EXPECT_THAT(error(), HasSubstr("elements of type \"hexa9\" are not known"));
+    bad = geometry(Form::Text);
+    const std::size_t at = bad.find("hexa8\n") + 6 + 11;
+    write("a.geo10", bad.replace(at, 10, "        13"));
+    EXPECT_THAT(error(), HasSubstr("hexa8 1 of part \"left\": there is no node 13 (nodes are 1 to 12)"));
+    write("a.geo10", geometry(Form::Little).substr(0, 900));
+    EXPECT_THAT(error(), HasSubstr("a.geo10, byte "));
+    write("a.case", "FORMAT\ntype: ensight\n");
+    EXPECT_THAT(error(), HasSubstr("a.case, line 2: the format is \"ensight\" (ensight gold is supported)"));
+    write("a.case", "GEOMETRY\nmodel: a.geo\nTIME\ntime set: 1\nnumber of steps: 1000000000\n");
+    EXPECT_THAT(error(), HasSubstr("line 5: there cannot be 1000000000 steps"));
+    write("a.case", "GEOMETRY\nmodel: a.geo*\n");
+    EXPECT_THAT(error(), HasSubstr("line 2: there is no time set 0"));
+    write("a.case", "");
+    EXPECT_THAT(error(), HasSubstr("not an EnSight case"));
+}
+
+class EnsightFuzz : public MeshFuzz {};
+
+TEST_F(EnsightFuzz, Cases) {
+    write("a.geo00", geometry(Form::Text));
+    write("a.T00", at_nodes(Form::Text, 1, 2));
+    write("a.U00", at_nodes(Form::Text, 3, 2));
+    write("a.c", at_elements(Form::Text));
+    std::string one = kCase;
+    one.replace(one.find("0.0 0.5\n1.5"), 11, "0.0").replace(one.find("steps: 3"), 8, "steps: 1");
+    expect_sound_or_refused(".case", one, 41);
+}
+
+}  // namespace
+
+}  // namespace subvol::test
