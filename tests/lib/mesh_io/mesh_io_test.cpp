@@ -393,12 +393,9 @@ TEST_F(MeshIo, AWarningListsWhatAFormatCannotHold) {
 }
 
 TEST_F(MeshIo, UnknownFormatsAndMissingFilesAreRefused) {
-    EXPECT_THAT(
-        error_of([&] { static_cast<void>(read_mesh(path("a.obj"))); }),
-        HasSubstr(
-            "\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti, .pvtu, .pvts, "
-            ".pvtr, .pvti, .vtm: VTK XML; .pvd, .series: ParaView; .msh: Gmsh; .xyz, .p3d: Plot3D; .e, .exo, .ex2, .g: "
-            "Exodus II; .foam, .openfoam: OpenFOAM; .inp: Abaqus)"));
+    const std::string refused = error_of([&] { static_cast<void>(read_mesh(path("a.obj"))); });
+    EXPECT_THAT(refused, HasSubstr("\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; "));
+    for (const std::string& extension : readable_mesh_extensions()) EXPECT_THAT(refused, HasSubstr(extension));
     EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }),
                 HasSubstr("\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML)"));
     const auto missing = [&] { static_cast<void>(read_mesh(path("none.mesh"))); };
