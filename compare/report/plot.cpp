@@ -167,6 +167,12 @@ Canvas::Series series_of(std::size_t index) {
             .shape = index};
 }
 
+/// Whether the places of a line are marked: those of a curve with many would hide it.
+bool is_marked(const PlotLine& line) {
+    constexpr std::size_t kManyPlaces = 50;
+    return line.x.size() <= kManyPlaces;
+}
+
 void draw_line(const Plot& plot, std::size_t index, const Axis& x, const Axis& y, Canvas& canvas) {
     const PlotLine& line = plot.lines[index];
     Canvas::Series series = series_of(index);
@@ -174,9 +180,9 @@ void draw_line(const Plot& plot, std::size_t index, const Axis& x, const Axis& y
         if (series.strands.empty() || std::ranges::find(line.breaks, i) != line.breaks.end()) series.strands.emplace_back();
         if (!shown(line.x[i], plot.log_x) || !shown(line.y[i], plot.log_y)) continue;
         series.strands.back().emplace_back(x.at(line.x[i]), y.at(line.y[i]));
-        series.markers.push_back(series.strands.back().back());
+        if (is_marked(line)) series.markers.push_back(series.strands.back().back());
     }
-    if (!series.markers.empty()) canvas.series(series);
+    if (!series.strands.empty()) canvas.series(series);
 }
 
 std::string legend_words(const Plot& plot, const PlotLine& line) {
@@ -199,7 +205,7 @@ void draw_legend(const Plot& plot, std::size_t columns, Canvas& canvas) {
         const double y = kPlotHeight + 8 + kLegendLine * static_cast<double>(i / columns);
         Canvas::Series series = series_of(i);
         series.strands = {{{x, y}, {x + 20, y}}};
-        series.markers = {{x + 10, y}};
+        if (is_marked(plot.lines[i])) series.markers = {{x + 10, y}};
         canvas.series(series);
         const std::string words = legend_words(plot, plot.lines[i]);
         canvas.text({x + kLegendText, y + 4}, Canvas::Anchor::Start, words, font_for(words, width - kLegendText));

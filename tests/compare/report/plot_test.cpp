@@ -224,4 +224,20 @@ TEST(Plot, PdfHasItsObjectsWhereItsTableSays) {
 }
 
 }  // namespace
+TEST(Plot, MarksTheStudiedPlacesButNotThoseOfACurve) {
+    const auto circles = [](std::size_t count) {
+        PlotLine line{.name = "a"};
+        for (std::size_t i = 0; i < count; ++i) {
+            line.x.push_back(static_cast<double>(i));
+            line.y.push_back(static_cast<double>(i * i));
+        }
+        const std::string svg = plot_svg({.lines = {line}});
+        std::size_t found = 0;
+        for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++found;
+        return found;
+    };
+    EXPECT_EQ(circles(10), 11u);  // and one in the legend
+    EXPECT_EQ(circles(200), 0u);
+}
+
 }  // namespace subvol
