@@ -26,8 +26,8 @@ int main() try {
     // Integrals, and the extremes of the limit with their places.
     const subvol::LimitMeasure measure = measure_limit(mesh);
     const subvol::FieldMeasure& density = measure.whole.fields[0];
-    std::printf("volume %.5f, mean %.5f, largest %.5f at %.3f %.3f %.3f\n", measure.whole.volume, density.mean, density.max.value,
-                density.max.place.x, density.max.place.y, density.max.place.z);
+    std::printf("volume %.5f, mean %.5f, largest %.5f at %.3f %.3f %.3f\n", measure.whole.volume, density.mean,
+                density.max.value, density.max.place.x, density.max.place.y, density.max.place.z);
 
     // A slice with contour lines.
     const subvol::LimitSlice slice = slice_limit(mesh, "density", {0, 0, 0}, {0, 0, 1}, {.resolution = 200});

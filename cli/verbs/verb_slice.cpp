@@ -22,7 +22,7 @@ public:
     explicit SliceVerb(CLI::App& program)
         : Verb(program, "slice", "A field of the limit on a plane, as a picture, a surface or a table.",
                "  subvol slice part.vtu -o slice.png --plane 0,0,0,0,0,1\n"
-               "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10 --resolution 1024\n"
+               "  subvol slice part.vtu -o slice.png --plane 0,0,0,1,1,0 --contours 10\n"
                "  subvol slice part.vtu -o slice.vtp --plane 0,0,0,0,1,0 --field Temp\n"
                "\n"
                "The picture is seen from where the normal points, with z up (y in planes of constant z). .png: coloured by "

@@ -383,7 +383,7 @@ private:
     /// Normals where sides meet, fewer slivers, and no points that no triangle uses.
     void finish(const Soup& soup, const Settled& settled, LimitSurface& found) const {
         std::vector<Vec3> of_hull(soup.points.size(), Vec3(0.0)), of_iso = of_hull, normals = settled.normals;
-        std::vector<std::uint8_t> fixed(soup.points.size(), 0);
+        std::vector<std::uint8_t> creased(soup.points.size(), 0);
         const auto facet = [&](const std::array<Index, 3>& t) {
             const Vec3& a = settled.positions[t[0]];
             return glm::cross(settled.positions[t[1]] - a, settled.positions[t[2]] - a);
@@ -395,7 +395,7 @@ private:
             if (soup.hull[t] == 0) continue;
             const Vec3 normal = facet(soup.triangles[t]);
             for (const Index p : soup.triangles[t]) {
-                if (glm::dot(normal, settled.normals[p]) < kCrease * glm::length(normal)) fixed[p] = 1;
+                if (glm::dot(normal, settled.normals[p]) < kCrease * glm::length(normal)) creased[p] = 1;
             }
         }
         const auto unit = [](const Vec3& v) { return glm::length(v) > 0 ? v / glm::length(v) : Vec3(0.0); };
@@ -403,16 +403,17 @@ private:
             const bool hull = of_hull[p] != Vec3(0.0), iso = of_iso[p] != Vec3(0.0);
             if (hull && iso) {
                 normals[p] = unit(unit(of_hull[p]) + (normals[p] != Vec3(0.0) ? normals[p] : unit(of_iso[p])));
-                fixed[p] = 1;
-            } else if (fixed[p] != 0 || normals[p] == Vec3(0.0)) {
+                creased[p] = 1;
+            } else if (creased[p] != 0 || normals[p] == Vec3(0.0)) {
                 normals[p] = unit(hull ? of_hull[p] : of_iso[p]);
             }
         }
         found.surface.triangles = soup.triangles;
         if (options_.improve) {
             report_progress(options_.progress, "improve", 0);
-            found.report.collapsed =
-                detail::collapse_slivers(settled.positions, normals, fixed, tolerance_world_, found.surface.triangles);
+            found.report.collapsed = detail::collapse_slivers(
+                settled.positions, normals, detail::sharp_lines(settled.positions, found.surface.triangles, soup.hull),
+                tolerance_world_, found.surface.triangles);
         }
         std::vector<Index> numbers(soup.points.size(), kNone);
         for (const auto& t : found.surface.triangles) {

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "subvol/detail/triangle_distance.h"
+
 namespace subvol::detail {
 
 namespace {
@@ -86,21 +88,26 @@ void measure_surface(const Surface& surface, SurfaceReport& report) {
 
 namespace {
 
+constexpr double kSharp = 0.8;  // cosine: triangles of the hull that bend by more meet at a crease
+
 constexpr double kSmallAngle_deg = 25;  // triangles with a smaller one are looked at
 constexpr int kMostPasses = 6;
 
 /// Collapses edges, one after the other: the result depends on the order alone, which is that of the triangles.
 class Collapser {
 public:
-    Collapser(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, std::span<const std::uint8_t> fixed,
-              double slack, std::vector<std::array<Index, 3>>& triangles)
-        : points_(points), normals_(normals), fixed_(fixed), slack_(slack), triangles_(triangles), around_(points.size()) {
+    Collapser(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines, double slack,
+              std::vector<std::array<Index, 3>>& triangles)
+        : points_(points),
+          normals_(normals),
+          lines_(std::move(lines)),
+          slack_(slack),
+          triangles_(triangles),
+          around_(points.size()),
+          alive_(triangles.size(), 1) {
         for (Index t = 0; t < triangles.size(); ++t) {
             for (const Index p : triangles[t]) around_[p].push_back(t);
         }
-        alive_.assign(triangles.size(), 1);
-        border_.assign(points.size(), 0);
-        for (Index p = 0; p < points.size(); ++p) border_[p] = has_border(p) ? 1 : 0;
     }
 
     std::size_t run() {
@@ -155,24 +162,27 @@ private:
         std::ranges::sort(found);
     }
 
-    [[nodiscard]] bool has_border(Index p) {
-        neighbors_of(p, first_);
-        for (std::size_t i = 0; i < first_.size();) {
-            std::size_t end = i;
-            while (end < first_.size() && first_[end] == first_[i]) ++end;
-            if (end - i != 2) return true;
-            i = end;
-        }
-        return false;
+    [[nodiscard]] bool is_sharp(Index p) const { return lines_.fixed[p] != 0 || lines_.next[p][0] != kNone; }
+
+    /// Of a point on a line that is to go to its neighbour `to`: the neighbour on its other side, or kNone if it must stay.
+    [[nodiscard]] Index other_end(Index from, Index to) const {
+        const auto& [a, b] = lines_.next[from];
+        if ((a != to && b != to) || a == b) return kNone;
+        const Index other = a == to ? b : a;
+        // What is left of the line must be as near to the point as the surface is to the limit.
+        if (squared_distance(points_[from], points_[to], points_[other]) > 0.25 * slack_ * slack_) return kNone;
+        return other;
     }
 
     /// The least angle about `to` after `from` has been moved there; −1 if that must not be.
     [[nodiscard]] double outcome(Index from, Index to) {
-        if (fixed_[from] != 0) return -1;
+        if (lines_.fixed[from] != 0) return -1;
+        const Index other = lines_.next[from][0] == kNone ? kNone : other_end(from, to);
+        if (is_sharp(from) && other == kNone) return -1;
         std::size_t shared = 0;
         for (const Index t : around_[from]) shared += contains(triangles_[t], to) ? 1 : 0;
-        if (border_[from] != 0 && shared != 1) return -1;  // a border moves along itself only
-        if (shared != (border_[from] != 0 ? 1U : 2U)) return -1;
+        if (shared == 0 || shared > 2) return -1;
+        if (shared == 1 && other == kNone) return -1;  // the edge is on a border, the point is not
         // The link condition: the ends have no neighbours in common but those of the triangles that vanish.
         neighbors_of(from, first_);
         neighbors_of(to, second_);
@@ -181,6 +191,7 @@ private:
         common_.clear();
         std::ranges::set_intersection(first_, second_, std::back_inserter(common_));
         if (common_.size() != shared || first_.size() <= 3 || second_.size() <= 3) return -1;
+        if (other != kNone && std::ranges::binary_search(second_, other)) return -1;  // the line would fold
         double least = 180;
         for (const Index t : around_[from]) {
             if (contains(triangles_[t], to)) continue;
@@ -191,7 +202,7 @@ private:
             const double size = glm::length(normal);
             if (!(size > 0)) return -1;
             for (const Index p : moved) {
-                if (fixed_[p] == 0 && glm::dot(normal, normals_[p]) < 0.5 * size) return -1;
+                if (!is_sharp(p) && glm::dot(normal, normals_[p]) < 0.5 * size) return -1;
             }
             // A face may turn by no more than it bends anyway.
             const auto& before = triangles_[t];
@@ -200,7 +211,7 @@ private:
             least = std::min(least, angle_of(moved));
         }
         for (const Index p : first_) {
-            if (p == to || fixed_[p] != 0 || fixed_[to] != 0) continue;
+            if (p == to || is_sharp(p) || is_sharp(to)) continue;
             if (bend(points_[p], points_[to], normals_[p], normals_[to]) > slack_) return -1;
         }
         return least;
@@ -209,6 +220,11 @@ private:
     static bool contains(const std::array<Index, 3>& t, Index p) { return t[0] == p || t[1] == p || t[2] == p; }
 
     void collapse(Index from, Index to) {
+        if (lines_.next[from][0] != kNone) {
+            const Index other = other_end(from, to);
+            for (Index& end : lines_.next[to]) end = end == from ? other : end;
+            for (Index& end : lines_.next[other]) end = end == from ? to : end;
+        }
         for (const Index t : around_[from]) {
             if (contains(triangles_[t], to)) {
                 alive_[t] = 0;
@@ -226,20 +242,74 @@ private:
 
     const std::vector<Vec3>& points_;
     const std::vector<Vec3>& normals_;
-    std::span<const std::uint8_t> fixed_;
+    SharpLines lines_;
     double slack_;
     std::vector<std::array<Index, 3>>& triangles_;
     std::vector<std::vector<Index>> around_;  // the triangles of each point, ascending
-    std::vector<std::uint8_t> alive_, border_;
+    std::vector<std::uint8_t> alive_;
     std::vector<Index> first_, second_, common_;
 };
 
 }  // namespace
 
-std::size_t collapse_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                             std::span<const std::uint8_t> fixed, double slack_world,
-                             std::vector<std::array<Index, 3>>& triangles) {
-    return Collapser(points, normals, fixed, slack_world, triangles).run();
+SharpLines sharp_lines(const std::vector<Vec3>& points, const std::vector<std::array<Index, 3>>& triangles,
+                       std::span<const std::uint8_t> hull) {
+    struct Side {
+        Index a, b, triangle;
+        auto operator<=>(const Side&) const = default;
+    };
+    std::vector<Side> sides;
+    sides.reserve(3 * triangles.size());
+    for (Index t = 0; t < triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+            sides.push_back({std::min(a, b), std::max(a, b), t});
+        }
+    }
+    tbb::parallel_sort(sides.begin(), sides.end());
+    const auto facet = [&](Index t) {
+        const Vec3& a = points[triangles[t][0]];
+        return glm::cross(points[triangles[t][1]] - a, points[triangles[t][2]] - a);
+    };
+    SharpLines lines{std::vector<std::array<Index, 2>>(points.size(), {kNone, kNone}),
+                     std::vector<std::uint8_t>(points.size(), 0)};
+    const auto link = [&](Index from, Index to) {
+        auto& [first, second] = lines.next[from];
+        if (first == kNone) {
+            first = to;
+        } else if (second == kNone) {
+            second = to;
+        } else {
+            lines.fixed[from] = 1;
+        }
+    };
+    for (std::size_t i = 0; i < sides.size();) {
+        std::size_t end = i;
+        while (end < sides.size() && sides[end].a == sides[i].a && sides[end].b == sides[i].b) ++end;
+        bool sharp = end - i != 2;
+        if (!sharp) {
+            const Index s = sides[i].triangle, t = sides[i + 1].triangle;
+            sharp = hull[s] != hull[t];
+            if (!sharp && hull[s] != 0) {
+                const Vec3 u = facet(s), v = facet(t);
+                sharp = glm::dot(u, v) < kSharp * glm::length(u) * glm::length(v);
+            }
+        }
+        if (sharp) {
+            link(sides[i].a, sides[i].b);
+            link(sides[i].b, sides[i].a);
+        }
+        i = end;
+    }
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        if (lines.next[p][0] != kNone && lines.next[p][1] == kNone) lines.fixed[p] = 1;  // its end
+    }
+    return lines;
+}
+
+std::size_t collapse_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines,
+                             double slack_world, std::vector<std::array<Index, 3>>& triangles) {
+    return Collapser(points, normals, std::move(lines), slack_world, triangles).run();
 }
 
 }  // namespace subvol::detail

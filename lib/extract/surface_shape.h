@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,14 +13,26 @@ namespace subvol::detail {
 /// Fills in area, volume, watertight, euler, components and angles.
 void measure_surface(const Surface& surface, SurfaceReport& report);
 
-/// Collapses edges of triangles with small angles on to one of their ends, where the surface stays what it is: manifold, with
-/// the same holes and borders, its triangles facing as their points do, and within tolerance. Points keep their places.
+/// The lines along which a surface is sharp, or ends: creases, where a cap meets its isosurface, borders.
 ///
-/// fixed:  points that stay (on creases); slack_world: how far new edges may bend away from the limit, by the normals
+/// next:  of each point the points before and behind it on a line; kNone: it is on none
+/// fixed: points where lines end or meet
+struct SharpLines {
+    std::vector<std::array<Index, 2>> next;
+    std::vector<std::uint8_t> fixed;
+};
+
+/// hull: of each triangle, whether it is part of the hull
+[[nodiscard]] SharpLines sharp_lines(const std::vector<Vec3>& points, const std::vector<std::array<Index, 3>>& triangles,
+                                     std::span<const std::uint8_t> hull);
+
+/// Collapses edges of triangles with small angles on to one of their ends, where the surface stays what it is: manifold, with
+/// the same holes, borders and sharp lines, its triangles facing as before, and within tolerance. Points keep their places.
+///
+/// slack_world: how far new edges may bend away from the limit, by the normals
 /// returns: how many edges; points that are no longer used are kept
-std::size_t collapse_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                             std::span<const std::uint8_t> fixed, double slack_world,
-                             std::vector<std::array<Index, 3>>& triangles);
+std::size_t collapse_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines,
+                             double slack_world, std::vector<std::array<Index, 3>>& triangles);
 
 /// How far the limit is from the middle of an edge, by the normals at its ends: exact for circles.
 [[nodiscard]] inline double bend(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {

@@ -31,7 +31,7 @@ struct GridError {
 };
 
 /// How far the values of a grid are from the limit of a mesh: the limit is evaluated at the centre of every active voxel
-/// (`LimitProbe`). The bound is the difference found there and what that evaluation itself may be off: its tolerance, 1e-6 of
+/// (`LimitProbe`). The bound is the difference found there and what that evaluation itself may be off, an estimate: 1e-5 of
 /// the field's range, and of the box's diagonal times the gradient.
 ///
 /// field:  of the mesh, with one channel
