@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
+#include <system_error>
 
 #include "hdf5_file.h"
 #include "hdf5_functions.h"
@@ -21,8 +23,13 @@ void expect_hdf5(const std::filesystem::path& path) {
     constexpr std::string_view kBegin = "\x89HDF\r\n\x1a\n";
     std::array<char, kBegin.size()> begin{};
     std::ifstream in(path, std::ios::binary);
+    const int error = errno;
     std::error_code none;
-    if (!in || std::filesystem::is_directory(path, none)) throw Error(ErrorCode::Io, "cannot be opened", path.string());
+    const bool folder = std::filesystem::is_directory(path, none);
+    if (!in || folder) {
+        throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(folder ? EISDIR : error),
+                    path.string());
+    }
     in.read(begin.data(), begin.size());
     if (std::string_view(begin.data(), begin.size()) != kBegin) {
         throw Error(ErrorCode::InvalidInput, "not an HDF5 file", path.string());

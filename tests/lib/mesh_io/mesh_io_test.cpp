@@ -398,7 +398,8 @@ TEST_F(MeshIo, UnknownFormatsAndMissingFilesAreRefused) {
         HasSubstr(
             "\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti, .pvtu, .pvts, "
             ".pvtr, .pvti, .vtm: VTK XML; .pvd, .series: ParaView; .msh: Gmsh; .xyz, .p3d: Plot3D; .e, .exo, .ex2, .g: "
-            "Exodus II; .foam, .openfoam: OpenFOAM; .inp: Abaqus)"));
+            "Exodus II; .vtkhdf, .hdf: VTKHDF; .xdmf, .xmf, .xdmf2, .xdmf3: XDMF; .frd: CalculiX; .cgns: CGNS; .case, .encas: "
+            "EnSight Gold; .foam, .openfoam: OpenFOAM; .inp: Abaqus)"));
     EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }),
                 HasSubstr("\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML)"));
     const auto missing = [&] { static_cast<void>(read_mesh(path("none.mesh"))); };
