@@ -398,7 +398,7 @@ TEST_F(MeshIo, UnknownFormatsAndMissingFilesAreRefused) {
         HasSubstr(
             "\".obj\" files cannot be read (.mesh, .meshb: MEDIT; .vtk: legacy VTK; .vtu, .vts, .vtr, .vti, .pvtu, .pvts, "
             ".pvtr, .pvti, .vtm: VTK XML; .pvd, .series: ParaView; .msh: Gmsh; .xyz, .p3d: Plot3D; .e, .exo, .ex2, .g: "
-            "Exodus II; .vtkhdf, .hdf: VTKHDF; .xdmf, .xmf, .xdmf2, .xdmf3: XDMF; .frd: CalculiX; .cgns: CGNS; .case, .encas: "
+            "Exodus II; .vtkhdf, .hdf: VTKHDF; .xdmf, .xmf: XDMF; .frd: CalculiX; .cgns: CGNS; .case: "
             "EnSight Gold; .foam, .openfoam: OpenFOAM; .inp: Abaqus)"));
     EXPECT_THAT(error_of([&] { write_mesh(path("a.vtk"), kBox); }),
                 HasSubstr("\".vtk\" files cannot be written (.mesh: MEDIT; .vtu: VTK XML)"));
