@@ -22,11 +22,12 @@ namespace {
 void expect_hdf5(const std::filesystem::path& path) {
     constexpr std::string_view kBegin = "\x89HDF\r\n\x1a\n";
     std::array<char, kBegin.size()> begin{};
-    errno = 0;
     std::ifstream in(path, std::ios::binary);
+    const int error = errno;
     std::error_code none;
-    if (!in || std::filesystem::is_directory(path, none)) {
-        throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(errno == 0 ? EISDIR : errno),
+    const bool folder = std::filesystem::is_directory(path, none);
+    if (!in || folder) {
+        throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(folder ? EISDIR : error),
                     path.string());
     }
     in.read(begin.data(), begin.size());

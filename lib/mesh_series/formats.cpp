@@ -46,10 +46,10 @@ constexpr std::array<MeshFormat, 21> kFormats{{
     {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
     {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr, false, true, exodus_times},
     {{".vtkhdf", ".hdf"}, "VTKHDF", read_vtkhdf, nullptr, false, false, vtkhdf_times},
-    {{".xdmf", ".xmf", ".xdmf2", ".xdmf3"}, "XDMF", read_file<read_xdmf>, nullptr, false, false, xdmf_times},
+    {{".xdmf", ".xmf"}, "XDMF", read_file<read_xdmf>, nullptr, false, false, xdmf_times},
     {{".frd"}, "CalculiX", read_file<read_frd>, nullptr, false, false, frd_times},
     {{".cgns"}, "CGNS", read_cgns, nullptr, false, true, cgns_times},
-    {{".case", ".encas"}, "EnSight Gold", read_ensight, nullptr, false, true, ensight_times},
+    {{".case"}, "EnSight Gold", read_ensight, nullptr, false, true, ensight_times},
     {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times, true},
     {{".inp"}, "Abaqus", read_inp, nullptr, false, true},
 }};
