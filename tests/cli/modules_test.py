@@ -57,14 +57,14 @@ class Installation(InFolder):
         for name in ("openimageio", "openvdb"):
             self.module(name).unlink()
         for words, sentence in [
-                (("render", "cube.mesh", "-o", "a.png", "--size", "16"),
+                (("render", "cube.mesh", "-o", "a.exr", "--size", "16"),
                  "subvol: reading, writing or comparing pictures needs the module subvol_openimageio.so, which is not installed"),
                 (("vdb", "cube.mesh", "-o", "a.vdb"),
                  "subvol: reading, writing or computing grids needs the module subvol_openvdb.so, which is not installed")]:
             done = self.run_installed(*words)
             self.assertEqual(done.code, 3, done.err)
             self.assertIn(sentence, done.err)
-        self.assertEqual([file.name for file in self.folder.iterdir() if file.suffix in (".png", ".vdb")], [])
+        self.assertEqual([file.name for file in self.folder.iterdir() if file.suffix in (".exr", ".vdb")], [])
         self.assertEqual(self.run_installed("info", "cube.mesh").code, 0)
 
     def test_refuses_a_module_of_another_version(self):
