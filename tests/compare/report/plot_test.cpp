@@ -227,7 +227,7 @@ TEST(Plot, PdfHasItsObjectsWhereItsTableSays) {
 TEST(Plot, MarksTheStudiedPlacesButNotThoseOfACurve) {
     const auto circles = [](std::size_t count) {
         PlotLine line{.name = "a"};
-        for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t i = 1; i <= count; ++i) {
             line.x.push_back(static_cast<double>(i));
             line.y.push_back(static_cast<double>(i * i));
         }
