@@ -53,6 +53,7 @@ public:
         scalar_ = mesh;
         scalar_.attributes.clear();
         if (field_) scalar_.attributes.push_back(mesh.attributes[*field_]);
+        limit_.emplace(scalar_, LimitOptions{.scheme = options_.scheme});
     }
 
     LimitSurface run() {
@@ -263,7 +264,7 @@ private:
             for (const Moving& one : moving) {
                 queries.push_back({soup.points[one.point].cell, place_on_edge(soup.points[one.point], one.t, level)});
             }
-            const LimitSamples samples = evaluate_limit(scalar_, queries, {.scheme = options_.scheme});
+            const LimitSamples samples = limit_->at(queries);
             detail::parallel_each(moving.size(), [&](std::size_t i) {
                 Moving& one = moving[i];
                 const SurfacePoint& point = soup.points[one.point];
@@ -356,7 +357,7 @@ private:
         }
         bends.reserve(bends.size() + probes.size());
         for (std::size_t t : hull) bends[3 * t] = bends[3 * t + 1] = bends[3 * t + 2] = 0;
-        const LimitSamples samples = evaluate_limit(scalar_, queries, {.scheme = options_.scheme});
+        const LimitSamples samples = limit_->at(queries);
         std::size_t next = 0;
         for (std::size_t i = 0; i < probes.size(); ++i) {
             const Vec3 &a = settled.positions[probes[i].a], &b = settled.positions[probes[i].b];
@@ -473,6 +474,7 @@ private:
     const SurfaceOptions& options_;
     std::optional<std::size_t> field_;
     Topology topology_;
+    std::optional<LimitEvaluator> limit_;  // of scalar_
     HexMesh scalar_;
     double tolerance_world_ = 0;
 };

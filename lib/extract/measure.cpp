@@ -240,6 +240,7 @@ private:
         }
         for (Search& one : searches) one.best.value = one.high ? -INFINITY : INFINITY;
         std::vector<LimitQuery> queries(27 * searches.size());
+        const LimitEvaluator limit(mesh_, {.scheme = options_.scheme});
         for (int round = 0; round < kMostRounds && !searches.empty(); ++round) {
             report_progress(options_.progress, "extremes", static_cast<double>(round) / kMostRounds);
             for (std::size_t q = 0; q < queries.size(); ++q) {
@@ -248,7 +249,7 @@ private:
                 const Vec3 offset = from.step * (Vec3(n % 3, n / 3 % 3, n / 9) - Vec3(1.0));
                 queries[q] = {from.place.cell, glm::clamp(from.place.uvw + offset, Vec3(0.0), Vec3(1.0))};
             }
-            const LimitSamples samples = evaluate_limit(mesh_, queries, {.scheme = options_.scheme});
+            const LimitSamples samples = limit.at(queries);
             for (std::size_t s = 0; s < searches.size(); ++s) step(searches[s], 27 * s, queries, samples);
         }
         for (const Search& one : searches) {

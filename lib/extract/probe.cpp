@@ -52,6 +52,9 @@ struct LimitProbe::State {
         tree.emplace(mesh, options.limit.scheme, options.reach_world, options.limit.progress);
         const double diagonal = bounds(mesh).diagonal();
         on_boundary = std::max(options.limit.tolerance, 1e-9) * diagonal;
+        LimitOptions quiet = options.limit;
+        quiet.progress = nullptr;
+        limit.emplace(mesh, quiet);
     }
 
     void check_options() const {
@@ -73,6 +76,7 @@ struct LimitProbe::State {
     Topology topology;
     detail::CellSteps steps;
     std::optional<detail::PieceTree> tree;
+    std::optional<LimitEvaluator> limit;
     double on_boundary = 0;  // places this near count as inside (world)
 };
 
@@ -124,14 +128,12 @@ std::vector<Open> LimitProbe::State::find(std::span<const Vec3> places, std::vec
 void LimitProbe::State::run(std::span<const Vec3> places, std::size_t begin, Progress* progress, ProbeResult& result) const {
     std::vector<NearPlace> candidates;
     std::vector<Open> open = find(places, candidates);
-    LimitOptions limit = options.limit;
-    limit.progress = nullptr;
     std::vector<LimitQuery> queries;
     for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
         report_progress(progress, "probe", static_cast<double>(begin) / static_cast<double>(result.cells.size()));
         queries.clear();
         for (const Open& one : open) queries.push_back(one.at);
-        const LimitSamples samples = evaluate_limit(mesh, queries, limit);
+        const LimitSamples samples = limit->at(queries);
         detail::parallel_each(
             open.size(), [&](std::size_t i) { settle(open[i], i, samples, places[open[i].place], begin, candidates, result); });
         std::erase_if(open, [](const Open& one) { return one.done; });

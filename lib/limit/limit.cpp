@@ -20,11 +20,14 @@ using detail::CellPlaces;
 
 namespace {
 
-void check(const HexMesh& mesh, std::span<const LimitQuery> queries, const LimitOptions& options) {
+void check(const LimitOptions& options) {
     if (!(options.tolerance >= 0) || options.max_levels < 2 || options.max_levels > 20) {
         throw Error(ErrorCode::InvalidInput, "the tolerance or the number of levels is out of range", "limit",
                     "tolerance >= 0, 2 to 20 levels");
     }
+}
+
+void check(const HexMesh& mesh, std::span<const LimitQuery> queries) {
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const auto& [cell, uvw] = queries[i];
         const bool inside = uvw.x >= 0 && uvw.x <= 1 && uvw.y >= 0 && uvw.y <= 1 && uvw.z >= 0 && uvw.z <= 1;
@@ -99,17 +102,40 @@ void refine_rest(const HexMesh& control, std::span<const LimitQuery> queries, st
 
 }  // namespace
 
-LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries, const LimitOptions& options) {
-    const HexMesh control = detail::control_mesh(mesh, options.scheme);
-    check(control, queries, options);
-    const auto scales = channel_scales(control);
-    LimitSamples samples = make_samples(control, queries.size());
+struct LimitEvaluator::State {
+    State(const HexMesh& mesh, const LimitOptions& with)
+        : options(with),
+          control(detail::control_mesh(mesh, options.scheme)),
+          scales(channel_scales(control)),
+          descents(control, options.scheme) {}
 
+    LimitOptions options;
+    HexMesh control;
+    std::vector<double> scales;  // of the channels
+    detail::LimitDescents descents;
+};
+
+LimitEvaluator::LimitEvaluator(const HexMesh& mesh, const LimitOptions& options) {
+    check(options);
+    state_ = std::make_unique<State>(mesh, options);
+}
+LimitEvaluator::~LimitEvaluator() = default;
+LimitEvaluator::LimitEvaluator(LimitEvaluator&&) noexcept = default;
+LimitEvaluator& LimitEvaluator::operator=(LimitEvaluator&&) noexcept = default;
+
+LimitSamples LimitEvaluator::at(std::span<const LimitQuery> queries) const {
+    const auto& [options, control, scales, descents] = *state_;
+    check(control, queries);
+    LimitSamples samples = make_samples(control, queries.size());
     const auto order = sorted_by_cells(queries, control.cells.size());
     const auto cells = places_of_cells(queries, order);
-    const auto rest = detail::LimitDescents({control, queries, order, options, scales, samples}).run(cells);
+    const auto rest = descents.run({control, queries, order, options, scales, samples}, cells);
     if (!rest.empty()) refine_rest(control, queries, rest, options, scales, samples);
     return samples;
+}
+
+LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries, const LimitOptions& options) {
+    return LimitEvaluator(mesh, options).at(queries);
 }
 
 }  // namespace subvol

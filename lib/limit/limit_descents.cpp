@@ -22,32 +22,32 @@ constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of the classes' t
 }  // namespace
 
 struct LimitDescents::State {
-    explicit State(const DescentTask& wanted)
-        : task(wanted),
-          topology(build_topology(task.control)),
-          links(build_links(task.control, topology)),
-          rows(rows_of(task.control, task.channels.stride())),
-          graph(std::make_shared<ClassGraph>(task.options.scheme)),
-          workers([this] { return DescentWorker(task); }),
-          walks([this] { return NeighborhoodWalk(task.control, links); }) {}
+    State(const HexMesh& mesh, const SchemeOptions& with)
+        : control(mesh),
+          scheme(with),
+          stride(Channels(mesh).stride()),
+          topology(build_topology(control)),
+          links(build_links(control, topology)),
+          rows(rows_of(control, stride)),
+          graph(std::make_shared<ClassGraph>(scheme)),
+          walks([this] { return NeighborhoodWalk(control, links); }) {}
 
     /// The classes so far, or none if their tables take too much memory. What is made again is the same.
     [[nodiscard]] std::shared_ptr<ClassGraph> classes() {
         const std::scoped_lock lock(mutex);
-        if (graph->bytes() > kMostBytes) graph = std::make_shared<ClassGraph>(task.options.scheme);
+        if (graph->bytes() > kMostBytes) graph = std::make_shared<ClassGraph>(scheme);
         return graph;
     }
 
     /// The neighbourhood of a control cell.
     void gather(std::span<const Index> points, DescentWorker& with) const {
-        const std::size_t stride = task.channels.stride();
         double* to = with.values(0, points.size());
         for (const Index p : points) to = copy_row(&rows[p * stride], stride, to);
     }
 
     /// The places of a control cell, if no refined mesh is needed for them; false if it is.
-    bool run_at_once(const CellPlaces& in, ClassGraph& classes, DescentWorker& with) {
-        if (!task.is_spline() && task.options.scheme.kind != Scheme::Linear) {
+    bool run_at_once(const DescentTask& task, const CellPlaces& in, ClassGraph& classes, DescentWorker& with) {
+        if (!task.is_spline() && scheme.kind != Scheme::Linear) {
             std::array<Index, 216> points;
             if (!walks.local().find_regular(in.cell, points)) return false;
             gather(points, with);
@@ -62,8 +62,15 @@ struct LimitDescents::State {
 
     /// The classes of control cells that occur so often that their tables pay, as far as a sample of the mesh shows.
     void find_common() {
+        const std::scoped_lock lock(common_mutex);
+        if (has_common) return;
+        run_nested([&] { seek_common(); });  // a thread that waits in it must not take work that waits for the lock
+        has_common = true;
+    }
+
+    void seek_common() {
         constexpr std::size_t kMost = 4096, kLeast = 3, kLeastPart = 5;
-        const std::size_t count = task.control.cells.size(), seen = std::min(count, kMost);
+        const std::size_t count = control.cells.size(), seen = std::min(count, kMost);
         std::vector<ClassKey> keys(seen);
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, seen, 16), [&](const auto& range) {
             NeighborhoodWalk& walk = walks.local();
@@ -98,22 +105,34 @@ struct LimitDescents::State {
         return true;
     }
 
-    void run_batches(std::span<const CellPlaces> cells);
-
-    DescentTask task;
+    const HexMesh& control;
+    SchemeOptions scheme;
+    std::size_t stride;  // of rows
     Topology topology;
     CellLinks links;
-    std::vector<double> rows;      // the channels of the control points
-    std::vector<ClassKey> common;  // sorted
+    std::vector<double> rows;  // the channels of the control points
+    std::mutex common_mutex;
+    bool has_common = false;
+    std::vector<ClassKey> common;  // sorted; filled once
     std::mutex mutex;
     std::shared_ptr<ClassGraph> graph;
-    DescentWorkers workers;
     tbb::enumerable_thread_specific<NeighborhoodWalk> walks;
     tbb::enumerable_thread_specific<Neighborhood> abouts;
 };
 
+/// One call: its task, with a worker for each thread.
+struct LimitDescents::Run {
+    Run(State& with, const DescentTask& wanted) : state(with), task(wanted), workers([this] { return DescentWorker(task); }) {}
+
+    void run_batches(std::span<const CellPlaces> cells);
+
+    State& state;
+    const DescentTask& task;
+    DescentWorkers workers;
+};
+
 /// Cells that have no class of their own.
-void LimitDescents::State::run_batches(std::span<const CellPlaces> cells) {
+void LimitDescents::Run::run_batches(std::span<const CellPlaces> cells) {
     std::vector<CellPlaces> rest;
     std::vector<Vec3> centers;
     for (const CellPlaces& in : cells) {
@@ -144,21 +163,23 @@ void LimitDescents::State::run_batches(std::span<const CellPlaces> cells) {
         const double part = static_cast<double>(finished) / static_cast<double>(starts.size());
         report_progress(task.options.progress, "limit", 0.6 + 0.4 * part);
         run_nested([&] {
-            const auto classes_now = classes();
-            DescentBatch(task, topology, rows, *classes_now, workers)
+            const auto classes_now = state.classes();
+            DescentBatch(task, state.topology, state.rows, *classes_now, workers)
                 .run(source, std::span(ordered).subspan(starts[b], starts[b + 1] - starts[b]));
         });
         ++finished;
     });
 }
 
-LimitDescents::LimitDescents(const DescentTask& task) : state_(std::make_unique<State>(task)) {
+LimitDescents::LimitDescents(const HexMesh& control, const SchemeOptions& scheme)
+    : state_(std::make_unique<State>(control, scheme)) {
 }
 LimitDescents::~LimitDescents() = default;
 
-std::vector<std::size_t> LimitDescents::run(std::span<const CellPlaces> cells) {
+std::vector<std::size_t> LimitDescents::run(const DescentTask& task, std::span<const CellPlaces> cells) const {
     State& state = *state_;
-    Progress* progress = state.task.options.progress;
+    Run call(state, task);
+    Progress* progress = task.options.progress;
     std::vector<std::uint8_t> done(cells.size());
     const auto run_each = [&](double from, const auto& run_one) {
         const auto classes = state.classes();
@@ -168,12 +189,13 @@ std::vector<std::size_t> LimitDescents::run(std::span<const CellPlaces> cells) {
             const tbb::blocked_range<std::size_t> range(turn, std::min(cells.size(), turn + kTurn), 4);
             tbb::parallel_for(range, [&](const auto& part) {
                 for (std::size_t i = part.begin(); i != part.end(); ++i) {
-                    if (done[i] == 0) done[i] = run_one(cells[i], *classes, state.workers.local()) ? 1 : 0;
+                    if (done[i] == 0) done[i] = run_one(cells[i], *classes, call.workers.local()) ? 1 : 0;
                 }
             });
         }
     };
-    run_each(0, [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_at_once(in, classes, with); });
+    run_each(0,
+             [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_at_once(task, in, classes, with); });
     if (std::ranges::find(done, 0) != done.end()) state.find_common();
     if (!state.common.empty()) {
         run_each(0.3,
@@ -183,11 +205,11 @@ std::vector<std::size_t> LimitDescents::run(std::span<const CellPlaces> cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (done[i] == 0) rest.push_back(cells[i]);
     }
-    if (!rest.empty()) state.run_batches(rest);
+    if (!rest.empty()) call.run_batches(rest);
     report_progress(progress, "limit", 1);
     std::vector<std::size_t> left;
-    for (DescentWorker& worker : state.workers) {
-        add_report(worker.report(), state.task.samples.report);
+    for (DescentWorker& worker : call.workers) {
+        add_report(worker.report(), task.samples.report);
         left.insert(left.end(), worker.left().begin(), worker.left().end());
     }
     std::ranges::sort(left);

@@ -20,18 +20,19 @@ namespace subvol::detail {
 /// Places in one cell share its descendants; the arithmetic of a place does not depend on the others.
 class LimitDescents {
 public:
-    /// What the task refers to is kept by reference.
-    explicit LimitDescents(const DescentTask& task);
+    /// What is the same for all places: topology, and the classes that have been met. The mesh is kept by reference.
+    LimitDescents(const HexMesh& control, const SchemeOptions& scheme);
     ~LimitDescents();
     LimitDescents(const LimitDescents&) = delete;
     LimitDescents& operator=(const LimitDescents&) = delete;
 
-    /// Fills the samples. Returns the queries, by their numbers, whose surroundings have no class: those are left to the
-    /// caller.
-    [[nodiscard]] std::vector<std::size_t> run(std::span<const CellPlaces> cells);
+    /// Fills the samples of the task, whose mesh and scheme are those above. Returns the queries, by their numbers, whose
+    /// surroundings have no class: those are left to the caller. Several threads may call it.
+    [[nodiscard]] std::vector<std::size_t> run(const DescentTask& task, std::span<const CellPlaces> cells) const;
 
 private:
     struct State;
+    struct Run;
     std::unique_ptr<State> state_;
 };
 

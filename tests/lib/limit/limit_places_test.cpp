@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <thread>
 
 #include "lib/test_meshes.h"
 #include "subvol/limit.h"
@@ -125,6 +126,38 @@ TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAnEdgeOnly) {
     mesh = without_unused_points(std::move(mesh));
     test::jitter(mesh, .1, 3);
     expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
+}
+
+/// Some thousand places in all cells of a mesh.
+std::vector<LimitQuery> scattered(const HexMesh& mesh, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> t(0, 1);
+    std::vector<LimitQuery> queries(2000);
+    for (LimitQuery& query : queries)
+        query = {static_cast<Index>(random() % mesh.cells.size()), {t(random), t(random), t(random)}};
+    return queries;
+}
+
+TEST_P(LimitPlaces, OfAnEvaluatorAreTheSameInEveryCall) {
+    // The first call meets classes that the second finds there; several threads call at once.
+    HexMesh mesh = test::irregular();
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.y - p.z; });
+    const LimitOptions options{.scheme = {GetParam()}, .tolerance = 1e-5};
+    const LimitEvaluator evaluator(mesh, options);
+    const auto expect_same = [&](unsigned seed) {
+        const auto queries = scattered(mesh, seed);
+        const LimitSamples kept = evaluator.at(queries), anew = evaluate_limit(mesh, queries, options);
+        EXPECT_EQ(kept.positions, anew.positions);
+        EXPECT_EQ(kept.jacobians, anew.jacobians);
+        EXPECT_EQ(kept.attributes[0].values, anew.attributes[0].values);
+        EXPECT_EQ(kept.report.refined, anew.report.refined);
+    };
+    {
+        std::vector<std::jthread> threads;
+        for (const unsigned seed : {1U, 2U, 3U}) threads.emplace_back(expect_same, seed);
+    }
+    expect_same(1);
+    EXPECT_EQ(evaluator.at({}).positions.size(), 0U);
 }
 
 TEST(LimitInOneCell, IsTheSameForManyPlaces) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,6 +64,28 @@ struct LimitSamples {
 ///         threads and whatever the other queries
 [[nodiscard]] LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries,
                                           const LimitOptions& options = {});
+
+/// `evaluate_limit` for many calls: the mesh's topology and the tables of the neighbourhoods that were met are kept between
+/// them.
+class LimitEvaluator {
+public:
+    /// The mesh is copied.
+    ///
+    /// throws: Error(InvalidInput) as `refine`, or if an option is out of range
+    explicit LimitEvaluator(const HexMesh& mesh, const LimitOptions& options = {});
+    ~LimitEvaluator();
+    LimitEvaluator(LimitEvaluator&&) noexcept;
+    LimitEvaluator& operator=(LimitEvaluator&&) noexcept;
+
+    /// What `evaluate_limit` returns for these places, bit for bit. Several threads may call it.
+    ///
+    /// throws: Error(InvalidInput) if a query names a cell that does not exist or lies outside [0,1]³
+    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries) const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 /// The limit positions of the vertices as stencils over the mesh's points. If the scheme interpolates, the table keeps every
 /// point.
