@@ -224,9 +224,9 @@ std::vector<View> PictureArguments::make_views(const Box& box, std::span<const V
     const Camera first = make_camera(box, points, static_cast<double>(width) / height);
     if (views) return make_sheet(box, points, width / 2, height / 2);
     if (!turntable_frames) return {View(first, width, height)};
-    std::vector<View> views;
-    for (const Camera& frame : turntable(first, box.center(), *turntable_frames)) views.emplace_back(frame, width, height);
-    return views;
+    std::vector<View> frames;
+    for (const Camera& frame : turntable(first, box.center(), *turntable_frames)) frames.emplace_back(frame, width, height);
+    return frames;
 }
 
 std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const {

@@ -2,9 +2,11 @@
 #include "places_input.h"
 
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <optional>
+#include <system_error>
 
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
@@ -44,7 +46,7 @@ std::optional<std::array<std::size_t, 3>> columns_of(const std::vector<std::stri
 
 std::vector<Vec3> read_places(const std::string& path) {
     std::ifstream in(path);
-    if (!in) throw Error(ErrorCode::Io, "cannot be read", path);
+    if (!in) throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(errno), path);
     std::vector<Vec3> places;
     std::array<std::size_t, 3> columns{0, 1, 2};
     std::string line;

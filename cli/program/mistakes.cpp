@@ -3,11 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "manual.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/printable.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -73,15 +76,28 @@ std::string usage_name(const CLI::App& verb, const std::string& name) {
     return name;
 }
 
+/// The parser's range, such as "0.000000 to 1.000000", in short numbers. A least value that it rounded to 0 is above it if 0 is
+/// refused.
+std::string range_text(const std::string& range, const std::string& value) {
+    constexpr double kAny = 1e100;  // ranges of any positive number end at the largest double
+    const std::size_t to = range.find(" to ");
+    const auto low = detail::number_from(range.substr(0, to));
+    const auto high = to == std::string::npos ? std::nullopt : detail::number_from(range.substr(to + 4));
+    if (!low || !high) return range;
+    if (*high > kAny) return "more than 0";
+    const bool above = *low == 0 && detail::number_from(value) == 0;
+    return above ? "more than 0, at most " + detail::number_text(*high)
+                 : detail::number_text(*low) + " to " + detail::number_text(*high);
+}
+
 /// The parser's words about a number, which read "Value two not in range 0 to 10" or "Number less or equal to 0: -1".
 std::optional<Error> of_a_number(const std::string& option, const std::string& words) {
     const std::string begin = "Value ", middle = " not in range ", few = "Number less ";
     if (const std::size_t at = words.find(middle); words.starts_with(begin) && at != std::string::npos) {
-        std::string range = words.substr(at + middle.size());
-        constexpr std::size_t kLongestNumber = 100;  // to the largest double, which is 309 digits long: any positive number
-        if (range.size() > kLongestNumber) range = "more than 0";
-        return Error(ErrorCode::InvalidInput, "'" + words.substr(begin.size(), at - begin.size()) + "' is out of range", option,
-                     range);
+        const std::string value = words.substr(begin.size(), at - begin.size());
+        return Error(ErrorCode::InvalidInput,
+                     "'" + detail::shortened(value) + (detail::number_from(value) ? "' is out of range" : "' is not a number"),
+                     option, range_text(words.substr(at + middle.size()), value));
     }
     if (!words.starts_with(few)) return std::nullopt;
     std::string value = words.substr(words.rfind(": ") + 2);
@@ -107,7 +123,13 @@ Error of_a_value(const std::string& message) {
     const std::string begin = "Could not convert: ";
     const std::size_t equals = message.find(" = ");
     if (!message.starts_with(begin) || equals == std::string::npos) return {ErrorCode::InvalidInput, message};
-    return {ErrorCode::InvalidInput, "'" + message.substr(equals + 3) + "' is not a number of the right kind",
+    const std::string value = message.substr(equals + 3);
+    const auto number = detail::number_from(value);
+    const bool whole = number && *number == std::floor(*number);
+    return {ErrorCode::InvalidInput,
+            detail::in_quotes(value) + (!number ? " is not a number"
+                                        : whole ? " is out of range"
+                                                : " is not a whole number"),
             message.substr(begin.size(), equals - begin.size())};
 }
 

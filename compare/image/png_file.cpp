@@ -11,7 +11,9 @@
 namespace subvol::detail {
 
 std::optional<PictureFault> write_png(const std::string& path, int width, int height, std::span<const std::uint8_t> rgb) {
-    const auto failed = [](int error) { return PictureFault{ErrorCode::Io, std::generic_category().message(error)}; };
+    const auto failed = [](int error) {
+        return PictureFault{ErrorCode::Io, "cannot be written: " + std::generic_category().message(error)};
+    };
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "wb"), &std::fclose);
     if (!stream) return failed(errno);
     png_image picture{};

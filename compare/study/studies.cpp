@@ -2,6 +2,7 @@
 #include "built_in_studies.h"
 #include "study_keys.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -23,7 +24,8 @@ std::string_view built_in_study_json(const std::string& name) {
         names.emplace_back(file.name);
         known += (known.empty() ? "" : ", ") + std::string(file.name);
     }
-    throw Error(ErrorCode::InvalidInput, "there is no study '" + name + "'" + detail::did_you_mean(name, names), {}, known);
+    throw Error(ErrorCode::InvalidInput,
+                "there is no study '" + detail::shortened(name) + "'" + detail::did_you_mean(name, names), {}, known);
 }
 
 Study built_in_study(const std::string& name) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "study_keys.h"
 #include "subvol/detail/near_name.h"
+#include "subvol/detail/printable.h"
 
 namespace subvol {
 
@@ -86,7 +87,7 @@ const StudyMethod& find_method(const std::string& name, const std::string& path)
         names.emplace_back(method.name);
         known += (known.empty() ? "" : ", ") + std::string(method.name);
     }
-    refuse(path, "there is no method '" + name + "'" + did_you_mean(name, names), known);
+    refuse(path, "there is no method '" + shortened(name) + "'" + did_you_mean(name, names), known);
 }
 
 }  // namespace detail

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "study_keys.h"
+#include "subvol/camera.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "subvol/model.h"
@@ -102,7 +103,7 @@ private:
 
     static std::string checked_name(std::string name, const std::string& path) {
         if (name.empty() || name.size() > 64 || !std::ranges::all_of(name, is_plain)) {
-            refuse(path, "'" + name + "' is not a valid name", "1 to 64 letters, digits, _ and -");
+            refuse(path, "'" + shortened(name) + "' is not a valid name", "1 to 64 letters, digits, _ and -");
         }
         return name;
     }
@@ -153,7 +154,7 @@ private:
                 if (read.contains("file")) {
                     const std::string file = resolved(as_text(read.at("file")));
                     const std::string content = content_of(file);
-                    if (content.empty()) refuse(in(path, "file"), "'" + file + "' cannot be read");
+                    if (content.empty()) refuse(in(path, "file"), "'" + printable(file) + "' cannot be read");
                     values["input.file"] = file;
                     values["input.content"] = content;
                 }
@@ -187,10 +188,20 @@ private:
                 values["camera.visible"] = read_value(items[i]["visible"], {"visible", KeyKind::Switch}, in(path, "visible"));
             }
             if (camera.ends_with(".json")) add_file(values, "camera", path);
+            check_camera(as_text(values["camera"]), path);
             all.push_back(std::move(values));
         }
         if (all.empty()) all.push_back({{"view", "iso"}, {"camera", "iso"}});
         return all;
+    }
+
+    /// Cases fit their cameras to their meshes; whether the text is a camera can be seen with any box.
+    static void check_camera(const std::string& camera, const std::string& path) {
+        try {
+            static_cast<void>(parse_camera(camera, {{0, 0, 0}, {1, 1, 1}}));
+        } catch (const Error& error) {
+            refuse(path, error.what());
+        }
     }
 
     std::vector<StudyValues> lights() const {
@@ -225,7 +236,7 @@ private:
         if (end == std::string::npos) return;
         const std::string file = resolved(named.substr(0, end + 5));
         const std::string content = content_of(file);
-        if (content.empty()) refuse(path, "'" + file + "' cannot be read");
+        if (content.empty()) refuse(path, "'" + printable(file) + "' cannot be read");
         values[key] = file + named.substr(end + 5);
         values[key + ".content"] = content;
     }
@@ -316,7 +327,7 @@ private:
             const std::string key = close == std::string::npos ? "" : label.substr(open + 1, close - open - 1);
             const auto value = values.find(key);
             if (value == values.end())
-                refuse(path, "there is no value named '" + key + "'", "{KEY} of an option of the method");
+                refuse(path, "there is no value named '" + shortened(key) + "'", "{KEY} of an option of the method");
             done += label.substr(from, open - from) + as_text(value->second);
             from = close + 1;
         }

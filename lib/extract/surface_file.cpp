@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "number_writer.h"
 #include "output_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
@@ -18,32 +19,9 @@ namespace subvol {
 
 namespace {
 
+using detail::NumberWriter;
 using detail::OutputFile;
 using Bytes3 = std::array<std::uint8_t, 3>;
-
-/// Numbers one after the other, as they lie in memory.
-class Bytes {
-public:
-    explicit Bytes(OutputFile& out) : out_(out) {}
-    template <class Number>
-    void put(Number number) {
-        buffer_.append(reinterpret_cast<const char*>(&number), sizeof number);
-        if (buffer_.size() > kFlush) flush();
-    }
-    template <class Number>
-    void put_vector(const Vec3& v) {
-        for (int k = 0; k < 3; ++k) put(static_cast<Number>(v[k]));
-    }
-    void flush() {
-        out_.write(buffer_);
-        buffer_.clear();
-    }
-
-private:
-    static constexpr std::size_t kFlush = 1 << 16;
-    OutputFile& out_;
-    std::string buffer_;
-};
 
 /// The colours of the points in sRGB; empty without.
 std::vector<Bytes3> colors_of(const LimitSurface& surface, const SurfaceFileOptions& options) {
@@ -84,10 +62,10 @@ void write_ply(OutputFile& out, const LimitSurface& surface, const std::vector<B
     head += "element face " + std::to_string(surface.surface.triangles.size()) +
             "\nproperty list uchar int vertex_indices\nend_header\n";
     out.write(head);
-    Bytes bytes(out);
+    NumberWriter bytes(out);
     for (std::size_t p = 0; p < count; ++p) {
-        bytes.put_vector<double>(surface.surface.points[p]);
-        bytes.put_vector<float>(surface.normals[p]);
+        bytes.put_point<double>(surface.surface.points[p]);
+        bytes.put_point<float>(surface.normals[p]);
         if (!colors.empty()) {
             for (const std::uint8_t byte : colors[p]) bytes.put(byte);
         }
@@ -106,14 +84,14 @@ void write_stl(OutputFile& out, const LimitSurface& surface) {
     std::string head = "binary STL of OpenSubVol";
     head.resize(80, ' ');
     out.write(head);
-    Bytes bytes(out);
+    NumberWriter bytes(out);
     bytes.put(static_cast<std::uint32_t>(surface.surface.triangles.size()));
     for (const auto& t : surface.surface.triangles) {
         const Vec3 &a = surface.surface.points[t[0]], &b = surface.surface.points[t[1]], &c = surface.surface.points[t[2]];
         const Vec3 normal = glm::cross(b - a, c - a);
         const double length = glm::length(normal);
-        bytes.put_vector<float>(length > 0 ? normal / length : Vec3(0.0));
-        for (const Vec3* p : {&a, &b, &c}) bytes.put_vector<float>(*p);
+        bytes.put_point<float>(length > 0 ? normal / length : Vec3(0.0));
+        for (const Vec3* p : {&a, &b, &c}) bytes.put_point<float>(*p);
         bytes.put(std::uint16_t{0});
     }
     bytes.flush();
@@ -221,7 +199,7 @@ void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<B
     json += "],\"buffers\":[{\"byteLength\":" + std::to_string(total) + "}]}";
     while (json.size() % 4 != 0) json += ' ';
 
-    Bytes bytes(out);
+    NumberWriter bytes(out);
     bytes.put(std::uint32_t{0x46546C67});  // "glTF"
     bytes.put(std::uint32_t{2});
     bytes.put(static_cast<std::uint32_t>(12 + 8 + json.size() + 8 + total));
@@ -231,8 +209,8 @@ void write_glb(OutputFile& out, const LimitSurface& surface, const std::vector<B
     out.write(json);
     bytes.put(static_cast<std::uint32_t>(total));
     bytes.put(std::uint32_t{0x004E4942});  // "BIN"
-    for (const Vec3& p : points) bytes.put_vector<float>(p - center);
-    for (const Vec3& n : surface.normals) bytes.put_vector<float>(n);
+    for (const Vec3& p : points) bytes.put_point<float>(p - center);
+    for (const Vec3& n : surface.normals) bytes.put_point<float>(n);
     for (const auto& t : triangles) {
         for (const Index p : t) bytes.put(static_cast<std::uint32_t>(p));
     }

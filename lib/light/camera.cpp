@@ -158,7 +158,8 @@ Camera parse_camera(const std::string& text, const Box& box, double aspect) {
         std::error_code ignored;
         if (text.empty() || !std::filesystem::exists(text, ignored)) {
             throw Error(ErrorCode::InvalidInput, "is neither a view nor ten numbers nor a file that exists",
-                        "camera '" + text + "'", "+x -x +y -y +z -z iso; ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy; FILE.json");
+                        "camera '" + detail::shortened(text) + "'",
+                        "+x -x +y -y +z -z iso; ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy; FILE.json");
         }
         camera = read_camera(text);
     }

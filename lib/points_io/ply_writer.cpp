@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
-#include <charconv>
 #include <cstdint>
 
+#include "number_writer.h"
 #include "output_file.h"
 #include "ply_splats.h"
 #include "points_file.h"
@@ -14,49 +14,6 @@ namespace subvol::detail {
 namespace {
 
 const char* const kBinary = std::endian::native == std::endian::little ? "binary_little_endian" : "binary_big_endian";
-
-/// Writes numbers in either encoding; as text, each with the fewest digits that reproduce it exactly.
-class NumberWriter {
-public:
-    NumberWriter(OutputFile& out, bool ascii) : out_(out), ascii_(ascii) {}
-
-    template <class Number>
-    void put(Number number) {
-        if (!ascii_) {
-            buffer_.append(reinterpret_cast<const char*>(&number), sizeof number);
-            return;
-        }
-        std::array<char, 32> digits;
-        buffer_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
-        buffer_ += ' ';
-    }
-
-    template <class Numbers>
-    void put_all(const Numbers& numbers) {
-        for (const auto number : numbers) put(number);
-    }
-
-    template <class Number>
-    void put_point(const Vec3& p) {
-        for (int k = 0; k < 3; ++k) put(static_cast<Number>(p[k]));
-    }
-
-    void end_row() {
-        if (ascii_) buffer_.back() = '\n';
-        if (buffer_.size() > kFlush) flush();
-    }
-
-    void flush() {
-        out_.write(buffer_);
-        buffer_.clear();
-    }
-
-private:
-    static constexpr std::size_t kFlush = 1 << 16;
-    OutputFile& out_;
-    bool ascii_;
-    std::string buffer_;
-};
 
 /// The vertices: the properties in the header and in the rows have the same order.
 class VertexElement {

@@ -117,4 +117,11 @@ inline std::optional<std::filesystem::path> data_folder() {
     return folder;
 }
 
+/// A folder or file beside it, if it exists.
+inline std::optional<std::filesystem::path> beside_data(const std::string& name) {
+    const auto folder = data_folder();
+    if (!folder || !std::filesystem::exists(*folder / ".." / name)) return std::nullopt;
+    return *folder / ".." / name;
+}
+
 }  // namespace subvol::test

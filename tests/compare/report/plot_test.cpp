@@ -226,12 +226,14 @@ TEST(Plot, PdfHasItsObjectsWhereItsTableSays) {
 }  // namespace
 TEST(Plot, MarksTheStudiedPlacesButNotThoseOfACurve) {
     const auto circles = [](std::size_t count) {
-        PlotLine line{.name = "a"};
+        Plot plot;
+        plot.lines.resize(1);
+        PlotLine& line = plot.lines[0];
         for (std::size_t i = 1; i <= count; ++i) {
             line.x.push_back(static_cast<double>(i));
             line.y.push_back(static_cast<double>(i * i));
         }
-        const std::string svg = plot_svg({.lines = {line}});
+        const std::string svg = plot_svg(plot);
         std::size_t found = 0;
         for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++found;
         return found;

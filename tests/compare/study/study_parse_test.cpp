@@ -106,6 +106,15 @@ TEST_P(StudyMistake, IsToldWithItsPlace) {
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
+TEST(StudyMistakes, LongNamesAreShortened) {
+    for (const std::string part : {R"("method": "tets")", R"("camera": "-y")"}) {
+        const std::string key = part.substr(0, part.find(':')), letters(5000, 'c');
+        const std::string message = error_of([&] { (void)parse(study_with(part, key + ": \"" + letters + "\"")); });
+        EXPECT_NE(message.find(std::string(30, 'c')), std::string::npos) << message;
+        EXPECT_LT(message.size(), 400U) << message;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Study, StudyMistake,
     testing::Values(
@@ -139,6 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"[50, 100]", "50, \"kernel\": {\"type\": \"gaussian\", \"sigma\": -1}", "methods[0].kernel: "},
         Mistake{"[50, 100]", "50, \"given\": {\"x\": []}", "methods[0].given.x: must be a number or a string, not a list"},
         Mistake{R"({"name": "front", "camera": "-y"})", R"({"name": "front"})", "cameras[1].camera: the camera is missing"},
+        Mistake{R"("camera": "-y")", R"("camera": "above")", "cameras[1]: camera 'above': is neither a view nor ten numbers"},
         Mistake{R"({"name": "front", "camera": "-y"})", "3", "cameras[1]: must be a string, not a number"},
         Mistake{"[64, 48]", "[64]", "size: a size is a width and a height"},
         Mistake{"[64, 48]", "[64, 1e9]", "size[1]: 1000000000.0 is out of range"},

@@ -138,9 +138,8 @@ TEST_F(FrdFuzz, WithResults) {
 
 // The deck of a beam of curved elements and its results are of one mesh.
 TEST_F(Frd, RealFiles) {
-    const auto folder = data_folder().value_or("") / "../series";
-    if (!data_folder() || !std::filesystem::exists(folder / "beamp.frd"))
-        GTEST_SKIP() << "no folder series beside the one that SUBVOL_DATA names";
+    if (!beside_data("series/beamp.frd")) GTEST_SKIP() << "no series/beamp.frd beside the folder that SUBVOL_DATA names";
+    const auto folder = *beside_data("series");
     const ReadResult beam = read_mesh(folder / "beamp.frd"), deck = read_mesh(folder / "beamp.inp");
     EXPECT_EQ(read_mesh(folder / "beamp.frd", {.curved_tolerance = std::nullopt}).mesh.cells.size(), deck.mesh.cells.size());
     EXPECT_NEAR(inspect(beam.mesh).volume, inspect(deck.mesh).volume, 1e-4 * inspect(deck.mesh).volume);

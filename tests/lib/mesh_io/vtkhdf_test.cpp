@@ -181,10 +181,9 @@ TEST_F(VtkHdf, WrongFilesGetASentence) {
 }
 
 TEST_F(VtkHdf, RealFile) {
-    const auto file = data_folder().value_or("") / "../series/can.vtkhdf";
-    if (!data_folder() || !std::filesystem::exists(file))
-        GTEST_SKIP() << "no folder series beside the one that SUBVOL_DATA names";
-    const ReadResult result = read_mesh(file);
+    const auto file = beside_data("series/can.vtkhdf");
+    if (!file) GTEST_SKIP() << "no series/can.vtkhdf beside the folder that SUBVOL_DATA names";
+    const ReadResult result = read_mesh(*file);
     EXPECT_EQ(result.mesh.points.size(), 6724u);
     EXPECT_EQ(result.mesh.cells.size(), 4800u);
     for (const std::string name : {"ACCL", "DISPL", "VEL"}) EXPECT_EQ(result.mesh.find_attribute(name)->channels, 3) << name;

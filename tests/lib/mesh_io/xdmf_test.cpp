@@ -96,7 +96,7 @@ TEST_F(Xdmf, StructuredGridsCountZFirst) {
     const std::string field = "<Attribute Name=\"x\" Center=\"Node\">" + item(x, "2 3 4") + "</Attribute>";
     const std::string cuts =
         item(std::vector{0, 1, 2, 3}, "4") + item(std::vector{0, 1, 2}, "3") + item(std::vector{0, 1}, "2");
-    for (const std::string content :
+    for (const std::string& content :
          {"<Topology TopologyType=\"3DSMesh\" Dimensions=\"2 3 4\"/>" + geometry(mesh),
           "<Topology TopologyType=\"3DRectMesh\" Dimensions=\"2 3 4\"/><Geometry GeometryType=\"VXVYVZ\">" + cuts +
               "</Geometry>",
