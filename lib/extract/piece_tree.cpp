@@ -19,7 +19,7 @@ constexpr std::size_t kMostBytes = std::size_t{2} << 30;
 constexpr std::size_t kLeafSize = 4;
 constexpr std::size_t kMostCandidates = 8;
 constexpr int kMostSteps = 12;
-constexpr double kNearEnough = 1e-5;  // of a piece's side
+constexpr double kNearEnough = 1e-3;  // of a piece's side; the step that follows would be about its square
 constexpr double kFarOutside = 0.5;   // of a piece's side
 
 HexMesh bare(const HexMesh& mesh) {
@@ -49,7 +49,9 @@ PieceTree::PieceTree(const HexMesh& mesh, const SchemeOptions& scheme, double re
     reach_ = reach + distance_;
     std::vector<Vec3> centers(pieces_->cells.size());
     parallel_each(centers.size(), [&](std::size_t p) { centers[p] = pieces_->position(p, LimitPieces::kNodes / 2); });
-    tree_.emplace(centers, kLeafSize, [this](Index piece) { return box_of(piece); });
+    boxes_.resize(pieces_->cells.size());
+    parallel_each(boxes_.size(), [&](std::size_t p) { boxes_[p] = box_of(p); });
+    tree_.emplace(centers, kLeafSize, [this](Index piece) { return boxes_[piece]; });
 }
 
 /// Of the control points of the piece, along one axis after the other.
@@ -111,19 +113,29 @@ std::optional<NearPlace> PieceTree::invert(std::size_t piece, const Vec3& x) con
 
 void PieceTree::find(const Vec3& x, std::vector<NearPlace>& found) const {
     found.clear();
-    thread_local std::vector<Index> pieces;
-    pieces.clear();
-    tree_->visit_leaves(
-        [&](const Box& box) {
-            return glm::all(glm::lessThanEqual(box.lower, x)) && glm::all(glm::lessThanEqual(x, box.upper));
-        },
-        [&](std::size_t first, std::size_t last) {
-            for (std::size_t slot = first; slot < last; ++slot) pieces.push_back(tree_->item(slot));
-            return false;
-        });
-    std::ranges::sort(pieces);
-    for (const Index piece : pieces) {
-        if (const auto near = invert(piece, x)) found.push_back(*near);
+    struct Candidate {
+        double distance;  // from the middle of its box, 0 to 1 in it
+        Index piece;
+        auto operator<=>(const Candidate&) const = default;
+    };
+    thread_local std::vector<Candidate> candidates;
+    candidates.clear();
+    const auto contains = [&](const Box& box) {
+        return glm::all(glm::lessThanEqual(box.lower, x)) && glm::all(glm::lessThanEqual(x, box.upper));
+    };
+    tree_->visit_leaves(contains, [&](std::size_t first, std::size_t last) {
+        for (std::size_t slot = first; slot < last; ++slot) {
+            const Index piece = tree_->item(slot);
+            const Box& box = boxes_[piece];
+            if (!contains(box)) continue;
+            const Vec3 from = glm::abs(2.0 * x - box.lower - box.upper) / (box.upper - box.lower);
+            candidates.push_back({std::max({from.x, from.y, from.z}), piece});
+        }
+        return false;
+    });
+    std::ranges::sort(candidates);
+    for (const Candidate& candidate : candidates) {
+        if (const auto near = invert(candidate.piece, x)) found.push_back(*near);
         if (!found.empty() && found.back().excess == 0) {
             std::swap(found.front(), found.back());
             found.resize(1);

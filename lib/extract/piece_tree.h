@@ -38,6 +38,7 @@ private:
 
     std::shared_ptr<const LimitPieces> pieces_;
     double distance_ = 0, reach_ = 0;
+    std::vector<Box> boxes_;  // of the pieces
     std::optional<MedianTree<Box>> tree_;
 };
 

@@ -23,8 +23,10 @@ namespace {
 
 constexpr std::size_t kBatch = std::size_t{1} << 19;  // places that are open at a time
 constexpr int kMostRounds = 24;                       // for all candidates of a place together
-// A step this small (in parameters) is the last: what it changes is linear to within 1e-8 of the field's change in a cell.
-constexpr double kLastStep = 1e-4;
+// A step this small (in parameters) is the last: what it changes is linear to within 1e-7 of the field's change in a cell.
+constexpr double kLastStep = 3e-4;
+// The first rounds end at the piece's distance from the limit anyway: they need only so much of the diagonal.
+constexpr std::array kFirstTolerances{1e-4, 1e-5};
 
 /// A place that has not been found yet.
 ///
@@ -66,7 +68,7 @@ struct LimitProbe::State {
 
     void run(std::span<const Vec3> places, std::size_t begin, Progress* progress, ProbeResult& result) const;
     [[nodiscard]] std::vector<Open> find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const;
-    void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::size_t begin,
+    void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, bool may_end, std::size_t begin,
                 std::span<const NearPlace> candidates, ProbeResult& result) const;
     static void write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step,
                       double distance, std::size_t to, ProbeResult& result);
@@ -133,17 +135,21 @@ void LimitProbe::State::run(std::span<const Vec3> places, std::size_t begin, Pro
         report_progress(progress, "probe", static_cast<double>(begin) / static_cast<double>(result.cells.size()));
         queries.clear();
         for (const Open& one : open) queries.push_back(one.at);
-        const LimitSamples samples = limit->at(queries);
-        detail::parallel_each(
-            open.size(), [&](std::size_t i) { settle(open[i], i, samples, places[open[i].place], begin, candidates, result); });
+        const bool coarse = round < static_cast<int>(kFirstTolerances.size());
+        const double tolerance = coarse ? kFirstTolerances[static_cast<std::size_t>(round)] : 0;
+        const bool last = tolerance <= options.limit.tolerance;
+        const LimitSamples samples = limit->at(queries, last ? options.limit.tolerance : tolerance);
+        detail::parallel_each(open.size(), [&](std::size_t i) {
+            settle(open[i], i, samples, places[open[i].place], last, begin, candidates, result);
+        });
         std::erase_if(open, [](const Open& one) { return one.done; });
         result.rounds = std::max(result.rounds, round + 1);
     }
 }
 
-/// One step of Newton's method; the last one is written down.
-void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::size_t begin,
-                               std::span<const NearPlace> candidates, ProbeResult& result) const {
+/// One step of Newton's method; the last one is written down. may_end: the samples have the final tolerance
+void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, bool may_end,
+                               std::size_t begin, std::span<const NearPlace> candidates, ProbeResult& result) const {
     const Vec3 offset = place - samples.positions[query];
     const detail::LimitStep step = detail::step_towards(offset, samples.jacobians[query], open.at, steps);
     const double size = std::max({std::abs(step.by.x), std::abs(step.by.y), std::abs(step.by.z)});
@@ -152,7 +158,7 @@ void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples
     const bool stays = glm::all(glm::greaterThanEqual(next.uvw, Vec3(-kLastStep))) &&
                        glm::all(glm::lessThanEqual(next.uvw, Vec3(1 + kLastStep)));
     const bool found = left <= on_boundary;
-    if (size < kLastStep && stays) {
+    if (may_end && size < kLastStep && stays) {
         if (found || left <= options.reach_world) {
             write(open, query, samples, step, found ? 0 : left, begin + open.place, result);
             open.done = true;

@@ -123,8 +123,11 @@ LimitEvaluator::~LimitEvaluator() = default;
 LimitEvaluator::LimitEvaluator(LimitEvaluator&&) noexcept = default;
 LimitEvaluator& LimitEvaluator::operator=(LimitEvaluator&&) noexcept = default;
 
-LimitSamples LimitEvaluator::at(std::span<const LimitQuery> queries) const {
-    const auto& [options, control, scales, descents] = *state_;
+LimitSamples LimitEvaluator::at(std::span<const LimitQuery> queries, std::optional<double> tolerance) const {
+    const auto& [usual, control, scales, descents] = *state_;
+    LimitOptions options = usual;
+    if (tolerance) options.tolerance = *tolerance;
+    check(options);
     check(control, queries);
     LimitSamples samples = make_samples(control, queries.size());
     const auto order = sorted_by_cells(queries, control.cells.size());

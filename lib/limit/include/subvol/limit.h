@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -79,8 +80,10 @@ public:
 
     /// What `evaluate_limit` returns for these places, bit for bit. Several threads may call it.
     ///
-    /// throws: Error(InvalidInput) if a query names a cell that does not exist or lies outside [0,1]³
-    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries) const;
+    /// tolerance: instead of that of the options
+    /// throws:    Error(InvalidInput) if a query names a cell that does not exist or lies outside [0,1]³, or if the tolerance is
+    ///            negative
+    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, std::optional<double> tolerance = {}) const;
 
 private:
     struct State;
