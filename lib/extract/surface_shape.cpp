@@ -5,25 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
-
-#include "subvol/detail/triangle_distance.h"
 
 namespace subvol::detail {
 
 namespace {
 
-double least_angle_deg(const Vec3& a, const Vec3& b, const Vec3& c) {
-    double least = 180;
-    const std::array<Vec3, 3> p{a, b, c};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 u = p[(k + 1) % 3] - p[k], v = p[(k + 2) % 3] - p[k];
-        const double angle = std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
-        least = std::min(least, angle * 180 / std::numbers::pi);
-    }
-    return least;
-}
+constexpr double kSharp = 0.8;  // cosine: triangles of the hull that bend by more meet at a crease
 
 Index root_of(std::vector<Index>& parents, Index p) {
     while (parents[p] != p) p = parents[p] = parents[parents[p]];
@@ -86,172 +74,6 @@ void measure_surface(const Surface& surface, SurfaceReport& report) {
         surface.triangles.empty() ? 0 : static_cast<double>(small) / static_cast<double>(surface.triangles.size());
 }
 
-namespace {
-
-constexpr double kSharp = 0.8;  // cosine: triangles of the hull that bend by more meet at a crease
-
-constexpr double kSmallAngle_deg = 25;  // triangles with a smaller one are looked at
-constexpr int kMostPasses = 6;
-
-/// Collapses edges, one after the other: the result depends on the order alone, which is that of the triangles.
-class Collapser {
-public:
-    Collapser(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines, double slack,
-              std::vector<std::array<Index, 3>>& triangles)
-        : points_(points),
-          normals_(normals),
-          lines_(std::move(lines)),
-          slack_(slack),
-          triangles_(triangles),
-          around_(points.size()),
-          alive_(triangles.size(), 1) {
-        for (Index t = 0; t < triangles.size(); ++t) {
-            for (const Index p : triangles[t]) around_[p].push_back(t);
-        }
-    }
-
-    std::size_t run() {
-        std::size_t collapsed = 0;
-        for (int pass = 0; pass < kMostPasses; ++pass) {
-            const std::size_t before = collapsed;
-            for (Index t = 0; t < triangles_.size(); ++t) collapsed += alive_[t] != 0 && mend(t) ? 1 : 0;
-            if (collapsed == before) break;
-        }
-        std::size_t kept = 0;
-        for (std::size_t t = 0; t < triangles_.size(); ++t) {
-            if (alive_[t] != 0) triangles_[kept++] = triangles_[t];
-        }
-        triangles_.resize(kept);
-        return collapsed;
-    }
-
-private:
-    [[nodiscard]] double angle_of(const std::array<Index, 3>& t) const {
-        return least_angle_deg(points_[t[0]], points_[t[1]], points_[t[2]]);
-    }
-
-    /// Tries the edges of a triangle with a small angle, the shortest first.
-    bool mend(Index t) {
-        const auto corners = triangles_[t];
-        const double angle = angle_of(corners);
-        if (angle > kSmallAngle_deg) return false;
-        std::array<std::size_t, 3> order{0, 1, 2};
-        const auto length = [&](std::size_t k) { return glm::distance(points_[corners[k]], points_[corners[(k + 1) % 3]]); };
-        std::ranges::sort(order, {}, length);
-        for (const std::size_t k : order) {
-            const Index a = corners[k], b = corners[(k + 1) % 3];
-            const double to_b = outcome(a, b), to_a = outcome(b, a);  // the least angle afterwards
-            if (std::max(to_a, to_b) <= angle) continue;
-            if (to_b >= to_a) {
-                collapse(a, b);
-            } else {
-                collapse(b, a);
-            }
-            return true;
-        }
-        return false;
-    }
-
-    void neighbors_of(Index p, std::vector<Index>& found) const {
-        found.clear();
-        for (const Index t : around_[p]) {
-            for (const Index q : triangles_[t]) {
-                if (q != p) found.push_back(q);
-            }
-        }
-        std::ranges::sort(found);
-    }
-
-    [[nodiscard]] bool is_sharp(Index p) const { return lines_.fixed[p] != 0 || lines_.next[p][0] != kNone; }
-
-    /// Of a point on a line that is to go to its neighbour `to`: the neighbour on its other side, or kNone if it must stay.
-    [[nodiscard]] Index other_end(Index from, Index to) const {
-        const auto& [a, b] = lines_.next[from];
-        if ((a != to && b != to) || a == b) return kNone;
-        const Index other = a == to ? b : a;
-        // What is left of the line must be as near to the point as the surface is to the limit.
-        if (squared_distance(points_[from], points_[to], points_[other]) > 0.25 * slack_ * slack_) return kNone;
-        return other;
-    }
-
-    /// The least angle about `to` after `from` has been moved there; −1 if that must not be.
-    [[nodiscard]] double outcome(Index from, Index to) {
-        if (lines_.fixed[from] != 0) return -1;
-        const Index other = lines_.next[from][0] == kNone ? kNone : other_end(from, to);
-        if (is_sharp(from) && other == kNone) return -1;
-        std::size_t shared = 0;
-        for (const Index t : around_[from]) shared += contains(triangles_[t], to) ? 1 : 0;
-        if (shared == 0 || shared > 2) return -1;
-        if (shared == 1 && other == kNone) return -1;  // the edge is on a border, the point is not
-        // The link condition: the ends have no neighbours in common but those of the triangles that vanish.
-        neighbors_of(from, first_);
-        neighbors_of(to, second_);
-        first_.erase(std::unique(first_.begin(), first_.end()), first_.end());
-        second_.erase(std::unique(second_.begin(), second_.end()), second_.end());
-        common_.clear();
-        std::ranges::set_intersection(first_, second_, std::back_inserter(common_));
-        if (common_.size() != shared || first_.size() <= 3 || second_.size() <= 3) return -1;
-        if (other != kNone && std::ranges::binary_search(second_, other)) return -1;  // the line would fold
-        double least = 180;
-        for (const Index t : around_[from]) {
-            if (contains(triangles_[t], to)) continue;
-            auto moved = triangles_[t];
-            for (Index& p : moved) p = p == from ? to : p;
-            const Vec3 &a = points_[moved[0]], &b = points_[moved[1]], &c = points_[moved[2]];
-            const Vec3 normal = glm::cross(b - a, c - a);
-            const double size = glm::length(normal);
-            if (!(size > 0)) return -1;
-            for (const Index p : moved) {
-                if (!is_sharp(p) && glm::dot(normal, normals_[p]) < 0.5 * size) return -1;
-            }
-            // A face may turn by no more than it bends anyway.
-            const auto& before = triangles_[t];
-            const Vec3 old = glm::cross(points_[before[1]] - points_[before[0]], points_[before[2]] - points_[before[0]]);
-            if (glm::dot(old, normal) < 0.5 * glm::length(old) * size) return -1;
-            least = std::min(least, angle_of(moved));
-        }
-        for (const Index p : first_) {
-            if (p == to || is_sharp(p) || is_sharp(to)) continue;
-            if (bend(points_[p], points_[to], normals_[p], normals_[to]) > slack_) return -1;
-        }
-        return least;
-    }
-
-    static bool contains(const std::array<Index, 3>& t, Index p) { return t[0] == p || t[1] == p || t[2] == p; }
-
-    void collapse(Index from, Index to) {
-        if (lines_.next[from][0] != kNone) {
-            const Index other = other_end(from, to);
-            for (Index& end : lines_.next[to]) end = end == from ? other : end;
-            for (Index& end : lines_.next[other]) end = end == from ? to : end;
-        }
-        for (const Index t : around_[from]) {
-            if (contains(triangles_[t], to)) {
-                alive_[t] = 0;
-                for (const Index p : triangles_[t]) {
-                    if (p != from) std::erase(around_[p], t);
-                }
-            } else {
-                for (Index& p : triangles_[t]) p = p == from ? to : p;
-                around_[to].push_back(t);
-            }
-        }
-        std::ranges::sort(around_[to]);
-        around_[from].clear();
-    }
-
-    const std::vector<Vec3>& points_;
-    const std::vector<Vec3>& normals_;
-    SharpLines lines_;
-    double slack_;
-    std::vector<std::array<Index, 3>>& triangles_;
-    std::vector<std::vector<Index>> around_;  // the triangles of each point, ascending
-    std::vector<std::uint8_t> alive_;
-    std::vector<Index> first_, second_, common_;
-};
-
-}  // namespace
-
 SharpLines sharp_lines(const std::vector<Vec3>& points, const std::vector<std::array<Index, 3>>& triangles,
                        std::span<const std::uint8_t> hull) {
     struct Side {
@@ -305,11 +127,6 @@ SharpLines sharp_lines(const std::vector<Vec3>& points, const std::vector<std::a
         if (lines.next[p][0] != kNone && lines.next[p][1] == kNone) lines.fixed[p] = 1;  // its end
     }
     return lines;
-}
-
-std::size_t collapse_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines,
-                             double slack_world, std::vector<std::array<Index, 3>>& triangles) {
-    return Collapser(points, normals, std::move(lines), slack_world, triangles).run();
 }
 
 }  // namespace subvol::detail

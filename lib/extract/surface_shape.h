@@ -26,13 +26,17 @@ struct SharpLines {
 [[nodiscard]] SharpLines sharp_lines(const std::vector<Vec3>& points, const std::vector<std::array<Index, 3>>& triangles,
                                      std::span<const std::uint8_t> hull);
 
-/// Collapses edges of triangles with small angles on to one of their ends, where the surface stays what it is: manifold, with
-/// the same holes, borders and sharp lines, its triangles facing as before, and within tolerance. Points keep their places.
+/// The smallest angle of a triangle, in degrees.
+[[nodiscard]] double least_angle_deg(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// Collapses edges of triangles with small angles on to one of their ends, or flips them, where the surface stays what it is:
+/// manifold, with the same holes, borders and sharp lines, its triangles facing as before, and within tolerance. Points keep
+/// their places.
 ///
 /// slack_world: how far new edges may bend away from the limit, by the normals
 /// returns: how many edges; points that are no longer used are kept
-std::size_t collapse_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines,
-                             double slack_world, std::vector<std::array<Index, 3>>& triangles);
+std::size_t mend_slivers(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, SharpLines lines,
+                         double slack_world, std::vector<std::array<Index, 3>>& triangles);
 
 /// How far the limit is from the middle of an edge, by the normals at its ends: exact for circles.
 [[nodiscard]] inline double bend(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {

@@ -152,6 +152,22 @@ TEST(LimitSurface, IsClosedAndManifoldOnIrregularMeshes) {
     }
 }
 
+// Where a cap meets its isosurface, points of both lie close together.
+TEST(LimitSurface, CapsHaveHardlyASliver) {
+    const HexMesh mesh = make_model("twist", 10);
+    const SurfaceOptions options{.isos = {0.1}, .cap = true};
+    SurfaceOptions as_cut = options;
+    as_cut.improve = false;
+    const SurfaceReport before = limit_surface(mesh, "density", as_cut).report,
+                        after = limit_surface(mesh, "density", options).report;
+    EXPECT_GT(before.small_angles, 0.1);
+    EXPECT_LT(after.small_angles, 0.002);
+    EXPECT_GT(after.mended, 0U);
+    EXPECT_TRUE(after.watertight);
+    EXPECT_EQ(after.euler, before.euler);
+    EXPECT_NEAR(after.area / before.area, 1, 2e-3);
+}
+
 TEST(LimitSurface, CollapsingLeavesFewerSlivers) {
     const HexMesh mesh = ball_with_radius(6);
     const LimitSurface before = limit_surface(mesh, "r2", {.isos = {0.3}, .improve = false});

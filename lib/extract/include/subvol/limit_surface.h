@@ -21,7 +21,7 @@ namespace subvol {
 /// tolerance:     how far triangles may lie from the limit, as a part of the longest side of the box; > 0
 /// max_level:     cells are refined no further, 1 to 8
 /// max_triangles: the search for a finer level ends before there would be more
-/// improve:       edges that are short for their surroundings are collapsed, so that fewer triangles are slivers
+/// improve:       edges of triangles with small angles are collapsed or flipped, so that fewer of them are slivers
 struct SurfaceOptions {
     SchemeOptions scheme{};
     std::vector<double> isos{};
@@ -43,7 +43,7 @@ struct SurfaceOptions {
 /// euler:           points − edges + triangles
 /// components:      parts that are not joined
 /// min_angle_deg:   the least angle of a triangle; small_angles: the part of triangles with one below 10°
-/// collapsed:       edges
+/// mended:          edges collapsed or flipped
 struct SurfaceReport {
     int level = 0;
     double deviation_world = 0;
@@ -54,7 +54,7 @@ struct SurfaceReport {
     long euler = 0;
     std::size_t components = 0;
     double min_angle_deg = 0, small_angles = 0;
-    std::size_t collapsed = 0;
+    std::size_t mended = 0;
 };
 
 /// Triangles on the limit, counter-clockwise seen from where the field is below the isovalue, or from outside the volume.
