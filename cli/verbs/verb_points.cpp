@@ -7,11 +7,13 @@
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "points_input.h"
+#include "quantities.h"
 #include "sampled_points.h"
 #include "steps.h"
 #include "subvol/clamp_channel.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
+#include "subvol/points_error.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_points.h"
 #include "text.h"
@@ -40,12 +42,14 @@ public:
         sample_.add_to(app());
         app().add_option("--tf", transfer_function_, "the colour map for --threshold, as for `render`")->type_name("FILE|NAME");
         app().add_flag("--clamp", clamp_, "keep the kernels' values within the field's range: interpolating schemes overshoot");
+        app().add_flag("--error", error_,
+                       "also write a channel NAME_error: about how far the sum of kernels is from the limit near each");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
                         "--reduce", "--levels", "--scheme"});
         group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
                                     "--footprint-size", "--threshold", "--tf", "--reduce", "--refine"});
-        group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction"});
+        group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction", "--error"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
 
@@ -97,6 +101,7 @@ private:
 
     [[nodiscard]] RbfVolume points_of_mesh(const CommonOptions& options, Report& report) {
         HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report);
+        const HexMesh compared = error_ ? mesh : HexMesh{};
         const Range given = field_range(mesh);
         RbfVolume volume = sample_reported(std::move(mesh), sample_, refine_, seen(given), report);
         if (clamp_) {
@@ -104,11 +109,27 @@ private:
         } else {
             note_beyond(volume.channels.front().name, given, channel_range(volume, 0), report);
         }
+        if (error_) add_error(compared, volume, report);
         return volume;
+    }
+
+    void add_error(const HexMesh& mesh, RbfVolume& volume, Report& report) const {
+        const std::string name = volume.channels.front().name;
+        const SchemeOptions scheme = refine_.options(0, report).scheme;
+        const PointsError error = report.timed(
+            "error", [&] { return points_error(volume, mesh, name, {.scheme = scheme, .progress = report.progress()}); });
+        volume.channels.push_back(error_channel(error, name));
+        report["error_max"] = error.max;
+        report["error_rms"] = error.rms;
+        if (error.gaps > 0) {
+            report.warn(
+                text(count_text(error.gaps), " of ", count_text(error.places), " places inside have no kernel near them"));
+        }
     }
 
     [[nodiscard]] RbfVolume points_of_grid(Report& report) {
         refuse_options(app(), {"--clamp"}, "needs a mesh: the values of voxels are within their range");
+        refuse_options(app(), {"--error"}, "needs a mesh; this is a grid of voxels");
         const VdbGrid grid = load_grid(input_, common(), report);
         return sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
     }
@@ -121,7 +142,7 @@ private:
     std::string input_;
     std::string output_;
     bool ascii_ = false;
-    bool splats_ = false, clamp_ = false;
+    bool splats_ = false, clamp_ = false, error_ = false;
     std::string transfer_function_;
     SampleArguments sample_;
     RefineArguments refine_;

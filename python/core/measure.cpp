@@ -5,6 +5,7 @@
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
+#include "subvol/points_error.h"
 #include "subvol/probe.h"
 
 namespace subvol::python {
@@ -55,6 +56,18 @@ py::dict probe(const HexMesh& mesh, const py::object& given, const std::string& 
     result["cells"] = cells_of(found.cells, {length(places.size())});
     result["parameters"] = owned(std::move(found.parameters));
     return result;
+}
+
+py::tuple error_of_points(const RbfVolume& volume, const HexMesh& mesh, const std::string& field, const std::string& scheme,
+                          double tension, const std::optional<double>& crease_angle, std::size_t channel,
+                          const py::object& progress) {
+    PointsErrorOptions options{.scheme = scheme_of(scheme, tension, crease_angle), .channel = channel};
+    PointsError error = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return points_error(volume, mesh, field, options);
+    });
+    const py::ssize_t count = length(error.of_points.size());
+    return py::make_tuple(owned(std::move(error.of_points), {count}), error.max, error.rms, error.gaps);
 }
 
 py::dict as_dict(PartMeasure part) {
@@ -150,6 +163,8 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
 void bind_measure(py::module_& module) {
     module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("scheme"), py::arg("tension"),
                py::arg("crease_angle"), py::arg("reach"), py::arg("progress"));
+    module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("scheme"),
+               py::arg("tension"), py::arg("crease_angle"), py::arg("channel"), py::arg("progress"));
     module.def("measure", &measure, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
                py::arg("tolerance"), py::arg("bins"), py::arg("progress"));
     module.def("slice", &slice, py::arg("mesh"), py::arg("field"), py::arg("point"), py::arg("normal"), py::arg("resolution"),

@@ -97,7 +97,11 @@ py::dict figures_of(const HexMesh& mesh) {
 
 py::tuple read(const std::string& path, const std::string& other_cells, const std::optional<double>& weld,
                const std::vector<std::string>& sharp, const std::optional<std::size_t>& step,
-               const std::vector<std::string>& blocks) {
+               const std::vector<std::string>& blocks, const std::optional<std::string>& cell_values) {
+    if (cell_values && *cell_values != "fit" && *cell_values != "mean") {
+        throw unknown_word(*cell_values, "cell_values", "fit or mean");
+    }
+    const CellValues means = !cell_values ? CellValues::Auto : *cell_values == "fit" ? CellValues::Fit : CellValues::Mean;
     if (other_cells != "split" && other_cells != "ignore" && other_cells != "refuse") {
         throw unknown_word(other_cells, "other_cells", "split, ignore or refuse");
     }
@@ -106,7 +110,8 @@ py::tuple read(const std::string& path, const std::string& other_cells, const st
                                                       : OtherCells::Split;
     ReadResult result = [&] {
         const py::gil_scoped_release without_gil;
-        return read_mesh(path, {.other_cells = rule, .weld = weld, .sharp = sharp, .step = step, .blocks = blocks});
+        return read_mesh(
+            path, {.other_cells = rule, .weld = weld, .sharp = sharp, .step = step, .blocks = blocks, .cell_values = means});
     }();
     return py::make_tuple(std::move(result.mesh), result.warnings);
 }
@@ -177,7 +182,7 @@ void bind_mesh(py::module_& module) {
 
     module.def("read_mesh", &read, py::arg("path"), py::arg("other_cells") = "split", py::arg("weld") = py::none(),
                py::arg("sharp") = std::vector<std::string>{}, py::arg("step") = py::none(),
-               py::arg("blocks") = std::vector<std::string>{});
+               py::arg("blocks") = std::vector<std::string>{}, py::arg("cell_values") = py::none());
     module.def(
         "series_times",
         [](const std::string& path) {

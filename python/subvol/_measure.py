@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._core import HexMesh
+from ._core import HexMesh, RbfVolume
 from ._points import _selected
 from ._progress import Progress, listening
 
@@ -30,6 +30,29 @@ class ProbeSamples:
     def inside(self) -> npt.NDArray[np.bool_]:
         """Whether each place is in the volume."""
         return np.asarray(self.cells >= 0)
+
+
+@dataclass(frozen=True)
+class PointsError:
+    """of_points: (n,), of each kernel the largest difference near it, in the field's unit; max, rms: over all places that were compared;
+    gaps: places in the volume that no kernel reaches"""
+
+    of_points: npt.NDArray[np.float64]
+    max: float
+    rms: float
+    gaps: int
+
+
+def points_error(volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, *, channel: int = 0, scheme: str = "mcq",
+                 tension: float = 1 / 16, crease_angle: Optional[float] = None, progress: Progress = None) -> PointsError:
+    """How far the sum of kernels is from the limit of a mesh near each kernel: an estimate, from nine places each.
+
+    field:   of the mesh, as for `sample`
+    channel: of the kernels, which is compared with it
+    """
+    mesh = _selected(mesh, field)
+    with listening(progress) as listener:
+        return PointsError(*_core.points_error(volume, mesh, next(iter(mesh.fields)), scheme, tension, crease_angle, channel, listener))
 
 
 def probe(mesh: HexMesh, places: npt.ArrayLike, *, scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None,

@@ -13,7 +13,7 @@ from ._progress import Progress, listening
 
 
 def read_mesh(path: Path, *, other_cells: str = "split", weld: Optional[float] = None, sharp: Sequence[str] = (),
-              step: Optional[int] = None, blocks: Sequence[str] = ()) -> HexMesh:
+              step: Optional[int] = None, blocks: Sequence[str] = (), cell_values: Optional[str] = None) -> HexMesh:
     """Reads a mesh. The extension of the file name decides the format; docs/formats.md has the list.
 
     other_cells: "split" (tetrahedra, prisms and pyramids become hexahedra, with a warning), "ignore" or "refuse"
@@ -21,13 +21,15 @@ def read_mesh(path: Path, *, other_cells: str = "split", weld: Optional[float] =
     sharp:       names of groups of faces and edges that stay sharp (MEDIT, Gmsh)
     step:        of a series (`open_series`), from 0; None: the last one
     blocks:      names of the parts that are read; none: all
+    cell_values: "fit" (values at points whose volume has the cells' means) or "mean" (at each point the mean of its cells); None: what
+                 suits the format, "fit" for OpenFOAM
 
     Warns (SubvolWarning) once for each thing left out, turned round or converted.
     Raises FileError if the file cannot be opened; InvalidInput, with file and line, if it is malformed.
     """
     if step is not None and step < 0:
         raise InvalidInput(f"step: {step} is not a step", "step", "0 or more")
-    mesh, said = _core.read_mesh(path_bytes(path), other_cells, weld, list(sharp), step, list(blocks))
+    mesh, said = _core.read_mesh(path_bytes(path), other_cells, weld, list(sharp), step, list(blocks), cell_values)
     for text in said:
         warn(text)
     return mesh

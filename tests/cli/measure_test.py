@@ -147,5 +147,20 @@ class Surface(Refusing):
         self.assert_refused("surface", BOX, "-o", "a.stl", "--color-field", "density", naming=".ply")
 
 
+class Points(Refusing):
+    def test_errors_are_a_channel_and_figures(self):
+        made = self.run_ok("points", BOX, "-o", "a.ply", "--error", "--json").json()
+        self.assertLess(made["error_rms"], made["error_max"])
+        channels = self.run_ok("info", "a.ply", "--json").json()["channels"]
+        self.assertEqual([channel["name"] for channel in channels], ["density", "density_error"])
+        self.assertAlmostEqual(channels[1]["max"], made["error_max"], 6)
+
+    def test_only_meshes_have_a_limit(self):
+        self.run_ok("vdb", BOX, "-o", "a.vdb", "--resolution", 10)
+        done = subvol("points", "a.vdb", "-o", "a.ply", "--error", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn("needs a mesh", done.err)
+
+
 if __name__ == "__main__":
     unittest.main()

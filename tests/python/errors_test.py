@@ -104,3 +104,16 @@ def test_a_field_that_is_named_is_not_warned_about(cube):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         subvol.sample(cube, field="x")
+
+
+def test_values_at_cells_are_fitted_or_averaged(tmp_path):
+    name = tmp_path / "row.vtk"
+    points = "\n".join(f"{x} {y} {z}" for z in (0, 1) for y in (0, 1) for x in range(4))
+    cells = "\n".join("8 " + " ".join(str(x + d) for d in (0, 1, 5, 4, 8, 9, 13, 12)) for x in range(3))
+    name.write_text("# vtk DataFile Version 3.0\nrow\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 16 double\n" + points + "\nCELLS 3 27\n" +
+                    cells + "\nCELL_TYPES 3\n12\n12\n12\nCELL_DATA 3\nSCALARS heat double 1\nLOOKUP_TABLE default\n0\n1\n2\n")
+    with pytest.warns(subvol.SubvolWarning):
+        mean, fitted = (subvol.read_mesh(name, cell_values=kind).fields["heat"] for kind in ("mean", "fit"))
+    assert np.ptp(mean) == 2 and np.ptp(fitted) > 2.5  # a line through the means goes on to the ends
+    with pytest.raises(subvol.InvalidInput, match="fit or mean"):
+        subvol.read_mesh(name, cell_values="best")

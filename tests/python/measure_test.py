@@ -29,6 +29,17 @@ def test_outside_there_is_nothing(ball):
     assert len(subvol.probe(ball, []).cells) == 0
 
 
+def test_errors_of_kernels_fall_with_their_number(ball: subvol.HexMesh) -> None:
+    points = subvol.sample(ball, "density")
+    error = subvol.points_error(points, ball, "density")
+    assert error.of_points.shape == (len(points),) and error.of_points.max() == error.max and error.gaps == 0
+    assert 0 < error.rms < error.max < .5
+    finer = subvol.points_error(subvol.sample(ball, "density", per_edge=2), ball, "density")
+    assert finer.rms < error.rms
+    with pytest.raises(subvol.InvalidInput, match="channel"):
+        subvol.points_error(points, ball, channel=7)
+
+
 def test_integrals_of_the_ball(ball):
     found = subvol.measure(ball, bins=8)
     assert found["volume"] == pytest.approx(4 / 3 * np.pi, rel=2e-3)
