@@ -84,7 +84,7 @@ public:
         picture_.settle_look(!holds_points(input_) && !is_vdb_file(input_) && !splat_.shade);
         if (reference_.samples == 0) reference_.samples = picture_.look == Look::Solid ? 2 : 1;
         options_.samples = reference_.samples;
-        options_.clip = clip_.clip();
+        options_.clip = reference_.clip = clip_.clip();
         if (picture_.lit()) options_.shading = Shading{};
         check_reference();
         picture_.check();

@@ -21,7 +21,7 @@ void check(const CutPlane& plane, const char* kind, std::size_t number) {
     if (!finite(plane.point) || !finite(plane.normal)) {
         throw Error(ErrorCode::InvalidInput, "a plane has a number that is not finite", where, "a point and a normal");
     }
-    if (glm::length(plane.normal) == 0) {
+    if (plane.normal == Vec3(0.0)) {
         throw Error(ErrorCode::InvalidInput, "the normal of a plane has no length", where, "a direction such as 0,0,1");
     }
 }
@@ -113,6 +113,7 @@ void RayClip::cut(const Ray& ray, RayCut& result) const {
         if (depth > 0 && depth >= result.near && depth <= result.far && std::isfinite(depth)) result.slices.push_back(depth);
     }
     std::sort(result.slices.begin(), result.slices.end());
+    if (slices_alone_ && result.slices.empty()) result.far = -1;
 }
 
 }  // namespace detail

@@ -10,7 +10,8 @@
 namespace subvol::detail {
 
 /// What a clip leaves of a ray; depths are the parameter of Ray. near_face: the face at `near` in RayClip::faces(); kNoFace at
-/// the ray's origin. slices: depths of the slices that lie between both, ascending
+/// the ray's origin. slices: depths of the slices that lie between both, ascending. Empty too if slices are drawn alone and
+/// there are none
 struct RayCut {
     static constexpr std::size_t kNoFace = static_cast<std::size_t>(-1);
     double near = 0, far = std::numeric_limits<double>::infinity();
@@ -33,6 +34,7 @@ public:
 
     /// The planes, then those of the box; normals of unit length point to what is removed.
     [[nodiscard]] const std::vector<CutPlane>& faces() const { return faces_; }
+    [[nodiscard]] const std::vector<CutPlane>& slices() const { return slices_; }
 
     /// Uses the memory of `result` again.
     void cut(const Ray& ray, RayCut& result) const;
