@@ -8,6 +8,8 @@
 
 namespace subvol::fuzz {
 
+using namespace detail;
+
 namespace {
 
 int read(std::string_view text, const ReadOptions& options) {

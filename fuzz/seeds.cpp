@@ -85,6 +85,67 @@ void add_vtkhdf(Seeds& seeds) {
                             "Steps/NumberOfParts 2 : 1 1\nSteps/PointDataOffsets/T 2 : 0 8\nSteps/CellOffsets 2 1 : 0 0\n");
 }
 
+void add_cgns(Seeds& seeds) {
+    const std::string axes =
+        "Base/Zone/GridCoordinates GridCoordinates_t\nBase/Zone/GridCoordinates/CoordinateX DataArray_t 8 : 0 1 1 0 0 1 1 0\n"
+        "Base/Zone/GridCoordinates/CoordinateY DataArray_t 8 : 0 0 1 1 0 0 1 1\n"
+        "Base/Zone/GridCoordinates/CoordinateZ DataArray_t 8 : 0 0 0 0 1 1 1 1.\n";
+    const std::string solution =
+        "Base/Zone/S FlowSolution_t\nBase/Zone/S/Location GridLocation_t 10 : 'CellCenter\n"
+        "Base/Zone/S/Density DataArray_t 1 : 1\n";
+    seeds.add("cgns",
+              "Base CGNSBase_t 2 : 3 3\nBase/Zone Zone_t 1 3 : 8 1 0\nBase/Zone/ZoneType ZoneType_t 12 : 'Unstructured\n" +
+                  axes +
+                  "Base/Zone/E Elements_t 2 : 17 0\nBase/Zone/E/ElementRange IndexRange_t 2 : 1 1\n"
+                  "Base/Zone/E/ElementConnectivity DataArray_t 8 : 1 2 3 4 5 6 7 8\n" +
+                  solution);
+    seeds.add("cgns",
+              "Base CGNSBase_t 2 : 3 3\nBase/Zone Zone_t 3 3 : 2 2 2 1 1 1 0 0 0\n"
+              "Base/Zone/ZoneType ZoneType_t 10 : 'Structured\n" +
+                  axes + solution +
+                  "Base/Zone/S/Rind Rind_t 6 : 0 0 0 0 0 0\nBase/I BaseIterativeData_t 1 : 2\n"
+                  "Base/I/TimeValues DataArray_t 2 : 0 1.5\nBase/Zone/Z ZoneIterativeData_t\n"
+                  "Base/Zone/Z/FlowSolutionPointers DataArray_t 2 32 : 'S\n");
+}
+
+void add_decks(Seeds& seeds) {
+    const std::string nodes = "*NODE, NSET=all\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n";
+    const std::string hex = "*ELEMENT, TYPE=C3D8R, ELSET=a\n1,1,2,3,4,5,6,7,8\n";
+    seeds.add("inp", nodes + hex + "*ELSET, ELSET=b, GENERATE\n1,1,1\n*STEP\n*END STEP\n");
+    seeds.add("inp", "*PART, NAME=p\n" + nodes + hex +
+                         "*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=p\n1,0,0\n1,0,0,1,0,1,90\n*END INSTANCE\n"
+                         "*END ASSEMBLY\n");
+    seeds.add(
+        "inp",
+        "*NODE\n1,0,0,0\n5,4,0,0\n*NGEN, NSET=n\n1,5,1\n*NFILL\n*ELGEN, ELSET=e\n1,2,1,1\n*ELEMENT, TYPE=C3D4\n1,1,2,3,4\n");
+}
+
+void add_cases(Seeds& seeds) {
+    const std::string head = "FoamFile { version 2.0; format ascii; class ";
+    seeds.add("foam", "p" + head + "vectorField; }\n8 ((0 0 0) (1 0 0) (2 0 0) (0 1 0) (1 1 0) (2 1 0) (0 0 1) (1 0 1))");
+    seeds.add("foam", "f" + head + "faceCompactList; }\n3 (0 4 8)\n8 (1 4 10 7 0 6 9 3)");
+    seeds.add("foam", "f" + head + "faceList; }\n2 (4(1 4 10 7) 3(0 6 9))");
+    seeds.add("foam", "o" + head + "labelList; }\n11 (0 0 0 0 0 0 1 1 1 1 1)");
+    seeds.add("foam", "o" + std::string("FoamFile { format binary; arch \"LSB;label=32;scalar=64\"; class labelList; }\n2\n(") +
+                          little<std::int32_t>({0, 1}) + ")");
+    seeds.add("foam", "n" + head + "labelList; }\n1 {1}");
+    seeds.add(
+        "foam",
+        "T" + head + "volScalarField; }\ndimensions [0 1 0 0];\ninternalField uniform 3;\nboundaryField { a { type x; } }");
+    seeds.add("foam", "U" + head + "volVectorField; }\ninternalField nonuniform List<vector> 2 ((1 2 3) (4 5 6));");
+    seeds.add("series",
+              "d<VTKFile><Collection><DataSet timestep=\"0\" part=\"0\" file=\"1.vtu\"/><DataSet timestep=\"1\" "
+              "file=\"2.vtu\"/></Collection></VTKFile>");
+    seeds.add("series", R"(s{"file-series-version":"1.0","files":[{"name":"1.vtu","time":0},{"name":"2.vtu","time":1}]})");
+    seeds.add("series",
+              "p<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid GhostLevel=\"1\"><Piece Source=\"1.vtu\"/><Piece "
+              "Source=\"2.vtu\"/></PUnstructuredGrid></VTKFile>");
+    seeds.add(
+        "series",
+        "m<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><Block index=\"0\" name=\"a\"><DataSet index=\"0\" "
+        "file=\"1.vtu\"/></Block><DataSet index=\"1\" file=\"2.vtu\"/></vtkMultiBlockDataSet></VTKFile>");
+}
+
 void add_results(Seeds& seeds, const HexMesh& mesh) {
     std::string nodes = "    2C                             8                                     1\n", values;
     for (std::size_t p = 0; p < 8; ++p) {
@@ -155,6 +216,9 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
     add_binary_meshes(seeds, mesh);
     add_plot3d(seeds, mesh);
     add_vtkhdf(seeds);
+    add_cgns(seeds);
+    add_decks(seeds);
+    add_cases(seeds);
     add_results(seeds, mesh);
 #ifdef SUBVOL_FUZZ_EXODUS
     add_exodus(seeds, mesh);

@@ -98,7 +98,8 @@ void write_stl(OutputFile& out, const LimitSurface& surface) {
 }
 
 void write_vtp(OutputFile& out, const LimitSurface& surface, const std::optional<std::size_t>& color) {
-    const auto& [points, triangles] = surface.surface;
+    const auto& points = surface.surface.points;
+    const auto& triangles = surface.surface.triangles;
     detail::VtkXmlWriter xml(out, "PolyData");
     xml.line("<Piece NumberOfPoints=\"" + std::to_string(points.size()) +
              "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +

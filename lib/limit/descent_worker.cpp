@@ -113,10 +113,11 @@ void DescentWorker::descend(const DescentClass& is, std::uint8_t turn, int level
         return descend_grid({from, 6, stride_}, turn, level, places);
     }
     StepRows& rows = rows_[static_cast<std::size_t>(level)];
-    const auto& [table, children] = classes.children(is);
+    const ClassChildren& of_class = classes.children(is);
+    const StepTable& table = of_class.table;
     rows.begin(table, stride_);
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
-        const ClassChildren::Child& child = children[walk_octant(turn, octant)];
+        const ClassChildren::Child& child = of_class.children[walk_octant(turn, octant)];
         if (child.to == nullptr) return leave(inside);
         apply_step(table, child.near, stride_, from, rows);
         if (child.to->on_grid) {

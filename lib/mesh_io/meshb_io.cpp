@@ -137,7 +137,8 @@ private:
     }
 
     void read_groups() {
-        auto& [faces, edges] = found_.sharp;
+        auto& faces = found_.sharp.faces;
+        auto& edges = found_.sharp.edges;
         read_tags<4>(kQuadrilaterals, "quadrilateral", [&](const auto& quad) { faces.push_back(quad); });
         read_tags<3>(kTriangles, "triangle", [&](const auto& t) { faces.push_back({t[0], t[1], t[2], t[2]}); });
         std::vector<std::array<Index, 2>> all;

@@ -170,7 +170,7 @@ void EnsightCase::finish_times() {
         }
         std::vector<std::size_t> order(set.times.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::stable_sort(order, {}, [&](std::size_t k) { return set.times[k]; });
+        std::ranges::stable_sort(order, {}, [&times = set.times](std::size_t k) { return times[k]; });
         EnsightTimes sorted;
         for (const std::size_t k : order) {
             sorted.times.push_back(set.times[k]);

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// The readers of files that list others, beside two good pieces: the first byte says which of the lists the rest is.
+
+#include "case_folder.h"
+#include "collection.h"
+#include "lib/mesh_io/vtu_texts.h"
+#include "subvol/mesh_report.h"
+
+namespace subvol::fuzz {
+
+namespace {
+
+std::vector<CaseFile> files() {
+    HexMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    mesh.cells = {{0, 1, 2, 3, 4, 5, 6, 7}};
+    test::VtuText vtu;
+    const std::string one = vtu.file(vtu.piece(mesh, ""));
+    for (Vec3& x : mesh.points) x.x += 1;
+    test::VtuText other;
+    return {{'1', "1.vtu", one}, {'2', "2.vtu", other.file(other.piece(mesh, ""))},
+            {'d', "a.pvd", ""},  {'s', "a.series", ""},
+            {'p', "a.pvtu", ""}, {'m', "a.vtm", ""}};
+}
+
+}  // namespace
+
+}  // namespace subvol::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace subvol;
+    static fuzz::CaseFolder folder("series", fuzz::files());
+    folder.put(data, size);
+    const char letter = size == 0 ? 'd' : static_cast<char>(data[0]);
+    return fuzz::run([&] {
+        const ReadResult result = letter == 's'   ? detail::read_series_step(folder.path("a.series"), {})
+                                  : letter == 'p' ? detail::read_pieces(folder.path("a.pvtu"), {})
+                                  : letter == 'm' ? detail::read_blocks(folder.path("a.vtm"), {})
+                                                  : detail::read_pvd_step(folder.path("a.pvd"), {});
+        validate(result.mesh);
+        static_cast<void>(inspect(result.mesh));
+    });
+}
