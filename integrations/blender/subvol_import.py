@@ -138,6 +138,10 @@ def make_material(name, grid, low, high, transfer_function="", unit=1.0, density
     left = math_node("SUBTRACT", -400, -150, 1.0, math_node("MINIMUM", -560, -350, opacity.outputs["Color"], 1 - 1e-6))
     depth = math_node("LOGARITHM", -240, -150, left, math.e)
     extinction = math_node("MULTIPLY", -80, -150, depth, -density_scale / unit, label="density scale")
+    # Outside the volume there is nothing, but grids are 0 there, which may be a visible value.
+    inside = node("ShaderNodeAttribute", -80, -350, "coverage")
+    inside.attribute_name = "coverage"
+    extinction = math_node("MULTIPLY", 60, -250, extinction, inside.outputs["Fac"])
     absorb, emit = node("ShaderNodeVolumeAbsorption", 120, -150), node("ShaderNodeEmission", 120, 100)
     absorb.inputs["Color"].default_value = (0, 0, 0, 1)
     links.new(extinction, absorb.inputs["Density"])
@@ -172,7 +176,7 @@ def import_mesh(path, *, fields="", resolution=200, steps="", velocity=False, tr
     to.mkdir(parents=True, exist_ok=True)
     sequence = steps == "all" or "-" in steps
     output = to / (f"{name}_####.vdb" if sequence else f"{name}.vdb")
-    options = ["--resolution", resolution]
+    options = ["--resolution", resolution, "--coverage"]
     if fields:
         options += ["--fields", fields]
     if steps:
@@ -201,11 +205,12 @@ def import_mesh(path, *, fields="", resolution=200, steps="", velocity=False, tr
         volume.sequence_mode = "EXTEND"
         bpy.context.scene.frame_end = max(bpy.context.scene.frame_end, len(frames)) if known else len(frames)
     if velocity:
+        volume.grids.load()  # Blender looks for the name
         volume.velocity_grid = "vel"
         volume.velocity_unit = "SECOND"  # of steps: world units for each unit of time
     obj["subvol_grids"] = json.dumps(frames[-1]["grids"])
 
-    scalars = [grid["name"] for grid in frames[0]["grids"] if grid["kind"] == "float"]
+    scalars = [grid["name"] for grid in frames[0]["grids"] if grid["kind"] == "float" and grid["name"] != "coverage"]
     if scalars and not volume.materials:
         grids = [grid for frame in frames for grid in frame["grids"] if grid["name"] == scalars[0]]
         low, high = min(grid["min"] for grid in grids), max(grid["max"] for grid in grids)

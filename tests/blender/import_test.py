@@ -36,7 +36,7 @@ class Blender(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stdout[-2000:] + done.stderr[-2000:])
             facts = json.loads((folder / "facts.json").read_text())
         self.assertEqual(facts["objects"], ["ball", "nozzle", "two"])
-        self.assertEqual(facts["grids"], ["Pres", "Temp"])
+        self.assertEqual(facts["grids"], ["Pres", "Temp", "coverage"])
         self.assertEqual(facts["scale"], [1.5] * 3)
         self.assertEqual(facts["stops"], 3)
         self.assertEqual(facts["first_color"], [0, 0, 1, 1])

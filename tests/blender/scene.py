@@ -24,7 +24,7 @@ def ramp(material, label):
 
 
 # Three meshes side by side, the second with ParaView's colour map, the third with several grids.
-places = (("model:ball", -3.2, {"resolution": 48}), ("model:nozzle", 0, {"resolution": 64, "transfer_function": str(folder / "map.json")}),
+places = (("model:ball", -3.2, {"resolution": 48}), ("model:nozzle", 0, {"resolution": 64, "density_scale": 4, "transfer_function": str(folder / "map.json")}),
           (str(folder / "two.vtk"), 2.6, {"resolution": 40, "fields": "Temp,Pres", "scale": 1.5}))
 for path, x, options in places:
     made = subvol_import.import_mesh(path, **files, **options)
@@ -46,7 +46,7 @@ facts["again"] = [len([o for o in bpy.data.objects if o.type == "VOLUME"]), agai
 
 # A series becomes a sequence, with its frames and velocities.
 steps = subvol_import.import_mesh(str(folder / "run.pvd"), **files, resolution=32, steps="all", velocity=True)
-steps.location = (0, 3.5, 0)
+steps.location = (-1, 3.5, 0)
 facts["sequence"] = [steps.data.is_sequence, steps.data.frame_duration, steps.data.frame_start, steps.data.velocity_grid,
                      steps.data.velocity_unit, bpy.context.scene.frame_end]
 frames = []
@@ -65,16 +65,16 @@ scene = bpy.context.scene
 scene.frame_set(2)
 camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
 scene.collection.objects.link(camera)
-camera.location, camera.rotation_euler, camera.data.lens = (0.5, -13, 7.5), (1.08, 0, 0), 42
+camera.location, camera.rotation_euler, camera.data.lens = (-.3, -9.5, 5), (1.13, 0, 0), 42
 scene.camera = camera
 scene.world = bpy.data.worlds.new("dark")
 scene.world.color = (0.05, 0.05, 0.05)
 bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
 if os.environ.get("SUBVOL_BLENDER_RENDER", "1") == "1":
     scene.render.engine = "CYCLES"
-    scene.cycles.samples = 8
+    scene.cycles.samples, scene.cycles.use_denoising = 8, False
     scene.cycles.volume_step_rate = 2
-    scene.render.resolution_x, scene.render.resolution_y = 240, 160
+    scene.render.resolution_x, scene.render.resolution_y = 320, 200
     scene.view_settings.view_transform = "Standard"
     scene.render.image_settings.file_format = "PNG"
     scene.render.filepath = str(folder / "scene.png")

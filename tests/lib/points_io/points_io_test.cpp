@@ -294,9 +294,9 @@ TEST_P(SplatsFor, ViewersAreTheKernelsEllipsoidsUpright) {
         EXPECT_GT(opacity, 0.003);
         EXPECT_LE(opacity, 0.5 + 1e-6);  // viridis ramps to .5
         const Vec3 at = turn * volume.centers[i];
-        EXPECT_NEAR(get("x"), at.x, 1e-7);
-        EXPECT_NEAR(get("y"), at.y, 1e-7);
-        EXPECT_NEAR(get("z"), at.z, 1e-7);
+        EXPECT_NEAR(get("x"), at.x, 1e-5);
+        EXPECT_NEAR(get("y"), at.y, 1e-5);
+        EXPECT_NEAR(get("z"), at.z, 1e-5);  // floats at 100
         EXPECT_EQ(get("cx"), volume.centers[i].x);
         EXPECT_EQ(get("cy"), volume.centers[i].y);
     }
