@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <optional>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/detail/vdb_file.h"
 #include "subvol/mesh_report.h"
@@ -18,9 +20,22 @@
 namespace subvol::cli {
 namespace {
 
+/// The number that a renderer multiplies the values with for a density at which something is seen: the largest value then has
+/// an optical depth of 5 across the grid. Nothing for other grids than of floats, and where there is no value.
+std::optional<double> seen_density(const GridReport& grid) {
+    constexpr double kDepth = 5;
+    if (grid.kind != "float" || grid.active_voxels == 0) return std::nullopt;
+    const Vec3 size = grid.bounds.size();
+    const double across = std::max({size.x, size.y, size.z, grid.voxel_size_world}), most = std::max(grid.max, -grid.min);
+    if (!(most > 0)) return std::nullopt;
+    return kDepth / (most * across);
+}
+
 Json about(const GridReport& grid) {
-    return {{"name", grid.name}, {"kind", grid.kind}, {"active_voxels", grid.active_voxels},
-            {"min", grid.min},   {"max", grid.max},   {"bytes", grid.bytes}};
+    Json json{{"name", grid.name}, {"kind", grid.kind}, {"active_voxels", grid.active_voxels},
+              {"min", grid.min},   {"max", grid.max},   {"bytes", grid.bytes}};
+    if (const auto density = seen_density(grid)) json["density"] = *density;
+    return json;
 }
 
 Json corner(const Vec3& p) {
@@ -69,6 +84,10 @@ void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Rep
     report["active_voxels"] = first.active_voxels;
     report["voxel_size"] = first.voxel_size_world;
     for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report()));
+    if (const auto density = seen_density(first)) {
+        report.note(text(first.name, " is ", detail::number_text(first.min, 5), " to ", detail::number_text(first.max, 5),
+                         "; a renderer shows it with a density of ", detail::number_text(*density, 2), " times the value"));
+    }
 }
 
 void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {

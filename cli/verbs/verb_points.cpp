@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 
+#include "choices.h"
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
@@ -39,6 +40,10 @@ public:
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
         app().add_flag("--splats", splats_,
                        ".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it");
+        app()
+            .add_option("--up", up_, "with --splats: the axis that these viewers show at the top: x, y or z (default z)")
+            ->type_name("AXIS")
+            ->check(offered({"x", "y", "z"}));
         sample_.add_to(app());
         app().add_option("--tf", transfer_function_, "the colour map for --threshold, as for `render`")->type_name("FILE|NAME");
         app().add_flag("--clamp", clamp_, "keep the kernels' values within the field's range: interpolating schemes overshoot");
@@ -59,6 +64,11 @@ public:
         if (extension != ".ply" && (ascii_ || splats_)) {
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
+        check_choice("--up", up_, {"x", "y", "z"});
+        if (app().count("--up") > 0 && !splats_) {
+            throw Error(ErrorCode::InvalidInput, "turns what viewers of splats read; all else keeps its place", "--up",
+                        "--splats");
+        }
         report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
         if (asks_for_steps(common())) {
             write_steps(report);
@@ -78,7 +88,7 @@ private:
             if (path.ends_with(".vdb")) {
                 write_vdb_points(path, volume);
             } else {
-                write_points(path, volume, {.ascii = ascii_, .splats = splats_});
+                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis()});
             }
         });
     }
@@ -134,6 +144,8 @@ private:
         return sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
     }
 
+    [[nodiscard]] UpAxis up_axis() const { return up_ == "x" ? UpAxis::X : up_ == "y" ? UpAxis::Y : UpAxis::Z; }
+
     [[nodiscard]] std::optional<TransferFunction> seen(const Range& range) const {
         if (transfer_function_.empty()) return std::nullopt;
         return find_transfer_function(transfer_function_, range);
@@ -143,7 +155,7 @@ private:
     std::string output_;
     bool ascii_ = false;
     bool splats_ = false, clamp_ = false, error_ = false;
-    std::string transfer_function_;
+    std::string up_ = "z", transfer_function_;
     SampleArguments sample_;
     RefineArguments refine_;
 };

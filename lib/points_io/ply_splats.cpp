@@ -35,7 +35,14 @@ double gaussian_width(const Kernel& kernel) {
     return std::isfinite(sigma) && sigma > 0 ? sigma / radius : 1.0 / 3;
 }
 
-std::vector<PlySplat> ply_splats(const RbfVolume& volume) {
+Mat3 turn_to_viewers(UpAxis up) {
+    // By columns: where x, y and z go.
+    if (up == UpAxis::X) return {Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)};
+    if (up == UpAxis::Y) return {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, -1)};
+    return {Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0)};
+}
+
+std::vector<PlySplat> ply_splats(const RbfVolume& volume, const Mat3& turn) {
     const std::vector<float>& values = volume.channels.front().values;
     std::vector<PlySplat> splats(volume.size());
     if (splats.empty()) return splats;
@@ -44,7 +51,7 @@ std::vector<PlySplat> ply_splats(const RbfVolume& volume) {
     const double width = gaussian_width(volume.kernel);
     tbb::parallel_for(std::size_t{0}, splats.size(), [&](std::size_t i) {
         const PrincipalAxes axes = principal_axes(volume.frames[i]);
-        const auto turn = quaternion(axes.directions);
+        const auto rotation = quaternion(turn * axes.directions);
         const Vec3 color = color_at(function, values[i]);
         const double alpha = std::max(alpha_at(function, values[i]), kLeastOpacity);
         PlySplat& splat = splats[i];
@@ -53,7 +60,7 @@ std::vector<PlySplat> ply_splats(const RbfVolume& volume) {
             splat[n] = static_cast<float>(std::log(width * axes.half_axes[k]));
             splat[8 + n] = static_cast<float>((srgb_from_linear(color[k]) - .5) / kConstantHarmonic);
         }
-        for (std::size_t k = 0; k < 4; ++k) splat[3 + k] = static_cast<float>(turn[k]);
+        for (std::size_t k = 0; k < 4; ++k) splat[3 + k] = static_cast<float>(rotation[k]);
         splat[7] = static_cast<float>(std::log(alpha / (1 - alpha)));
     });
     return splats;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "subvol/points_io.h"
 #include "subvol/rbf_volume.h"
 
 namespace subvol::detail {
@@ -20,6 +21,11 @@ using PlySplat = std::array<float, kSplatProperties.size()>;
 
 /// For each kernel the Gaussian that viewers of splats draw: the logarithms of its axes, its rotation as a quaternion w x y z,
 /// the logit of its opacity and the constant term of its colour, both of the first channel.
-[[nodiscard]] std::vector<PlySplat> ply_splats(const RbfVolume& volume);
+///
+/// turn: the rotation of the world into the viewers' space
+[[nodiscard]] std::vector<PlySplat> ply_splats(const RbfVolume& volume, const Mat3& turn);
+
+/// The rotation that takes the axis to -y, which viewers of splats have at the top.
+[[nodiscard]] Mat3 turn_to_viewers(UpAxis up);
 
 }  // namespace subvol::detail

@@ -18,8 +18,9 @@ const char* const kBinary = std::endian::native == std::endian::little ? "binary
 /// The vertices: the properties in the header and in the rows have the same order.
 class VertexElement {
 public:
-    VertexElement(const RbfVolume& volume, bool splats) : volume_(volume), with_splats_(splats) {
-        if (splats) splats_ = ply_splats(volume);
+    VertexElement(const RbfVolume& volume, const PointsWriteOptions& options)
+        : volume_(volume), with_splats_(options.splats), turn_(turn_to_viewers(options.up)) {
+        if (with_splats_) splats_ = ply_splats(volume, turn_);
     }
 
     [[nodiscard]] std::string header() const {
@@ -46,7 +47,7 @@ public:
     void write(NumberWriter& out) const {
         for (std::size_t i = 0; i < volume_.size(); ++i) {
             if (with_splats_) {
-                out.put_point<float>(volume_.centers[i]);
+                out.put_point<float>(turn_ * volume_.centers[i]);
                 out.put_all(splats_[i]);
             }
             out.put_point<double>(volume_.centers[i]);
@@ -64,6 +65,7 @@ public:
 private:
     const RbfVolume& volume_;
     bool with_splats_;
+    Mat3 turn_;
     std::vector<PlySplat> splats_;
 };
 
@@ -101,7 +103,7 @@ void write_boundary(NumberWriter& out, const Surface& boundary) {
 }  // namespace
 
 void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
-    const VertexElement vertices(volume, options.splats);
+    const VertexElement vertices(volume, options);
     OutputFile out(path);
     out.write(std::string("ply\nformat ") + (options.ascii ? "ascii" : kBinary) + " 1.0\n" + comments(volume) +
               vertices.header() + (options.splats ? "" : boundary_header(volume.boundary)) + "end_header\n");

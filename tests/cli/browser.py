@@ -19,9 +19,9 @@ def find_chromium():
 
 
 class Browser:
-    """One page. `events` collects the events that it reports."""
+    """One page. `events` collects the events that it reports. webgl: drawn by software"""
 
-    def __init__(self, program):
+    def __init__(self, program, webgl=False):
         self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         to_read, self._to = os.pipe()
         self._from, to_write = os.pipe()
@@ -32,7 +32,8 @@ class Browser:
             os.dup2(for_writing, 4)
 
         self.process = subprocess.Popen(
-            [program, "--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking",
+            [program, "--headless=new", "--no-sandbox",
+             *(["--use-angle=swiftshader", "--enable-unsafe-swiftshader"] if webgl else ["--disable-gpu"]), "--no-first-run", "--disable-background-networking",
              "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--remote-debugging-pipe",
              f"--user-data-dir={self.profile.name}", "about:blank"],
             preexec_fn=wire, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -11,6 +11,7 @@
 #include "subvol/image_regions.h"
 #include "subvol/mesh_field.h"
 #include "subvol/oiio_compare.h"
+#include "subvol/page.h"
 #include "subvol/plot.h"
 #include "subvol/points_field.h"
 #include "subvol/ssim.h"

@@ -250,9 +250,19 @@ TEST(PrincipalAxes, MakeTheFrameAgain) {
 }
 
 // Reads the file as viewers of splats do: all properties are those of the vertex; the axes are exp(scale), turned by rot.
-TEST_F(PointsIo, SplatsAreTheKernelsEllipsoids) {
+// They have -y at the top: up is turned there, and the other axes stay right-handed.
+class SplatsFor : public PointsIo, public testing::WithParamInterface<UpAxis> {};
+
+TEST_P(SplatsFor, ViewersAreTheKernelsEllipsoidsUpright) {
     const RbfVolume volume = random_points(50, 1);
-    write_points(path("a.ply"), volume, {.ascii = true, .splats = true});
+    write_points(path("a.ply"), volume, {.ascii = true, .splats = true, .up = GetParam()});
+    const int up = static_cast<int>(GetParam());
+    const std::array<Mat3, 3> turns{Mat3(Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)),
+                                    Mat3(Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, -1)),
+                                    Mat3(Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, -1, 0))};
+    const Mat3 turn = turns[static_cast<std::size_t>(up)];
+    EXPECT_EQ(turn[up], Vec3(0, -1, 0));
+    EXPECT_NEAR(glm::determinant(turn), 1, 1e-15);
     std::istringstream in(read_bytes(path("a.ply")));
     std::map<std::string, std::size_t> columns;
     for (std::string line; std::getline(in, line) && line != "end_header";) {
@@ -275,7 +285,7 @@ TEST_F(PointsIo, SplatsAreTheKernelsEllipsoids) {
             axes[k] = std::exp(get(("scale_" + std::to_string(k)).c_str())) *
                       (v + 2.0 * glm::cross(q, glm::cross(q, v) + get("rot_0") * v));
         }
-        const Mat3 covariance = axes * glm::transpose(axes);
+        const Mat3 covariance = glm::transpose(turn) * axes * glm::transpose(axes) * turn;
         const double largest = static_cast<double>(std::max({volume.frames[i][0], volume.frames[i][3], volume.frames[i][5]}));
         EXPECT_NEAR(covariance[0][0], sigma * sigma * static_cast<double>(volume.frames[i][0]), 3e-3 * sigma * sigma * largest);
         EXPECT_NEAR(covariance[2][0], sigma * sigma * static_cast<double>(volume.frames[i][2]), 3e-3 * sigma * sigma * largest);
@@ -283,11 +293,16 @@ TEST_F(PointsIo, SplatsAreTheKernelsEllipsoids) {
         const double opacity = 1 / (1 + std::exp(-get("opacity")));
         EXPECT_GT(opacity, 0.003);
         EXPECT_LE(opacity, 0.5 + 1e-6);  // viridis ramps to .5
-        EXPECT_NEAR(get("x"), volume.centers[i].x, 1e-7);
+        const Vec3 at = turn * volume.centers[i];
+        EXPECT_NEAR(get("x"), at.x, 1e-5);
+        EXPECT_NEAR(get("y"), at.y, 1e-5);
+        EXPECT_NEAR(get("z"), at.z, 1e-5);  // floats at 100
         EXPECT_EQ(get("cx"), volume.centers[i].x);
         EXPECT_EQ(get("cy"), volume.centers[i].y);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Axes, SplatsFor, testing::Values(UpAxis::X, UpAxis::Y, UpAxis::Z));
 
 }  // namespace
 

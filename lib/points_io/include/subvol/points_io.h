@@ -7,11 +7,16 @@
 
 namespace subvol {
 
+/// The axis of the world that is up.
+enum class UpAxis { X, Y, Z };
+
 /// ascii:  for `.ply`: text instead of binary numbers
 /// splats: for `.ply`: adds properties for viewers of 3-D Gaussian splats, see `write_points`
+/// up:     of splats: what these viewers are to show at the top
 struct PointsWriteOptions {
     bool ascii = false;
     bool splats = false;
+    UpAxis up = UpAxis::Z;
 };
 
 /// Writes points with all channels as `.ply` or `.vtp`. Numbers are exact: reading gives the same bits. The kernel is JSON
@@ -22,8 +27,9 @@ struct PointsWriteOptions {
 ///       `boundary_triangle` are the boundary.
 ///       With splats, x y z are floats (the exact centre is cx cy cz), and scale_0..2, rot_0..3, opacity and f_dc_0..2 are
 ///       added: a Gaussian with the height and the integral of the kernel, coloured by viridis over the range of the first
-///       channel. Viewers of splats read all elements as vertices; hence the boundary is a separate file, as for .vtp. Splats
-///       take 56 bytes more per point.
+///       channel. Viewers of splats have -y at the top, so x y z and rot_0..3 are turned that way, and nothing else is. They
+///       read all elements as vertices; hence the boundary is a separate file, as for .vtp. Splats take 56 bytes more per
+///       point.
 /// .vtp: VTK PolyData for ParaView, one Verts cell per point. The arrays are NAME, NAME.gradient, NAME.moment and, if a channel
 ///       has Hessians, NAME.hessian; frame (S), ellipsoid (√S, 9 components, for the Tensor Glyph filter) and pscale (the
 ///       radius of the ball with the same volume). Hessians and S are in VTK's order xx yy zz xy yz xz. The boundary is a

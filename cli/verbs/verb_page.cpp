@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "choices.h"
+#include "input.h"
+#include "outputs.h"
+#include "picture_arguments.h"
+#include "refine_arguments.h"
+#include "sample_arguments.h"
+#include "sampled_points.h"
+#include "steps.h"
+#include "subvol/boundary_shading.h"
+#include "subvol/boundary_values.h"
+#include "subvol/detail/atomic_file.h"
+#include "subvol/error.h"
+#include "subvol/page.h"
+#include "subvol/splat.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class PageVerb : public Verb {
+public:
+    explicit PageVerb(CLI::App& program)
+        : Verb(program, "page", "A page that one can send: the volume alive in a browser.",
+               "  subvol page part.vtu -o part.html\n"
+               "  subvol page part.vtu -o part.html --fields Temp,Pres --tf inferno\n"
+               "  subvol page run.exo -o run.html --step 0-9 --max-bytes 10e6\n"
+               "\n"
+               "One file that needs no network: kernels, drawn by WebGL2 as `render` draws them. The reader can turn the "
+               "volume, change the transfer function, clip, choose fields and steps, and pick values. JSON: bytes, points, "
+               "kept (kernels in the page), bits, fields [{name, rmse, max_error, range}].") {
+        app().add_option("FILE", input_, input_help())->required();
+        app().add_option("-o,--output", output_, "the page to write (.html)")->type_name("FILE")->required();
+        app()
+            .add_option("--fields", fields_, "the fields to choose from: names, or all (default: the one of --field)")
+            ->type_name("A,B,…")
+            ->delimiter(',');
+        app()
+            .add_option("--max-bytes", max_bytes_,
+                        "the page's size (default 24e6): kernels are rounded, then merged, until it fits; the page says the "
+                        "error")
+            ->type_name("B")
+            ->check(CLI::Range(1e4, 2e9));
+        app().add_option("--title", title_, "the page's title (default: the file's name)")->type_name("TEXT");
+        app().add_flag("--no-reference", no_reference_, "without the picture of `render` to compare with");
+        add_picture_options();
+        sample_.add_to(app());
+        refine_.add_to(app(), "show the refined mesh of this level instead of the limit");
+        set_essentials({"--output", "--fields", "--field", "--look", "--tf", "--opacity", "--view", "--camera", "--max-bytes",
+                        "--per-edge", "--title", "--json"});
+        group("Camera", {"--size", "--camera", "--view", "--ortho"});
+        group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--unit"});
+        group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
+                          "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
+        group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
+    }
+
+    int run(Report& report) override {
+        check_output(output_, {".html"});
+        picture_.settle_look(true);
+        if (picture_.look == Look::Isosurface) {
+            throw Error(ErrorCode::InvalidInput, "a page has no lit isosurfaces", "--look isosurface",
+                        "solid, volume or xray; --tf isosurface draws them without light");
+        }
+        picture_.check();
+        report.if_long("--max-bytes that fits without merging, or a larger --spacing");
+        PageOptions options{.title = title_.empty() ? title_of_file() : title_, .source = input_};
+        const std::vector<PageStep> steps = make_steps(options, report);
+        finish_options(options, steps.back(), report);
+        const PageResult page = report.timed("page", [&] { return make_page(steps, options); });
+        report.timed("write", [&] { detail::write_text_file(output_, page.html); });
+        put(page.report, options, report);
+        return 0;
+    }
+
+private:
+    void add_picture_options() {
+        auto* camera = app().add_option("--camera", picture_.camera, "the camera that the page opens with, as for `render`");
+        camera->type_name("CAMERA");
+        app()
+            .add_option("--view", picture_.view, "the side to look from: +x -x +y -y +z -z iso (default iso)")
+            ->type_name("SIDE")
+            ->check(offered({"+x", "-x", "+y", "-y", "+z", "-z", "iso"}))
+            ->excludes(camera);
+        app().add_flag("--ortho", picture_.orthographic, "an orthographic camera");
+        app().add_option("--size", picture_.size, "of the picture to compare with (default 512x512)")->type_name("WxH");
+        app()
+            .add_option("--look", picture_.look_name,
+                        "solid (opaque and lit; the default without --tf, --opacity and --opacity-unit), volume or xray")
+            ->type_name("NAME")
+            ->check(offered({"solid", "volume", "xray"}));
+        app()
+            .add_option("--tf", picture_.transfer_function, "the colour map, as for `render` (default viridis)")
+            ->type_name("FILE|NAME");
+        app()
+            .add_option("--tf-range", picture_.transfer_range, "the range that it covers, as for `render`")
+            ->type_name("MIN,MAX|field");
+        app()
+            .add_option("--opacity", picture_.opacity, "opacities instead of those of --tf, as for `render`")
+            ->type_name("V:A,V:A,…");
+        app()
+            .add_option("--opacity-unit", picture_.opacity_unit_world,
+                        "the world distance over which an opacity acts (default: 1/100 of the box's diagonal)")
+            ->type_name("D")
+            ->check(CLI::PositiveNumber);
+        app().add_option("--unit", unit_, "the first field's unit, for the legend")->type_name("TEXT");
+    }
+
+    [[nodiscard]] std::string title_of_file() const {
+        return is_model(input_) ? input_.substr(6) : std::filesystem::path(input_).filename().string();
+    }
+
+    /// The mesh with the fields of the page, each a scalar; the one of --field is the first.
+    [[nodiscard]] HexMesh shown_mesh(HexMesh mesh, const CommonOptions& common, Report& report) const {
+        std::vector<std::string> names = fields_;
+        if (names == std::vector<std::string>{"all"}) {
+            names.clear();
+            for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+        }
+        CommonOptions first = common;
+        if (!names.empty() && !common.field && !common.density && fields_ != std::vector<std::string>{"all"}) {
+            first.field = names.front();
+        }
+        const HexMesh whole = mesh;
+        mesh = with_selected_field(std::move(mesh), first, report);
+        for (const std::string& name : names) {
+            SelectedField more = select_field(whole, name);
+            const bool there = std::ranges::any_of(
+                mesh.attributes, [&](const Attribute& shown) { return shown.name == more.scalar.name || shown.name == name; });
+            if (!there) mesh.attributes.push_back(std::move(more.scalar));
+        }
+        return mesh;
+    }
+
+    [[nodiscard]] std::vector<PageStep> make_steps(PageOptions& options, Report& report) {
+        std::vector<PageStep> steps;
+        std::vector<Range> ranges;
+        const auto add = [&](const CommonOptions& common, const std::string& label) {
+            mesh_ = shown_mesh(load_mesh(input_, common, report), common, report);
+            const HexMesh& mesh = mesh_;
+            box_.add(bounds(mesh));
+            if (options.fields.empty()) {
+                for (const Attribute& field : mesh.attributes) options.fields.push_back({.name = field.name});
+            }
+            const auto same = [](const PageField& a, const Attribute& b) { return a.name == b.name; };
+            if (!std::ranges::equal(options.fields, mesh.attributes, same)) {
+                throw Error(ErrorCode::InvalidInput, "has other fields than the first step", "step " + label);
+            }
+            for (std::size_t f = 0; f < mesh.attributes.size(); ++f) {
+                const Range range = field_range(mesh, f);
+                if (f >= ranges.size()) ranges.push_back(range);
+                ranges[f] = {std::min(ranges[f].min, range.min), std::max(ranges[f].max, range.max)};
+            }
+            PageStep step{.label = label, .volume = sample_reported(mesh, sample_, refine_, std::nullopt, report)};
+            RefineOptions refine = refine_.options(0, report);
+            refine.levels = picture_levels(mesh, refine_.levels);
+            step.boundary = report.timed("boundary", [&] { return boundary_values(mesh, refine); });
+            steps.push_back(std::move(step));
+        };
+        if (asks_for_steps(common())) {
+            const MeshSeries series = open_series(input_);
+            const FrameRange range = chosen_steps(series, common());
+            for (int step = range.first; step <= range.last; ++step) {
+                add(of_step(common(), step), text(step, " (t = ", series.times[static_cast<std::size_t>(step)], ")"));
+            }
+        } else {
+            add(common(), "");
+        }
+        for (std::size_t f = 0; f < ranges.size(); ++f) {
+            options.fields[f].min = ranges[f].min;
+            options.fields[f].max = ranges[f].max;
+        }
+        return steps;
+    }
+
+    void finish_options(PageOptions& options, const PageStep& step, Report& report) const {
+        const std::optional<Look> solid = picture_.look == Look::Solid ? std::optional(Look::Solid) : std::nullopt;
+        options.look = solid ? PageLook::Solid : picture_.look == Look::Xray ? PageLook::Xray : PageLook::Volume;
+        options.background = picture_.background_color();
+        options.max_bytes = static_cast<std::size_t>(max_bytes_);
+        options.progress = report.progress();
+        PictureArguments volume = picture_;  // opacities are those of the look volume, which readers can choose
+        if (solid) volume.look = Look::Volume;
+        for (std::size_t f = 0; f < options.fields.size(); ++f) {
+            PageField& field = options.fields[f];
+            const Range range{field.min, field.max};
+            PictureArguments of_field = volume;
+            const bool in_file = picture_.transfer_function && picture_.transfer_function->find('.') != std::string::npos;
+            if (f > 0 && in_file) of_field.transfer_range = "field";  // the values of the file's map are those of the first
+            if (f > 0 && picture_.opacity && picture_.opacity->find('%') == std::string::npos) of_field.opacity.reset();
+            const Optics optics = of_field.make_optics(box_, range, range);
+            field.function = optics.function();
+            if (solid) field.function.color = picture_.make_optics(box_, range, range).function().color;
+            if (f == 0) field.unit = unit_;
+            if (f == 0) options.opacity_unit_world = optics.opacity_unit();
+        }
+        const PageField& first = options.fields.front();
+        const Range range{first.min, first.max};
+        const Optics optics = picture_.make_optics(box_, range, range);
+        const std::vector<View> views = picture_.make_views(box_, picture_.framed_points(mesh_, optics));
+        options.camera = views.front().camera();
+        if (no_reference_) return;
+        SplatOptions splat{.samples = solid ? 2 : 1, .progress = report.progress()};
+        if (solid) splat.shading = Shading{};
+        Image image = report.timed("reference", [&] {
+            Splatter splatter(step.volume, splat);
+            Image drawn = splatter.draw(views.front(), optics, report.progress()).image;
+            if (solid) {
+                color_boundary(drawn, step.boundary.surface, step.boundary.values.front(), views.front(), optics, Shading{}, 2);
+            }
+            return drawn;
+        });
+        options.reference = std::move(image);
+    }
+
+    void put(const PageReport& made, const PageOptions& options, Report& report) const {
+        report["output"] = output_;
+        report["bytes"] = made.bytes;
+        report["points"] = made.kernels;
+        report["kept"] = made.kept;
+        report["bits"] = made.bits;
+        report["triangles"] = made.triangles;
+        for (std::size_t f = 0; f < options.fields.size(); ++f) {
+            const PageField& field = options.fields[f];
+            report["fields"].push_back({{"name", field.name},
+                                        {"rmse", made.errors[f].rmse},
+                                        {"max_error", made.errors[f].max_abs},
+                                        {"range", {field.min, field.max}}});
+        }
+        if (made.kept < made.kernels) {
+            report.warn(text(made.kernels, " kernels were merged into ", made.kept, " to fit into ",
+                             static_cast<std::size_t>(max_bytes_), " bytes; the page says the error (--max-bytes)"));
+        }
+    }
+
+    std::string input_, output_, title_, unit_;
+    std::vector<std::string> fields_;
+    HexMesh mesh_;  // of the last step
+    Box box_;       // of all steps
+    double max_bytes_ = 24e6;
+    bool no_reference_ = false;
+    PictureArguments picture_;
+    SampleArguments sample_;
+    RefineArguments refine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_page_verb(CLI::App& program) {
+    return std::make_unique<PageVerb>(program);
+}
+
+}  // namespace subvol::cli

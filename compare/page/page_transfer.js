@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Transfer functions: colour and opacity, each linear between knots, and their integrals over the value as tables.
+
+const kCells = 4096, kTableWidth = 64;
+
+// The value at v of knots [v, …], linear between them; of two knots at the same value the later one counts from there on.
+function between(knots, v, channel) {
+  if (v < knots[0][0]) return knots[0][channel];
+  let low = 0, high = knots.length;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (knots[middle][0] <= v) low = middle;
+    else high = middle;
+  }
+  if (high === knots.length) return knots[low][channel];
+  const part = (v - knots[low][0]) / (knots[high][0] - knots[low][0]);
+  return knots[low][channel] + part * (knots[high][channel] - knots[low][channel]);
+}
+
+function colorAt(transfer, v) { return [1, 2, 3].map((c) => between(transfer.color, v, c)); }
+function alphaAt(transfer, v) { return between(transfer.opacity, v, 1); }
+
+// Prefix integrals of extinction and emission, as in lib/light: rows for what is below and above the cells at the ends. Within a
+// cell the integral from its lower end to the part s is s · (mean − (1 − s) · bend). unit: of the opacities
+function makeTable(transfer, unit) {
+  const ends = [...transfer.color, ...transfer.opacity].map((knot) => knot[0]);
+  const min = Math.min(...ends), max = Math.max(...ends) > min ? Math.max(...ends) : min + 1, width = (max - min) / kCells;
+  const knots = [...new Set(ends)].sort((a, b) => a - b);
+  const rows = kTableWidth * Math.ceil((kCells + 2) / kTableWidth);
+  const table = { min, max, prefix: new Float32Array(4 * rows), mean: new Float32Array(4 * rows), bend: new Float32Array(4 * rows),
+    colors: new Float32Array(4 * rows), rows: rows / kTableWidth, opaque: 0 };
+  const light = (v) => {
+    const tau = -Math.log1p(-Math.min(alphaAt(transfer, v), 1 - 1e-6)) / unit, rgb = colorAt(transfer, v);
+    table.opaque = Math.max(table.opaque, tau);
+    return [tau, tau * rgb[0], tau * rgb[1], tau * rgb[2]];
+  };
+  const places = [-Math.sqrt(0.6), 0, Math.sqrt(0.6)], weights = [5 / 18, 8 / 18, 5 / 18];  // of Gauss
+  const sum = [0, 0, 0, 0];
+  let next = 0;
+  for (let row = 0; row < kCells + 2; ++row) {
+    const low = min + (row - 1) * width, high = low + width, inside = row > 0 && row <= kCells;
+    const mean = [0, 0, 0, 0];
+    const first = light(inside ? low + 1e-9 * width : row === 0 ? min - width : max + width);
+    const last = inside ? light(high - 1e-9 * width) : first;
+    if (!inside) {
+      mean.splice(0, 4, ...first);
+    } else {
+      let from = low;
+      while (from < high) {
+        while (next < knots.length && knots[next] <= from + 1e-12 * width) ++next;
+        const to = Math.min(high, next < knots.length ? knots[next] : high), half = (to - from) / 2;
+        places.forEach((place, k) => {
+          const at = light(from + half + half * place), share = weights[k] * (to - from) / width;
+          for (let c = 0; c < 4; ++c) mean[c] += share * at[c];
+        });
+        from = to;
+      }
+    }
+    const color = colorAt(transfer, row === 0 ? min - width : low);
+    for (let c = 0; c < 4; ++c) {
+      const at = 4 * row + c;
+      table.prefix[at] = row === 0 ? 0 : sum[c];
+      table.mean[at] = mean[c];
+      table.bend[at] = inside ? (last[c] - first[c]) / 2 : 0;
+      if (c < 3) table.colors[at] = color[c];
+      if (inside) sum[c] += mean[c];
+    }
+  }
+  return table;
+}
+
+function srgbOfLinear(l) { return l <= 0.0031308 ? l * 12.92 : 1.055 * Math.pow(l, 1 / 2.4) - 0.055; }
+function linearOfSrgb(s) { return s <= 0.04045 ? s / 12.92 : Math.pow((s + 0.055) / 1.055, 2.4); }
+function cssColor(rgb) {
+  return 'rgb(' + rgb.map((l) => Math.round(255 * srgbOfLinear(Math.min(1, Math.max(0, l))))).join(',') + ')';
+}
+
+// Round values for an axis, at most `most`, with as many digits as they need.
+function roundTicks(min, max, most) {
+  const range = max - min || 1, power = Math.pow(10, Math.floor(Math.log10(range / most)));
+  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => range / s <= most), ticks = [];
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  for (let k = Math.ceil(min / step - 1e-9); k * step <= max + 1e-9 * step; ++k) {
+    const v = k * step, large = Math.abs(v) >= 1e5 || (digits > 4 && v !== 0);
+    ticks.push([v, large ? String(Number(v.toPrecision(4))) : v.toFixed(digits)]);
+  }
+  return ticks;
+}
+function shortNumber(v) { return String(Number(v.toPrecision(5))); }

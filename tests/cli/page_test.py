@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A page that draws the volume: what the command writes, and what a browser shows of it (by software, without a GPU)."""
+
+import base64
+import json
+import os
+import re
+import struct
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from browser import Browser, find_chromium
+from command import TWO_FIELDS, InFolder, subvol
+
+
+def write_tiff(path, width, height, pixels):
+    """Linear RGBA as 32-bit floats: `subvol compare` reads it."""
+    tags = [(256, 4, [width]), (257, 4, [height]), (258, 3, [32] * 4), (259, 3, [1]), (262, 3, [2]), (273, 4, [0]), (277, 3, [4]),
+            (278, 4, [height]), (279, 4, [len(pixels)]), (284, 3, [1]), (338, 3, [1]), (339, 3, [3] * 4)]
+    begin = 8 + 2 + 12 * len(tags) + 4
+    extra = struct.pack("<4H", *[32] * 4) + struct.pack("<4H", *[3] * 4)
+    rows, places = b"", iter((begin, begin + 8))
+    for tag, kind, values in tags:
+        if len(values) == 4:
+            content = struct.pack("<I", next(places))
+        elif tag == 273:
+            content = struct.pack("<I", begin + len(extra))
+        else:
+            content = struct.pack("<I" if kind == 4 else "<HH", *values, *([0] if kind == 3 else []))
+        rows += struct.pack("<HHI", tag, kind, len(values)) + content
+    path.write_bytes(b"II*\0" + struct.pack("<IH", 8, len(tags)) + rows + b"\0\0\0\0" + extra + pixels)
+
+
+class Page(InFolder):
+    def test_says_what_it_shows(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        report = self.run_ok("page", "two.vtk", "-o", "two.html", "--fields", "Pres,Temp,V", "--unit", "Pa", "--json").json()
+        text = (self.folder / "two.html").read_text()
+        self.assertEqual(report["bytes"], len(text.encode()))
+        self.assertEqual([field["name"] for field in report["fields"]], ["Pres", "Temp", "V"])
+        self.assertEqual(report["fields"][1]["range"], [293, 313])
+        self.assertEqual(report["kept"], report["points"])
+        for field in report["fields"]:  # 16 bits
+            self.assertLess(field["max_error"], 1e-3 * (field["range"][1] - field["range"][0]))
+        for said in ("two.vtk", "OpenSubVol", "Error of rounding", "% of its range"):
+            self.assertIn(said, text)
+        self.assertNotRegex(text, r"(src|href)=\"(?!data:)")
+        self.assertNotIn("http", re.sub(r"<script type=\"text/plain\".*?</script>", "", text, flags=re.S))
+
+    def test_titles_are_not_html(self):
+        self.run_ok("page", "model:ball:4", "-o", "a.html", "--title", "</script><b>&")
+        text = (self.folder / "a.html").read_text()
+        self.assertIn("&lt;/script&gt;&lt;b&gt;&amp;", text)
+        self.assertNotIn("</script><b>", text)
+
+    def test_kernels_are_merged_until_they_fit(self):
+        whole = self.run_ok("page", "model:pawn", "-o", "a.html", "--no-reference", "--json").json()
+        limit = int(0.8 * whole["bytes"])
+        less = self.run_ok("page", "model:pawn", "-o", "b.html", "--no-reference", "--max-bytes", limit, "--json").json()
+        self.assertLessEqual((self.folder / "b.html").stat().st_size, limit)
+        self.assertLessEqual(less["kept"], less["points"])
+        self.assertTrue(less["bits"] < 16)
+        fewer = self.run_ok("page", "model:pawn", "-o", "c.html", "--no-reference", "--max-bytes", int(0.55 * whole["bytes"]), "--json").json()
+        self.assertLess(fewer["kept"], fewer["points"])
+        self.assertIn("merged from", (self.folder / "c.html").read_text())
+        self.assertIn("were merged", fewer["warnings"][0])
+        self.assertGreater(fewer["fields"][0]["rmse"], less["fields"][0]["rmse"])
+        self.assertLess(fewer["fields"][0]["rmse"], 0.02 * 2)  # of a range of 2
+
+    def test_bad_input(self):
+        for arguments, words in (
+            (["model:ball:4", "-o", "a.png"], ".html"),
+            (["model:ball:4", "-o", "a.html", "--max-bytes", "12000"], "the page needs"),
+            (["model:ball:4", "-o", "a.html", "--fields", "density,gone"], "gone"),
+            (["model:ball:4", "-o", "a.html", "--look", "isosurface"], "no lit isosurfaces"),
+            (["model:ball:4", "-o", "a.html", "--kernel", "gaussian"], "compact kernel"),
+            (["model:ball:4", "-o", "a.html", "--correction", "full"], "Hessians"),
+            (["gone.vtk", "-o", "a.html"], "gone.vtk"),
+        ):
+            with self.subTest(arguments=arguments):
+                done = subvol("page", *arguments, folder=self.folder)
+                self.assertEqual(done.code, 2, done.err)
+                self.assertIn(words, done.err)
+                self.assertEqual(done.err.count("\n"), 1, done.err)
+        self.assertEqual(self.files(), [])
+
+
+@unittest.skipUnless(find_chromium(), "no chromium")
+class InTheBrowser(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = Path(cls.temporary.name)
+        cls.browser = Browser(find_chromium(), webgl=True)
+        cls.addClassCleanup(cls.browser.close)
+
+    def command(self, *arguments):
+        done = subvol(*arguments, folder=self.folder)
+        self.assertEqual(done.code, 0, done.err)
+        return done
+
+    def open(self, name, width=900, height=560, mobile=False):
+        self.browser.resize(width, height, mobile=mobile)
+        self.browser.open((self.folder / name).as_uri())
+        self.wait()
+
+    def wait(self):
+        """Until the picture is finished."""
+        deadline = time.monotonic() + 1500
+        while not self.browser.evaluate("!!(window.subvolPage && subvolPage.firstPicture && !subvolPage.drawing)"):
+            state = self.browser.evaluate("(s => s && s.className === 'fault' ? s.textContent : '')(document.getElementById('state'))")
+            if "WebGL2" in state:
+                self.skipTest(state)
+            self.assertEqual(state, "")
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+
+    def picture(self, name, size):
+        """The page's own picture, as a file."""
+        text = self.browser.evaluate(f"""subvolPage.picture({size}, {size}).then(({{ pixels }}) => {{
+            const bytes = new Uint8Array(pixels.buffer);
+            let text = '';
+            for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+            return btoa(text);
+        }})""")
+        write_tiff(self.folder / name, size, size, base64.b64decode(text))
+
+    def shot(self, name=None):
+        """The picture as it is seen now. Saved in the folder that SUBVOL_SCREENSHOTS names, for people to look at."""
+        self.wait()
+        folder = Path(os.environ.get("SUBVOL_SCREENSHOTS") or self.folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / (name or "page_now.png")
+        self.browser.screenshot(path)
+        return path.read_bytes()
+
+    def box(self, element):
+        return self.browser.evaluate(f"(r => [r.x, r.y, r.width, r.height])(document.querySelector('{element}').getBoundingClientRect())")
+
+    def mouse(self, kind, x, y, **more):
+        self.browser.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def drag(self, x, y, dx, dy):
+        self.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+        for k in range(1, 5):
+            self.mouse("mouseMoved", x + dx * k / 4, y + dy * k / 4, button="left", buttons=1)
+        self.mouse("mouseReleased", x + dx, y + dy, button="left", clickCount=1)
+
+    def test_same_picture_as_render(self):
+        # Rounding of kernels, and for transparent bodies the values where rays cross the boundary.
+        for name, look in (("solid", ["--look", "solid"]), ("volume", ["--look", "volume", "--tf", "coolwarm"]),
+                           ("ortho", ["--look", "volume", "--ortho", "--view", "-y"])):
+            with self.subTest(look=name):
+                self.command("page", "model:nozzle", "-o", "a.html", *look)
+                self.command("render", "model:nozzle", "-o", "a.exr", "--size", "192", *look)
+                self.open("a.html", 300)
+                self.picture("a.tif", 192)
+                compared = self.command("compare", "a.tif", "a.exr", "--json").json()
+                self.assertGreater(compared["psnr"], 40, name)
+                self.assertEqual(self.browser.requests(), [])
+                self.assertEqual(self.browser.complaints(), [])
+
+    def test_hands_change_the_picture(self):
+        self.command("page", "model:ball:6", "-o", "b.html")
+        self.open("b.html")
+        first = self.shot("page_first.png")
+        x, y, width, height = self.box("#picture")
+        # A click says the value there.
+        for kind in ("mousePressed", "mouseReleased"):
+            self.mouse(kind, x + width / 2, y + height / 2, button="left", clickCount=1)
+        picked = self.browser.evaluate("subvolPage.picked")
+        probe = self.command("probe", "model:ball:6", "--at", ",".join(str(0.999 * c) for c in picked["place"]), "--json").json()
+        self.assertAlmostEqual(picked["value"], probe["values"][0]["value"], delta=0.02)
+        # A drag turns the volume; the wheel makes it larger.
+        self.drag(x + width / 2, y + height / 2, 120, 30)
+        turned = self.shot("page_turned.png")
+        self.assertNotEqual(turned, first)
+        self.mouse("mouseWheel", x + width / 2, y + height / 2, deltaX=0, deltaY=-120)
+        self.assertNotEqual(self.shot(), turned)
+        # The clip plane: the slider's drag cuts the ball open, and what is picked then lies in it.
+        left, top, long, high = self.box("#clip-at")
+        self.drag(left + long / 2, top + high / 2, 0.05 * long, 0)
+        cut = self.shot("page_cut.png")
+        self.assertTrue(self.browser.evaluate("document.getElementById('clip').checked"))
+        self.assertNotEqual(cut, turned)
+        # A point of the opacities: the look becomes transparent.
+        left, top, long, high = self.box("#editor")
+        last = self.browser.evaluate("(e => e.transfer.opacity.map(([v, a]) => [e.xOf(v), e.yOf(a)]).at(-1))(subvolPage.editor)")
+        self.drag(left + last[0], top + last[1], -0.3 * long, -20)
+        self.assertEqual(self.browser.evaluate("document.getElementById('look').value"), "volume")
+        opacity = self.browser.evaluate("subvolPage.editor.transfer.opacity.at(-1)[1]")
+        self.assertGreater(opacity, 0.5)
+        self.assertNotEqual(self.shot("page_opacity.png"), cut)
+        self.assertEqual(self.browser.requests(), [])
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_fits_a_phone(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        self.command("page", "two.vtk", "-o", "c.html", "--fields", "Temp,Pres,V")
+        self.open("c.html", 390, mobile=True)
+        self.assertLessEqual(self.browser.evaluate("document.documentElement.scrollWidth"), 390)
+        self.assertEqual(self.browser.evaluate("[...document.getElementById('field').options].map(o => o.text)"), ["Temp", "Pres", "V"])
+        before = self.shot("page_phone.png")
+        self.browser.evaluate("(s => { s.value = 1; s.dispatchEvent(new Event('change')); })(document.getElementById('field'))")
+        self.assertNotEqual(self.shot(), before)
+        # A finger turns it.
+        x, y, width, height = self.box("#picture")
+        old = self.browser.evaluate("subvolPage.camera.eye.slice()")
+        for kind, dx in (("touchStart", 0), ("touchMove", 30), ("touchMove", 60), ("touchEnd", None)):
+            points = [] if dx is None else [{"x": x + width / 2 + dx, "y": y + height / 2}]
+            self.browser.send("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+        self.assertNotEqual(self.browser.evaluate("subvolPage.camera.eye.slice()"), old)
+        self.assertEqual(self.browser.complaints(), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
