@@ -165,7 +165,8 @@ void TextScanner::fail(const std::string& message, const std::string& allowed) c
 
 void TextScanner::fail_at(std::size_t position, const std::string& message, const std::string& allowed) const {
     const auto lines_before = [&] {
-        return std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(position), '\n');
+        const auto end = static_cast<std::ptrdiff_t>(std::min(position, text_.size()));  // parsers of XML may point behind it
+        return std::count(text_.begin(), text_.begin() + end, '\n');
     };
     std::string place;
     if (places_ == Places::Bytes) place = ", byte " + std::to_string(position);

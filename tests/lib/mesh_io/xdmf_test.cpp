@@ -182,6 +182,10 @@ TEST_F(Xdmf, WrongFilesGetASentenceWithTheLine) {
                 HasSubstr("elements refer to each other"));
     write("no.xmf", "<Xdmf>");
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("no.xmf"))); }), HasSubstr("not well-formed XML"));
+    // The parser finds this wrong behind the last byte.
+    write("cut.xmf",
+          "<Xdmf><Domain><Grid GridType=\"Coll<Xdmf><Domain><Grid Gridection\" CollectionTType=\"Collection\" Colylec0");
+    EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(path("cut.xmf"))); }), HasSubstr("line 1: not well-formed XML"));
 }
 
 using XdmfFuzz = MeshFuzz;
