@@ -69,7 +69,7 @@ public:
         }
         picture_.check();
         report.if_long("--max-bytes that fits without merging, or a larger --spacing");
-        PageOptions options{.title = title_.empty() ? title_of_file() : title_, .source = input_};
+        PageOptions options{.title = title_.empty() ? title_of_file() : title_, .source = source_name()};
         const std::vector<PageStep> steps = make_steps(options, report);
         finish_options(options, steps.back(), report);
         const PageResult page = report.timed("page", [&] { return make_page(steps, options); });
@@ -109,6 +109,11 @@ private:
             ->type_name("D")
             ->check(CLI::PositiveNumber);
         app().add_option("--unit", unit_, "the first field's unit, for the legend")->type_name("TEXT");
+    }
+
+    /// What stands on the page: not the folders of whoever made it.
+    [[nodiscard]] std::string source_name() const {
+        return is_model(input_) ? input_ : std::filesystem::path(input_).filename().string();
     }
 
     [[nodiscard]] std::string title_of_file() const {

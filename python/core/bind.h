@@ -106,6 +106,7 @@ void bind_points(py::module_& module);
 void bind_look(py::module_& module);
 void bind_render(py::module_& module);
 void bind_compare(py::module_& module);
+void bind_page(py::module_& module);
 void bind_studies(py::module_& module);
 
 }  // namespace subvol::python

@@ -89,6 +89,7 @@ PYBIND11_MODULE(_core, module) {
     bind_points(module);
     bind_render(module);
     bind_compare(module);
+    bind_page(module);
     bind_studies(module);
     refuse_uninitialised(module);
 }

@@ -16,7 +16,6 @@ from command import COMMAND, TWO_FIELDS, subvol  # noqa: E402
 MAP = [{"Name": "mine", "ColorSpace": "RGB", "RGBPoints": [0, 0, 0, 1, 0.5, 1, 1, 1, 1, 1, 0, 0], "Points": [0, 0, .5, 0, 1, .8, .5, 0]}]
 
 
-@unittest.skipUnless(shutil.which("blender"), "no blender")
 class Blender(unittest.TestCase):
     def test_imports(self):
         with tempfile.TemporaryDirectory() as name:
@@ -50,4 +49,7 @@ class Blender(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if not shutil.which("blender"):
+        print("skipped: no blender here", file=sys.stderr)
+        sys.exit(77)
     unittest.main()

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/page.h"
+
+#include "bind.h"
+
+namespace subvol::python {
+namespace {
+
+PageLook look_named(const std::string& name) {
+    if (name == "solid") return PageLook::Solid;
+    if (name == "volume") return PageLook::Volume;
+    if (name == "xray") return PageLook::Xray;
+    throw unknown_word(name, "look", "solid, volume or xray");
+}
+
+/// A page of one field. skin: the boundary with its values
+py::tuple page(const RbfVolume& volume, const BoundaryValues& skin, const TransferFunction& function, const std::string& unit,
+               double low, double high, const std::string& look, const Camera& camera, double opacity_unit,
+               const std::array<double, 3>& background, const std::string& title, const std::string& source,
+               std::size_t max_bytes, const py::object& progress) {
+    if (volume.channels.empty()) throw Error(ErrorCode::InvalidInput, "has no channel", "volume", "one channel");
+    const std::vector<PageStep> steps{{.label = {}, .volume = volume, .boundary = skin}};
+    PageOptions options{.title = title, .source = source, .look = look_named(look), .camera = camera};
+    options.fields.push_back(
+        {.name = volume.channels.front().name, .unit = unit, .function = function, .min = low, .max = high});
+    options.opacity_unit_world = opacity_unit;
+    options.background = {background[0], background[1], background[2]};
+    options.max_bytes = max_bytes;
+    const PageResult made = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return make_page(steps, options);
+    });
+    py::dict report;
+    report["bytes"] = made.report.bytes;
+    report["points"] = made.report.kernels;
+    report["kept"] = made.report.kept;
+    report["bits"] = made.report.bits;
+    report["triangles"] = made.report.triangles;
+    report["rmse"] = made.report.errors.front().rmse;
+    report["max_error"] = made.report.errors.front().max_abs;
+    return py::make_tuple(made.html, report);
+}
+
+}  // namespace
+
+void bind_page(py::module_& module) {
+    module.def("page", &page, py::arg("volume"), py::arg("skin"), py::arg("function"), py::arg("unit"), py::arg("low"),
+               py::arg("high"), py::arg("look"), py::arg("camera"), py::arg("opacity_unit"), py::arg("background"),
+               py::arg("title"), py::arg("source"), py::arg("max_bytes"), py::arg("progress"));
+}
+
+}  // namespace subvol::python

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A page that draws a volume in a browser, also in a notebook."""
+from __future__ import annotations
+
+import html
+import os
+from typing import Any, Optional, Union
+
+from . import _core
+from ._arguments import Path
+from ._core import Camera, HexMesh
+from ._errors import InvalidInput
+from ._pictures import (_LIGHT_GREY, _OPACITY_UNITS_PER_DIAGONAL, TransferFunction, _camera_of, _knots_of, _linear, _look_of, _range_of)
+from ._points import _selected, sample
+from ._progress import Progress, listening
+
+
+class Page:
+    """One HTML file that needs no network. A notebook shows it: the volume can be turned there.
+
+    html:   the file's text
+    report: bytes, points, kept (kernels in the page), bits, triangles, rmse and max_error (in the field's unit)
+    """
+
+    def __init__(self, text: str, report: dict[str, Any]) -> None:
+        self.html = text
+        self.report = report
+
+    def write(self, path: Path) -> None:
+        """Writes the page; the file appears whole or not at all."""
+        name = os.fsdecode(path)
+        if not name.endswith(".html"):
+            raise InvalidInput(f"{name}: a page is a .html file", name, ".html")
+        partial = f"{name}.{os.getpid()}.part"
+        try:
+            with open(partial, "w", encoding="utf-8") as out:
+                out.write(self.html)
+            os.replace(partial, name)
+        finally:
+            if os.path.exists(partial):
+                os.remove(partial)
+
+    def _repr_html_(self) -> str:
+        return ('<iframe style="width:100%;height:640px;border:0" sandbox="allow-scripts" title="volume" '
+                f'srcdoc="{html.escape(self.html)}"></iframe>')
+
+    def __repr__(self) -> str:
+        return f"<subvol.Page: {self.report['bytes']:,} bytes, {self.report['kept']:,} kernels>"
+
+
+def page(mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, look: Optional[str] = None,
+         tf: Union[None, str, TransferFunction] = None, view: str = "iso", camera: Union[None, str, Camera] = None,
+         opacity_unit: Optional[float] = None, title: str = "", unit: str = "", max_bytes: int = 24_000_000, scheme: str = "mcq",
+         progress: Progress = None) -> Page:
+    """A page of a field of a mesh: as `subvol page`.
+
+    look:      "solid", "volume" or "xray"; None: solid, unless tf or opacity_unit is given
+    unit:      of the field, for the legend
+    max_bytes: kernels are rounded, then merged, until the page fits
+    """
+    kind = _look_of(look, True, tf, opacity_unit)
+    chosen = _selected(mesh, field)
+    name = next(iter(chosen.fields))
+    low, high = _range_of(chosen.fields[name])
+    bounds = chosen.bounds
+    diagonal = float(((bounds[1] - bounds[0]) ** 2).sum() ** 0.5)
+    knots = _knots_of(tf, "volume" if kind == "solid" else kind, low, high)
+    if kind == "solid":  # a body whose values are all the same is plain
+        knots = _core.Knots(_knots_of(tf, kind, low, high).color, knots.opacity)
+    eye = _camera_of(view, camera, bounds, chosen.points, kind, (512, 512), False)
+    behind = {"solid": _linear(_LIGHT_GREY), "xray": (1.0, 1.0, 1.0)}.get(kind, (0.0, 0.0, 0.0))
+    volume = sample(chosen, name, per_edge, scheme=scheme, progress=progress)
+    skin = _core.skin(chosen, scheme, 1 / 16, None, None)
+    with listening(progress) as listener:
+        text, report = _core.page(volume, skin, knots, unit, low, high, kind, eye, opacity_unit or diagonal / _OPACITY_UNITS_PER_DIAGONAL,
+                                  (behind[0], behind[1], behind[2]), title or name, "a mesh in Python", max_bytes, listener)
+    return Page(text, report)
