@@ -52,7 +52,7 @@ public:
         : Verb(program, "view", "Look at a mesh: in a window, or by a script.",
                "  subvol view part.vtk\n"
                "  subvol view run.pvd --field T --tf coolwarm\n"
-               "  subvol view model:pawn --script turn.json --screenshot pawn.png    without a window") {
+               "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
         app().add_option("FILE", input_, input_help())->required();
         app().add_option("--script", script_, "play these actions, then quit; without a window")->type_name("FILE.json");
         app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");
@@ -133,7 +133,10 @@ private:
             report["waits"].push_back({{"action", wait.action},
                                        {"first", wait.seconds_first},
                                        {"full", wait.seconds_full},
-                                       {"coarse_scale", wait.coarse_scale}});
+                                       {"coarse_scale", wait.coarse_scale},
+                                       {"boundary", wait.seconds_boundary},
+                                       {"kernels", wait.seconds_kernels},
+                                       {"draw", wait.seconds_draw}});
         }
         if (const auto& picked = session.picked()) {
             report["picked"] = {{"at", {picked->place.x, picked->place.y, picked->place.z}},

@@ -40,6 +40,7 @@ struct DrawWorker::State {
         ViewState state{};
         std::shared_ptr<const ViewBody> body{};
         Stopwatch since{};
+        std::uint64_t serial = 0;
     };
 
     State(const DrawSettings& settings, std::function<void()> wake) : drawer(settings), on_picture(std::move(wake)) {}
@@ -66,11 +67,15 @@ struct DrawWorker::State {
             const double before = request.since.seconds();
             auto coarse = drawer.draw(request.state, request.body, coarse_scale, &at_end);  // not given up: things move
             taken.first = request.since.seconds();
+            taken.boundary = coarse.seconds_boundary;
+            taken.kernels = coarse.seconds_kernels;
+            taken.draw = coarse.seconds_draw;
             adapt(taken.first - before - coarse.seconds_build);
-            publish(std::move(coarse), std::nullopt);
+            publish(std::move(coarse), taken, request.serial);
             auto whole = drawer.draw(request.state, request.body, 1, &when_newer);
+            taken.kernels += whole.seconds_kernels;
             taken.full = request.since.seconds();
-            publish(std::move(whole), taken);
+            publish(std::move(whole), taken, request.serial);
         } catch (const Error& thrown) {
             if (thrown.code() != ErrorCode::Cancelled) fail(thrown.what());
         } catch (const std::exception& thrown) {
@@ -84,17 +89,17 @@ struct DrawWorker::State {
         if (seconds < 0.2 * kCoarse_s) coarse_scale = std::max(kFinest, coarse_scale / 2);
     }
 
-    void publish(DrawnPicture picture, std::optional<DrawTimes> taken) {
+    void publish(DrawnPicture picture, const DrawTimes& taken, std::uint64_t serial) {
         {
             const std::scoped_lock lock(mutex);
             latest = std::make_shared<const DrawnPicture>(std::move(picture));
             ++count;
             error.reset();
-            if (taken) {
-                times = *taken;
-                full = latest;
-            }
+            times = taken;
+            shown = serial;
+            if (latest->scale == 1) full = latest;
         }
+        done.notify_all();
         if (on_picture) on_picture();
     }
 
@@ -117,7 +122,7 @@ struct DrawWorker::State {
     bool drawing = false;
     std::atomic<bool> abandon = false, quit = false;
     std::shared_ptr<const DrawnPicture> latest{}, full{};
-    std::uint64_t count = 0;
+    std::uint64_t count = 0, asked = 0, shown = 0;
     std::optional<std::string> error{};
     std::exception_ptr failure{};
     DrawTimes times{};
@@ -141,7 +146,7 @@ DrawWorker::~DrawWorker() {
 
 void DrawWorker::show(const ViewState& state, std::shared_ptr<const ViewBody> body) {
     const std::scoped_lock lock(state_->mutex);
-    state_->next = State::Request{state, std::move(body)};
+    state_->next = State::Request{state, std::move(body), {}, ++state_->asked};
     state_->abandon = true;
     state_->error.reset();
     state_->failure = nullptr;
@@ -172,6 +177,11 @@ std::optional<std::string> DrawWorker::error() const {
 DrawTimes DrawWorker::times() const {
     const std::scoped_lock lock(state_->mutex);
     return state_->times;
+}
+
+void DrawWorker::wait_first() const {
+    std::unique_lock lock(state_->mutex);
+    state_->done.wait(lock, [&] { return state_->shown == state_->asked || (!state_->drawing && !state_->next); });
 }
 
 std::shared_ptr<const DrawnPicture> DrawWorker::wait() const {

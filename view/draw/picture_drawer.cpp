@@ -15,6 +15,7 @@
 #include "subvol/render_dense.h"
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
+#include "surface_preview.h"
 
 namespace subvol {
 
@@ -25,7 +26,7 @@ ViewBody view_body(HexMesh mesh, const std::optional<std::string>& field) {
     mesh.attributes.assign(1, std::move(selected.scalar));
     const auto [min, max] = std::ranges::minmax(mesh.attributes.front().values);
     const Box box = bounds(mesh);
-    return {std::move(mesh), box, {min, max}};
+    return {.mesh = std::move(mesh), .box = box, .range = {min, max}};
 }
 
 Optics optics_of(const ViewState& state, const ViewBody& body) {
@@ -35,6 +36,7 @@ Optics optics_of(const ViewState& state, const ViewBody& body) {
 struct PictureDrawer::State {
     DrawSettings settings;
     std::shared_ptr<const ViewBody> body{};
+    std::optional<BoundaryTables> tables{};  // of the cells of the body; kept while it is moved only
     std::optional<BoundaryValues> skin{};
     std::optional<RbfVolume> volume{};
     std::optional<TetsRenderer> tets{};
@@ -46,6 +48,7 @@ struct PictureDrawer::State {
 
     void take(const std::shared_ptr<const ViewBody>& next) {
         if (body == next) return;
+        if (body && body->shape != next->shape) tables.reset();
         body = next;
         splatters.clear();  // they refer to the volume
         skin.reset();
@@ -59,16 +62,27 @@ struct PictureDrawer::State {
         return interpolates(scheme.kind) ? fine : on_limit(std::move(fine), scheme.kind);
     }
 
-    const BoundaryValues& skin_of(Progress* progress) {
-        if (!skin) {
-            const int levels = picture_levels(body->mesh, settings.levels);
-            skin = boundary_values(body->mesh, {.scheme = settings.sample.scheme, .levels = levels, .progress = progress});
+    /// As boundary_values has it, up to rounding where the body has been moved.
+    const BoundaryValues& skin_of(Progress* progress, DrawnPicture& picture) {
+        if (skin) return *skin;
+        const Stopwatch watch;
+        const auto options = [&] {
+            return RefineOptions{
+                .scheme = settings.sample.scheme, .levels = picture_levels(body->mesh, settings.levels), .progress = progress};
+        };
+        if (body->moved) {
+            if (!tables) tables.emplace(body->mesh, options());
+            skin = tables->apply(body->mesh);
+        } else {
+            skin = boundary_values(body->mesh, options());
         }
+        picture.seconds_boundary = watch.seconds();
         return *skin;
     }
 
-    const RbfVolume& volume_of(Progress* progress) {
+    const RbfVolume& volume_of(Progress* progress, DrawnPicture& picture) {
         if (volume) return *volume;
+        const Stopwatch watch;
         SampleOptions options = settings.sample;
         options.progress = progress;
         if (settings.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
@@ -79,10 +93,11 @@ struct PictureDrawer::State {
         } else {
             volume = sample_rbf_points(body->mesh, options).volume;
         }
+        picture.seconds_kernels = watch.seconds();
         return *volume;
     }
 
-    Splatter& splatter(int samples, bool lit, bool sheets, Progress* progress) {
+    Splatter& splatter(int samples, bool lit, bool sheets, Progress* progress, DrawnPicture& picture) {
         const SplatterKey key{samples, lit, sheets};
         for (auto& [of, one] : splatters) {
             if (of == key) return one;
@@ -92,7 +107,7 @@ struct PictureDrawer::State {
         if (sheets) options.method = SplatMethod::Sheets;
         if (lit) options.shading = Shading{};
         options.progress = nullptr;
-        return splatters.emplace_back(key, Splatter(volume_of(progress), options)).second;
+        return splatters.emplace_back(key, Splatter(volume_of(progress, picture), options)).second;
     }
 
     [[nodiscard]] bool paints(const ViewState& state) const {
@@ -104,8 +119,8 @@ struct PictureDrawer::State {
                      Progress* progress) {
         Stopwatch watch;
         const bool lit = is_lit(state.look.look), painted = paints(state);
-        if (painted) (void)skin_of(progress);
-        Splatter& drawer = splatter(samples, lit, state.method == "sheets", progress);
+        if (painted) (void)skin_of(progress, picture);
+        Splatter& drawer = splatter(samples, lit, state.method == "sheets", progress, picture);
         picture.seconds_build = watch.seconds();
         SplatResult drawn = drawer.draw(view, optics, progress);
         if (painted) {
@@ -116,6 +131,19 @@ struct PictureDrawer::State {
         picture.depth = std::move(drawn.depth);
         picture.backend = drawn.report.backend;
         picture.points = volume->size();
+        picture.seconds_draw = watch.seconds() - picture.seconds_build;
+    }
+
+    /// A coarse picture of a solid, whatever the method: its boundary alone.
+    void draw_preview(const View& view, const Optics& optics, DrawnPicture& picture, Progress* progress) {
+        const Stopwatch watch;
+        const BoundaryValues& boundary = skin_of(progress, picture);
+        picture.seconds_build = watch.seconds();
+        Preview preview = surface_preview(boundary, view, optics);
+        picture.image = std::move(preview.image);
+        picture.depth = std::move(preview.depth);
+        picture.backend = "cpu";
+        picture.points = boundary.surface.points.size();
         picture.seconds_draw = watch.seconds() - picture.seconds_build;
     }
 
@@ -131,7 +159,7 @@ struct PictureDrawer::State {
             throw Error(ErrorCode::InvalidInput, "method " + state.method + " lights the boundary only", "look isosurface",
                         "method splat, or the colour map isosurface for surfaces without light");
         }
-        if (lit) (void)skin_of(progress);
+        if (lit) (void)skin_of(progress, picture);
         if (state.method == "tets" && !tets) tets.emplace(refined(settings.levels.value_or(1), progress), "", progress);
         picture.seconds_build = watch.seconds();
         picture.backend = "cpu";
@@ -170,7 +198,9 @@ DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<c
     picture.scale = scale;
     picture.state = state;
     const int samples = scale > 1 ? 1 : state_->settings.samples.value_or(state.look.look == Look::Solid ? 2 : 1);
-    if (state.method == "splat" || state.method == "sheets") {
+    if (scale > 1 && state_->paints(state)) {
+        state_->draw_preview(view, optics, picture, progress);
+    } else if (state.method == "splat" || state.method == "sheets") {
         state_->draw_splats(state, view, optics, samples, picture, progress);
     } else {
         state_->draw_reference(state, view, optics, samples, picture, progress);

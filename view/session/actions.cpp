@@ -8,6 +8,7 @@
 
 #include "action_values.h"
 #include "camera_motion.h"
+#include "edit_actions.h"
 #include "subvol/camera_fit.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/near_name.h"
@@ -222,7 +223,7 @@ void difference(Session& session, const Json& value) {
 
 /// Of the window; without one it has no effect.
 void window(Session& session, const Json& value) {
-    check_keys(value, {"dark", "help", "log_counts", "log_opacity", "play", "section"});
+    check_keys(value, {"dark", "help", "log_counts", "log_opacity", "play", "section", "tool", "brush"});
     WindowLook next = session.look;
     if (value.contains("dark")) next.dark = flag(value["dark"]);
     if (value.contains("help")) next.help = flag(value["help"]);
@@ -230,6 +231,9 @@ void window(Session& session, const Json& value) {
     if (value.contains("log_opacity")) next.log_opacity = flag(value["log_opacity"]);
     if (value.contains("play")) next.play = flag(value["play"]);
     if (value.contains("section")) next.section = word(value["section"]);
+    if (value.contains("tool"))
+        next.tool = word_of(value["tool"], {"turn", "brush", "move", "rotate", "scale", "twist", "bend", "paint"});
+    if (value.contains("brush")) next.brush_px = number(value["brush"], 1, 1000);
     session.look = next;
 }
 
@@ -240,7 +244,12 @@ void pick_place(Session& session, const Json& value) {
 }
 
 void wait(Session& session, const Json& wanted) {
-    if (flag(wanted)) (void)session.wait();
+    if (wanted == "first") {
+        session.worker.wait_first();
+        session.note_wait();
+    } else if (flag(wanted)) {
+        (void)session.wait();
+    }
 }
 
 void screenshot(Session& session, const Json& file) {
@@ -313,6 +322,18 @@ constexpr std::array kActions{Action{"orbit", orbit},
                               Action{"slider", slider},
                               Action{"difference", difference},
                               Action{"window", window},
+                              Action{"select", select},
+                              Action{"grab", grab},
+                              Action{"move", move},
+                              Action{"drag", drag},
+                              Action{"rotate", rotate},
+                              Action{"scale", scale},
+                              Action{"twist", twist},
+                              Action{"bend", bend},
+                              Action{"paint", paint},
+                              Action{"undo", undo},
+                              Action{"redo", redo},
+                              Action{"save_mesh", save_mesh},
                               Action{"pick", pick_place},
                               Action{"wait", wait},
                               Action{"screenshot", screenshot},

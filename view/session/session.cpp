@@ -21,8 +21,12 @@ detail::Json detail::parsed(std::string_view text, const std::string& where) {
 
 ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start, const DrawSettings& drawn,
                           std::function<void()> wake)
-    : source(std::move(from)), settings(drawn), mesh(std::move(read)), state(start),
-      on_picture(std::move(wake)), worker(settings, on_picture) {
+    : source(std::move(from)),
+      settings(drawn),
+      mesh(std::move(read)),
+      state(start),
+      on_picture(std::move(wake)),
+      worker(settings, on_picture) {
     choose_body();
     show();
 }
@@ -33,6 +37,11 @@ void ViewSession::State::choose_body() {
     state.field = chosen->field();
     body = std::move(chosen);
     probe.reset();
+    selection.clear();  // points, and what was done to them, are those of the mesh before
+    before.clear();
+    after.clear();
+    ++shape;
+    grabbed = false;
 }
 
 const LimitProbe& ViewSession::State::limit() {
@@ -62,9 +71,13 @@ Image ViewSession::State::composed(const DrawnPicture& picture) const {
 std::shared_ptr<const DrawnPicture> ViewSession::State::wait() {
     auto picture = worker.wait();
     if (!state.compare.empty()) (void)reference->wait();
-    const DrawTimes times = worker.times();
-    waits.push_back({action, times.first, times.full, times.coarse_scale});
+    note_wait();
     return picture;
+}
+
+void ViewSession::State::note_wait() {
+    const DrawTimes times = worker.times();
+    waits.push_back({action, times.first, times.full, times.coarse_scale, times.boundary, times.kernels, times.draw});
 }
 
 ViewSession::ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const DrawSettings& settings,
@@ -145,6 +158,10 @@ std::shared_ptr<const DrawnPicture> ViewSession::wait() {
 
 Image ViewSession::composed(const DrawnPicture& picture) const {
     return state_->composed(picture);
+}
+
+const Selection& ViewSession::selection() const {
+    return state_->selection;
 }
 
 bool ViewSession::busy() const {

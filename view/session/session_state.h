@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "subvol/detail/window_look.h"
+#include "subvol/edit_mesh.h"
 #include "subvol/probe.h"
 #include "subvol/view_session.h"
 
@@ -42,6 +43,11 @@ struct ViewSession::State {
     void show();
     [[nodiscard]] const LimitProbe& limit();
     [[nodiscard]] std::shared_ptr<const DrawnPicture> wait();
+    void note_wait();
+    /// Keeps the mesh for `undo`.
+    void remember();
+    /// Shows another shape of the body's mesh.
+    void replace(HexMesh next);
     /// The picture beside that of the other method, if two are compared and the other one is there.
     [[nodiscard]] Image composed(const DrawnPicture& picture) const;
 
@@ -50,7 +56,11 @@ struct ViewSession::State {
     HexMesh mesh;  // all fields of the step
     ViewState state;
     std::shared_ptr<const ViewBody> body;
-    std::optional<LimitProbe> probe;  // of `body`
+    std::optional<LimitProbe> probe;     // of `body`
+    Selection selection;                 // empty: nothing
+    std::vector<HexMesh> before, after;  // for undo and redo
+    std::uint64_t shape = 0;             // of the cells that are edited; 0: none yet
+    bool grabbed = false;                // a motion in many small edits, which are undone as one
     std::optional<Picked> picked;
     std::size_t action = 0;
     std::vector<WaitReport> waits;

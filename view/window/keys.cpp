@@ -31,6 +31,8 @@ constexpr std::array kLines{Line{"drag", "turn"},
                             Line{",  .  space", "step before, step after, play"},
                             Line{"a  m  l", "axes, control mesh, legend"},
                             Line{"r  [  ]  x", "reference beside it, its border, difference"},
+                            Line{"e", "next tool for the mesh; shift + drag selects"},
+                            Line{"ctrl + z, ctrl + y", "undo, redo"},
                             Line{"ctrl + p", "write the picture"},
                             Line{"ctrl + s, ctrl + o", "save the state, load it"},
                             Line{"ctrl + c", "copy as render command"},
@@ -60,7 +62,16 @@ void with_control(WindowHost& host, WindowMemory& memory, int key) {
     if (key == GLFW_KEY_P) run_and_tell(host, memory, "screenshot", json_text(picture), "wrote " + picture);
     if (key == GLFW_KEY_S) run_and_tell(host, memory, "save_state", json_text(state), "wrote " + state);
     if (key == GLFW_KEY_O) run_and_tell(host, memory, "load_state", json_text(state), "read " + state);
+    if (key == GLFW_KEY_Z) run(host, memory, "undo", "true");
+    if (key == GLFW_KEY_Y) run(host, memory, "redo", "true");
     if (key == GLFW_KEY_C) ImGui::SetClipboardText(host.render_command().c_str());
+}
+
+void next_tool(WindowHost& host) {
+    constexpr std::array kTools{"turn", "brush", "move", "rotate", "scale", "twist", "bend", "paint"};
+    const auto now = std::ranges::find(kTools, host.look().tool);
+    const std::size_t next = now == kTools.end() ? 0 : static_cast<std::size_t>(now - kTools.begin()) + 1;
+    host.look().tool = kTools[next % kTools.size()];
 }
 
 const char* toggled(bool now) {
@@ -135,6 +146,9 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
             break;
         case 'x':
             run(host, memory, "difference", toggled(state.difference));
+            break;
+        case 'e':
+            next_tool(host);
             break;
         case 'b':
             host.look().dark = !host.look().dark;

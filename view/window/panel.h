@@ -29,7 +29,10 @@ struct WindowMemory {
     double next_step_at = 0;
     char picture_file[256] = "picture.png";
     char state_file[256] = "state.json";
-    char map_file[256] = "";
+    char map_file[256] = "", mesh_file[256] = "edited.vtu";
+    float paint_value = 0;
+    bool works = false, rectangle = false;  // what a drag with a tool is
+    std::array<float, 2> corner{};          // where it began
     bool quit = false;
 };
 
@@ -49,6 +52,13 @@ void draw_panel(WindowHost& host, WindowMemory& memory, float left, float width,
 
 /// The editor of opacities over the histogram.
 void draw_opacity_editor(WindowHost& host, WindowMemory& memory);
+
+/// The mouse on the picture while a tool for control points is chosen. returns: whether the tool took it
+[[nodiscard]] bool take_tool(WindowHost& host, WindowMemory& memory, float height);
+/// The selected control points, and the brush.
+void draw_selection(WindowHost& host, const WindowMemory& memory);
+/// The tools, in the panel.
+void draw_sculpt(WindowHost& host, WindowMemory& memory);
 
 /// The list of keys.
 void draw_help(WindowHost& host, const WindowMemory& memory);

@@ -102,6 +102,24 @@ public:
         return optics_of(session_.state(), session_.body()).function().opacity;
     }
 
+    [[nodiscard]] std::vector<Vec3> selected_pixels() const override {
+        constexpr std::size_t kMost = 3000;  // more would hide the body
+        const Selection& selection = session_.selection();
+        const ViewState& state = session_.state();
+        const View view(state.camera, state.width, state.height);
+        const auto count = static_cast<std::size_t>(std::ranges::count_if(selection, [](double share) { return share > 0; }));
+        const std::size_t step = count / kMost + 1;
+        std::vector<Vec3> pixels;
+        std::size_t found = 0;
+        for (std::size_t p = 0; p < selection.size(); ++p) {
+            if (selection[p] == 0 || found++ % step != 0) continue;
+            const Vec3 eye = view.to_eye(session_.body().mesh.points[p]);
+            if (view.perspective() && !(eye.z > 0)) continue;
+            pixels.emplace_back(view.to_pixels(eye), selection[p]);
+        }
+        return pixels;
+    }
+
     [[nodiscard]] std::vector<std::string> picked() const override {
         const auto& picked = session_.picked();
         if (!picked) return {};

@@ -55,6 +55,8 @@ public:
     /// The colour map at equally spaced values.
     [[nodiscard]] virtual std::vector<CurvePlace> curve(const ValueRange& range, std::size_t count) const = 0;
     [[nodiscard]] virtual std::vector<TransferFunction::OpacityKnot> opacity() const = 0;
+    /// Where selected control points are in the picture (column, row) and their shares.
+    [[nodiscard]] virtual std::vector<Vec3> selected_pixels() const = 0;
     [[nodiscard]] virtual std::vector<std::string> picked() const = 0;
     [[nodiscard]] virtual std::string render_command() const = 0;
 

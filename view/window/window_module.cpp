@@ -72,6 +72,7 @@ void take_mouse(Window& self, float height) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemHovered() && io.MouseWheel != 0)
         run(self.host, self.memory, "zoom", json_text(std::pow(1.1, double{io.MouseWheel})));
+    if (take_tool(self.host, self.memory, height)) return;
     if (ImGui::IsItemActivated()) self.dragged = false;
     if (ImGui::IsItemActive()) {
         const ImVec2 by = io.MouseDelta;
@@ -137,6 +138,7 @@ void draw_picture(Window& self, float width, float height) {
         "mouse", {width, shown},
         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
     take_mouse(self, shown);
+    draw_selection(self.host, self.memory);
     draw_line(self, width, height);
     ImGui::End();
 }

@@ -4,6 +4,7 @@
 /// All of subvol::view: sessions that show a mesh, and the thread that draws them.
 
 #include "subvol/draw_worker.h"
+#include "subvol/edit_mesh.h"
 #include "subvol/picture_drawer.h"
 #include "subvol/view_session.h"
 #include "subvol/view_state.h"

@@ -15,6 +15,7 @@ namespace subvol {
 struct DrawTimes {
     double first = 0, full = 0;
     int coarse_scale = 0;
+    double boundary = 0, kernels = 0, draw = 0;  // of the first picture; kernels of the full one if the first has none
 };
 
 /// Draws on a thread of its own, always the newest state: first a coarse picture, then the full one. A picture that a newer
@@ -38,8 +39,11 @@ public:
     [[nodiscard]] bool busy() const;
     /// The error that the newest state led to; none: there is none.
     [[nodiscard]] std::optional<std::string> error() const;
-    /// Of the last full picture.
+    /// Of the newest state, as far as it is drawn.
     [[nodiscard]] DrawTimes times() const;
+
+    /// Waits for any picture of the newest state, or its error.
+    void wait_first() const;
 
     /// Waits for the full picture of the newest state.
     ///

@@ -39,8 +39,9 @@ struct DrawnPicture {
     int scale = 1;
     ViewState state{};
     std::string backend{};
-    std::size_t points = 0;    // kernels, or tetrahedra
-    double seconds_build = 0;  // of what is kept from picture to picture: kernels, boundary, tetrahedra
+    std::size_t points = 0;                            // kernels, or tetrahedra
+    double seconds_build = 0;                          // of what is kept from picture to picture: kernels, boundary, tetrahedra
+    double seconds_boundary = 0, seconds_kernels = 0;  // the parts of these that were made anew
     double seconds_draw = 0;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -40,10 +41,15 @@ struct ViewState {
 }
 
 /// A mesh with one field, which is its only attribute, and what the picture needs to know about both.
+///
+/// shape: bodies with the same number have the same cells; 0: of its own
+/// moved: it is being moved, so that tables for its cells pay
 struct ViewBody {
     HexMesh mesh;
     Box box;
     ValueRange range;
+    std::uint64_t shape = 0;
+    bool moved = false;
 
     [[nodiscard]] const std::string& field() const { return mesh.attributes.front().name; }
 };

@@ -11,6 +11,7 @@
 
 #include "subvol/detail/window_look.h"
 #include "subvol/draw_worker.h"
+#include "subvol/edit_mesh.h"
 #include "subvol/image.h"
 
 namespace subvol {
@@ -45,6 +46,7 @@ struct WaitReport {
     std::size_t action = 0;
     double seconds_first = 0, seconds_full = 0;
     int coarse_scale = 0;
+    double seconds_boundary = 0, seconds_kernels = 0, seconds_draw = 0;  // of the first picture
 };
 
 /// A mesh that is looked at: the state, the actions that change it, and the thread that draws it. It needs no window; the
@@ -70,6 +72,8 @@ public:
     /// The names of the fields of the mesh.
     [[nodiscard]] std::vector<std::string> fields() const;
     [[nodiscard]] const DrawWorker& worker() const;
+    /// The control points that edits move; empty: none.
+    [[nodiscard]] const Selection& selection() const;
     /// What the last action `pick` found; none: it missed the volume.
     [[nodiscard]] const std::optional<Picked>& picked() const;
     [[nodiscard]] const std::vector<WaitReport>& waits() const;
