@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTurn_deg = 0.4;  // for each pixel of a drag
 
-std::string json_text(const Vec3& v) {
+std::string three_text(const Vec3& v) {
     return "[" + json_text(v.x) + ", " + json_text(v.y) + ", " + json_text(v.z) + "]";
 }
 
@@ -29,13 +29,13 @@ void work(WindowHost& host, WindowMemory& memory, const ImVec2& by, float height
     if (tool == "brush" || tool == "move") {
         run(host, memory, "drag", json_text(right / double{height}, -down / double{height}));
     } else if (tool == "rotate") {
-        run(host, memory, "rotate", angle + ", \"axis\": " + json_text(forward) + "}");
+        run(host, memory, "rotate", angle + ", \"axis\": " + three_text(forward) + "}");
     } else if (tool == "scale") {
         run(host, memory, "scale", json_text(std::exp(0.005 * (right - down))));
     } else if (tool == "twist") {
-        run(host, memory, "twist", angle + ", \"axis\": " + json_text(axis) + "}");
+        run(host, memory, "twist", angle + ", \"axis\": " + three_text(axis) + "}");
     } else if (tool == "bend") {
-        run(host, memory, "bend", angle + ", \"axis\": " + json_text(axis) + ", \"toward\": " + json_text(to_right) + "}");
+        run(host, memory, "bend", angle + ", \"axis\": " + three_text(axis) + ", \"toward\": " + three_text(to_right) + "}");
     }
 }
 

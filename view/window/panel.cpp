@@ -81,7 +81,7 @@ void draw_colours(WindowHost& host, WindowMemory& memory) {
     ImGui::SameLine();
     if (ImGui::Button("map's opacities", {ImGui::GetContentRegionAvail().x, 0})) run(host, memory, "opacity", "[]");
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
-    ImGui::InputTextWithHint("##map_file", "a colour map of ParaView, .json", memory.map_file, sizeof memory.map_file);
+    ImGui::InputTextWithHint("##map_file", "ParaView's map.json", memory.map_file, sizeof memory.map_file);
     ImGui::SameLine();
     if (ImGui::Button("load", {ImGui::GetContentRegionAvail().x, 0}))
         run(host, memory, "tf", json_text(std::string(memory.map_file)));

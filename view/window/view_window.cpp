@@ -60,7 +60,7 @@ public:
         const std::string things = latest->state.method == "tets"    ? " tetrahedra"
                                    : latest->state.method == "dense" ? " small cells"
                                                                      : " kernels";
-        std::string text = std::to_string(latest->points) + things + "   " + number_text(1e3 * latest->seconds_draw, 3) +
+        std::string text = std::to_string(latest->points) + things + "   " + fixed_text(1e3 * latest->seconds_draw, 0) +
                            " ms   " + latest->state.method + ", " + latest->backend + "   " +
                            std::to_string(latest->image.width) + " x " + std::to_string(latest->image.height);
         if (latest->scale > 1) text += "   coarse";

@@ -38,6 +38,7 @@ void set_style(bool dark, float scale) {
     style.WindowRounding = style.ChildRounding = 0;
     style.FrameRounding = style.GrabRounding = style.PopupRounding = 3;
     style.WindowBorderSize = 0;
+    style.FrameBorderSize = dark ? 0 : 1;  // white frames on a light panel
     style.WindowPadding = {12, 12};
     style.FramePadding = {7, 4};
     style.ItemSpacing = {8, 7};
