@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <filesystem>
 #include <sstream>
 
 #include "choices.h"
 #include "outputs.h"
 #include "subvol/camera_fit.h"
-#include "subvol/clamped.h"
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
 #include "subvol/legend.h"
@@ -19,36 +17,6 @@
 #include "text.h"
 
 namespace subvol::cli {
-namespace {
-
-constexpr double kOpacityUnitsPerDiagonal = 100;
-constexpr double kFaint = 0.02;                 // of the largest opacity: what has less is not framed
-constexpr double kAlmostWhole = 0.8;            // of the box's diagonal
-constexpr double kSolidUnitsPerDiagonal = 1e6;  // all light ends far within a pixel
-const Vec3 kPlainColor(0.72, 0.76, 0.82);       // of a body without a field, sRGB
-
-/// The largest opacity of the values from low to high.
-double largest_alpha(const TransferFunction& function, double low, double high) {
-    double largest = std::max(alpha_at(function, low), alpha_at(function, high));
-    for (const auto& knot : function.opacity) {
-        if (knot.value > low && knot.value < high) largest = std::max(largest, knot.alpha);
-    }
-    return largest;
-}
-
-}  // namespace
-
-TransferFunction find_transfer_function(const std::string& name, const Range& range, bool stretch) {
-    const std::filesystem::path path(name);
-    const std::size_t end = name.find(".json:");  // FILE.json:NAME picks one of several maps
-    const bool one_of_several = end != std::string::npos;
-    if (!one_of_several && !path.has_extension() && !path.has_parent_path()) {
-        return transfer_function_preset(name, range.min, range.max);
-    }
-    TransferFunction function =
-        one_of_several ? read_transfer_function(name.substr(0, end + 5), name.substr(end + 6)) : read_transfer_function(path);
-    return stretch ? stretched(function, range.min, range.max) : function;
-}
 
 PictureSize parse_size(const std::string& option, const std::string& text) {
     std::istringstream in(text);
@@ -195,17 +163,22 @@ void PictureArguments::settle_look(bool has_boundary) {
     const std::string name = look_name.value_or(
         has_boundary && !transfer_function && !opacity && !opacity_unit_world && !transfer_range ? "solid" : "volume");
     check_choice("--look", name, {"solid", "volume", "xray", "isosurface"});
-    look = name == "solid" ? Look::Solid : name == "xray" ? Look::Xray : name == "isosurface" ? Look::Isosurface : Look::Volume;
+    look = look_named(name).value_or(Look::Volume);
 }
 
 Vec3 PictureArguments::background_color() const {
     if (background) return parse_background(*background);
-    if (look == Look::Volume) return Vec3(0.0);
-    return look == Look::Xray ? Vec3(1.0) : parse_background("lightgrey");
+    return background_of(look);
 }
 
-std::string PictureArguments::colors_name() const {
-    return transfer_function.value_or(look == Look::Xray ? "xray" : look == Look::Isosurface ? "isosurface" : "viridis");
+bool PictureArguments::paints_boundary(const CLI::App& app, const RefineArguments& refine) const {
+    if (look != Look::Solid || opacity || opacity_unit_world || refine.levels) return false;
+    for (const char* name : {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--values",
+                             "--kernel", "--threshold", "--correction", "--reduce", "--plain-sums", "--sheets"}) {
+        const CLI::Option* option = app.get_option_no_throw(name);
+        if (option != nullptr && option->count() > 0) return false;
+    }
+    return true;
 }
 
 Camera PictureArguments::make_camera(const Box& box, std::span<const Vec3> points, double aspect) const {
@@ -239,34 +212,6 @@ std::vector<View> PictureArguments::make_sheet(const Box& box, std::span<const V
     return sheet;
 }
 
-std::vector<Vec3> PictureArguments::framed_points(const HexMesh& mesh, const Optics& optics) const {
-    if (look == Look::Solid) return mesh.points;
-    const TransferFunction& function = optics.function();
-    double most = 0;
-    for (const auto& knot : function.opacity) most = std::max(most, knot.alpha);
-    const std::vector<double>& values = mesh.attributes[0].values;
-    std::vector<std::uint8_t> seen(mesh.points.size());
-    for (const auto& cell : mesh.cells) {
-        double low = values[cell[0]], high = low;
-        for (const Index corner : cell) {
-            low = std::min(low, values[corner]);
-            high = std::max(high, values[corner]);
-        }
-        if (largest_alpha(function, low, high) <= kFaint * most) continue;
-        for (const Index corner : cell) seen[corner] = 1;
-    }
-    std::vector<Vec3> points;
-    Box part;
-    for (std::size_t p = 0; p < seen.size(); ++p) {
-        if (!seen[p]) continue;
-        points.push_back(mesh.points[p]);
-        part.add(mesh.points[p]);
-    }
-    // Almost the whole is framed as the whole, like a grid or kernels of it.
-    if (points.empty() || part.diagonal() > kAlmostWhole * bounds(mesh).diagonal()) return {};
-    return points;
-}
-
 Range PictureArguments::shown_range(const Range& field) const {
     if (!transfer_range || *transfer_range == "field") return field;
     const std::size_t comma = transfer_range->find(',');
@@ -281,34 +226,31 @@ Range PictureArguments::shown_range(const Range& field) const {
     return range;
 }
 
-Optics PictureArguments::make_optics(const Box& box, const Range& field, const Range& colors) const {
+LookOptions PictureArguments::look_options(const Range& field) const {
+    LookOptions options{.look = look,
+                        .colors = transfer_function.value_or(""),
+                        .stretch = transfer_range.has_value(),
+                        .opacity_unit_world = opacity_unit_world,
+                        .clamp = clamp};
     const Range range = shown_range(field);
-    TransferFunction function = find_transfer_function(colors_name(), range, transfer_range.has_value());
-    function.color = find_transfer_function(colors_name(), shown_range(colors), transfer_range.has_value()).color;
-    double unit_world = box.diagonal() / kOpacityUnitsPerDiagonal;
-    if (look == Look::Solid) {
-        unit_world = box.diagonal() / kSolidUnitsPerDiagonal;
-        for (auto& knot : function.opacity) knot.alpha = 1;
-        // Where all values are the same, a colour of the map would mean nothing.
-        const bool constant = !(colors.min < colors.max);
-        if (constant && !transfer_function) {
-            for (auto& knot : function.color) knot.rgb = linear_from_srgb(kPlainColor);
-        }
-    }
-    if (opacity) function.opacity = parse_opacity(*opacity, range.min, range.max);
-    if (clamp) {
-        TransferFunction kept = clamped(function, field.min, field.max);
-        kept.color = clamped(function, colors.min, colors.max).color;
-        function = std::move(kept);
-    }
-    return {std::move(function), opacity_unit_world.value_or(unit_world)};
+    if (transfer_range && *transfer_range != "field") options.range = range;
+    if (opacity) options.opacity = parse_opacity(*opacity, range.min, range.max);
+    return options;
+}
+
+Optics PictureArguments::make_optics(const Box& box, const Range& field, const Range& colors) const {
+    return picture_optics(look_options(field), box, field, colors);
+}
+
+std::vector<Vec3> PictureArguments::framed_points(const HexMesh& mesh, const Optics& optics) const {
+    return subvol::framed_points(mesh, look, optics);
 }
 
 void PictureArguments::check() const {
     const Box any{{0, 0, 0}, {1, 1, 1}};
     const auto [width, height] = parse_size("--size", size);
     (void)parse_camera(camera.value_or(view), any, static_cast<double>(width) / height);
-    (void)find_transfer_function(colors_name(), {0, 1}, false);
+    (void)find_transfer_function(colors_of({.look = look, .colors = transfer_function.value_or("")}), {0, 1}, false);
     (void)background_color();
     if (views && (width % 2 != 0 || height % 2 != 0)) {
         throw Error(ErrorCode::InvalidInput, "a sheet of four views has quarters of whole pixels", "--size " + size,

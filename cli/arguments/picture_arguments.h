@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "refine_arguments.h"
 #include "report.h"
 #include "subvol/camera.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/legend.h"
 #include "subvol/optics.h"
+#include "subvol/picture_look.h"
 
 namespace CLI {
 class App;
@@ -19,9 +21,7 @@ class App;
 namespace subvol::cli {
 
 /// The range of a field's values.
-struct Range {
-    double min = 0, max = 0;
-};
+using Range = ValueRange;
 
 /// A field with the range of its values.
 struct ShownField {
@@ -39,17 +39,8 @@ struct PictureSize {
 /// throws: Error(InvalidInput)
 [[nodiscard]] PictureSize parse_size(const std::string& option, const std::string& text);
 
-/// Reads a colour map's file, or makes a preset over the range.
-///
-/// stretch: spreads a file's map over the range, too
-[[nodiscard]] TransferFunction find_transfer_function(const std::string& name, const Range& range, bool stretch = false);
-
 /// The box of the points that are not transparent; the pawn, for example, fills only a small part of its block.
 [[nodiscard]] Box visible_bounds(const HexMesh& mesh, const Optics& optics);
-
-/// The kinds of pictures. Solid: opaque and lit. Volume: transparent as the colour map says, black behind. Xray: dark where
-/// there is much, on white. Isosurface: five lit surfaces.
-enum class Look { Solid, Volume, Xray, Isosurface };
 
 /// The colour behind a picture, in linear light: "r,g,b" in 0..1, "#rrggbb" (sRGB), or a name.
 ///
@@ -85,8 +76,10 @@ struct PictureArguments {
     ///
     /// throws: Error(InvalidInput) for an unknown look
     void settle_look(bool has_boundary);
-    [[nodiscard]] bool lit() const { return look == Look::Solid || look == Look::Isosurface; }
+    [[nodiscard]] bool lit() const { return is_lit(look); }
     [[nodiscard]] Vec3 background_color() const;
+    /// Whether the colours of a solid are those of its boundary: unless the picture is to show what kernels make of it.
+    [[nodiscard]] bool paints_boundary(const CLI::App& app, const RefineArguments& refine) const;
 
     /// The points to which the camera is fitted: those of a solid; of other bodies those of the cells that can be seen, or
     /// nothing if these are most of the body.
@@ -94,6 +87,8 @@ struct PictureArguments {
     /// One view, or those of the turntable, or the four of a sheet, each a quarter of the picture. points: a
     /// named view is fitted to them; none: to the box
     [[nodiscard]] std::vector<View> make_views(const Box& box, std::span<const Vec3> points = {}) const;
+    /// field: the range of the field that gives the opacities
+    [[nodiscard]] LookOptions look_options(const Range& field) const;
     /// field, colors: the ranges of the field that gives the opacities and of the one that gives the colours, often the same
     [[nodiscard]] Optics make_optics(const Box& box, const Range& field, const Range& colors) const;
 
@@ -115,7 +110,6 @@ private:
     void add_light_to(CLI::App& app);
     [[nodiscard]] Camera make_camera(const Box& box, std::span<const Vec3> points, double aspect) const;
     [[nodiscard]] std::vector<View> make_sheet(const Box& box, std::span<const Vec3> points, int width, int height) const;
-    [[nodiscard]] std::string colors_name() const;
 };
 
 }  // namespace subvol::cli

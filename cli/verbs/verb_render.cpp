@@ -223,7 +223,7 @@ private:
             splat_in_time(mesh, views.front(), optics, output, report);
         } else {
             BoundaryValues skin;
-            if (paints_boundary()) skin = skin_of(mesh, report);
+            if (picture_.paints_boundary(app(), refine_)) skin = skin_of(mesh, report);
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report, skin);
         }
     }
@@ -241,16 +241,6 @@ private:
         RefineOptions options = refine_.options(levels, report);
         options.levels = levels;
         return report.timed("boundary", [&] { return boundary_values(mesh, options); });
-    }
-
-    /// Whether the colours of a solid are those of its boundary: unless the picture is to show what kernels make of it.
-    [[nodiscard]] bool paints_boundary() {
-        if (picture_.look != Look::Solid || picture_.opacity || picture_.opacity_unit_world || refine_.levels) return false;
-        for (const char* option : {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--values",
-                                   "--kernel", "--threshold", "--correction", "--reduce", "--plain-sums", "--sheets"}) {
-            if (app().get_option(option)->count() > 0) return false;
-        }
-        return true;
     }
 
     /// The same pictures with light on the boundary; the methods themselves know none.

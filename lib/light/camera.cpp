@@ -49,8 +49,12 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
 }
 
 Camera camera_from_numbers(const std::vector<double>& n) {
-    require(n.size() == 10, "a camera in numbers has ten of them", "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy");
-    return {.eye = {n[0], n[1], n[2]}, .target = {n[3], n[4], n[5]}, .up = {n[6], n[7], n[8]}, .fovy_deg = n[9]};
+    require(n.size() == 10 || n.size() == 11, "a camera in numbers has ten of them", "ex,ey,ez,tx,ty,tz,ux,uy,uz,fovy");
+    return {.eye = {n[0], n[1], n[2]},
+            .target = {n[3], n[4], n[5]},
+            .up = {n[6], n[7], n[8]},
+            .fovy_deg = n[9],
+            .ortho_height = n.size() == 11 ? n[10] : 0.0};
 }
 
 void read_number(const nlohmann::json& object, const std::string& file, const char* key, double& value) {

@@ -184,6 +184,113 @@ BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options) {
     return boundary;
 }
 
+/// The points of the level that are kept, as numbers of the level before it, and the table of their refinement.
+struct BoundaryTables::State {
+    struct Level {
+        std::vector<Index> kept;
+        StencilTable table;
+    };
+    std::vector<Index> used;  // the points of the control mesh that cells use
+    std::size_t control_points = 0;
+    std::vector<Level> levels;
+    std::optional<StencilTable> limit;
+    std::vector<Index> on_surface;  // the points of the last level that the surface uses
+    std::vector<std::array<Index, 3>> triangles;
+
+    /// One channel, or three: from the control mesh to the surface.
+    [[nodiscard]] std::vector<double> to_surface(std::span<const double> control, std::size_t channels) const {
+        std::vector<double> values = gathered(control, used, channels);
+        for (const Level& level : levels) {
+            const std::vector<double> kept = gathered(values, level.kept, channels);
+            values.assign(level.table.rows() * channels, 0);
+            level.table.apply(kept, channels, values);
+        }
+        if (limit) {
+            std::vector<double> moved(limit->rows() * channels);
+            limit->apply(values, channels, moved);
+            values = std::move(moved);
+        }
+        return gathered(values, on_surface, channels);
+    }
+
+    [[nodiscard]] static std::vector<double> gathered(std::span<const double> from, std::span<const Index> points,
+                                                      std::size_t channels) {
+        std::vector<double> values;
+        values.reserve(points.size() * channels);
+        for (const Index p : points) {
+            const auto first = from.begin() + static_cast<std::ptrdiff_t>(p * channels);
+            values.insert(values.end(), first, first + static_cast<std::ptrdiff_t>(channels));
+        }
+        return values;
+    }
+};
+
+namespace {
+
+/// A mesh in which each point is where its number is on the first axis.
+HexMesh numbered(HexMesh mesh) {
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) mesh.points[p] = Vec3(static_cast<double>(p), 0, 0);
+    mesh.attributes.clear();
+    return mesh;
+}
+
+std::vector<Index> numbers_in(std::span<const Vec3> points) {
+    std::vector<Index> numbers;
+    for (const Vec3& p : points) numbers.push_back(static_cast<Index>(p.x));
+    return numbers;
+}
+
+}  // namespace
+
+BoundaryTables::BoundaryTables(const HexMesh& whole, const RefineOptions& options) : state_(std::make_unique<State>()) {
+    check_levels(options.levels);
+    HexMesh mesh = control_mesh(whole, options.scheme);  // creases by angle are those of this shape
+    state_->control_points = whole.points.size();
+    HexMesh names = numbered(whole);
+    for (const Vec3& p : without_unused_points(std::move(names)).points) state_->used.push_back(static_cast<Index>(p.x));
+    RefineOptions once = options;
+    once.levels = 1;
+    HullFlags on_hull = hull_points(mesh);
+    for (int level = 0; level < options.levels; ++level) {
+        const HullCells near(numbered(std::move(mesh)), on_hull);
+        const Topology topology = build_topology(near.mesh);
+        RefinementTables tables = refinement_tables(topology, once);
+        on_hull = hull_points_of_child(topology, near.on_hull);
+        state_->levels.push_back({numbers_in(near.mesh.points), std::move(tables.levels.front())});
+        mesh = {};
+        mesh.points.resize(state_->levels.back().table.rows());
+        mesh.cells = std::move(tables.cells);
+        mesh.creases = std::move(tables.creases);
+        mesh.sharp_faces = std::move(tables.sharp_faces);
+    }
+    if (!interpolates(options.scheme.kind)) state_->limit = limit_stencils(build_topology(mesh), options.scheme.kind);
+    const Surface surface =
+        boundary_surface_where(numbered(std::move(mesh)), [&](const auto& face) { return on_hull[face[0]] != 0; });
+    state_->on_surface = numbers_in(surface.points);
+    state_->triangles = surface.triangles;
+}
+
+BoundaryTables::~BoundaryTables() = default;
+BoundaryTables::BoundaryTables(BoundaryTables&&) noexcept = default;
+BoundaryTables& BoundaryTables::operator=(BoundaryTables&&) noexcept = default;
+
+BoundaryValues BoundaryTables::apply(const HexMesh& mesh) const {
+    if (mesh.points.size() != state_->control_points) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has another number of points than that of the tables");
+    }
+    const std::span places(&mesh.points.front().x, 3 * mesh.points.size());
+    const std::vector<double> moved = state_->to_surface(places, 3);
+    BoundaryValues boundary;
+    boundary.surface.triangles = state_->triangles;
+    for (std::size_t p = 0; p < moved.size(); p += 3)
+        boundary.surface.points.emplace_back(moved[p], moved[p + 1], moved[p + 2]);
+    for (const Attribute& field : mesh.attributes) {
+        if (field.channels != 1) throw Error(ErrorCode::InvalidInput, "has more than one component", "field " + field.name);
+        boundary.values.push_back(state_->to_surface(field.values, 1));
+    }
+    return boundary;
+}
+
 int picture_levels(const HexMesh& mesh, std::optional<int> most) {
     constexpr std::size_t kManyTriangles = 8000;
     if (most) return std::min(2, *most);

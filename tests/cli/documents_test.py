@@ -12,7 +12,7 @@ from command import InFolder
 
 TOP = Path(__file__).resolve().parents[2]
 DOCUMENTS = [*TOP.glob("*.md"), *(TOP / "docs").rglob("*.md")]
-WAYS_IN = {"lib": "subvol.h", "vdb": "vdb.h", "render": "render.h", "compare": "compare.h"}
+WAYS_IN = {"lib": "subvol.h", "vdb": "vdb.h", "render": "render.h", "view": "view.h", "compare": "compare.h"}
 
 
 def rooms(component):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from command import COMMAND, CUBE, HANGS_AFTER, InFolder, Run
 
-HEAVY = ["libOpenImageIO", "libopenvdb", "libnetcdf", "libhdf5_serial"]
+HEAVY = ["libOpenImageIO", "libopenvdb", "libnetcdf", "libhdf5_serial", "libglfw"]
 
 
 class Program(unittest.TestCase):

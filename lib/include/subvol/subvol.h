@@ -38,6 +38,7 @@
 #include "subvol/model.h"
 #include "subvol/optics.h"
 #include "subvol/overlay.h"
+#include "subvol/picture_look.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
 #include "subvol/probe.h"

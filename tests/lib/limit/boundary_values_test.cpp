@@ -5,6 +5,7 @@
 
 #include "lib/expect_error.h"
 #include "lib/test_meshes.h"
+#include "subvol/model.h"
 
 namespace subvol {
 namespace {
@@ -49,6 +50,25 @@ TEST(BoundaryValues, NeedScalars) {
     test::expect_error(ErrorCode::InvalidInput, "field v", [&] { (void)boundary_values(mesh, {.levels = 1}); });
     mesh.attributes.clear();
     test::expect_error(ErrorCode::InvalidInput, "level", [&] { (void)boundary_values(mesh, {.levels = -1}); });
+}
+
+TEST(BoundaryTables, FollowAMeshThatMoves) {
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark}) {
+        for (const int levels : {0, 1, 2}) {
+            HexMesh mesh = make_model("ball", 3);
+            const RefineOptions options{.scheme = {.kind = scheme}, .levels = levels};
+            const BoundaryTables tables(mesh, options);
+            for (Vec3& p : mesh.points) p = {p.x + 0.2 * p.z * p.z, 1.5 * p.y, p.z - 0.1 * p.x};
+            for (double& value : mesh.attributes.front().values) value = value * value + 1;
+            const BoundaryValues moved = tables.apply(mesh), anew = boundary_values(mesh, options);
+            ASSERT_EQ(moved.surface.triangles, anew.surface.triangles);
+            ASSERT_EQ(moved.surface.points.size(), anew.surface.points.size());
+            for (std::size_t p = 0; p < moved.surface.points.size(); ++p) {
+                EXPECT_NEAR(glm::distance(moved.surface.points[p], anew.surface.points[p]), 0, 1e-12);  // rounding
+                EXPECT_NEAR(moved.values[0][p], anew.values[0][p], 1e-12);
+            }
+        }
+    }
 }
 
 }  // namespace

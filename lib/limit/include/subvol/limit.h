@@ -81,7 +81,8 @@ public:
     /// What `evaluate_limit` returns for these places, bit for bit. Several threads may call it.
     ///
     /// tolerance: instead of that of the options
-    /// throws:    Error(InvalidInput) if a query names a cell that does not exist or lies outside [0,1]³, or if the tolerance is
+    /// throws:    Error(InvalidInput) if a query names a cell that does not exist or lies outside [0,1]³, or if the tolerance
+    /// is
     ///            negative
     [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, std::optional<double> tolerance = {}) const;
 

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include "choices.h"
+#include "grid_input.h"
+#include "input.h"
+#include "outputs.h"
+#include "picture_arguments.h"
+#include "points_input.h"
+#include "sample_arguments.h"
+#include "splat_arguments.h"
+#include "steps.h"
+#include "subvol/error.h"
+#include "subvol/image_io.h"
+#include "subvol/mesh_series.h"
+#include "subvol/view_session.h"
+#include "subvol/view_window.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+/// Options of the arguments that a session does not have.
+constexpr std::array kNotHere{"--views",     "--turntable",   "--fps",    "--legend",    "--unit",
+                              "--threshold", "--reduce",      "--refine", "--footprint", "--footprint-size",
+                              "--seconds",   "--color-field", "--shade"};
+
+/// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
+constexpr std::array kOfTheState{"--size",         "--camera",     "--view",    "--fit",   "--ortho", "--look",
+                                 "--tf",           "--tf-range",   "--opacity", "--clamp", "--axes",  "--edges",
+                                 "--opacity-unit", "--background", "--method",  "--field", "--step",  "--time",
+                                 "--script",       "--screenshot", "--state",   "--json",  "--quiet", "--progress"};
+
+std::string text_of(const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw Error(ErrorCode::Io, "cannot be opened", file, "a JSON array of actions");
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (stream.bad() || text.empty())
+        throw Error(ErrorCode::InvalidInput, "is empty or cannot be read", file, "a JSON array of actions");
+    return text;
+}
+
+class ViewVerb : public Verb {
+public:
+    explicit ViewVerb(CLI::App& program)
+        : Verb(program, "view", "Look at a mesh: in a window, or by a script.",
+               "  subvol view part.vtk\n"
+               "  subvol view run.pvd --field T --tf coolwarm\n"
+               "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
+        app().add_option("FILE", input_, input_help())->required();
+        app().add_option("--script", script_, "play these actions, then quit; without a window")->type_name("FILE.json");
+        app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");
+        app().add_flag("--window", window_, "play the --script in the window; --screenshot is then of the whole window");
+        app().add_option("--state", saved_, "begin with a state that a session has saved")->type_name("FILE.json");
+        app()
+            .add_option("--method", method_, "splat (the default), sheets, tets or dense, as of render")
+            ->type_name("NAME")
+            ->check(offered({"splat", "sheets", "tets", "dense"}));
+        picture_.add_to(app());
+        app()
+            .add_option("--samples", samples_, "n x n rays for each pixel (default: 2 for solids, else 1)")
+            ->type_name("N")
+            ->check(CLI::Range(1, 16));
+        sample_.add_to(app());
+        refine_.add_to(app(), "show the refined mesh of this level (default for tets: 1; for the others: the limit)");
+        splat_.add_to(app());
+        for (const char* option : kNotHere) app().remove_option(app().get_option(option));
+        set_essentials({"--script", "--screenshot", "--window", "--state", "--field", "--look", "--tf", "--opacity",
+                        "--background", "--size", "--view", "--camera", "--method", "--levels", "--json"});
+        group("Camera", {"--size", "--camera", "--view", "--fit", "--ortho"});
+        group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--background", "--clamp"});
+        group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--values", "--kernel",
+                          "--value-kernel", "--correction"});
+        group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
+        group("Methods", {"--method", "--samples", "--backend", "--device", "--sheets", "--plain-sums"});
+    }
+
+    int run(Report& report) override {
+        check_choice("--method", method_, {"splat", "sheets", "tets", "dense"});
+        picture_.settle_look(true);
+        picture_.check();
+        const SplatOptions splat = splat_.options(method_ == "sheets");
+        if (!screenshot_.empty()) check_output(screenshot_, {".png", ".exr"});
+        const bool headless = !window_ && (!script_.empty() || !screenshot_.empty());
+        const std::string script = script_.empty() ? "[]" : text_of(script_);
+        if (holds_points(input_) || is_vdb_file(input_)) {
+            throw Error(ErrorCode::InvalidInput, "holds points or voxels; a session needs a mesh", input_, "use render");
+        }
+        play(script, splat, headless, report);
+        return 0;
+    }
+
+private:
+    void play(const std::string& script, const SplatOptions& splat, bool headless, Report& report) {
+        HexMesh mesh = load_mesh(input_, common(), report);
+        const std::optional<std::string> field = common().density ? std::optional<std::string>("density") : common().field;
+        const ViewBody body = view_body(mesh, field);
+        report["field"] = body.field();
+        DrawSettings settings{.sample = sample_.options(body.box, refine_.options(0, report)),
+                              .levels = refine_.levels,
+                              .splat = splat,
+                              .painted = picture_.look != Look::Solid || picture_.paints_boundary(app(), refine_)};
+        settings.sample.progress = nullptr;
+        if (samples_ > 0) settings.samples = samples_;
+        ViewSession session(source(report), std::move(mesh), start_state(body, field), settings);
+        if (!saved_.empty()) session.run(Json{{"load_state", saved_}}.dump());
+        if (!headless) {
+            open_window(session, script);
+            report["state"] = Json::parse(session.state_json());
+            return;
+        }
+        report.timed("play", [&] { session.run_script(script, script_, report.progress()); });
+        const auto picture = report.timed("draw", [&] { return session.wait(); });
+        if (!screenshot_.empty()) {
+            const bool alone = session.state().compare.empty();
+            write_image(screenshot_, session.composed(*picture), background_of(session.state()),
+                        alone ? picture->depth : std::vector<float>{});
+            report["output"] = screenshot_;
+        }
+        report["method"] = session.state().method;
+        report["backend"] = picture->backend;
+        report["points"] = picture->points;
+        report["render"] = session.render_command();
+        report["state"] = Json::parse(session.state_json());
+        report["waits"] = Json::array();
+        for (const WaitReport& wait : session.waits()) {
+            report["waits"].push_back({{"action", wait.action},
+                                       {"first", wait.seconds_first},
+                                       {"full", wait.seconds_full},
+                                       {"coarse_scale", wait.coarse_scale},
+                                       {"boundary", wait.seconds_boundary},
+                                       {"kernels", wait.seconds_kernels},
+                                       {"draw", wait.seconds_draw}});
+        }
+        if (const auto& picked = session.picked()) {
+            report["picked"] = {{"at", {picked->place.x, picked->place.y, picked->place.z}},
+                                {"value", picked->value},
+                                {"gradient", {picked->gradient.x, picked->gradient.y, picked->gradient.z}},
+                                {"cell", picked->cell}};
+        }
+    }
+
+    void open_window(ViewSession& session, const std::string& script) const {
+        WindowOptions options{.title = "subvol - " + input_, .script = script_.empty() ? "" : script, .script_file = script_};
+        if (!screenshot_.empty()) options.window_shot = [this](const Image& window) { write_image(screenshot_, window); };
+        open_view_window(session, options);
+    }
+
+    /// What `render` would show: the same camera, colours and light.
+    [[nodiscard]] ViewState start_state(const ViewBody& body, const std::optional<std::string>& field) const {
+        const Optics optics = picture_.make_optics(body.box, body.range, body.range);
+        const View view = picture_.make_views(body.box, picture_.framed_points(body.mesh, optics)).front();
+        ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
+        const auto series_step = is_model(input_) ? std::nullopt : one_step(input_, common());
+        state.step = series_step.value_or(times().size() - 1);
+        state.method = method_;
+        state.look = picture_.look_options(body.range);
+        if (picture_.background) state.background = picture_.background_color();
+        state.axes = picture_.axes;
+        state.edges = picture_.edges;
+        return state;
+    }
+
+    [[nodiscard]] std::vector<double> times() const {
+        return is_model(input_) ? std::vector<double>{0} : open_series(input_).times;
+    }
+
+    [[nodiscard]] ViewSource source(Report& report) {
+        return {.input = input_,
+                .read = [this, &report](
+                            std::size_t step) { return load_mesh(input_, of_step(common(), static_cast<int>(step)), report); },
+                .times = times(),
+                .write_picture = [](const std::filesystem::path& path, const Image& image,
+                                    const Vec3& background) { write_image(path, image, background); },
+                .more_words = more_words()};
+    }
+
+    /// The options that were given and that no action changes, as words.
+    [[nodiscard]] std::vector<std::string> more_words() {
+        std::vector<std::string> words;
+        for (const CLI::Option* option : app().get_options()) {
+            const std::string name = option->get_name();
+            if (option->count() == 0 || option->get_positional()) continue;
+            if (std::ranges::any_of(kOfTheState, [&](const char* known) { return name == known; })) continue;
+            for (const std::string& value : option->results()) {
+                words.push_back(name);
+                if (option->get_items_expected_max() > 0) words.push_back(value);
+            }
+        }
+        return words;
+    }
+
+    std::string input_, script_, screenshot_, saved_;
+    std::string method_ = "splat";
+    int samples_ = 0;
+    bool window_ = false;
+    PictureArguments picture_;
+    SampleArguments sample_;
+    SplatArguments splat_;
+    RefineArguments refine_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_view_verb(CLI::App& program) {
+    return std::make_unique<ViewVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/optics.h"
+#include "subvol/transfer_function.h"
+
+namespace subvol {
+
+/// The range of a field's values.
+struct ValueRange {
+    double min = 0, max = 0;
+};
+
+/// The kinds of pictures. Solid: opaque and lit. Volume: transparent as the colour map says, black behind. Xray: dark where
+/// there is much, on white. Isosurface: five lit surfaces.
+enum class Look { Solid, Volume, Xray, Isosurface };
+
+/// The name of a look, in small letters, and the look with that name; nothing if there is none.
+[[nodiscard]] const char* name_of(Look look);
+[[nodiscard]] std::optional<Look> look_named(const std::string& name);
+
+/// Colours and opacities of a picture.
+///
+/// colors:             a preset, or a ParaView colour-map file (FILE.json:NAME for one of several in it); empty: that of the
+/// look range:              what the colour map covers; none: the field's range stretch:            spreads the map of a file
+/// over the range; otherwise it keeps its own values opacity:            knots instead of those of the map; empty: those of the
+/// map opacity_unit_world: the distance that opacities are for; none: 1/100 of the box's diagonal, of a solid 1/1,000,000
+/// clamp:              values beyond the field's range look like its ends
+struct LookOptions {
+    Look look = Look::Volume;
+    std::string colors{};
+    std::optional<ValueRange> range{};
+    bool stretch = false;
+    std::vector<TransferFunction::OpacityKnot> opacity{};
+    std::optional<double> opacity_unit_world{};
+    bool clamp = false;
+};
+
+/// Whether pictures of this look are lit.
+[[nodiscard]] inline bool is_lit(Look look) {
+    return look == Look::Solid || look == Look::Isosurface;
+}
+
+/// The colour behind pictures of this look, in linear light.
+[[nodiscard]] Vec3 background_of(Look look);
+
+/// Reads a colour map's file, or makes a preset over the range.
+///
+/// stretch: spreads a file's map over the range, too
+/// throws:  as `transfer_function_preset` and `read_transfer_function`
+[[nodiscard]] TransferFunction find_transfer_function(const std::string& name, const ValueRange& range, bool stretch = false);
+
+/// The name of the colour map that a picture has.
+[[nodiscard]] std::string colors_of(const LookOptions& options);
+
+/// Colours and opacities of a picture as `Optics`.
+///
+/// field:  the range of the field that gives the opacities
+/// colors: that of the field that gives the colours, often the same
+/// throws: as `find_transfer_function` and `Optics`
+[[nodiscard]] Optics picture_optics(const LookOptions& options, const Box& box, const ValueRange& field,
+                                    const ValueRange& colors);
+
+/// The points to which a camera is fitted: those of a solid; of other bodies those of the cells that can be seen, or nothing if
+/// these are most of the body.
+///
+/// mesh: its first attribute is the field
+[[nodiscard]] std::vector<Vec3> framed_points(const HexMesh& mesh, Look look, const Optics& optics);
+
+}  // namespace subvol

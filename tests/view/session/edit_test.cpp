@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "subvol/edit_mesh.h"
+#include "subvol/error.h"
+#include "subvol/mesh_io.h"
+#include "subvol/model.h"
+#include "subvol/view_session.h"
+
+namespace subvol {
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+TEST(EditMesh, ATwistTurnsTheUpperEndAndKeepsTheLower) {
+    HexMesh mesh = make_model("ball", 3);
+    const HexMesh before = mesh;
+    twist_points(mesh, Selection(mesh.points.size(), 1.0), Vec3(0.0), Vec3(0, 0, 1), 90);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        EXPECT_NEAR(mesh.points[p].z, before.points[p].z, kRounding);
+        EXPECT_NEAR(glm::length(mesh.points[p]), glm::length(before.points[p]),
+                    kRounding);  // from the axis, so from its middle
+    }
+    const auto top = std::ranges::max_element(before.points, {}, &Vec3::z) - before.points.begin();
+    const Vec3 was = before.points[static_cast<std::size_t>(top)], is = mesh.points[static_cast<std::size_t>(top)];
+    EXPECT_NEAR(is.x, -was.y, kRounding);
+    EXPECT_NEAR(is.y, was.x, kRounding);
+}
+
+TEST(EditMesh, ABentRodIsAnArcOfTheSameLength) {
+    HexMesh rod;
+    for (int k = 0; k <= 100; ++k) rod.points.emplace_back(0, 0, 0.1 * k);
+    bend_points(rod, Selection(rod.points.size(), 1.0), Vec3(0.0), Vec3(0, 0, 1), Vec3(1, 0, 0), 90);
+    double length = 0;
+    for (std::size_t p = 1; p < rod.points.size(); ++p) length += glm::distance(rod.points[p - 1], rod.points[p]);
+    EXPECT_NEAR(length, 10, 2e-4);  // a polygon of 100 sides
+    const double radius = 10 / (3.14159265358979323846 / 2);
+    EXPECT_NEAR(glm::distance(rod.points.back(), Vec3(radius, 0, radius)), 0, 1e-9);
+    EXPECT_NEAR(glm::distance(rod.points.front(), Vec3(0.0)), 0, kRounding);
+}
+
+TEST(EditMesh, ABrushWorksLessTowardsItsRim) {
+    HexMesh mesh;
+    mesh.points = {{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    EXPECT_EQ(select_ball(mesh, Vec3(0.0), 1), (Selection{1, 0.5625, 0, 0}));
+    move_points(mesh, select_ball(mesh, Vec3(0.0), 1), {0, 0, 1});
+    EXPECT_EQ(mesh.points[0].z, 1);
+    EXPECT_EQ(mesh.points[1].z, 0.5625);
+    EXPECT_EQ(mesh.points[3].z, 0);
+}
+
+class Editing : public testing::Test {
+protected:
+    HexMesh mesh = make_model("ball", 3);
+    ViewSession session{
+        {.input = "ball", .read = [this](std::size_t) { return mesh; }},
+        mesh,
+        {.camera = fit_camera(bounds(mesh), {-1, 1, -1}), .width = 64, .height = 64, .look = {.look = Look::Solid}},
+        {.splat = {.method = SplatMethod::Cpu}}};
+};
+
+TEST_F(Editing, PicturesFollowTheMeshAndUndoBringsThemBack) {
+    const auto before = session.wait();
+    session.run(R"({"select": {"box": [-2, -2, 0.2, 2, 2, 2]}})");
+    session.run(R"({"move": [0, 0, 0.5]})");
+    const auto moved = session.wait();
+    EXPECT_NE(moved->image.rgba, before->image.rgba);
+    session.run(R"({"undo": true})");
+    EXPECT_EQ(session.wait()->image.rgba, before->image.rgba);
+    session.run(R"({"redo": true})");
+    EXPECT_EQ(session.wait()->image.rgba, moved->image.rgba);
+}
+
+TEST_F(Editing, ADragInManyStepsIsUndoneAsOne) {
+    const HexMesh before = session.body().mesh;
+    session.run(R"({"select": "all"})");
+    session.run(R"({"grab": true})");
+    for (int k = 0; k < 20; ++k) session.run(R"({"twist": {"angle": 3}})");
+    session.run(R"({"wait": "first"})");
+    session.run(R"({"grab": false})");
+    const auto dragged = session.wait();
+    const HexMesh after = session.body().mesh;
+    EXPECT_NE(after.points, before.points);
+    // The picture is that of a session that begins with the mesh as it is now.
+    ViewSession other({.input = "ball", .read = [&](std::size_t) { return after; }}, after, session.state(),
+                      {.splat = {.method = SplatMethod::Cpu}});
+    EXPECT_EQ(other.wait()->image.rgba, dragged->image.rgba);
+    session.run(R"({"undo": true})");
+    EXPECT_EQ(session.body().mesh.points, before.points);
+}
+
+TEST_F(Editing, PaintChangesValuesAndTheMeshGoesToAFile) {
+    const auto path = std::filesystem::temp_directory_path() / "subvol_view_edited.vtu";
+    session.run(R"({"select": {"ball": [0, 0, 1, 0.5]}})");
+    session.run(R"({"paint": {"value": 7}})");
+    EXPECT_GT(session.body().range.max, 2);  // the values were at most 1
+    session.run(R"({"save_mesh": ")" + path.string() + "\"}");
+    const HexMesh read = read_mesh(path).mesh;
+    EXPECT_EQ(read.points, session.body().mesh.points);
+    EXPECT_EQ(read.attributes.front().values, session.body().mesh.attributes.front().values);
+    std::filesystem::remove(path);
+}
+
+TEST_F(Editing, TheBrushIsWhereTheBodyIs) {
+    (void)session.wait();
+    session.run(R"({"select": {"brush": [32, 32, 12]}})");
+    Vec3 middle = middle_of(session.body().mesh, session.selection());
+    EXPECT_GT(glm::dot(middle, session.state().camera.eye), 0);  // on the side of the eye
+    EXPECT_THROW(session.run(R"({"select": {"brush": [1, 1, 5]}})"), Error);
+}
+
+TEST_F(Editing, RefusesWhatCannotBeDone) {
+    for (const char* wrong :
+         {R"({"move": [1, 0, 0]})", R"({"select": {"box": [5, 5, 5, 6, 6, 6]}})", R"({"select": {"ball": [0, 0, 0, 0]}})",
+          R"({"select": "some"})", R"({"twist": {"angle": 5}})", R"({"paint": {"strength": 1}})"}) {
+        EXPECT_THROW(session.run(wrong), Error) << wrong;
+    }
+    session.run(R"({"select": "all"})");
+    for (const char* wrong : {R"({"move": [1e30, 0, 0]})", R"({"twist": {"angle": 5, "axis": [0, 0, 0]}})", R"({"twist": {}})",
+                              R"({"scale": "big"})", R"({"save_mesh": "a.png"})"}) {
+        EXPECT_THROW(session.run(wrong), Error) << wrong;
+    }
+}
+
+}  // namespace
+}  // namespace subvol

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/view_session.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "subvol/boundary_shading.h"
+#include "subvol/boundary_values.h"
+#include "subvol/error.h"
+#include "subvol/model.h"
+#include "subvol/splat.h"
+
+namespace subvol {
+namespace {
+
+HexMesh two_fields() {
+    HexMesh mesh = make_model("ball", 3);
+    Attribute height{"height", 1, {}};
+    for (const Vec3& point : mesh.points) height.values.push_back(point.z);
+    mesh.attributes.push_back(std::move(height));
+    return mesh;
+}
+
+ViewState small_state(const HexMesh& mesh, Look look = Look::Volume) {
+    return {.camera = fit_camera(bounds(mesh), {-1, 1, -1}), .width = 48, .height = 40, .look = {.look = look}};
+}
+
+const DrawSettings kByCpu{.splat = {.method = SplatMethod::Cpu}};
+
+class Session : public testing::Test {
+protected:
+    HexMesh mesh = two_fields();
+    ViewSession session{{.input = "model:ball:3", .read = [](std::size_t) { return two_fields(); }, .times = {0, 1, 2}},
+                        mesh,
+                        small_state(mesh),
+                        kByCpu};
+
+    [[nodiscard]] std::string refusal(const std::string& action) {
+        try {
+            session.run(action);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::InvalidInput) << action;
+            return error.what();
+        }
+        return {};
+    }
+};
+
+TEST_F(Session, ShowsThePictureOfTheRendererBitForBit) {
+    session.run(R"({"orbit": [25, 10]})");
+    session.run(R"({"opacity": [[-1, 0], [1, 0.8]]})");
+    const auto shown = session.wait();
+    const ViewState& state = session.state();
+    const RbfVolume volume = sample_rbf_points(session.body().mesh).volume;
+    const View view(state.camera, state.width, state.height);
+    const SplatResult drawn = render_splats(volume, view, optics_of(state, session.body()), {.method = SplatMethod::Cpu});
+    EXPECT_EQ(shown->image.rgba, drawn.image.rgba);
+    EXPECT_EQ(shown->scale, 1);
+}
+
+TEST_F(Session, TheSameStateGivesTheSamePicture) {
+    const auto before = session.wait();
+    session.run(R"({"orbit": [90, 0]})");
+    session.run(R"({"method": "tets"})");
+    const auto other = session.wait();
+    EXPECT_NE(other->image.rgba, before->image.rgba);
+    session.run(R"({"method": "splat"})");
+    for (int k = 0; k < 3; ++k) session.run(R"({"orbit": [90, 0]})");
+    // Four quarter turns: the eye is back up to rounding, so the picture is, too.
+    const auto after = session.wait();
+    double most = 0;
+    for (std::size_t k = 0; k < after->image.rgba.size(); ++k)
+        most = std::max(most, std::abs(double{after->image.rgba[k]} - double{before->image.rgba[k]}));
+    EXPECT_LT(most, 1e-3);
+}
+
+TEST_F(Session, ReferenceAndSplatsShowTheSame) {
+    const auto splats = session.wait();
+    session.run(R"({"method": "tets"})");
+    const auto tets = session.wait();
+    double sum = 0;
+    for (std::size_t k = 0; k < tets->image.rgba.size(); ++k) {
+        const double d = double{tets->image.rgba[k]} - double{splats->image.rgba[k]};
+        sum += d * d;
+    }
+    EXPECT_LT(std::sqrt(sum / static_cast<double>(tets->image.rgba.size())),
+              0.03);  // one kernel for each control point of 3³ cells
+}
+
+TEST_F(Session, StateGoesToAFileAndBack) {
+    const auto path = std::filesystem::temp_directory_path() / "subvol_view_state.json";
+    session.run(R"({"orbit": [33, 5]})");
+    session.run(R"({"tf": "coolwarm"})");
+    session.run(R"({"range": [-0.5, 0.5]})");
+    session.run(R"({"field": "height"})");
+    const std::string saved = session.state_json();
+    const auto picture = session.wait();
+    session.run(R"({"save_state": ")" + path.string() + "\"}");
+    session.run(R"({"view": "+x"})");
+    session.run(R"({"look": "xray"})");
+    session.run(R"({"range": null})");
+    session.run(R"({"field": "density"})");
+    EXPECT_NE(session.state_json(), saved);
+    session.run(R"({"load_state": ")" + path.string() + "\"}");
+    EXPECT_EQ(session.state_json(), saved);
+    EXPECT_EQ(session.wait()->image.rgba, picture->image.rgba);
+    std::filesystem::remove(path);
+}
+
+TEST_F(Session, TheCommandNamesWhatIsShown) {
+    session.run(R"({"opacity": [[0, 0.25], [0.5, 1]]})");
+    session.run(R"({"step": 1})");
+    session.run(R"({"ortho": true})");
+    const std::string command = session.render_command();
+    for (const char* words : {"subvol render model:ball:3 -o picture.png", "--size 48x40", "--look volume",
+                              "--opacity 0:0.25,0.5:1", "--field density", "--step 1"}) {
+        EXPECT_NE(command.find(words), std::string::npos) << command;
+    }
+}
+
+TEST_F(Session, PicksTheLimitUnderThePointer) {
+    session.run(R"({"look": "solid"})");
+    session.run(R"({"field": "height"})");
+    session.run(R"({"view": "-y"})");
+    session.run(R"({"pick": [24, 10]})");
+    ASSERT_TRUE(session.picked());
+    EXPECT_NEAR(session.picked()->value, session.picked()->place.z, 1e-5);  // the field is the height; the limit reproduces it
+    EXPECT_NEAR(session.picked()->gradient.z, 1, 1e-3);
+    EXPECT_NEAR(session.picked()->place.x, 0, 1e-3);  // in the middle of the picture
+    EXPECT_LT(session.picked()->place.y, 0);          // on the side of the eye
+    session.run(R"({"pick": [0, 0]})");
+    EXPECT_FALSE(session.picked());
+}
+
+TEST_F(Session, RefusesInOneSentenceAndChangesNothing) {
+    const std::string before = session.state_json();
+    EXPECT_NE(refusal(R"({"orbits": [1, 2]})").find("did you mean orbit"), std::string::npos);
+    EXPECT_NE(refusal(R"({"orbit": [1]})").find("array of 2 numbers"), std::string::npos);
+    for (const char* wrong : {"",
+                              "[]",
+                              "7",
+                              R"({"orbit": "far"})",
+                              R"({"zoom": 0})",
+                              R"({"view": "up"})",
+                              R"({"size": [0, 5]})",
+                              R"({"size": [1e9, 5]})",
+                              R"({"field": "nothing"})",
+                              R"({"step": 3})",
+                              R"({"method": "magic"})",
+                              R"({"look": "nice"})",
+                              R"({"tf": "nice"})",
+                              R"({"range": [2, 1]})",
+                              R"({"opacity": [[1, 0], [0, 1]]})",
+                              R"({"opacity": [[0, 2]]})",
+                              R"({"opacity_unit": -1})",
+                              R"({"background": [2, 0, 0]})",
+                              R"({"camera": [1, 2]})",
+                              R"({"camera": {"eye": [0,0,0], "target": [0,0,0]}})",
+                              R"({"axes": 1})",
+                              R"({"orbit": [1, 2], "zoom": 2})",
+                              R"({"screenshot": "a.png"})",
+                              R"({"wait": "long"})"}) {
+        EXPECT_NE(refusal(wrong), "") << wrong;
+    }
+    EXPECT_EQ(session.state_json(), before);
+}
+
+TEST_F(Session, AScriptNamesTheActionThatIsWrong) {
+    try {
+        session.run_script(R"([{"orbit": [1, 2]}, {"zoom": "in"}])", "turn.json");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("turn.json, action 2: zoom"), std::string::npos) << error.what();
+    }
+}
+
+TEST_F(Session, ComparesTwoMethodsLeftAndRightOfTheSlider) {
+    const auto splats = session.wait();
+    session.run(R"({"compare": "tets"})");
+    session.run(R"({"slider": 0.25})");
+    const Image both = session.composed(*session.wait());
+    session.run(R"({"compare": null})");
+    session.run(R"({"method": "tets"})");
+    const auto tets = session.wait();
+    for (int y = 0; y < both.height; ++y) {
+        for (int x = 0; x < both.width; ++x) {
+            if (x == both.width / 4) continue;  // the line
+            const Image& side = x < both.width / 4 ? splats->image : tets->image;
+            EXPECT_TRUE(std::ranges::equal(both.pixel(x, y), side.pixel(x, y))) << x << ", " << y;
+        }
+    }
+}
+
+TEST_F(Session, ManyMotionsEndInTheLastPicture) {
+    for (int k = 0; k < 50; ++k) session.run(R"({"orbit": [7, 0]})");
+    const auto shown = session.wait();
+    EXPECT_EQ(shown->state.camera.eye, session.state().camera.eye);
+    EXPECT_EQ(shown->scale, 1);
+    EXPECT_FALSE(session.worker().busy());
+}
+
+TEST(SolidSession, ShowsTheColoursOfTheBoundary) {
+    const HexMesh mesh = make_model("ball", 3);
+    ViewSession session({.input = "ball", .read = [&](std::size_t) { return mesh; }}, mesh, small_state(mesh, Look::Solid),
+                        kByCpu);
+    const auto shown = session.wait();
+    const ViewState& state = session.state();
+    const Optics optics = optics_of(state, session.body());
+    const View view(state.camera, state.width, state.height);
+    const SplatOptions options{.method = SplatMethod::Cpu, .samples = 2, .shading = Shading{}};
+    Image image = render_splats(sample_rbf_points(session.body().mesh).volume, view, optics, options).image;
+    const BoundaryValues skin = boundary_values(session.body().mesh, {.levels = picture_levels(session.body().mesh)});
+    color_boundary(image, skin.surface, skin.values.back(), view, optics, Shading{}, 2);
+    EXPECT_EQ(shown->image.rgba, image.rgba);
+}
+
+TEST(WrongLook, BecomesTheErrorOfThePicture) {
+    const HexMesh mesh = make_model("ball", 2);
+    ViewSession session({.input = "ball", .read = [&](std::size_t) { return mesh; }}, mesh, small_state(mesh, Look::Isosurface),
+                        kByCpu);
+    (void)session.wait();
+    session.run(R"({"method": "tets"})");
+    EXPECT_THROW((void)session.wait(), Error);
+    session.run(R"({"method": "splat"})");
+    EXPECT_NO_THROW((void)session.wait());
+}
+
+}  // namespace
+}  // namespace subvol

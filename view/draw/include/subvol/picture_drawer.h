@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/image.h"
+#include "subvol/progress.h"
+#include "subvol/sample.h"
+#include "subvol/splat_options.h"
+#include "subvol/view_state.h"
+
+namespace subvol {
+
+/// How pictures are drawn: what does not change in a session.
+///
+/// sample:          how kernels are made; its scheme is that of all methods
+/// levels:          the refined mesh of this level instead of the limit; none: the limit, of tets level 1
+/// splat:           backend, device, sheets; samples, shading and progress are replaced
+/// samples:         n × n rays for each pixel; none: 2 for solids, else 1
+/// image_tolerance: of the method dense
+/// painted:         whether the colours of a solid are those of its boundary
+struct DrawSettings {
+    SampleOptions sample{};
+    std::optional<int> levels{};
+    SplatOptions splat{};
+    std::optional<int> samples{};
+    double image_tolerance = 1e-3;
+    bool painted = true;
+};
+
+/// depth: for each pixel, as of SplatResult; empty: not known
+/// scale: 1 for a full picture; else its pixels are so many times as wide and as high, and the image is smaller
+struct DrawnPicture {
+    Image image;
+    std::vector<float> depth{};
+    int scale = 1;
+    ViewState state{};
+    std::string backend{};
+    std::size_t points = 0;                            // kernels, or tetrahedra
+    double seconds_build = 0;                          // of what is kept from picture to picture: kernels, boundary, tetrahedra
+    double seconds_boundary = 0, seconds_kernels = 0;  // the parts of these that were made anew
+    double seconds_draw = 0;
+};
+
+/// Draws the pictures of `subvol render`, bit for bit, and keeps what does not depend on the view from picture to picture. Not
+/// for several threads at once.
+class PictureDrawer {
+public:
+    explicit PictureDrawer(const DrawSettings& settings);
+    ~PictureDrawer();
+    PictureDrawer(PictureDrawer&&) noexcept;
+    PictureDrawer& operator=(PictureDrawer&&) noexcept;
+
+    /// body:   kept until the next call with another one
+    /// scale:  1 for the full picture; of a coarse one the width and height of its pixels in those of the full one
+    /// throws: Error(InvalidInput) for a method that cannot draw this look, and as the renderers; Error(Cancelled)
+    [[nodiscard]] DrawnPicture draw(const ViewState& state, const std::shared_ptr<const ViewBody>& body, int scale = 1,
+                                    Progress* progress = nullptr);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace subvol

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/picture_drawer.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "picture_overlays.h"
+#include "subvol/boundary_shading.h"
+#include "subvol/boundary_values.h"
+#include "subvol/detail/stopwatch.h"
+#include "subvol/error.h"
+#include "subvol/limit.h"
+#include "subvol/refine.h"
+#include "subvol/render_dense.h"
+#include "subvol/render_tets.h"
+#include "subvol/splat.h"
+#include "surface_preview.h"
+
+namespace subvol {
+
+using namespace detail;
+
+ViewBody view_body(HexMesh mesh, const std::optional<std::string>& field) {
+    SelectedField selected = select_field(mesh, field);
+    mesh.attributes.assign(1, std::move(selected.scalar));
+    const auto [min, max] = std::ranges::minmax(mesh.attributes.front().values);
+    const Box box = bounds(mesh);
+    return {.mesh = std::move(mesh), .box = box, .range = {min, max}};
+}
+
+Optics optics_of(const ViewState& state, const ViewBody& body) {
+    return picture_optics(state.look, body.box, body.range, body.range);
+}
+
+struct PictureDrawer::State {
+    DrawSettings settings;
+    std::shared_ptr<const ViewBody> body{};
+    std::optional<BoundaryTables> tables{};  // of the cells of the body; kept while it is moved only
+    std::optional<BoundaryValues> skin{};
+    std::optional<RbfVolume> volume{};
+    std::optional<TetsRenderer> tets{};
+    std::size_t tet_count = 0;
+
+    /// A splatter for each way of drawing: samples, light, sheet buffers.
+    using SplatterKey = std::tuple<int, bool, bool>;
+    std::vector<std::pair<SplatterKey, Splatter>> splatters{};
+
+    void take(const std::shared_ptr<const ViewBody>& next) {
+        if (body == next) return;
+        if (body && body->shape != next->shape) tables.reset();
+        body = next;
+        splatters.clear();  // they refer to the volume
+        skin.reset();
+        volume.reset();
+        tets.reset();
+    }
+
+    [[nodiscard]] HexMesh refined(int levels, Progress* progress) const {
+        const SchemeOptions& scheme = settings.sample.scheme;
+        HexMesh fine = refine(body->mesh, {.scheme = scheme, .levels = levels, .progress = progress});
+        return interpolates(scheme.kind) ? fine : on_limit(std::move(fine), scheme.kind);
+    }
+
+    /// As boundary_values has it, up to rounding where the body has been moved.
+    const BoundaryValues& skin_of(Progress* progress, DrawnPicture& picture) {
+        if (skin) return *skin;
+        const Stopwatch watch;
+        const auto options = [&] {
+            return RefineOptions{
+                .scheme = settings.sample.scheme, .levels = picture_levels(body->mesh, settings.levels), .progress = progress};
+        };
+        if (body->moved) {
+            if (!tables) tables.emplace(body->mesh, options());
+            skin = tables->apply(body->mesh);
+        } else {
+            skin = boundary_values(body->mesh, options());
+        }
+        picture.seconds_boundary = watch.seconds();
+        return *skin;
+    }
+
+    const RbfVolume& volume_of(Progress* progress, DrawnPicture& picture) {
+        if (volume) return *volume;
+        const Stopwatch watch;
+        SampleOptions options = settings.sample;
+        options.progress = progress;
+        if (settings.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
+            HexMesh fine = refined(*settings.levels, progress);
+            options.scheme.kind = Scheme::Linear;
+            options.boundary_levels = 0;
+            volume = sample_rbf_points(std::move(fine), options).volume;
+        } else {
+            volume = sample_rbf_points(body->mesh, options).volume;
+        }
+        picture.seconds_kernels = watch.seconds();
+        return *volume;
+    }
+
+    Splatter& splatter(int samples, bool lit, bool sheets, Progress* progress, DrawnPicture& picture) {
+        const SplatterKey key{samples, lit, sheets};
+        for (auto& [of, one] : splatters) {
+            if (of == key) return one;
+        }
+        SplatOptions options = settings.splat;
+        options.samples = samples;
+        if (sheets) options.method = SplatMethod::Sheets;
+        if (lit) options.shading = Shading{};
+        options.progress = nullptr;
+        return splatters.emplace_back(key, Splatter(volume_of(progress, picture), options)).second;
+    }
+
+    [[nodiscard]] bool paints(const ViewState& state) const {
+        return settings.painted && state.look.look == Look::Solid && state.look.opacity.empty() &&
+               !state.look.opacity_unit_world && !settings.levels;
+    }
+
+    void draw_splats(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
+                     Progress* progress) {
+        Stopwatch watch;
+        const bool lit = is_lit(state.look.look), painted = paints(state);
+        if (painted) (void)skin_of(progress, picture);
+        Splatter& drawer = splatter(samples, lit, state.method == "sheets", progress, picture);
+        picture.seconds_build = watch.seconds();
+        SplatResult drawn = drawer.draw(view, optics, progress);
+        if (painted) {
+            report_progress(progress, "colors", 0);
+            color_boundary(drawn.image, skin->surface, skin->values.back(), view, optics, Shading{}, samples);
+        }
+        picture.image = std::move(drawn.image);
+        picture.depth = std::move(drawn.depth);
+        picture.backend = drawn.report.backend;
+        picture.points = volume->size();
+        picture.seconds_draw = watch.seconds() - picture.seconds_build;
+    }
+
+    /// A coarse picture of a solid, whatever the method: its boundary alone.
+    void draw_preview(const View& view, const Optics& optics, DrawnPicture& picture, Progress* progress) {
+        const Stopwatch watch;
+        const BoundaryValues& boundary = skin_of(progress, picture);
+        picture.seconds_build = watch.seconds();
+        Preview preview = surface_preview(boundary, view, optics);
+        picture.image = std::move(preview.image);
+        picture.depth = std::move(preview.depth);
+        picture.backend = "cpu";
+        picture.points = boundary.surface.points.size();
+        picture.seconds_draw = watch.seconds() - picture.seconds_build;
+    }
+
+    void light(const ViewState& state, const View& view, int samples, DrawnPicture& picture) {
+        if (is_lit(state.look.look)) light_boundary(picture.image, skin->surface, view, Shading{}, samples);
+    }
+
+    void draw_reference(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
+                        Progress* progress) {
+        Stopwatch watch;
+        const bool lit = is_lit(state.look.look);
+        if (lit && state.look.look != Look::Solid) {
+            throw Error(ErrorCode::InvalidInput, "method " + state.method + " lights the boundary only", "look isosurface",
+                        "method splat, or the colour map isosurface for surfaces without light");
+        }
+        if (lit) (void)skin_of(progress, picture);
+        if (state.method == "tets" && !tets) tets.emplace(refined(settings.levels.value_or(1), progress), "", progress);
+        picture.seconds_build = watch.seconds();
+        picture.backend = "cpu";
+        if (state.method == "tets") {
+            TetsResult drawn = tets->draw(view, optics, {.samples = samples, .progress = progress});
+            picture.image = std::move(drawn.image);
+            picture.points = drawn.report.tets;
+        } else {
+            DenseResult drawn = render_dense(body->mesh, {}, view, optics,
+                                             {.refine = {.scheme = settings.sample.scheme},
+                                              .levels = settings.levels,
+                                              .image_tolerance = settings.image_tolerance,
+                                              .samples = samples,
+                                              .progress = progress});
+            picture.image = std::move(drawn.image);
+            picture.points = drawn.report.micro_cells;
+        }
+        light(state, view, samples, picture);
+        picture.seconds_draw = watch.seconds() - picture.seconds_build;
+    }
+};
+
+PictureDrawer::PictureDrawer(const DrawSettings& settings) : state_(std::make_unique<State>(State{.settings = settings})) {
+}
+PictureDrawer::~PictureDrawer() = default;
+PictureDrawer::PictureDrawer(PictureDrawer&&) noexcept = default;
+PictureDrawer& PictureDrawer::operator=(PictureDrawer&&) noexcept = default;
+
+DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<const ViewBody>& body, int scale,
+                                 Progress* progress) {
+    state_->take(body);
+    const Optics optics = optics_of(state, *body);
+    const int width = state.width - legend_columns(state, *body, optics);
+    const View view(state.camera, std::max(1, width / scale), std::max(1, state.height / scale));
+    DrawnPicture picture;
+    picture.scale = scale;
+    picture.state = state;
+    const int samples = scale > 1 ? 1 : state_->settings.samples.value_or(state.look.look == Look::Solid ? 2 : 1);
+    if (scale > 1 && state_->paints(state)) {
+        state_->draw_preview(view, optics, picture, progress);
+    } else if (state.method == "splat" || state.method == "sheets") {
+        state_->draw_splats(state, view, optics, samples, picture, progress);
+    } else {
+        state_->draw_reference(state, view, optics, samples, picture, progress);
+    }
+    if (scale == 1) draw_overlays(picture, view, *body, optics);
+    return picture;
+}
+
+}  // namespace subvol

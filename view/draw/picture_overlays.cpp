@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "picture_overlays.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "subvol/error.h"
+#include "subvol/overlay.h"
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr double kDarkInk = 0.012, kLightInk = 0.85;  // linear
+
+/// Makes a picture wider; the new columns at its right are transparent.
+void widen(DrawnPicture& picture, int width) {
+    Image wide(width, picture.image.height);
+    std::vector<float> depth;
+    if (!picture.depth.empty()) depth.assign(wide.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    const auto from = static_cast<std::ptrdiff_t>(picture.image.width), to = static_cast<std::ptrdiff_t>(width);
+    for (std::ptrdiff_t y = 0; y < picture.image.height; ++y) {
+        std::copy_n(picture.image.rgba.begin() + 4 * y * from, 4 * from, wide.rgba.begin() + 4 * y * to);
+        if (!depth.empty()) std::copy_n(picture.depth.begin() + y * from, from, depth.begin() + y * to);
+    }
+    picture.image = std::move(wide);
+    picture.depth = std::move(depth);
+}
+
+}  // namespace
+
+Vec3 ink_on(const Vec3& background) {
+    const double luminance = 0.2126 * background.x + 0.7152 * background.y + 0.0722 * background.z;
+    return Vec3(luminance > 0.18 ? kDarkInk : kLightInk);
+}
+
+LegendOptions legend_of(const ViewState& state, const ViewBody& body) {
+    const ValueRange range = state.look.range.value_or(body.range);
+    return {.title = body.field(), .min = range.min, .max = range.max};
+}
+
+int legend_columns(const ViewState& state, const ViewBody& body, const Optics& optics) {
+    if (!state.legend) return 0;
+    const int columns = legend_width_px(optics.function(), legend_of(state, body), state.height);
+    if (state.width - columns < state.width / 3) {
+        throw Error(ErrorCode::InvalidInput, "leaves no room for the picture", "legend", "a wider picture");
+    }
+    return columns;
+}
+
+void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics) {
+    const ViewState& state = picture.state;
+    const Vec3 ink = ink_on(background_of(state));
+    if (state.edges && !picture.depth.empty()) {
+        const double width = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
+        draw_edges(picture.image, picture.depth, view, body.mesh, {.width_px = width, .color = ink, .alpha = 0.6});
+    }
+    if (state.axes) draw_axes(picture.image, view, ink);
+    if (state.legend) {
+        widen(picture, state.width);
+        draw_legend(picture.image, optics.function(), legend_of(state, body), ink);
+    }
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subvol/legend.h"
+#include "subvol/optics.h"
+#include "subvol/picture_drawer.h"
+
+namespace subvol::detail {
+
+/// The colour of text and lines on a background, in linear light.
+[[nodiscard]] Vec3 ink_on(const Vec3& background);
+
+/// The legend of a state, as `subvol render` has it.
+[[nodiscard]] LegendOptions legend_of(const ViewState& state, const ViewBody& body);
+
+/// The columns at the right of the picture that the legend takes; 0 without one.
+[[nodiscard]] int legend_columns(const ViewState& state, const ViewBody& body, const Optics& optics);
+
+/// Draws axes, edges and the legend over a full picture, which the legend makes wider.
+void draw_overlays(DrawnPicture& picture, const View& view, const ViewBody& body, const Optics& optics);
+
+}  // namespace subvol::detail

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "subvol/camera.h"
+
+namespace subvol::detail {
+
+/// Turns a camera about its target: to the right about its up axis, and upwards, at most to 89.9° from the plane across it.
+[[nodiscard]] Camera orbited(Camera camera, double right_deg, double up_deg);
+
+/// Moves a camera and its target in the plane of the picture, so that what is at the target moves by (right, up) in heights of
+/// the picture.
+[[nodiscard]] Camera panned(Camera camera, double right, double up);
+
+/// Makes what is at the target larger by a factor.
+[[nodiscard]] Camera zoomed(Camera camera, double factor);
+
+/// The same camera with parallel rays, or with perspective: what is at the target keeps its size.
+[[nodiscard]] Camera with_parallel_rays(Camera camera, bool parallel);
+
+}  // namespace subvol::detail

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "edit_actions.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "action_values.h"
+#include "subvol/edit_mesh.h"
+#include "subvol/error.h"
+#include "subvol/mesh_io.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Session = ViewSession::State;
+
+constexpr std::size_t kMostSteps = 50;  // that can be undone
+constexpr double kMost = 1e18;
+
+const Selection& chosen(const Session& session) {
+    if (session.selection.empty())
+        throw Error(ErrorCode::InvalidInput, "no control point is selected", {}, "select comes first");
+    return session.selection;
+}
+
+/// Changes a copy of the mesh, which takes the mesh's place if all goes well.
+template <class Edit>
+void edit(Session& session, const Edit& change) {
+    HexMesh next = session.body->mesh;
+    change(next);
+    for (const Vec3& p : next.points) {
+        if (!(glm::dot(p, p) < kMost * kMost))
+            throw Error(ErrorCode::InvalidInput, "moves a point too far", {}, "at most 1e18");
+    }
+    if (!session.grabbed) session.remember();
+    session.replace(std::move(next));
+}
+
+/// The points around the place that the picture shows at a pixel.
+Selection under_brush(const Session& session, const Vec2& pixel, double radius_px) {
+    const auto picture = session.worker.latest();
+    const View view(session.state.camera, session.state.width, session.state.height);
+    if (!(radius_px > 0)) throw Error(ErrorCode::InvalidInput, "the radius is not positive", {}, "[column, row, radius]");
+    if (!picture || picture->depth.empty())
+        throw Error(ErrorCode::InvalidInput, "this picture has no depths", {}, "method splat");
+    const int x = static_cast<int>(pixel.x) / picture->scale, y = static_cast<int>(pixel.y) / picture->scale;
+    const bool inside = x >= 0 && y >= 0 && x < picture->image.width && y < picture->image.height;
+    const double depth =
+        inside
+            ? static_cast<double>(picture->depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture->image.width) +
+                                                 static_cast<std::size_t>(x)])
+            : std::numeric_limits<double>::infinity();
+    if (!std::isfinite(depth)) throw Error(ErrorCode::InvalidInput, "nothing is under the brush");
+    const Ray ray = view.ray(pixel.x, pixel.y);
+    const double radius = radius_px * view.pixel() * (view.perspective() ? depth : 1);
+    return select_ball(session.body->mesh, ray.origin + depth * ray.direction, radius);
+}
+
+Vec3 center_of(const Session& session, const Json& value) {
+    return value.contains("center") ? vector(value["center"]) : middle_of(session.body->mesh, session.selection);
+}
+
+Vec3 axis_of(const Json& value) {
+    const Vec3 axis = value.contains("axis") ? vector(value["axis"]) : Vec3(0, 0, 1);
+    if (!(glm::length(axis) > 0)) throw Error(ErrorCode::InvalidInput, "the axis has no length");
+    return axis;
+}
+
+double angle_of(const Json& value) {
+    return number(member(value, "angle"), -3600, 3600);
+}
+
+}  // namespace
+
+void select(Session& session, const Json& value) {
+    const HexMesh& mesh = session.body->mesh;
+    if (value.is_null()) {
+        session.selection.clear();
+        return;
+    }
+    if (value == "all") {
+        session.selection.assign(mesh.points.size(), 1);
+        return;
+    }
+    check_keys(value, {"box", "ball", "pixels", "brush"});
+    if (value.size() != 1) throw Error(ErrorCode::InvalidInput, "one of box, ball, pixels and brush selects");
+    Selection next;
+    if (value.contains("box")) {
+        const auto n = numbers(value["box"], 6);
+        next = select_box(mesh, {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
+    } else if (value.contains("ball")) {
+        const auto n = numbers(value["ball"], 4);
+        if (!(n[3] > 0)) throw Error(ErrorCode::InvalidInput, "the radius is not positive", {}, "[x, y, z, radius]");
+        next = select_ball(mesh, {n[0], n[1], n[2]}, n[3]);
+    } else if (value.contains("brush")) {
+        const auto n = numbers(value["brush"], 3);
+        next = under_brush(session, {n[0], n[1]}, n[2]);
+    } else {
+        const auto n = numbers(value["pixels"], 4);
+        const View view(session.state.camera, session.state.width, session.state.height);
+        next = select_pixels(mesh, view, {n[0], n[1]}, {n[2], n[3]});
+    }
+    (void)middle_of(mesh, next);  // refuses an empty one
+    session.selection = std::move(next);
+}
+
+void grab(Session& session, const Json& value) {
+    const bool on = flag(value);
+    if (on == session.grabbed) return;
+    if (on) session.remember();
+    session.grabbed = on;
+    if (!on) session.replace(session.body->mesh);  // the last picture is as exact as any
+}
+
+void move(Session& session, const Json& value) {
+    const Vec3 by = vector(value);
+    edit(session, [&](HexMesh& mesh) { move_points(mesh, chosen(session), by); });
+}
+
+/// Along the picture, in heights of it at the depth of the selection.
+void drag(Session& session, const Json& value) {
+    const auto n = numbers(value, 2);
+    const View view(session.state.camera, session.state.width, session.state.height);
+    const double depth = view.to_eye(middle_of(session.body->mesh, chosen(session))).z;
+    const double height = view.height() * view.pixel() * (view.perspective() ? depth : 1);
+    const Vec3 by = height * (n[0] * view.axes()[0] + n[1] * view.axes()[1]);
+    edit(session, [&](HexMesh& mesh) { move_points(mesh, session.selection, by); });
+}
+
+void rotate(Session& session, const Json& value) {
+    check_keys(value, {"angle", "axis", "center"});
+    (void)chosen(session);
+    const Vec3 center = center_of(session, value), axis = axis_of(value);
+    edit(session, [&](HexMesh& mesh) { rotate_points(mesh, session.selection, center, axis, angle_of(value)); });
+}
+
+void scale(Session& session, const Json& value) {
+    (void)chosen(session);
+    const Vec3 factors = value.is_array() ? vector(value) : Vec3(number(value, -1e6, 1e6));
+    const Vec3 center = middle_of(session.body->mesh, session.selection);
+    edit(session, [&](HexMesh& mesh) { scale_points_about(mesh, session.selection, center, factors); });
+}
+
+void twist(Session& session, const Json& value) {
+    check_keys(value, {"angle", "axis", "center"});
+    (void)chosen(session);
+    const Vec3 center = center_of(session, value), axis = axis_of(value);
+    edit(session, [&](HexMesh& mesh) { twist_points(mesh, session.selection, center, axis, angle_of(value)); });
+}
+
+void bend(Session& session, const Json& value) {
+    check_keys(value, {"angle", "axis", "center", "toward"});
+    (void)chosen(session);
+    const Vec3 center = center_of(session, value), axis = axis_of(value);
+    const Vec3 toward = value.contains("toward") ? vector(value["toward"]) : Vec3(1, 0, 0);
+    edit(session, [&](HexMesh& mesh) { bend_points(mesh, session.selection, center, axis, toward, angle_of(value)); });
+}
+
+void paint(Session& session, const Json& value) {
+    check_keys(value, {"value", "strength"});
+    const double to = number(member(value, "value"), -kMost, kMost);
+    const double strength = value.contains("strength") ? number(value["strength"], 0, 1) : 1.0;
+    edit(session, [&](HexMesh& mesh) { paint_values(mesh.attributes.front().values, chosen(session), to, strength); });
+}
+
+void undo(Session& session, const Json& value) {
+    if (!flag(value) || session.before.empty()) return;
+    session.after.push_back(session.body->mesh);
+    HexMesh mesh = std::move(session.before.back());
+    session.before.pop_back();
+    session.replace(std::move(mesh));
+}
+
+void redo(Session& session, const Json& value) {
+    if (!flag(value) || session.after.empty()) return;
+    session.before.push_back(session.body->mesh);
+    HexMesh mesh = std::move(session.after.back());
+    session.after.pop_back();
+    session.replace(std::move(mesh));
+}
+
+void save_mesh(Session& session, const Json& value) {
+    (void)write_mesh(word(value), session.body->mesh);
+}
+
+}  // namespace subvol::detail
+
+namespace subvol {
+
+void ViewSession::State::remember() {
+    before.push_back(body->mesh);
+    if (before.size() > detail::kMostSteps) before.erase(before.begin());
+    after.clear();
+}
+
+void ViewSession::State::replace(HexMesh next) {
+    const std::string field = next.attributes.front().name;
+    mesh.points = next.points;  // for the other fields
+    for (Attribute& of_mesh : mesh.attributes) {
+        if (of_mesh.name == field && of_mesh.channels == 1) of_mesh.values = next.attributes.front().values;
+    }
+    auto edited = std::make_shared<ViewBody>(view_body(std::move(next), field));
+    edited->shape = shape;
+    edited->moved = grabbed;
+    body = std::move(edited);
+    probe.reset();
+    show();
+}
+
+}  // namespace subvol

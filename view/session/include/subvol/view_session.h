@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "subvol/detail/window_look.h"
+#include "subvol/draw_worker.h"
+#include "subvol/edit_mesh.h"
+#include "subvol/image.h"
+
+namespace subvol {
+
+/// Where a session gets its meshes from.
+///
+/// input:         its name, for the render command
+/// read:          a mesh with all its fields; step: of a series, from 0
+/// times:         one for each step; at least one
+/// write_picture: writes a picture over a background; empty: the action `screenshot` is refused
+/// more_words:    further words of the render command: options that no action changes
+struct ViewSource {
+    std::string input{};
+    std::function<HexMesh(std::size_t step)> read{};
+    std::vector<double> times{0.0};
+    std::function<void(const std::filesystem::path& path, const Image& image, const Vec3& background)> write_picture{};
+    std::vector<std::string> more_words{};
+};
+
+/// What is under a pixel: where most of its light comes from, with the limit's value there.
+struct Picked {
+    Vec3 place{0.0};
+    double value = 0;
+    Vec3 gradient{0.0};
+    Index cell = kNone;
+};
+
+/// What waiting for a picture showed.
+///
+/// action: the number of the action in the script
+struct WaitReport {
+    std::size_t action = 0;
+    double seconds_first = 0, seconds_full = 0;
+    int coarse_scale = 0;
+    double seconds_boundary = 0, seconds_kernels = 0, seconds_draw = 0;  // of the first picture
+};
+
+/// A mesh that is looked at: the state, the actions that change it, and the thread that draws it. It needs no window; the
+/// window does nothing but run actions, too.
+///
+/// An action is a JSON object with one key, its name, as `{"orbit": [30, -10]}` (docs/view.md has all).
+class ViewSession {
+public:
+    struct State;  // private: defined in a private header
+
+    /// start:      its field may be empty; its camera is taken as it is
+    /// mesh:       of the state's step, with all fields
+    /// on_picture: as of DrawWorker
+    ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const DrawSettings& settings,
+                std::function<void()> on_picture = {});
+    ~ViewSession();
+    ViewSession(const ViewSession&) = delete;
+    ViewSession& operator=(const ViewSession&) = delete;
+
+    [[nodiscard]] const ViewState& state() const;
+    [[nodiscard]] const ViewBody& body() const;
+    [[nodiscard]] const ViewSource& source() const;
+    /// The names of the fields of the mesh.
+    [[nodiscard]] std::vector<std::string> fields() const;
+    [[nodiscard]] const DrawWorker& worker() const;
+    /// The control points that edits move; empty: none.
+    [[nodiscard]] const Selection& selection() const;
+    /// What the last action `pick` found; none: it missed the volume.
+    [[nodiscard]] const std::optional<Picked>& picked() const;
+    [[nodiscard]] const std::vector<WaitReport>& waits() const;
+
+    /// Runs one action. Nothing changes if it throws.
+    ///
+    /// action: its JSON
+    /// throws: Error(InvalidInput) if it is not an action, or its argument is out of range; Error(Io)
+    void run(std::string_view action);
+
+    /// Runs a script, a JSON array of actions, from its first action on, and waits for the last full picture.
+    ///
+    /// file:   named in errors
+    /// throws: as `run`, with the number of the action, from 1
+    void run_script(std::string_view script, const std::string& file, Progress* progress = nullptr);
+
+    /// The actions of a script, and one of them: for those who play it bit by bit. number: from 1
+    [[nodiscard]] static std::vector<std::string> split_script(std::string_view script, const std::string& file);
+    void run_numbered(std::string_view action, std::size_t number, const std::string& file);
+
+    /// Waits for the full picture of the state as it is.
+    [[nodiscard]] std::shared_ptr<const DrawnPicture> wait();
+
+    /// What is to be seen of a picture of the worker: if two methods are compared, both.
+    [[nodiscard]] Image composed(const DrawnPicture& picture) const;
+    /// Whether a picture is still being drawn.
+    [[nodiscard]] bool busy() const;
+    /// How many pictures were drawn, coarse and full ones.
+    [[nodiscard]] std::uint64_t pictures() const;
+    [[nodiscard]] detail::WindowLook& look();
+
+    /// The state as JSON, which the action `load_state` reads.
+    [[nodiscard]] std::string state_json() const;
+    /// The command that makes the same picture.
+    [[nodiscard]] std::string render_command() const;
+
+private:
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace subvol

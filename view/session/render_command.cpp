@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session_state.h"
+#include "subvol/detail/number_text.h"
+
+namespace subvol::detail {
+
+namespace {
+
+std::string comma_separated(std::initializer_list<double> numbers) {
+    std::string text;
+    for (const double number : numbers) text += (text.empty() ? "" : ",") + exact_text(number);
+    return text;
+}
+
+/// A word as a shell reads it.
+std::string quoted(const std::string& word) {
+    constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-_.,:/=%@";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+}
+
+std::string camera_text(const Camera& camera) {
+    const auto& [eye, target, up, fovy, height] = camera;
+    std::string text = comma_separated({eye.x, eye.y, eye.z, target.x, target.y, target.z, up.x, up.y, up.z, fovy});
+    return height > 0 ? text + "," + exact_text(height) : text;
+}
+
+std::string opacity_text(const std::vector<TransferFunction::OpacityKnot>& knots) {
+    std::string text;
+    for (const auto& knot : knots) text += (text.empty() ? "" : ",") + exact_text(knot.value) + ":" + exact_text(knot.alpha);
+    return text;
+}
+
+}  // namespace
+
+std::string render_command(const ViewState& state, const ViewBody& body, const ViewSource& source) {
+    const LookOptions& look = state.look;
+    std::vector<std::string> words{"subvol", "render", source.input, "-o", "picture.png"};
+    const auto add = [&](const char* option, const std::string& value) {
+        words.emplace_back(option);
+        words.push_back(value);
+    };
+    add("--size", std::to_string(state.width) + "x" + std::to_string(state.height));
+    add("--camera", camera_text(state.camera));
+    add("--look", name_of(look.look));
+    if (!look.colors.empty()) add("--tf", look.colors);
+    if (look.range) {
+        add("--tf-range", comma_separated({look.range->min, look.range->max}));
+    } else if (look.stretch) {
+        add("--tf-range", "field");
+    }
+    if (!look.opacity.empty()) add("--opacity", opacity_text(look.opacity));
+    if (look.opacity_unit_world) add("--opacity-unit", exact_text(*look.opacity_unit_world));
+    if (look.clamp) words.emplace_back("--clamp");
+    if (state.background) add("--background", comma_separated({state.background->x, state.background->y, state.background->z}));
+    if (state.method != "splat") add("--method", state.method);
+    add("--field", body.field());
+    if (source.times.size() > 1) add("--step", std::to_string(state.step));
+    if (state.axes) words.emplace_back("--axes");
+    if (state.edges) words.emplace_back("--edges");
+    if (state.legend) words.emplace_back("--legend");
+    words.insert(words.end(), source.more_words.begin(), source.more_words.end());
+    std::string line;
+    for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+    return line;
+}
+
+}  // namespace subvol::detail

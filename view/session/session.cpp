@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
+#include "compare_pictures.h"
+#include "picture_overlays.h"
+#include "session_state.h"
+#include "subvol/detail/printable.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using namespace detail;
+
+detail::Json detail::parsed(std::string_view text, const std::string& where) {
+    try {
+        return Json::parse(text);
+    } catch (const nlohmann::json::exception& error) {
+        throw Error(ErrorCode::InvalidInput, parser_message(error.what()), where);
+    }
+}
+
+ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start, const DrawSettings& drawn,
+                          std::function<void()> wake)
+    : source(std::move(from)),
+      settings(drawn),
+      mesh(std::move(read)),
+      state(start),
+      on_picture(std::move(wake)),
+      worker(settings, on_picture) {
+    choose_body();
+    show();
+}
+
+void ViewSession::State::choose_body() {
+    auto chosen =
+        std::make_shared<const ViewBody>(view_body(mesh, state.field.empty() ? std::nullopt : std::optional(state.field)));
+    state.field = chosen->field();
+    body = std::move(chosen);
+    probe.reset();
+    selection.clear();  // points, and what was done to them, are those of the mesh before
+    before.clear();
+    after.clear();
+    ++shape;
+    grabbed = false;
+}
+
+const LimitProbe& ViewSession::State::limit() {
+    if (!probe) probe.emplace(body->mesh, ProbeOptions{.limit = {.scheme = settings.sample.scheme}});
+    return *probe;
+}
+
+void ViewSession::State::show() {
+    worker.show(state, body);
+    if (state.compare.empty()) return;
+    if (!reference) reference = std::make_unique<DrawWorker>(settings, on_picture);
+    ViewState other = state;
+    other.method = state.compare;
+    reference->show(other, body);
+}
+
+Image ViewSession::State::composed(const DrawnPicture& picture) const {
+    if (state.compare.empty() || !reference) return picture.image;
+    const auto other = reference->latest();
+    if (!other || other->image.width != picture.image.width || other->image.height != picture.image.height)
+        return picture.image;
+    const Vec3 behind = background_of(state);
+    return state.difference ? difference_of(picture.image, other->image, behind)
+                            : side_by_side(picture.image, other->image, state.slider, ink_on(behind));
+}
+
+std::shared_ptr<const DrawnPicture> ViewSession::State::wait() {
+    auto picture = worker.wait();
+    if (!state.compare.empty()) (void)reference->wait();
+    note_wait();
+    return picture;
+}
+
+void ViewSession::State::note_wait() {
+    const DrawTimes times = worker.times();
+    waits.push_back({action, times.first, times.full, times.coarse_scale, times.boundary, times.kernels, times.draw});
+}
+
+ViewSession::ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const DrawSettings& settings,
+                         std::function<void()> on_picture)
+    : state_(std::make_unique<State>(std::move(source), std::move(mesh), start, settings, std::move(on_picture))) {
+}
+ViewSession::~ViewSession() = default;
+
+const ViewState& ViewSession::state() const {
+    return state_->state;
+}
+const ViewBody& ViewSession::body() const {
+    return *state_->body;
+}
+const ViewSource& ViewSession::source() const {
+    return state_->source;
+}
+const DrawWorker& ViewSession::worker() const {
+    return state_->worker;
+}
+const std::optional<Picked>& ViewSession::picked() const {
+    return state_->picked;
+}
+const std::vector<WaitReport>& ViewSession::waits() const {
+    return state_->waits;
+}
+
+std::vector<std::string> ViewSession::fields() const {
+    std::vector<std::string> names;
+    for (const Attribute& field : state_->mesh.attributes) names.push_back(field.name);
+    return names;
+}
+
+void ViewSession::run(std::string_view action) {
+    const Json json = parsed(action, "action");
+    if (!json.is_object() || json.size() != 1) {
+        throw Error(ErrorCode::InvalidInput, "is not an object with one key", "action", R"(such as {"orbit": [30, 0]})");
+    }
+    run_action(*state_, json.begin().key(), json.begin().value());
+}
+
+std::vector<std::string> ViewSession::split_script(std::string_view script, const std::string& file) {
+    std::vector<std::string> actions;
+    if (script.empty()) return actions;
+    const Json json = parsed(script, file);
+    if (!json.is_array()) {
+        throw Error(ErrorCode::InvalidInput, "is not an array of actions", file,
+                    R"(such as [{"orbit": [30, 0]}, {"wait": true}])");
+    }
+    for (const Json& action : json) actions.push_back(action.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return actions;
+}
+
+void ViewSession::run_numbered(std::string_view action, std::size_t number, const std::string& file) {
+    state_->action = number;
+    try {
+        run(action);
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) throw;
+        const std::string what = error.where().empty() || error.where() == "action" ? "" : error.where() + ": ";
+        throw Error(error.code(), what + error.message(), file + ", action " + std::to_string(number), error.allowed());
+    }
+}
+
+void ViewSession::run_script(std::string_view script, const std::string& file, Progress* progress) {
+    const std::vector<std::string> actions = split_script(script, file);
+    for (std::size_t k = 0; k < actions.size(); ++k) {
+        report_progress(progress, "play", static_cast<double>(k) / static_cast<double>(actions.size()));
+        run_numbered(actions[k], k + 1, file);
+    }
+}
+
+std::shared_ptr<const DrawnPicture> ViewSession::wait() {
+    auto picture = state_->worker.wait();
+    if (state_->reference && !state_->state.compare.empty()) (void)state_->reference->wait();
+    return picture;
+}
+
+Image ViewSession::composed(const DrawnPicture& picture) const {
+    return state_->composed(picture);
+}
+
+const Selection& ViewSession::selection() const {
+    return state_->selection;
+}
+
+bool ViewSession::busy() const {
+    return state_->worker.busy() || (state_->reference && !state_->state.compare.empty() && state_->reference->busy());
+}
+
+std::uint64_t ViewSession::pictures() const {
+    return state_->worker.count() + (state_->reference ? state_->reference->count() : 0);
+}
+
+detail::WindowLook& ViewSession::look() {
+    return state_->look;
+}
+
+std::string ViewSession::state_json() const {
+    return json_of(state_->state).dump(2) + "\n";
+}
+
+std::string ViewSession::render_command() const {
+    return detail::render_command(state_->state, *state_->body, state_->source);
+}
+
+}  // namespace subvol

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session_state.h"
+
+namespace subvol::detail {
+
+namespace {
+
+Json numbers(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+Json json_of(const ViewState& state) {
+    const Camera& camera = state.camera;
+    Json json;
+    json["field"] = state.field;
+    json["step"] = state.step;
+    json["size"] = {state.width, state.height};
+    json["camera"] = {{"eye", numbers(camera.eye)},
+                      {"target", numbers(camera.target)},
+                      {"up", numbers(camera.up)},
+                      {"fovy_deg", camera.fovy_deg},
+                      {"ortho_height", camera.ortho_height}};
+    json["method"] = state.method;
+    json["look"] = name_of(state.look.look);
+    json["tf"] = state.look.colors;
+    if (state.look.range) {
+        json["range"] = {state.look.range->min, state.look.range->max};
+    } else {
+        json["range"] = state.look.stretch ? Json("field") : Json(nullptr);
+    }
+    json["opacity"] = Json::array();
+    for (const auto& knot : state.look.opacity) json["opacity"].push_back({knot.value, knot.alpha});
+    json["opacity_unit"] = state.look.opacity_unit_world ? Json(*state.look.opacity_unit_world) : Json(nullptr);
+    json["clamp"] = state.look.clamp;
+    json["background"] = state.background ? numbers(*state.background) : Json(nullptr);
+    json["axes"] = state.axes;
+    json["edges"] = state.edges;
+    json["legend"] = state.legend;
+    json["compare"] = state.compare.empty() ? Json(nullptr) : Json(state.compare);
+    json["slider"] = state.slider;
+    json["difference"] = state.difference;
+    return json;
+}
+
+}  // namespace subvol::detail

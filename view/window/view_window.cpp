@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// The session as the window sees it. GLFW and Dear ImGui are in a module, which is loaded here.
+#include "subvol/view_window.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "screen_pixels.h"
+#include "subvol/detail/module.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/error.h"
+#include "subvol/srgb.h"
+#include "window_host.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+class Host : public WindowHost {
+public:
+    Host(ViewSession& session, const WindowOptions& options)
+        : session_(session), options_(options), script_(session.split_script(options.script, options.script_file)) {}
+
+    [[nodiscard]] const ViewState& state() const override { return session_.state(); }
+
+    [[nodiscard]] std::string run(const std::string& action) override {
+        try {
+            session_.run(action);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return {};
+    }
+
+    [[nodiscard]] WindowLook& look() override { return session_.look(); }
+
+    [[nodiscard]] bool take_picture(ScreenPicture& picture) override {
+        const ViewState& state = session_.state();
+        const Seen now{session_.pictures(), state.slider, state.difference, state.compare};
+        const auto latest = session_.worker().latest();
+        if (!latest || now == seen_) return false;
+        seen_ = now;
+        const Image image = session_.composed(*latest);
+        picture.width = image.width;
+        picture.height = image.height;
+        picture.scale = latest->scale;
+        picture.rgba = screen_pixels(image, background_of(state));
+        ++picture.number;
+        return true;
+    }
+
+    [[nodiscard]] bool busy() const override { return session_.busy(); }
+    [[nodiscard]] std::string problem() const override { return session_.worker().error().value_or(""); }
+
+    [[nodiscard]] std::string figures() const override {
+        const auto latest = session_.worker().latest();
+        if (!latest) return "drawing ...";
+        const std::string things = latest->state.method == "tets"    ? " tetrahedra"
+                                   : latest->state.method == "dense" ? " small cells"
+                                                                     : " kernels";
+        std::string text = std::to_string(latest->points) + things + "   " + fixed_text(1e3 * latest->seconds_draw, 0) +
+                           " ms   " + latest->state.method + ", " + latest->backend + "   " +
+                           std::to_string(latest->image.width) + " x " + std::to_string(latest->image.height);
+        if (latest->scale > 1) text += "   coarse";
+        return text;
+    }
+
+    [[nodiscard]] std::vector<std::string> fields() const override { return session_.fields(); }
+    [[nodiscard]] const std::vector<double>& times() const override { return session_.source().times; }
+    [[nodiscard]] ValueRange field_range() const override { return session_.body().range; }
+    [[nodiscard]] ValueRange shown_range() const override {
+        return session_.state().look.range.value_or(session_.body().range);
+    }
+
+    [[nodiscard]] std::vector<double> histogram(const ValueRange& range, std::size_t bins) const override {
+        std::vector<double> counts(bins);
+        const double width = range.max - range.min;
+        for (const double value : session_.body().mesh.attributes.front().values) {
+            if (!(value >= range.min && value <= range.max)) continue;
+            const double part = width > 0 ? (value - range.min) / width : 0.5;
+            ++counts[std::min(bins - 1, static_cast<std::size_t>(part * static_cast<double>(bins)))];
+        }
+        return counts;
+    }
+
+    [[nodiscard]] std::vector<CurvePlace> curve(const ValueRange& range, std::size_t count) const override {
+        const TransferFunction function = optics_of(session_.state(), session_.body()).function();
+        std::vector<CurvePlace> places;
+        for (std::size_t k = 0; k < count; ++k) {
+            const double value =
+                range.min + (range.max - range.min) * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+            const Vec3 rgb = color_at(function, value);
+            places.push_back({static_cast<float>(srgb_from_linear(rgb.x)), static_cast<float>(srgb_from_linear(rgb.y)),
+                              static_cast<float>(srgb_from_linear(rgb.z)), static_cast<float>(alpha_at(function, value))});
+        }
+        return places;
+    }
+
+    [[nodiscard]] std::vector<TransferFunction::OpacityKnot> opacity() const override {
+        return optics_of(session_.state(), session_.body()).function().opacity;
+    }
+
+    [[nodiscard]] std::vector<Vec3> selected_pixels() const override {
+        constexpr std::size_t kMost = 3000;  // more would hide the body
+        const Selection& selection = session_.selection();
+        const ViewState& state = session_.state();
+        const View view(state.camera, state.width, state.height);
+        const auto count = static_cast<std::size_t>(std::ranges::count_if(selection, [](double share) { return share > 0; }));
+        const std::size_t step = count / kMost + 1;
+        std::vector<Vec3> pixels;
+        std::size_t found = 0;
+        for (std::size_t p = 0; p < selection.size(); ++p) {
+            if (selection[p] == 0 || found++ % step != 0) continue;
+            const Vec3 eye = view.to_eye(session_.body().mesh.points[p]);
+            if (view.perspective() && !(eye.z > 0)) continue;
+            pixels.emplace_back(view.to_pixels(eye), selection[p]);
+        }
+        return pixels;
+    }
+
+    [[nodiscard]] std::vector<std::string> picked() const override {
+        const auto& picked = session_.picked();
+        if (!picked) return {};
+        const auto three = [](const Vec3& v) {
+            return number_text(v.x, 4) + ", " + number_text(v.y, 4) + ", " + number_text(v.z, 4);
+        };
+        return {session_.body().field() + " " + number_text(picked->value), "at " + three(picked->place),
+                "gradient " + three(picked->gradient), "cell " + std::to_string(picked->cell)};
+    }
+
+    [[nodiscard]] std::string render_command() const override { return session_.render_command(); }
+
+    [[nodiscard]] bool play_script() override {
+        if (ended_ || (script_.empty() && !options_.window_shot)) return false;
+        if (next_ < script_.size()) {
+            if (session_.busy()) return false;  // each action is seen, and `wait` needs no more
+            session_.run_numbered(script_[next_], next_ + 1, options_.script_file);
+            ++next_;
+            return false;
+        }
+        if (session_.busy()) return false;
+        ended_ = true;
+        return static_cast<bool>(options_.window_shot);
+    }
+
+    void save_window(int width, int height, const std::vector<std::uint8_t>& pixels) override {
+        Image image(width, height);
+        for (std::size_t p = 0; p < image.rgba.size() / 4; ++p) {
+            for (std::size_t c = 0; c < 3; ++c)
+                image.rgba[4 * p + c] = static_cast<float>(linear_from_srgb(pixels[3 * p + c] / 255.0));
+            image.rgba[4 * p + 3] = 1;
+        }
+        options_.window_shot(image);
+    }
+
+private:
+    /// What the picture on the screen was made of.
+    struct Seen {
+        std::uint64_t pictures = 0;
+        double slider = 0;
+        bool difference = false;
+        std::string compare{};
+        bool operator==(const Seen&) const = default;
+    };
+
+    ViewSession& session_;
+    const WindowOptions& options_;
+    std::vector<std::string> script_;
+    std::size_t next_ = 0;
+    bool ended_ = false;
+    Seen seen_{};
+};
+
+}  // namespace
+
+void open_view_window(ViewSession& session, const WindowOptions& options) {
+#ifdef SUBVOL_WITH_WINDOW
+    using Entry = const WindowFunctions* (*)();
+    Host host(session, options);
+    session.look().dark = options.dark;
+    const WindowFunctions& window = *reinterpret_cast<Entry>(load_module("window", "a window"))();
+    const auto missing = window.run(host, {options.width, options.height, options.title.c_str()});
+    if (missing) throw Error(ErrorCode::MissingCapability, *missing, "view", "--script and --screenshot need no window");
+#else
+    (void)session;
+    (void)options;
+    throw Error(ErrorCode::MissingCapability, "this program was built without GLFW and Dear ImGui, so it has no window", "view",
+                "--script and --screenshot need none");
+#endif
+}
+
+}  // namespace subvol

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/detail/window_look.h"
+#include "subvol/view_state.h"
+
+namespace subvol::detail {
+
+/// A picture for the screen.
+///
+/// rgba:   8 bits each, sRGB, over the background
+/// number: rises with each picture; 0: none yet
+struct ScreenPicture {
+    int width = 0, height = 0, scale = 1;
+    std::vector<std::uint8_t> rgba{};
+    std::uint64_t number = 0;
+};
+
+/// A colour map at a value: sRGB, 0..1, and the opacity.
+struct CurvePlace {
+    float red = 0, green = 0, blue = 0, alpha = 0;
+};
+
+/// What the window needs of the session. The window is in a module of its own, which has no other way to it; all that it
+/// changes, it changes by actions.
+class WindowHost {
+public:
+    virtual ~WindowHost() = default;
+
+    [[nodiscard]] virtual const ViewState& state() const = 0;
+    /// Runs an action. returns: what is wrong with it, in one sentence; empty: nothing
+    [[nodiscard]] virtual std::string run(const std::string& action) = 0;
+    [[nodiscard]] virtual WindowLook& look() = 0;
+
+    /// Replaces the picture if there is a newer one. returns: whether there was
+    [[nodiscard]] virtual bool take_picture(ScreenPicture& picture) = 0;
+    [[nodiscard]] virtual bool busy() const = 0;
+    /// The error of the picture; empty: none.
+    [[nodiscard]] virtual std::string problem() const = 0;
+    /// A line of figures about the picture.
+    [[nodiscard]] virtual std::string figures() const = 0;
+
+    [[nodiscard]] virtual std::vector<std::string> fields() const = 0;
+    [[nodiscard]] virtual const std::vector<double>& times() const = 0;
+    [[nodiscard]] virtual ValueRange field_range() const = 0;
+    [[nodiscard]] virtual ValueRange shown_range() const = 0;
+    /// How many control points have values in each of the bins of a range.
+    [[nodiscard]] virtual std::vector<double> histogram(const ValueRange& range, std::size_t bins) const = 0;
+    /// The colour map at equally spaced values.
+    [[nodiscard]] virtual std::vector<CurvePlace> curve(const ValueRange& range, std::size_t count) const = 0;
+    [[nodiscard]] virtual std::vector<TransferFunction::OpacityKnot> opacity() const = 0;
+    /// Where selected control points are in the picture (column, row) and their shares.
+    [[nodiscard]] virtual std::vector<Vec3> selected_pixels() const = 0;
+    [[nodiscard]] virtual std::vector<std::string> picked() const = 0;
+    [[nodiscard]] virtual std::string render_command() const = 0;
+
+    /// Plays the next action of the script, if there is one and it does not have to wait.
+    ///
+    /// returns: whether the script has ended, and the window is to be saved and closed
+    [[nodiscard]] virtual bool play_script() = 0;
+    /// pixels: RGB, rows from the top
+    virtual void save_window(int width, int height, const std::vector<std::uint8_t>& pixels) = 0;
+};
+
+/// What the window is opened with.
+struct WindowStart {
+    int width = 1280, height = 800;
+    const char* title = "subvol";
+};
+
+/// The function of the module. It throws nothing but std::bad_alloc, and what the host throws.
+struct WindowFunctions {
+    /// returns: why there is no window; nothing: it was there, and was closed
+    std::optional<std::string> (*run)(WindowHost& host, const WindowStart& start);
+};
+
+}  // namespace subvol::detail
