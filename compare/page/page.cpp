@@ -212,7 +212,8 @@ PageResult make_page(std::span<const PageStep> steps, const PageOptions& options
                         "--max-bytes " + std::to_string(options.max_bytes), "more bytes, fewer fields or fewer steps");
         }
         if (attempt == 0) {
-            rounding.place_bits = rounding.value_bits = 12;
+            rounding.place_bits = 16;
+            rounding.value_bits = 12;
         } else {
             // Bytes are nearly linear in the kernels; the first guess is that there is nothing else.
             const double now = static_cast<double>(bytes), most = 0.98 * static_cast<double>(options.max_bytes);

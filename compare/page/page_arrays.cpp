@@ -30,9 +30,14 @@ int PageArrays::add(std::span<double> values, std::size_t components, int bits) 
         low.push_back(least);
         step.push_back(size);
     }
-    directory_.push_back(
-        {{"at", bytes_.size()}, {"count", count}, {"components", components}, {"bytes", 2}, {"low", low}, {"step", step}});
-    append(numbers, 2);
+    const int bytes_each = bits > 16 ? 3 : 2;
+    directory_.push_back({{"at", bytes_.size()},
+                          {"count", count},
+                          {"components", components},
+                          {"bytes", bytes_each},
+                          {"low", low},
+                          {"step", step}});
+    append(numbers, bytes_each);
     return static_cast<int>(directory_.size()) - 1;
 }
 

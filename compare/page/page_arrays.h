@@ -16,6 +16,7 @@ using PageJson = nlohmann::ordered_json;
 class PageArrays {
 public:
     /// values: `components` numbers for each item, which are replaced by what the page will read
+    /// bits:   of each number, at most 24
     /// returns: the number of the array
     int add(std::span<double> values, std::size_t components, int bits);
 

@@ -10,7 +10,7 @@ namespace subvol::detail {
 ///
 /// kept: the part of the kernels that is left after merging
 struct PageRounding {
-    int place_bits = 16, value_bits = 16;
+    int place_bits = 21, value_bits = 16;  // cells at walls may be a millionth of the body
     double kept = 1;
 };
 

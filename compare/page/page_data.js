@@ -30,7 +30,7 @@ class PageData {
   // The whole numbers of an array, one component after the other.
   whole(number) {
     const { at, count, components, bytes } = this.head.arrays[number], n = count * components;
-    const numbers = new Uint32Array(n), mask = bytes === 2 ? 0xffff : 0xffffffff;
+    const numbers = new Uint32Array(n), mask = bytes === 4 ? 0xffffffff : (1 << (8 * bytes)) - 1;
     for (let byte = 0; byte < bytes; ++byte) {
       for (let i = 0, from = at + byte * n; i < n; ++i) numbers[i] |= this.bytes[from + i] << (8 * byte);
     }

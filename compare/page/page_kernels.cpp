@@ -13,7 +13,7 @@ namespace {
 
 /// S^(1/2), symmetric; a flat frame gets a little thickness, so that it has an inverse.
 Mat3 symmetric_root(const Symmetric3& frame) {
-    constexpr double kThinnest = 1e-3;
+    constexpr double kThinnest = 1e-4;
     const PrincipalAxes axes = principal_axes(frame);
     Mat3 root(0.0);
     for (int a = 0; a < 3; ++a) {

@@ -86,8 +86,11 @@ TEST(Page, RoundingIsHalfAStepAtMost) {
     PageArrays arrays;
     EXPECT_EQ(arrays.add(rounded, 1, 12), 0);
     for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(rounded[i], values[i], 0.5 * 2 / 4095 + 1e-12);
+    std::vector<double> fine = values;
+    EXPECT_EQ(arrays.add(fine, 1, 21), 1);
+    for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR(fine[i], values[i], 0.5 * 2 / 2097151 + 1e-12);
     std::vector<double> constant(7, 3.5);
-    EXPECT_EQ(arrays.add(constant, 1, 16), 1);
+    EXPECT_EQ(arrays.add(constant, 1, 16), 2);
     EXPECT_EQ(constant[6], 3.5);
 }
 
