@@ -114,7 +114,7 @@ private:
         group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
         group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--background",
-                                    "--shade", "--color-field"});
+                                    "--shade", "--shadows", "--ambient-occlusion", "--color-field"});
         group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
                           "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
@@ -128,6 +128,10 @@ private:
     void check_reference() const {
         (void)reference_.projected_options();
         if (drawn_by_splats()) return;
+        if (splat_.shadows || splat_.ambient_occlusion > 0) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws without them", "--shadows, --ambient-occlusion",
+                        "use --method splat");
+        }
         if (splat_.shade || splat_.color_field) {
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
                         "--shade, --color-field", "use --method splat or sheets");
@@ -245,6 +249,7 @@ private:
 
     /// Whether the colours of a solid are those of its boundary: unless the picture is to show what kernels make of it.
     [[nodiscard]] bool paints_boundary() {
+        if (splat_.shadows || splat_.ambient_occlusion > 0) return false;
         if (picture_.look != Look::Solid || picture_.opacity || picture_.opacity_unit_world || refine_.levels) return false;
         for (const char* option : {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--values",
                                    "--kernel", "--threshold", "--correction", "--reduce", "--plain-sums", "--sheets"}) {
