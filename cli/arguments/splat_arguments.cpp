@@ -25,6 +25,11 @@ void SplatArguments::add_to(CLI::App& app) {
         ->type_name("N")
         ->check(CLI::Range(2, 65536));
     app.add_flag("--shade", shade, "splat: light on surfaces of equal value, from the eye and from the upper left");
+    app.add_flag("--shadows", shadows, "splat: the volume shadows itself from the light at the upper left");
+    app.add_option("--ambient-occlusion", ambient_occlusion,
+                   "splat: darken hollows that are narrower than this part of the box's diagonal, such as .1")
+        ->type_name("R")
+        ->check(CLI::Range(0.0, 1.0));
     app.add_option("--color-field", color_field, "splat: take the colours from this field; opacities stay those of --field")
         ->type_name("NAME");
     app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
@@ -52,11 +57,18 @@ SplatOptions SplatArguments::options(bool by_sheets) const {
         .method = splat_method(backend, by_sheets), .device = device, .sheets = sheets, .normalized = !plain_sums};
     if (color_field) options.color_channel = 1;
     if (shade) options.shading = Shading{};
+    options.shadows = shadows;
+    options.ambient_occlusion = ambient_occlusion;
+    if (by_sheets && (shadows || ambient_occlusion > 0)) {
+        throw Error(ErrorCode::InvalidInput, "sheets are drawn without them", "--shadows, --ambient-occlusion",
+                    "--method splat");
+    }
     return options;
 }
 
 void report_splats(const SplatReport& splats, Report& report) {
-    report.add_seconds("prepare", splats.seconds_prepare);
+    if (splats.seconds_light > 0) report.add_seconds("light", splats.seconds_light);
+    report.add_seconds("prepare", splats.seconds_prepare - splats.seconds_light);
     report.add_seconds("draw", splats.seconds_draw);
     report["backend"] = splats.backend;
     report["device"] = splats.device;

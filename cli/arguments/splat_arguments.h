@@ -22,6 +22,8 @@ struct SplatArguments {
     std::optional<int> device;
     int sheets = 0;  // as many as needed
     bool shade = false;
+    bool shadows = false;
+    double ambient_occlusion = 0;
     bool plain_sums = false;
     std::optional<std::string> color_field;
     std::optional<double> seconds;

@@ -114,7 +114,7 @@ private:
         group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
         group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--background",
-                                    "--shade", "--color-field"});
+                                    "--shade", "--shadows", "--ambient-occlusion", "--color-field"});
         group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
                           "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
@@ -128,6 +128,10 @@ private:
     void check_reference() const {
         (void)reference_.projected_options();
         if (drawn_by_splats()) return;
+        if (splat_.shadows || splat_.ambient_occlusion > 0) {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws without them", "--shadows, --ambient-occlusion",
+                        "use --method splat");
+        }
         if (splat_.shade || splat_.color_field) {
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
                         "--shade, --color-field", "use --method splat or sheets");
@@ -223,7 +227,9 @@ private:
             splat_in_time(mesh, views.front(), optics, output, report);
         } else {
             BoundaryValues skin;
-            if (picture_.paints_boundary(app(), refine_)) skin = skin_of(mesh, report);
+            // Shadows and occlusion are those of the kernels: the boundary's own colours have none.
+            const bool own_light = splat_.shadows || splat_.ambient_occlusion > 0;
+            if (!own_light && picture_.paints_boundary(app(), refine_)) skin = skin_of(mesh, report);
             splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report, skin);
         }
     }

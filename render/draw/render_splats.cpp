@@ -10,6 +10,7 @@
 #include "gl_context.h"
 #include "gl_sheets.h"
 #include "gl_splatter.h"
+#include "make_light_volume.h"
 #include "pixel_tiles.h"
 #include "splat_cpu.h"
 #include "subvol/detail/stopwatch.h"
@@ -109,6 +110,10 @@ struct Splatter::State {
     State(const RbfVolume& volume, const SplatOptions& wanted) : options(wanted), scene(detail::make_scene(volume, wanted)) {
         options.method = resolved(wanted);
         if (options.method == SplatMethod::Gl) gpu.emplace(scene, options.device);
+        if (options.method == SplatMethod::Sheets && scene.shadowed()) {
+            throw Error(ErrorCode::InvalidInput, "sheet buffers know no shadows and no ambient occlusion", {},
+                        "the method splat");
+        }
         if (options.method == SplatMethod::Sheets) sheets = make_sheet_drawer(options);
     }
 
@@ -141,6 +146,7 @@ struct Splatter::State {
 
     SplatOptions options;
     detail::SplatScene scene;
+    detail::LightVolume light{};  // of the last picture
     std::optional<detail::GlSplatter> gpu;
     std::unique_ptr<SheetDrawer> sheets;
     detail::SplatFrame frame{};  // its memory is used for every picture
@@ -166,6 +172,11 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     auto& report = result.report;
     const detail::Stopwatch watch;
     const auto classification = detail::classify(state.scene, optics);
+    if (state.scene.shadowed()) {
+        state.light = detail::make_light_volume(state.scene, view, classification);
+        state.scene.light = &state.light;
+        report.seconds_light = watch.seconds();
+    }
     report.seconds_prepare = watch.seconds();
     const int n = state.options.samples;
     const View fine(view.camera(), n * view.width(), n * view.height());  // the centres of its pixels are the samples

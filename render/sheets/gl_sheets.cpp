@@ -50,6 +50,7 @@ std::string defines(const SplatFrame& frame) {
     define("KERNEL_STEPS", scene.kernel_table.empty() ? 1 : scene.kernel_table.size() - 1);
     define("BENT", int{scene.bent});
     define("SHADED", int{scene.shading.has_value()});
+    define("SHADOWED", 0);
     define("COLORED", int{scene.color_channel.has_value()});
     define("NORMALIZED", int{scene.normalized});
     define("BOUNDED", int{scene.half_weight == 0});

@@ -43,13 +43,24 @@ Vec3 normal_at(const Surface& surface, const CornerNormals& corners, const View&
     return turned(view, sum);
 }
 
-BoundaryLight light_on(const Shading& shading, const Vec3& normal, const Vec3& to_eye) {
+/// arrives: the part of the key light, and of that from all around
+BoundaryLight light_on(const Shading& shading, const Vec3& normal, const Vec3& to_eye, const std::array<float, 2>& arrives) {
     const Vec3 to_key = glm::normalize(shading.key);
-    const double head = std::max(0.0, glm::dot(normal, to_eye)), side = std::max(0.0, glm::dot(normal, to_key));
+    const double from_key = static_cast<double>(arrives[0]), open = static_cast<double>(arrives[1]);
+    const double head = std::max(0.0, glm::dot(normal, to_eye)), side = from_key * std::max(0.0, glm::dot(normal, to_key));
     const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
-    const double gloss = std::pow(head, shading.shininess) + std::pow(halfway, shading.shininess);
-    return {static_cast<float>(shading.ambient + shading.diffuse * 0.5 * (head + side)),
-            static_cast<float>(shading.specular * 0.5 * gloss)};
+    const double gloss = std::pow(head, shading.shininess) + from_key * std::pow(halfway, shading.shininess);
+    return {static_cast<float>(open * (shading.ambient + shading.diffuse * 0.5 * (head + side))),
+            static_cast<float>(open * (shading.specular * 0.5 * gloss))};
+}
+
+/// The light just before a surface: on it, the nodes of the light volume behind it would be dark. In eye space.
+std::array<float, 2> light_before(const LightVolume& light, const View& view, const Vec3& place, const Vec3& normal,
+                                  const Shading& shading) {
+    constexpr double kNodesBefore = 1.5;
+    const Vec3 before = place + kNodesBefore * light.spacing_world * (normal + glm::normalize(shading.key));
+    const auto& [right, up, forward] = view.axes();
+    return light.at(view.eye() + before.x * right + before.y * up + before.z * forward);
 }
 
 /// What the lights depend on besides the intervals.
@@ -59,6 +70,7 @@ struct LitSurface {
     const Shading& shading;
     double middle;                       // the depth that those of the intervals are relative to
     const std::vector<CutPlane>& faces;  // of the clip
+    const LightVolume* light = nullptr;
 };
 
 std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitSurface& lit, const View& view) {
@@ -79,7 +91,9 @@ std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitS
                 const double length = glm::length(normal);
                 if (!(length > 0)) continue;
                 const Vec3 to_eye = view.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
-                lights[i] = light_on(lit.shading, normal / length, to_eye);
+                std::array<float, 2> arrives{1, 1};
+                if (lit.light) arrives = light_before(*lit.light, view, place, normal / length, lit.shading);
+                lights[i] = light_on(lit.shading, normal / length, to_eye, arrives);
             }
         }
     });
@@ -90,7 +104,8 @@ std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitS
 
 std::vector<BoundaryLight> entry_lights(const PixelIntervals& intervals, const SplatScene& scene, const View& view) {
     const double middle = view.to_eye(scene.middle).z;
-    return lights_of(intervals, {scene.volume->boundary, scene.boundary_normals, *scene.shading, middle, scene.clip.faces()},
+    return lights_of(intervals,
+                     {scene.volume->boundary, scene.boundary_normals, *scene.shading, middle, scene.clip.faces(), scene.light},
                      view);
 }
 

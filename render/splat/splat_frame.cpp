@@ -119,6 +119,7 @@ void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view,
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     frame.intervals = scene_intervals(scene, view, frame.sheets);
     if (scene.shading && !frame.intervals.offsets.empty()) frame.entry_lights = entry_lights(frame.intervals, scene, view);
+    if (scene.light) frame.to_light = eye_to_nodes(*scene.light, view, view.to_eye(scene.middle).z);
     report_progress(progress, "prepare splats", 0.4);
     eye_splats(frame.kernels, scene, view, classification);
     report_progress(progress, "prepare splats", 0.7);

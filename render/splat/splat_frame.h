@@ -29,6 +29,8 @@ struct SplatFrame {
     PixelIntervals intervals;                 // no offsets: there is neither a boundary nor a clip
     std::vector<BoundaryLight> entry_lights;  // of each interval; empty without shading
     std::vector<IntervalEnd> ends;            // beside the depths of the intervals
+    EyeToNodes to_light{};                    // of the scene's light volume
+    float* optical_depths = nullptr;          // of each pixel on each sheet: these are wanted instead of a picture
     EyeSplats kernels;
     int tiles_x = 0, tiles_y = 0;
     std::vector<std::size_t> tile_offsets;

@@ -194,6 +194,10 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
         throw Error(ErrorCode::InvalidInput, "the number of sheets is " + std::to_string(options.sheets), {},
                     "2 to 65536, or 0 for as many as the kernels need");
     }
+    if (!(options.ambient_occlusion >= 0 && options.ambient_occlusion <= 1)) {
+        throw Error(ErrorCode::InvalidInput, "the distance of ambient occlusion is " + number_text(options.ambient_occlusion),
+                    {}, "0 to 1, in parts of the volume's diagonal");
+    }
     check_channel(volume, options.channel);
     if (options.color_channel) check_channel(volume, *options.color_channel);
     const Box box = box_of(volume);
@@ -218,6 +222,8 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
         scene.boundary_normals = corner_normals(volume.boundary);
     }
     set_clip(scene, options.clip);
+    scene.shadows = options.shadows;
+    scene.occlusion_world = options.ambient_occlusion * size;
     return scene;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corner_normals.h"
+#include "light_volume.h"
 #include "subvol/camera.h"
 #include "subvol/detail/preintegrated_table.h"
 #include "subvol/detail/ray_clip.h"
@@ -64,6 +65,11 @@ struct SplatScene {
     double diagonal = 0;
     Box reach{};     // of the kernels and of the boundary
     RayClip clip{};  // as set_clip
+    bool shadows = false;
+    double occlusion_world = 0;          // > 0: ambient occlusion over this distance
+    const LightVolume* light = nullptr;  // of the picture, if there are shadows or occlusion
+
+    [[nodiscard]] bool shadowed() const { return shadows || occlusion_world > 0; }
 
     [[nodiscard]] const RbfChannel& opacity_values() const { return volume->channels[channel]; }
     [[nodiscard]] const RbfChannel& color_values() const { return volume->channels[color_channel.value_or(channel)]; }
@@ -73,7 +79,7 @@ struct SplatScene {
     }
     /// Whether the short loops suffice: one channel, compact kernels, normalised, with a boundary, without shading.
     [[nodiscard]] bool plain() const {
-        return form == KernelForm::Compact && !bent && normalized && half_weight == 0 && !shading && !color_channel;
+        return form == KernelForm::Compact && !bent && normalized && half_weight == 0 && !shading && !color_channel && !light;
     }
 };
 

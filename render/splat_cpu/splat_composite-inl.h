@@ -30,6 +30,9 @@ struct SheetValues {
 /// sixteenth at most.
 constexpr int kMostSteps = 96;
 
+/// Of a stretch between two sheets, where optical depths are summed.
+constexpr float kMostDepth = 50;
+
 /// Composites a volume that is opaque from its boundary on: whether all light ends within the skin.
 inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t lane, const IntervalEnd& end) {
     if (!(end.x < 0.5f * kUnknownValue)) return false;
@@ -87,7 +90,7 @@ inline void take_interval(const SplatFrame& frame, BlockState& state, std::size_
     state.exit_diffuse[lane] = exit.light.diffuse;
     state.enter_specular[lane] = enter.light.specular;
     state.exit_specular[lane] = exit.light.specular;
-    if (see_boundary(frame, state, lane, enter)) end_ray();
+    if (!frame.optical_depths && see_boundary(frame, state, lane, enter)) end_ray();
 }
 
 /// A block of pixels in registers, between two sheets.
@@ -140,6 +143,9 @@ public:
         last_placed_ = placed;
         if (placed) last_place_ = place;
     }
+
+    /// The optical depth up to the last sheet, if optical depths are wanted.
+    [[nodiscard]] HWY_ATTR Floats optical_depth() const { return depth_; }
 
     /// Takes the values of a sheet without compositing what lies before it.
     HWY_ATTR void skip_to(const SheetValues& here) {
@@ -216,6 +222,11 @@ private:
             take_other_end(hn::Or(on_sheet, at_exit), e0, e1);
         }
         const auto length = hn::Mul(hn::Sub(to, from), hn::Load(d, state_.ray_length));
+        if (frame_.optical_depths) {  // kept in place of the depth; more than kMostDepth is dark in any case
+            const auto more = hn::Min(hn::Mul(length, mean[0]), hn::Set(d, kMostDepth));
+            depth_ = hn::IfThenElse(seen, hn::Add(depth_, hn::Max(more, hn::Zero(d))), depth_);
+            return;
+        }
         const auto thick = hn::And(seen, hn::Gt(hn::Mul(length, mean[0]), hn::Set(d, kThickDepth)));
         if (hn::AllFalse(d, thick)) {
             add_light(seen, e0, e1, mean, length, hn::Mul(hn::Set(d, 0.5f), hn::Add(from, to)));

@@ -68,5 +68,21 @@ Drawn draw_splats_cpu(const SplatFrame& frame, Progress* progress) {
     return drawn;
 }
 
+std::vector<float> optical_depths_cpu(SplatFrame& frame) {
+    const auto pixels = static_cast<std::size_t>(frame.view->width()) * static_cast<std::size_t>(frame.view->height());
+    std::vector<float> depths(pixels * static_cast<std::size_t>(frame.sheets.count), -1.0f);
+    frame.optical_depths = depths.data();
+    (void)draw_splats_cpu(frame, nullptr);
+    frame.optical_depths = nullptr;
+    // On sheets that were passed over nothing was added.
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels, 1024), [&](const auto& range) {
+        for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+            float last = 0;
+            for (std::size_t at = pixel; at < depths.size(); at += pixels) last = depths[at] = std::max(depths[at], last);
+        }
+    });
+    return depths;
+}
+
 }  // namespace subvol::detail
 #endif

@@ -12,4 +12,8 @@ void find_interval_ends(SplatFrame& frame);
 /// Draws a frame on all threads of the CPU, tile by tile.
 [[nodiscard]] Drawn draw_splats_cpu(const SplatFrame& frame, Progress* progress);
 
+/// The optical depth that each ray has gone through up to each sheet: of pixel (x, y) on sheet z at (z · height + y) · width +
+/// x.
+[[nodiscard]] std::vector<float> optical_depths_cpu(SplatFrame& frame);
+
 }  // namespace subvol::detail

@@ -227,13 +227,21 @@ private:
 
     HWY_ATTR Light light_in(std::size_t block, const Block& b, Floats scale) const {
         const Lanes d;
-        if (!frame_.scene->shading) return {hn::Set(d, 1.0f), hn::Zero(d)};
+        Arrival arrives{hn::Set(d, 1.0f), hn::Set(d, 1.0f)};
+        if (frame_.scene->light) {
+            const auto depth = hn::Load(d, b.depth);
+            const auto across = view_.perspective() ? hn::Add(hn::Set(d, frame_.sheets.middle), depth) : hn::Set(d, 1.0f);
+            arrives = arrival_at(*frame_.scene->light, frame_.to_light,
+                                 {hn::Mul(across, hn::Load(d, tile_.x + block % kColumns * kBlock)),
+                                  hn::Mul(across, hn::Load(d, tile_.y + block / kColumns * kBlock)), depth});
+        }
+        if (!frame_.scene->shading) return unlit(Shading{}, arrives);
         const auto part = [&](std::size_t axis)
                               HWY_ATTR { return hn::Mul(hn::Load(d, b.sums + (kGradient + axis) * kBlock), scale); };
         const auto back = hn::Set(d, view_.perspective() ? -1.0f : 0.0f);
         const Vector to_eye{hn::Mul(back, hn::Load(d, tile_.x + block % kColumns * kBlock)),
                             hn::Mul(back, hn::Load(d, tile_.y + block / kColumns * kBlock)), hn::Set(d, -1.0f)};
-        return light(*frame_.scene->shading, {part(0), part(1), part(2)}, normalize(to_eye), least_gradient_);
+        return light(*frame_.scene->shading, {part(0), part(1), part(2)}, normalize(to_eye), least_gradient_, arrives);
     }
 
     const SplatFrame& frame_;

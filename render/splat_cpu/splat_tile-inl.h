@@ -261,8 +261,22 @@ private:
             } else {
                 walk.skip_to(here);
             }
+            if (frame_.optical_depths) keep_depths(block, sheet, walk.optical_depth());
         }
         walk.store();
+    }
+
+    HWY_ATTR void keep_depths(std::size_t block, int sheet, Floats depths) const {
+        const Lanes d;
+        HWY_ALIGN float kept[kBlock];
+        hn::Store(depths, d, kept);
+        const auto width = static_cast<std::size_t>(view_.width()), height = static_cast<std::size_t>(view_.height());
+        for (std::size_t lane = 0; lane < kBlock; ++lane) {
+            const auto [x, y] = pixel(block, lane);
+            if (x >= view_.width() || y >= view_.height()) continue;
+            const std::size_t row = static_cast<std::size_t>(sheet) * height + static_cast<std::size_t>(y);
+            frame_.optical_depths[row * width + static_cast<std::size_t>(x)] = kept[lane];
+        }
     }
 
     HWY_ATTR SheetValues values(std::size_t block, int k) const {
@@ -284,22 +298,30 @@ private:
         here.x = hn::Min(hn::Max(mean(kValue, x_offset_), hn::Neg(far)), far);
         if constexpr (!kPlain) {
             if (frame_.scene->color_channel) here.color = hn::Min(hn::Max(mean(kColor, color_offset_), hn::Neg(far)), far);
-            here.light = light_on(block, sums, per_weight);
+            here.light = light_on(block, sums, per_weight, batch_.across[static_cast<std::size_t>(k)],
+                                  batch_.depth[static_cast<std::size_t>(k)]);
         }
         return here;
     }
 
-    HWY_ATTR Light light_on(std::size_t block, const float* sums, Floats per_weight) const {
+    HWY_ATTR Light light_on(std::size_t block, const float* sums, Floats per_weight, float across, float depth) const {
         const Lanes d;
         const auto one = hn::Set(d, 1.0f);
-        if (!frame_.scene->shading) return {one, hn::Zero(d)};
+        Arrival arrives{one, one};
+        if (frame_.scene->light) {
+            const auto scale = hn::Set(d, across);
+            arrives = arrival_at(*frame_.scene->light, frame_.to_light,
+                                 {hn::Mul(scale, hn::Load(d, tile_.x + block % kColumns * kBlock)),
+                                  hn::Mul(scale, hn::Load(d, tile_.y + block / kColumns * kBlock)), hn::Set(d, depth)});
+        }
+        if (!frame_.scene->shading) return unlit(Shading{}, arrives);
         const auto scale = frame_.scene->normalized ? per_weight : one;
         const auto part = [&](std::size_t axis)
                               HWY_ATTR { return hn::Mul(hn::Load(d, sums + (kGradient + axis) * kBlock), scale); };
         const auto back = hn::Set(d, view_.perspective() ? -1.0f : 0.0f);
         const Vector to_eye{hn::Mul(back, hn::Load(d, tile_.x + block % kColumns * kBlock)),
                             hn::Mul(back, hn::Load(d, tile_.y + block / kColumns * kBlock)), hn::Set(d, -1.0f)};
-        return light(*frame_.scene->shading, {part(0), part(1), part(2)}, normalize(to_eye), least_gradient_);
+        return light(*frame_.scene->shading, {part(0), part(1), part(2)}, normalize(to_eye), least_gradient_, arrives);
     }
 
     void write(Drawn& drawn) const {

@@ -58,6 +58,11 @@ GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Cla
     frame.color_offset = color_offset(scene, classification);
     frame.half_weight = scene.half_weight;
     frame.least_gradient = kLeastChange * PreintegratedTable::kCells / static_cast<float>(scene.diagonal);
+    frame.unlit_ambient = static_cast<float>(scene.shading.value_or(Shading{}).ambient);
+    if (scene.light) {
+        frame.to_light = eye_to_nodes(*scene.light, view, middle.z);
+        for (std::size_t k = 0; k < 3; ++k) frame.light_nodes[k] = scene.light->size[k];
+    }
     frame.kernel_cells = scene.kernel_table.empty() ? 0 : static_cast<float>(scene.kernel_table.size() - 1);
     return frame;
 }

@@ -90,6 +90,7 @@ std::string gl_scene_defines(const SplatScene& scene) {
     flag("BENT", scene.bent);
     flag("COLORED", scene.color_channel.has_value());
     flag("SHADED", scene.shading.has_value());
+    flag("SHADOWED", scene.shadowed());
     flag("NORMALIZED", scene.normalized);
     flag("CONVEX", scene.convex());
     flag("UNBOUNDED", scene.half_weight > 0);

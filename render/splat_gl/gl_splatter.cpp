@@ -34,6 +34,7 @@
 #include "shader_splat_draw_comp.h"
 #include "shader_splat_frame_glsl.h"
 #include "shader_splat_light_glsl.h"
+#include "shader_splat_shadow_glsl.h"
 #include "shader_splat_sums_glsl.h"
 #include "shader_splat_walk_glsl.h"
 #include "subvol/error.h"
@@ -80,6 +81,7 @@ GlProgram drawing_program(const std::string& defines) {
              {"exp_log.glsl", kShader_exp_log_glsl},
              {"splat_classify.glsl", kShader_splat_classify_glsl},
              {"splat_light.glsl", kShader_splat_light_glsl},
+             {"splat_shadow.glsl", kShader_splat_shadow_glsl},
              {"splat_absorb.glsl", kShader_splat_absorb_glsl},
              {"splat_walk.glsl", kShader_splat_walk_glsl}}};
 }
@@ -159,7 +161,7 @@ private:
     GlProgram draw_;
     std::optional<GlProgram> draw_clipped_;  // a volume without a boundary; made when it is clipped for the first time
     GlStages stages_;
-    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_, ends_;
+    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_, ends_, light_;
 };
 
 void GlSplatter::State::prepare(const View& view, const Classification& classification) {
@@ -168,6 +170,7 @@ void GlSplatter::State::prepare(const View& view, const Classification& classifi
     upload(rows_, classification.table.rows);
     upload(visible_, classification.table.visible);
     upload(color_rows_, classification.colors.rows);
+    if (scene_.light) upload(light_, scene_.light->nodes);
     const std::size_t pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
     picture_.grow(pixels * 4 * sizeof(float));
     depths_.grow(pixels * sizeof(float));
@@ -225,6 +228,7 @@ void GlSplatter::State::draw_pass() {
     depths_.bind(12);
     states_.bind(13);
     ends_.bind(14);
+    if (scene_.light) light_.bind(15);
     dispatch(frame_.tiles());
     stages_.begin("");
     check_gl("splat");

@@ -44,6 +44,16 @@ class Splats(InFolder):
         self.render("nothing.exr", "--backend", "cpu", "--opacity", "0%:0,100%:0")
         self.assertEqual(self.difference("alpha.exr", "nothing.exr"), 0)
 
+    def test_shadows_take_light_but_no_opacity(self):
+        small = ["model:ball:3", "--size", 32, "--look", "volume"]
+        self.run_ok("render", *small, "-o", "plain.exr")
+        done = self.run_ok("render", *small, "-o", "dark.exr", "--shadows", "--ambient-occlusion", ".1", "--json").json()
+        self.assertGreater(done["seconds"]["light"], 0)
+        self.assertLess(self.run_ok("compare", "plain.exr", "dark.exr", "--json").json()["psnr"], 60)
+        for wrong in (["--method", "tets"], ["--method", "sheets"], ["--ambient-occlusion", "2"]):
+            done = subvol("render", *small, "-o", "x.png", "--shadows", *wrong, folder=self.folder)
+            self.assertEqual(done.code, 2, (wrong, done.err))
+
     def test_colours_of_a_second_field(self):
         self.run_ok("points", "model:twist:6", "-o", "a.vtp")
         self.render("same.exr", "--backend", "cpu", "--color-field", "density", source="a.vtp")

@@ -25,7 +25,7 @@ void add_light(inout Beam beam, End e0, End e1, vec4 mean, float length_world, f
     emission = 0.5 * mean.x * (color_at(e0.color) + color_at(e1.color));
 #endif
     precise float per_extinction = light / max(mean.x, 1e-37);
-#if SHADED
+#if SHADED || SHADOWED
     precise vec2 lit = 0.5 * (e0.light + e1.light) * vec2(per_extinction, light);
     precise vec3 color = beam.color + fma(vec3(lit.x), emission, vec3(lit.y));
 #else
@@ -72,7 +72,7 @@ bool see_boundary(inout Beam beam, End end, float enter, float exit, float ray_l
 #if COLORED
     color = color_at(end.color);
 #endif
-#if SHADED
+#if SHADED || SHADOWED
     color = color * end.light.x + end.light.y;
 #endif
     beam.color += beam.transmittance * color;

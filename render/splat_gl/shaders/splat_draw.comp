@@ -27,6 +27,7 @@ uint step_number = 0u;
 uint next_end = 0u, last_end = 0u;  // the ends of the pixel's intervals that have no values yet
 int ranged = -2;  // the batch to which `range` belongs
 vec2 range;
+float sum_depth;  // at which the first sums are
 
 int ordered(float f) {
     int bits = floatBitsToInt(f);
@@ -153,7 +154,14 @@ Sheet here_on(float weight, float value, float color, vec3 gradient) {
 #endif
     here.x = clamp(x, -kFarCells, kFarCells);
     here.color = clamp(c, -kFarCells, kFarCells);
+#if SHADOWED
+    vec2 arrives = arrival_at(vec3(ray * (perspective ? middle_depth + sum_depth : 1.0), sum_depth));
 #if SHADED
+    here.light = shadowed_light_on(gradient * per_weight, arrives);
+#else
+    here.light = vec2(unlit(arrives), 0.0);
+#endif
+#elif SHADED
     here.light = light_on(gradient * per_weight);
 #endif
     return here;
@@ -216,6 +224,7 @@ void find_ends(uint bin, int first, int end) {
         if (!any_of(mine)) return;
         sum_kernels_at(bin, depth, mine);
         if (!mine) continue;
+        sum_depth = depth;
         Sheet here = first_sum();
 #if UNBOUNDED
         here.known = here.known && here.weight > half_weight;
@@ -240,6 +249,7 @@ void look_back(uint bin, int batch) {
 #endif
     sum_kernels(bin, batch * kBatch, 1u << (kBatch - 1), true);
     for (int k = 0; k + 1 < kBatch; ++k) shift_sums();
+    sum_depth = sheet_depth(batch * kBatch + kBatch - 1);
     skip_to(first_sum());
 }
 
@@ -259,6 +269,7 @@ void go_through(uint bin, int batch) {
     bool awake = enter_z < sheet_depth(end_sheet - 1) + 1.5 * sheet_distance;
     sum_kernels(bin, first_sheet, 0xffffffffu, awake);
     for (int sheet = first_sheet; awake && sheet < end_sheet; ++sheet) {
+        sum_depth = sheet_depth(sheet);
         Sheet here = first_sum();
         if (sheet == 0) skip_to(here);
         else go(sheet_depth(sheet - 1), sheet_depth(sheet), here);

@@ -14,6 +14,9 @@ layout(std140, binding = 0) uniform Frame {
     float first_depth, sheet_distance, middle_depth, near_depth;
     float pixel, value_offset, color_offset, half_weight;
     float least_gradient, kernel_cells;
+    float unlit_ambient, unused;
+    vec4 to_light[3];  // from eye space to the nodes of the light volume
+    ivec4 light_nodes;
 };
 
 const float kNever = 3e38;

@@ -22,6 +22,7 @@ struct SplatReport {
     int sheets = 0;                 // planes over the volume's depth
     std::size_t bin_entries = 0;    // pairs of a tile and a kernel; on a GPU, triples with a batch of sheets
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
+    double seconds_light = 0;       // of the light volume, for shadows and ambient occlusion; a part of seconds_prepare
     double seconds_prepare = 0, seconds_draw = 0;
     std::vector<StageTime> stages{};  // of the GPU
 };

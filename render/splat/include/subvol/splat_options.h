@@ -41,6 +41,11 @@ struct Shading {
 /// device:        the OpenGL device's number in gl_devices(); none: the first hardware, else software
 /// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
 /// clip:          how the volume is cut open; Splatter::set_clip changes it later
+/// shadows:       whether the volume shadows itself from the key light (of `shading`, else of `Shading{}`); where no light of
+/// it
+///                arrives, the part Shading::ambient of colours without light on surfaces is left. Not with Sheets
+/// ambient_occlusion: > 0: darkens places from which less than half of the directions are open over this distance, in parts
+///                of the volume's diagonal, at most 1. Not with Sheets
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
 struct SplatOptions {
     SplatMethod method = SplatMethod::Auto;
@@ -52,6 +57,8 @@ struct SplatOptions {
     bool normalized = true;
     std::optional<Shading> shading{};
     Clip clip{};
+    bool shadows = false;
+    double ambient_occlusion = 0;
     Progress* progress = nullptr;
 };
 

@@ -36,6 +36,13 @@ public:
     [[nodiscard]] const std::vector<CutPlane>& faces() const { return faces_; }
     [[nodiscard]] const std::vector<CutPlane>& slices() const { return slices_; }
 
+    [[nodiscard]] RayClip without_slices() const {
+        RayClip faces = *this;
+        faces.slices_.clear();
+        faces.slices_alone_ = false;
+        return faces;
+    }
+
     /// Uses the memory of `result` again.
     void cut(const Ray& ray, RayCut& result) const;
 
