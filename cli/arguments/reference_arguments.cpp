@@ -38,7 +38,8 @@ ProjectedOrder ReferenceArguments::projected_order() const {
 }
 
 ProjectedOptions ReferenceArguments::projected_options() const {
-    const ProjectedOptions options{.order = projected_order(), .kbuffer = kbuffer, .lod = lod, .samples = samples};
+    const ProjectedOptions options{
+        .order = projected_order(), .kbuffer = kbuffer, .lod = lod, .samples = samples, .clip = clip};
     if (lod < 1 && options.order != ProjectedOrder::Havs)
         throw Error(ErrorCode::InvalidInput, "only --order havs leaves faces out", "--lod");
     return options;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "subvol/clip.h"
 #include "subvol/render_projected.h"
 
 namespace CLI {
@@ -18,6 +19,7 @@ struct ReferenceArguments {
     std::string order = "topological";
     int kbuffer = 6;
     double lod = 1;
+    Clip clip{};  // of all of them, as settled
 
     void add_to(CLI::App& app);
 

@@ -25,6 +25,12 @@ template <class... Part>
 /// throws: Error(InvalidInput) if it is anything else
 [[nodiscard]] Vec3 parse_vector(const std::string& option, const std::string& value);
 
+/// "x0,y0,z0,x1,y1,z1" and the like as so many numbers. option: named in the error
+///
+/// throws: Error(InvalidInput) if it is anything else
+[[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& value, std::size_t count,
+                                                const std::string& example);
+
 /// option: named in the error
 ///
 /// throws: Error(InvalidInput) if it is not a finite number

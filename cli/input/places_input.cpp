@@ -76,22 +76,4 @@ std::vector<Vec3> read_places(const std::string& path) {
     return places;
 }
 
-std::vector<double> parse_numbers(const std::string& option, const std::string& value, std::size_t count,
-                                  const std::string& example) {
-    std::vector<double> numbers;
-    for (std::string_view rest = value; numbers.size() <= count;) {
-        const std::size_t comma = rest.find(',');
-        numbers.push_back(detail::number_from(rest.substr(0, comma)).value_or(NAN));
-        if (comma == std::string_view::npos) break;
-        rest.remove_prefix(comma + 1);
-    }
-    bool sound = numbers.size() == count;
-    for (const double number : numbers) sound = sound && std::isfinite(number);
-    if (!sound) {
-        throw Error(ErrorCode::InvalidInput, text("'", value, "' is not ", count, " numbers"), option,
-                    "write it as " + example);
-    }
-    return numbers;
-}
-
 }  // namespace subvol::cli

@@ -15,10 +15,4 @@ namespace subvol::cli {
 /// throws: Error(Io) if the file cannot be read; Error(InvalidInput) with the file and the line
 [[nodiscard]] std::vector<Vec3> read_places(const std::string& path);
 
-/// "x0,y0,z0,x1,y1,z1" and the like as so many numbers. option: named in the error
-///
-/// throws: Error(InvalidInput) if it is anything else
-[[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& value, std::size_t count,
-                                                const std::string& example);
-
 }  // namespace subvol::cli

@@ -60,7 +60,8 @@ void report_tets(const ProjectedReport& pt, ProjectedOrder order, Report& report
 
 Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& optics, const ReferenceArguments& arguments,
                   Progress* progress, Report& report) {
-    TetsResult drawn = renderer.draw(view, optics, {.samples = arguments.samples, .progress = progress});
+    TetsResult drawn =
+        renderer.draw(view, optics, {.samples = arguments.samples, .clip = arguments.clip, .progress = progress});
     report_method("tets", "cpu", report);
     report.add_seconds("draw", drawn.report.seconds_draw);
     report["tets"] = drawn.report.tets;
@@ -98,6 +99,7 @@ Picture draw_dense(const HexMesh& mesh, const RefineOptions& refine, std::option
                                       .levels = levels,
                                       .image_tolerance = arguments.image_tolerance,
                                       .samples = arguments.samples,
+                                      .clip = arguments.clip,
                                       .progress = progress});
     const DenseReport& dense = drawn.report;
     report_method("dense", "cpu", report);
@@ -120,7 +122,8 @@ Picture draw_dense(const HexMesh& mesh, const RefineOptions& refine, std::option
 
 Picture draw_grid(const Voxels& voxels, const View& view, const Optics& optics, const ReferenceArguments& arguments,
                   Progress* progress, Report& report) {
-    GridResult drawn = render_grid(voxels, view, optics, {.samples = arguments.samples, .progress = progress});
+    GridResult drawn =
+        render_grid(voxels, view, optics, {.samples = arguments.samples, .clip = arguments.clip, .progress = progress});
     report_method("grid", "cpu", report);
     report.add_seconds("draw", drawn.report.seconds_draw);
     report["rays"] = drawn.report.rays;

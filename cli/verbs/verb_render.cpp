@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "choices.h"
+#include "clip_arguments.h"
 #include "grid_input.h"
 #include "input.h"
 #include "picture_arguments.h"
@@ -67,6 +68,7 @@ public:
             ->type_name("NAME")
             ->check(offered({"splat", "sheets", "tets", "pt", "dense", "grid"}));
         picture_.add_to(app());
+        clip_.add_to(app());
         reference_.add_to(app());
         sample_.add_to(app());
         refine_.add_to(app(), "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
@@ -82,6 +84,7 @@ public:
         picture_.settle_look(!holds_points(input_) && !is_vdb_file(input_) && !splat_.shade);
         if (reference_.samples == 0) reference_.samples = picture_.look == Look::Solid ? 2 : 1;
         options_.samples = reference_.samples;
+        options_.clip = reference_.clip = clip_.clip();
         if (picture_.lit()) options_.shading = Shading{};
         check_reference();
         picture_.check();
@@ -109,6 +112,7 @@ public:
 private:
     void set_groups() {
         group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps"});
+        group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
         group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--background",
                                     "--shade", "--color-field"});
         group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
@@ -244,7 +248,7 @@ private:
         if (!picture_.lit()) return draw;
         return [this, draw, boundary = std::move(boundary)](const View& view, Progress* progress) {
             Picture picture = draw(view, progress);
-            light_boundary(picture.image, boundary, view, Shading{}, reference_.samples);
+            light_boundary(picture.image, boundary, view, Shading{}, reference_.samples, options_.clip);
             return picture;
         };
     }
@@ -322,7 +326,8 @@ private:
             report_splats(drawn.report, report);
             if (!skin.values.empty()) {
                 report.timed("colors", [&] {
-                    color_boundary(drawn.image, skin.surface, skin.values.back(), view, optics, Shading{}, reference_.samples);
+                    color_boundary(drawn.image, skin.surface, skin.values.back(), view, optics, Shading{}, reference_.samples,
+                                   options_.clip);
                 });
             }
             return Picture{std::move(drawn.image), std::move(drawn.depth)};
@@ -353,6 +358,7 @@ private:
     PictureArguments picture_;
     ReferenceArguments reference_;
     SampleArguments sample_;
+    ClipArguments clip_;
     SplatArguments splat_;
     SplatOptions options_;
     RefineArguments refine_;

@@ -13,12 +13,33 @@
 namespace subvol::python {
 namespace {
 
-/// Camera, width, height, transfer function, opacity unit (world): what every renderer is given.
+using SixNumbers = std::array<double, 6>;
+
+CutPlane plane_of(const SixNumbers& n) {
+    return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
+
+Clip clip_of(const std::vector<SixNumbers>& planes, const std::optional<SixNumbers>& box, const std::vector<SixNumbers>& slices,
+             bool around_slices) {
+    Clip clip{.around_slices = around_slices};
+    for (const SixNumbers& plane : planes) clip.planes.push_back(plane_of(plane));
+    for (const SixNumbers& plane : slices) clip.slices.push_back(plane_of(plane));
+    if (box) clip.box = Box{{(*box)[0], (*box)[1], (*box)[2]}, {(*box)[3], (*box)[4], (*box)[5]}};
+    validate(clip);
+    return clip;
+}
+
+/// Camera, width, height, transfer function, opacity unit (world), cuts: what every renderer is given.
 struct Scene {
-    Scene(const Camera& camera, const std::pair<int, int>& size, const TransferFunction& knots, double unit_world)
-        : view(camera, size.first, size.second), optics(knots, unit_world) {}
+    Scene(const Camera& camera, const std::pair<int, int>& size, const TransferFunction& knots, double unit_world,
+          const std::vector<SixNumbers>& clip_planes, const std::optional<SixNumbers>& clip_box,
+          const std::vector<SixNumbers>& slices, bool around_slices)
+        : view(camera, size.first, size.second),
+          optics(knots, unit_world),
+          clip(clip_of(clip_planes, clip_box, slices, around_slices)) {}
     View view;
     Optics optics;
+    Clip clip;
 };
 
 SplatMethod backend_named(const std::string& name) {
@@ -63,6 +84,7 @@ Picture splat(const RbfVolume& volume, const Scene& scene, const std::string& ba
     check_channel(volume, channel);
     if (color_channel) check_channel(volume, *color_channel);
     SplatOptions options = splat_options(backend, device, samples, sheets, channel, color_channel, shade);
+    options.clip = scene.clip;
     return picture_of(result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return render_splats(volume, scene.view, scene.optics, options);
@@ -74,6 +96,7 @@ Picture splat_in_time(const HexMesh& mesh, const Scene& scene, double seconds, c
                       const py::object& progress) {
     ProgressiveOptions options{.seconds = seconds, .splat = splat_options(backend, device, samples, sheets, 0, {}, shade)};
     options.sample.scheme.kind = scheme_named(scheme);
+    options.splat.clip = scene.clip;
     ProgressiveResult result = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return render_progressively(mesh, scene.view, scene.optics, options);
@@ -88,7 +111,8 @@ Picture splat_in_time(const HexMesh& mesh, const Scene& scene, double seconds, c
 
 Picture tets(const HexMesh& mesh, const std::string& field, const Scene& scene, int samples, const py::object& progress) {
     TetsResult result = result_of(progress, [&](Progress* listener) {
-        return TetsRenderer(mesh, field, listener).draw(scene.view, scene.optics, {.samples = samples, .progress = listener});
+        return TetsRenderer(mesh, field, listener)
+            .draw(scene.view, scene.optics, {.samples = samples, .clip = scene.clip, .progress = listener});
     });
     Picture picture{std::move(result.image)};
     picture.report["tets"] = result.report.tets;
@@ -111,7 +135,7 @@ ProjectedOrder order_named(const std::string& name) {
 Picture projected(const HexMesh& mesh, const std::string& field, const Scene& scene, const std::string& order,
                   const std::optional<int>& device, int samples, const std::optional<double>& seconds,
                   const py::object& progress) {
-    ProjectedOptions options{.order = order_named(order), .device = device, .samples = samples};
+    ProjectedOptions options{.order = order_named(order), .device = device, .samples = samples, .clip = scene.clip};
     const ProjectedResult result = result_of(progress, [&](Progress* listener) {
         ProjectedRenderer renderer(mesh, field, device, listener);
         if (seconds) {
@@ -138,7 +162,8 @@ Picture dense(const HexMesh& mesh, const std::string& field, const Scene& scene,
     DenseOptions options{.refine = refine_options(scheme, 0, tension, crease_angle),
                          .levels = levels,
                          .image_tolerance = image_tolerance,
-                         .samples = samples};
+                         .samples = samples,
+                         .clip = scene.clip};
     DenseResult result = result_of(progress, [&](Progress* listener) {
         options.progress = listener;
         return render_dense(mesh, field, scene.view, scene.optics, options);
@@ -154,7 +179,7 @@ Picture dense(const HexMesh& mesh, const std::string& field, const Scene& scene,
 
 Picture grid(const Voxels& voxels, const Scene& scene, int samples, const py::object& progress) {
     GridResult result = result_of(progress, [&](Progress* listener) {
-        return render_grid(voxels, scene.view, scene.optics, {.samples = samples, .progress = listener});
+        return render_grid(voxels, scene.view, scene.optics, {.samples = samples, .clip = scene.clip, .progress = listener});
     });
     Picture picture{std::move(result.image)};
     picture.report["rays"] = result.report.rays;
@@ -175,9 +200,10 @@ Picture lit(const Picture& picture, const BoundaryValues& skin, const Scene& sce
     Picture result{picture.image, picture.depth, picture.report.attr("copy")()};
     const py::gil_scoped_release without_gil;
     if (colored) {
-        color_boundary(result.image, skin.surface, skin.values.back(), scene.view, scene.optics, Shading{}, samples);
+        color_boundary(result.image, skin.surface, skin.values.back(), scene.view, scene.optics, Shading{}, samples,
+                       scene.clip);
     } else {
-        light_boundary(result.image, skin.surface, scene.view, Shading{}, samples);
+        light_boundary(result.image, skin.surface, scene.view, Shading{}, samples, scene.clip);
     }
     return result;
 }
@@ -203,8 +229,10 @@ py::list devices() {
 void bind_render(py::module_& module) {
     py::class_<Voxels>(module, "Voxels", "The voxels of a grid, for the renderer.");
     py::class_<Scene>(module, "Scene", "What every renderer is given: camera, size, transfer function, opacity unit.")
-        .def(py::init<const Camera&, const std::pair<int, int>&, const TransferFunction&, double>(), py::arg("camera"),
-             py::arg("size"), py::arg("knots"), py::arg("opacity_unit"));
+        .def(py::init<const Camera&, const std::pair<int, int>&, const TransferFunction&, double,
+                      const std::vector<SixNumbers>&, const std::optional<SixNumbers>&, const std::vector<SixNumbers>&, bool>(),
+             py::arg("camera"), py::arg("size"), py::arg("knots"), py::arg("opacity_unit"), py::arg("clip"),
+             py::arg("clip_box"), py::arg("slices"), py::arg("around"));
     module.def("splat", &splat, py::arg("volume"), py::arg("scene"), py::arg("backend"), py::arg("device"), py::arg("samples"),
                py::arg("sheets"), py::arg("channel"), py::arg("color_channel"), py::arg("shade"), py::arg("progress"));
     module.def("splat_in_time", &splat_in_time, py::arg("mesh"), py::arg("scene"), py::arg("seconds"), py::arg("scheme"),

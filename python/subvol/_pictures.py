@@ -96,6 +96,7 @@ class TransferFunction:
 
 
 Drawable = Union[HexMesh, RbfVolume, Grid]
+Planes = Union[None, Sequence[float], Sequence[Sequence[float]], npt.ArrayLike]  # six numbers each: a point and the normal
 
 
 def _range_of(values: npt.NDArray[Any]) -> tuple[float, float]:
@@ -140,12 +141,32 @@ def _camera_of(view: str, camera: Union[None, str, Camera], bounds: npt.NDArray[
     return given
 
 
+def _planes_of(planes: Planes, name: str) -> list[list[float]]:
+    """A plane or several as lists of six numbers."""
+    if planes is None:
+        return []
+    rows = np.atleast_2d(np.asarray(planes, dtype=float))
+    if rows.ndim != 2 or rows.shape[1] != 6:
+        raise InvalidInput(f"{name}: a plane is six numbers, a point and the normal", name, "(px, py, pz, nx, ny, nz)")
+    return rows.tolist()
+
+
+def _box_of(box: Optional[Sequence[float]]) -> Optional[list[float]]:
+    if box is None:
+        return None
+    corners = np.asarray(box, dtype=float).ravel()
+    if corners.shape != (6,):
+        raise InvalidInput("clip_box: a box is six numbers, the lower and the upper corner", "clip_box", "(x0, y0, z0, x1, y1, z1)")
+    return corners.tolist()
+
+
 def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
            size: tuple[int, int] = (512, 512), field: Optional[str] = None, color_field: Optional[str] = None,
            tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None, look: Optional[str] = None,
            shade: bool = False, samples: Optional[int] = None, sheets: int = 0, levels: Optional[int] = None, scheme: str = "mcq",
            tension: float = 1 / 16, crease_angle: Optional[float] = None, per_edge: int = 1, seconds: Optional[float] = None,
            order: str = "topological", image_tolerance: float = 1e-3, backend: str = "auto", device: Optional[int] = None,
+           clip: Planes = None, clip_box: Optional[Sequence[float]] = None, slice: Planes = None, around: bool = False,
            progress: Progress = None) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit; but views of volumes of
     which only a part is visible frame the whole.
@@ -162,6 +183,10 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     samples:      n x n rays or places for each pixel, 1 to 16; None: 2 for solids, else 1
     levels:       draw the trilinear cells of this level; None: 1 for tets and pt, the limit for the others
     seconds:      a time limit (splat and pt)
+    clip:         planes that cut the volume open, each (px, py, pz, nx, ny, nz): what lies on the normal's side goes. One or several
+    clip_box:     (x0, y0, z0, x1, y1, z1): what lies outside goes
+    slice:        planes that are drawn alone, opaque and coloured by value. One or several
+    around:       draw the volume around the slices too
 
     Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32, linear, premultiplied, without a copy. Its `report` has
     counts and seconds.
@@ -223,7 +248,8 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     diagonal = float(np.linalg.norm(bounds[1] - bounds[0]))
     unit = opacity_unit or diagonal / (_SOLID_UNITS_PER_DIAGONAL if kind == "solid" else _OPACITY_UNITS_PER_DIAGONAL)
     eye = _camera_of(view, camera, bounds, points, kind, size, ortho)
-    scene = _core.Scene(eye, (int(size[0]), int(size[1])), knots, unit)
+    scene = _core.Scene(eye, (int(size[0]), int(size[1])), knots, unit, _planes_of(clip, "clip"), _box_of(clip_box),
+                        _planes_of(slice, "slice"), around)
     way = "sheets" if method == "sheets" else backend
 
     with listening(progress) as listener:

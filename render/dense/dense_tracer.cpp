@@ -48,11 +48,13 @@ bool DenseTracer::mark_walked(std::uint32_t grid, TetFace face) {
 }
 
 Segment DenseTracer::trace(const Ray& ray) {
+    clip_.cut(ray, cut_.ray);
+    if (cut_.ray.empty()) return {};
     const RayPlane plane(ray);
     find_ends(plane, ray);
     if (ends_.empty()) return {};
     ++counts_.rays;
-    RayWalker walker(ray, plane, compositor_, counts_);
+    RayWalker walker(ray, plane, cut_, compositor_, counts_);
     for (End& end : ends_) {
         if (end.walked) continue;
         end.walked = true;
@@ -63,7 +65,7 @@ Segment DenseTracer::trace(const Ray& ray) {
             break;
         }
     }
-    return walker.light();
+    return walker.light(optics_);
 }
 
 }  // namespace subvol::detail

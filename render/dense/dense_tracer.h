@@ -12,7 +12,9 @@ namespace subvol::detail {
 /// Integrates rays through dense grids. Keeps scratch memory, so each thread or tile needs its own.
 class DenseTracer {
 public:
-    DenseTracer(const DenseScene& scene, const Optics& optics) : scene_(scene), compositor_(optics, kRayCutoff) {}
+    /// Keeps references to all of them.
+    DenseTracer(const DenseScene& scene, const Optics& optics, const RayClip& clip)
+        : scene_(scene), optics_(optics), clip_(clip), cut_{{}, clip.slices_alone()}, compositor_(optics, kRayCutoff) {}
 
     /// The light along the ray, from its origin on.
     [[nodiscard]] Segment trace(const Ray& ray);
@@ -31,6 +33,9 @@ private:
     [[nodiscard]] bool mark_walked(std::uint32_t grid, TetFace face);
 
     const DenseScene& scene_;
+    const Optics& optics_;
+    const RayClip& clip_;
+    WalkCut cut_;
     Compositor compositor_;
     TraceCounts counts_;
     std::vector<std::uint32_t> met_;

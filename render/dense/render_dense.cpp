@@ -58,8 +58,8 @@ double rms(const Image& a, const Image& b) {
 // Traces, and adds its counts to the sums when its tile is done.
 class CountedTracer {
 public:
-    CountedTracer(const DenseScene& scene, const Optics& optics, tbb::combinable<TraceCounts>& sums)
-        : tracer_(scene, optics), sums_(&sums) {}
+    CountedTracer(const DenseScene& scene, const Optics& optics, const RayClip& clip, tbb::combinable<TraceCounts>& sums)
+        : tracer_(scene, optics, clip), sums_(&sums) {}
     CountedTracer(CountedTracer&&) = delete;
     ~CountedTracer() { sums_->local() += tracer_.counts(); }
     Segment operator()(const Ray& ray) { return tracer_.trace(ray); }
@@ -77,6 +77,7 @@ public:
           view_(view),
           optics_(optics),
           options_(options),
+          clip_(options.clip),
           refine_(options.refine),
           image_(view.width(), view.height()) {
         refine_.levels = levels;
@@ -112,7 +113,7 @@ private:
             Box box;
             for (const Vec3& p : cell.points) box.add(p);
             const auto [min, max] = std::ranges::minmax(cell.values[0]);
-            const auto rect = visible(optics_, min, max) ? pixels_of(box, view_) : std::nullopt;
+            const auto rect = clip_.has_slices() || visible(optics_, min, max) ? pixels_of(box, view_) : std::nullopt;
             std::optional<DenseGrid> grid;
             if (rect && !full) grid.emplace(cell, 0);
             const std::lock_guard lock(adding);
@@ -157,7 +158,7 @@ private:
         const DenseScene scene(kept_);
         tbb::combinable<TraceCounts> sums;
         draw_in_tiles(view_, options_.samples, rect, image_, options_.progress,
-                      [&] { return CountedTracer(scene, optics_, sums); });
+                      [&] { return CountedTracer(scene, optics_, clip_, sums); });
         sums.combine_each([&](const TraceCounts& sum) {
             report_.rays += sum.rays;
             report_.segments += sum.segments;
@@ -169,6 +170,7 @@ private:
     const View& view_;
     const Optics& optics_;
     const DenseOptions& options_;
+    RayClip clip_;
     RefineOptions refine_;
     std::vector<SeenGrid> seen_;
     std::vector<DenseGrid> kept_;

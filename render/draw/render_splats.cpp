@@ -155,6 +155,10 @@ Splatter::~Splatter() = default;
 Splatter::Splatter(Splatter&&) noexcept = default;
 Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 
+void Splatter::set_clip(const Clip& clip) {
+    detail::set_clip(state_->scene, clip);
+}
+
 SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
     State& state = *state_;
     if (!progress) progress = state.options.progress;

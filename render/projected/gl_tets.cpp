@@ -8,6 +8,7 @@
 #include "gl_context.h"
 #include "pixel_tiles.h"
 #include "shader_exp_log_glsl.h"
+#include "shader_projected_clip_glsl.h"
 #include "shader_projected_crossing_glsl.h"
 #include "shader_projected_face_frag.h"
 #include "shader_projected_face_vert.h"
@@ -25,7 +26,7 @@ namespace subvol::detail {
 namespace {
 
 // The same as in the shaders.
-constexpr GLuint kPointsBinding = 0, kItemsBinding = 1, kOrderBinding = 2, kKnotsBinding = 10;
+constexpr GLuint kPointsBinding = 0, kItemsBinding = 1, kOrderBinding = 2, kPlanesBinding = 9, kKnotsBinding = 10;
 constexpr std::size_t kDrawnAtOnce = 1U << 16;  // between two reports of progress
 
 template <class T>
@@ -38,7 +39,8 @@ void fill(GlBuffer& buffer, const std::vector<T>& values) {
 std::vector<ShaderText> resolver_texts() {
     return {{"projected_frame.glsl", kShader_projected_frame_glsl},
             {"exp_log.glsl", kShader_exp_log_glsl},
-            {"projected_segment.glsl", kShader_projected_segment_glsl}};
+            {"projected_segment.glsl", kShader_projected_segment_glsl},
+            {"projected_clip.glsl", kShader_projected_clip_glsl}};
 }
 
 std::vector<ShaderText> drawing_texts() {
@@ -86,6 +88,7 @@ void GlTets::set_frame(const GlTetFrame& frame, const View& view) {
     fill(points_, frame.points);
     fill(order_, frame.order);
     fill(knots_, frame.knots);
+    if (!frame.planes.empty()) fill(planes_, frame.planes);
     if (program_knots_ != frame.knots.size()) programs_.clear();
     program_knots_ = frame.knots.size();
 }
@@ -116,6 +119,7 @@ std::string GlTets::defines(const char* mode, int corners) const {
     define("FRAGMENT_COUNT", 1);
     define("FRAGMENT_KEEP", 2);
     define("FRAGMENT_MODE", mode);
+    define("CLIPPED", int{!frame_->planes.empty()});
     define("kCorners", corners);
     define("kKnots", frame_->knots.size());
     define("kRayCutoff", kRayCutoff);
@@ -141,7 +145,7 @@ const GlProgram& GlTets::resolver(Items items) {
     return programs_.emplace(key, GlProgram(file, source, text, resolver_texts())).first->second;
 }
 
-void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) const {
+void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) {
     const GLuint id = program.id();
     // In an orthographic view the size of a pixel is a length.
     const double pixel = view_->perspective() ? view_->pixel() : view_->pixel() / frame_->scale;
@@ -152,6 +156,11 @@ void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) const
     glProgramUniform1f(id, program.uniform("middle_depth"), static_cast<float>(frame_->middle_depth));
     glProgramUniform1f(id, program.uniform("per_unit"), static_cast<float>(frame_->opacity_units));
     glProgramUniform4i(id, program.uniform("rectangle"), rect.x0, rect.y0, rect.x1, rect.y1);
+    if (frame_->planes.empty()) return;
+    planes_.bind(kPlanesBinding);
+    glProgramUniform2i(id, program.uniform("plane_counts"), static_cast<GLint>(frame_->faces),
+                       static_cast<GLint>(frame_->planes.size() - frame_->faces));
+    glProgramUniform1i(id, program.uniform("slices_alone"), frame_->slices_alone);
 }
 
 void GlTets::draw_all(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage) {

@@ -37,6 +37,11 @@ struct GlTetFrame {
     double middle_depth = 0;   // in units of it
     double opacity_units = 1;  // opacity units in the scale
     double eye_value = 0;
+
+    /// Planes {normal, offset} in eye space, in the same units: the faces of a clip, then the slices.
+    std::vector<std::array<float, 4>> planes{};
+    std::size_t faces = 0;
+    bool slices_alone = false;
 };
 
 /// A part of the work, from `begin` to `begin` + `size` of the whole, for reports of progress.
@@ -80,7 +85,7 @@ public:
     /// mode: of the fragment shader, for example "FRAGMENT_COUNT"
     [[nodiscard]] const GlProgram& program(Items items, const char* mode);
     [[nodiscard]] const GlProgram& resolver(Items items);
-    void set_uniforms(const GlProgram& program, const PixelRect& rect) const;
+    void set_uniforms(const GlProgram& program, const PixelRect& rect);
     /// Draws without writing to the picture.
     void draw_into_lists(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage);
 
@@ -95,7 +100,7 @@ private:
     Vec2 offset_px_{0.0};
     GLuint vertices_ = 0, framebuffer_ = 0, texture_ = 0;
     int width_ = 0, height_ = 0;
-    GlBuffer points_, tets_, faces_, order_, knots_;
+    GlBuffer points_, tets_, faces_, order_, knots_, planes_;
     std::map<std::string, GlProgram> programs_;  // by their defines; all of them for program_knots_ knots
     std::size_t program_knots_ = 0;
 };

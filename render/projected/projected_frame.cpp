@@ -52,13 +52,28 @@ void set_points(GlTetFrame& frame, const TetMesh& mesh, const View& view, double
     });
 }
 
+void set_planes(GlTetFrame& frame, const View& view, double middle_depth, const RayClip& clip) {
+    const auto add = [&](const CutPlane& plane) {
+        const Vec3 place = (view.to_eye(plane.point) - Vec3(0, 0, middle_depth)) / frame.scale;
+        Vec3 normal;
+        for (int k = 0; k < 3; ++k) normal[k] = glm::dot(view.axes()[static_cast<std::size_t>(k)], plane.normal);
+        frame.planes.push_back({static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z),
+                                static_cast<float>(-glm::dot(normal, place))});
+    };
+    for (const CutPlane& face : clip.faces()) add(face);
+    for (const CutPlane& slice : clip.slices()) add(slice);
+    frame.faces = clip.faces().size();
+    frame.slices_alone = clip.slices_alone();
+}
+
 bool contains(const Box& box, const Vec3& p) {
     return glm::all(glm::lessThanEqual(box.lower, p)) && glm::all(glm::lessThanEqual(p, box.upper));
 }
 
 }  // namespace
 
-GlTetFrame make_tet_frame(const TetMesh& mesh, const Box& box, const View& view, const Optics& optics, bool eye_value) {
+GlTetFrame make_tet_frame(const TetMesh& mesh, const Box& box, const View& view, const Optics& optics, const RayClip& clip,
+                          bool eye_value) {
     GlTetFrame frame;
     const double diagonal = glm::length(box.upper - box.lower);
     if (diagonal > 0) frame.scale = diagonal;
@@ -66,6 +81,7 @@ GlTetFrame make_tet_frame(const TetMesh& mesh, const Box& box, const View& view,
     frame.middle_depth = middle_depth / frame.scale;
     const Values values = set_knots(frame, optics);
     set_points(frame, mesh, view, middle_depth, values);
+    set_planes(frame, view, middle_depth, clip);
     if (eye_value && view.perspective() && contains(box, view.eye()))
         frame.eye_value = values.parts(value_at(mesh, view.eye()));
     return frame;

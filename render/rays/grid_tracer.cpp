@@ -37,8 +37,9 @@ double value_in(const VoxelCorners& corners, const Vec3& u) {
 
 }  // namespace
 
-GridTracer::GridTracer(const Voxels& grid, const Optics& optics, double tolerance)
+GridTracer::GridTracer(const Voxels& grid, const Optics& optics, double tolerance, const RayClip& clip)
     : optics_(optics),
+      clip_(clip),
       value_tolerance_(tolerance * range_of(optics.knots())),
       to_index_(glm::inverse(grid.to_world())),
       to_world_(grid.to_world()),
@@ -89,6 +90,16 @@ GridTracer::Cells GridTracer::covered(const Voxel& cell, const VoxelBlock& block
     return cells;
 }
 
+/// The value at a place in a cell; none where its voxel is not active.
+std::optional<double> GridTracer::value_at(const Line& line, const Voxel& cell, const VoxelBlock& block, double t) {
+    const Vec3 place = glm::clamp(line.origin - Vec3(cell[0], cell[1], cell[2]) + t * line.direction, 0.0, 1.0);
+    const VoxelCorners corners = cursor_->corners(cell);
+    unsigned nearest = 0;
+    for (int k = 0; k < 3; ++k) nearest |= place[k] >= 0.5 ? 1u << k : 0u;
+    if (!(corners.active >> nearest & 1)) return std::nullopt;
+    return block.kind == VoxelBlock::Kind::Constant ? block.value : value_in(corners, place);
+}
+
 void GridTracer::add_voxel_part(const Line& line, const Voxel& cell, const VoxelCorners& corners, Stretch stretch,
                                 Segment& light) {
     const Vec3 base = line.origin - Vec3(cell[0], cell[1], cell[2]);
@@ -135,6 +146,10 @@ Segment GridTracer::trace(const Ray& ray) {
     const Line line = to_index(ray);
     Stretch inside;
     if (!clip(line, inside)) return light;
+    clip_.cut(ray, cut_);
+    inside.begin = std::max(inside.begin, cut_.near);
+    if (cut_.empty() || !(inside.begin < std::min(inside.end, cut_.far))) return light;
+    auto slice = cut_.slices.begin();
     const auto cells_before = counts_.cells;
     bool met = false;
     double t = inside.begin;
@@ -154,12 +169,27 @@ Segment GridTracer::trace(const Ray& ray) {
             }
         }
         end = std::max(end, t);
-        if (passed.lower == passed.upper) {
-            if (end > t) add_cell(line, cell, {t, end}, light);
-        } else if (++counts_.blocks; block.kind == VoxelBlock::Kind::Constant) {
+        const auto add = [&](double to) {
+            if (clip_.slices_alone()) return;
+            if (passed.lower == passed.upper) {
+                if (to > t) add_cell(line, cell, {t, to}, light);
+            } else if (++counts_.blocks; block.kind == VoxelBlock::Kind::Constant) {
+                met = true;
+                composite(light, optics_.integrate(block.value, block.value, (to - t) * line.speed));
+            }
+        };
+        for (; slice != cut_.slices.end() && *slice <= end; ++slice) {
+            if (*slice < t) continue;
+            const auto value = value_at(line, cell_at(line, *slice, passed), block, *slice);
+            if (!value) continue;
+            add(*slice);
             met = true;
-            composite(light, optics_.integrate(block.value, block.value, (end - t) * line.speed));
+            ++counts_.rays;
+            composite(light, {optics_.color(*value), 0});
+            return light;
         }
+        add(std::min(end, cut_.far));
+        if (end >= cut_.far) break;
         cell = cell_at(line, end, passed);
         cell[at(axis)] = line.direction[axis] > 0 ? passed.upper[at(axis)] + 1 : passed.lower[at(axis)] - 1;
         if (cell[at(axis)] < cells_.lower[at(axis)] || cell[at(axis)] > cells_.upper[at(axis)]) break;

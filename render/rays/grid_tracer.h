@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "subvol/detail/ray_clip.h"
 #include "subvol/optics.h"
 #include "subvol/render_grid.h"
 
@@ -11,7 +13,8 @@ namespace subvol::detail {
 /// Integrates rays through a grid. Keeps a cursor, so each thread or tile needs its own.
 class GridTracer {
 public:
-    GridTracer(const Voxels& grid, const Optics& optics, double tolerance);
+    /// Keeps references to grid, optics and clip.
+    GridTracer(const Voxels& grid, const Optics& optics, double tolerance, const RayClip& clip);
 
     /// The light along the ray, from its origin on.
     [[nodiscard]] Segment trace(const Ray& ray);
@@ -36,9 +39,12 @@ private:
     [[nodiscard]] Voxel cell_at(const Line& line, double t, const Cells& within) const;
     [[nodiscard]] Cells covered(const Voxel& cell, const VoxelBlock& block) const;
     void add_cell(const Line& line, const Voxel& cell, Stretch stretch, Segment& light);
+    [[nodiscard]] std::optional<double> value_at(const Line& line, const Voxel& cell, const VoxelBlock& block, double t);
     void add_voxel_part(const Line& line, const Voxel& cell, const VoxelCorners& corners, Stretch stretch, Segment& light);
 
     const Optics& optics_;
+    const RayClip& clip_;
+    RayCut cut_;
     double value_tolerance_;
     Mat3 to_index_;
     Mat3 to_world_;

@@ -6,6 +6,7 @@
 
 #include "pixel_tiles.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/ray_clip.h"
 
 namespace subvol {
 
@@ -45,12 +46,29 @@ struct Sample {
 
 class Marcher {
 public:
-    Marcher(const FieldFunction& field, const Box& box, const Optics& optics, double step_world)
-        : field_(field), box_(box), optics_(optics), step_world_(step_world) {}
+    Marcher(const FieldFunction& field, const Box& box, const Optics& optics, double step_world, const RayClip& clip)
+        : field_(field), box_(box), optics_(optics), step_world_(step_world), clip_(clip) {}
 
-    Segment operator()(const Ray& ray) const {
+    Segment operator()(const Ray& ray) {
+        clip_.cut(ray, cut_);
+        Interval range = clip(ray, box_);
+        range = {std::max(range.begin, cut_.near), std::min(range.end, cut_.far)};
+        for (const double t : cut_.slices) {
+            if (t < range.begin || t > range.end) continue;
+            const auto value = field_(ray.origin + t * ray.direction);
+            if (!value) continue;
+            range.end = t;
+            Segment total;
+            if (!clip_.slices_alone()) total = march(ray, range);
+            composite(total, {optics_.color(*value), 0});
+            return total;
+        }
+        return clip_.slices_alone() ? Segment{} : march(ray, range);
+    }
+
+private:
+    Segment march(const Ray& ray, const Interval& range) const {
         Segment total;
-        const Interval range = clip(ray, box_);
         if (!(range.begin < range.end)) return total;
         const double speed = glm::length(ray.direction);
         const double steps = std::max(1.0, std::ceil((range.end - range.begin) * speed / step_world_));
@@ -63,7 +81,6 @@ public:
         return total;
     }
 
-private:
     Sample at(const Ray& ray, double t) const { return {t, field_(ray.origin + t * ray.direction)}; }
 
     // Bisects between a sample inside and one outside; returns the last sample inside.
@@ -88,6 +105,8 @@ private:
     const Box& box_;
     const Optics& optics_;
     double step_world_;
+    const RayClip& clip_;
+    RayCut cut_;
 };
 
 }  // namespace
@@ -100,7 +119,8 @@ Image render_field(const FieldFunction& field, const Box& box, const View& view,
         throw Error(ErrorCode::InvalidInput, "the step is " + number_text(options.step_world), {},
                     "a positive world length, at least 1e-9 of the diagonal of a finite box");
     }
-    const Marcher marcher(field, box, optics, options.step_world);
+    const RayClip cuts(options.clip);
+    const Marcher marcher(field, box, optics, options.step_world, cuts);
     return draw_in_tiles(view, options.samples, options.progress, [&] { return marcher; });
 }
 

@@ -53,9 +53,10 @@ GridResult render_grid(const Voxels& grid, const View& view, const Optics& optic
     if (lower[0] > upper[0]) return {{view.width(), view.height()}, {}};
     GridResult result;
     const Stopwatch watch;
+    const RayClip clip(options.clip);
     tbb::combinable<GridTraceReport> sums;
     result.image = draw_in_tiles(view, options.samples, options.progress,
-                                 [&] { return CountedTracer(GridTracer(grid, optics, options.tolerance), sums); });
+                                 [&] { return CountedTracer(GridTracer(grid, optics, options.tolerance, clip), sums); });
     sums.combine_each([&](const GridTraceReport& sum) {
         result.report.rays += sum.rays;
         result.report.cells += sum.cells;

@@ -53,6 +53,7 @@ std::string defines(const SplatFrame& frame) {
     define("COLORED", int{scene.color_channel.has_value()});
     define("NORMALIZED", int{scene.normalized});
     define("BOUNDED", int{scene.half_weight == 0});
+    define("INTERVALS", int{!frame.intervals.offsets.empty()});
     define("PERSPECTIVE", int{frame.view->perspective()});
     define("kCells", PreintegratedTable::kCells);
     define("kNearValues", kNearValues);
@@ -135,7 +136,7 @@ std::size_t pixels(const View& view) {
 
 std::size_t pixels_to_do(const SplatFrame& frame) {
     const auto& offsets = frame.intervals.offsets;
-    if (frame.scene->half_weight > 0) return pixels(*frame.view);
+    if (offsets.empty()) return pixels(*frame.view);
     std::size_t count = 0;
     for (std::size_t id = 0; id + 1 < offsets.size(); ++id) count += offsets[id] != offsets[id + 1] ? 1 : 0;
     return count;
@@ -243,9 +244,9 @@ void GlSheets::upload(const SplatFrame& frame) {
 
 void GlSheets::start_beams(const SplatFrame& frame) {
     const std::size_t count = pixels(*frame.view);
-    const bool bounded = frame.scene->half_weight == 0;
+    const bool intervals = !frame.intervals.offsets.empty();
     std::vector<Last> lasts(count);
-    for (std::size_t id = 0; bounded && id < count; ++id) lasts[id].interval = frame.intervals.offsets[id];
+    for (std::size_t id = 0; intervals && id < count; ++id) lasts[id].interval = frame.intervals.offsets[id];
     fill(beams_, kTableBinding + 5, std::vector<std::array<float, 4>>(count, {0, 0, 0, 1}));
     fill(lasts_, kTableBinding + 6, lasts);
     if (frame.scene->shading || frame.scene->color_channel) looks_.grow(count * 4 * sizeof(float));

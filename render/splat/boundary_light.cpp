@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "clip_intervals.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/error.h"
 
@@ -27,14 +28,19 @@ std::array<double, 3> shares_at(const Surface& surface, const View& view, std::u
     return shares;
 }
 
+/// A direction of the world in eye space.
+Vec3 turned(const View& view, const Vec3& direction) {
+    const auto& [right, up, forward] = view.axes();
+    return {glm::dot(right, direction), glm::dot(up, direction), glm::dot(forward, direction)};
+}
+
 /// Interpolates the normals of a triangle at a place on it (eye space).
 Vec3 normal_at(const Surface& surface, const CornerNormals& corners, const View& view, std::uint32_t triangle,
                const Vec3& place) {
     const std::array<double, 3> shares = shares_at(surface, view, triangle, place);
     Vec3 sum(0.0);
     for (std::size_t k = 0; k < 3; ++k) sum += shares[k] * Vec3(corners[k][0], corners[k][1], corners[k][2]);
-    const auto& [right, up, forward] = view.axes();
-    return {glm::dot(right, sum), glm::dot(up, sum), glm::dot(forward, sum)};
+    return turned(view, sum);
 }
 
 BoundaryLight light_on(const Shading& shading, const Vec3& normal, const Vec3& to_eye) {
@@ -51,7 +57,8 @@ struct LitSurface {
     const Surface& surface;
     const std::vector<CornerNormals>& normals;
     const Shading& shading;
-    double middle;  // the depth that those of the intervals are relative to
+    double middle;                       // the depth that those of the intervals are relative to
+    const std::vector<CutPlane>& faces;  // of the clip
 };
 
 std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitSurface& lit, const View& view) {
@@ -66,7 +73,9 @@ std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitS
                 if (triangle == PixelIntervals::kNoTriangle) continue;
                 const double z = static_cast<double>(intervals.depths[2 * i]) + lit.middle;
                 const Vec3 place = view.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
-                const Vec3 normal = normal_at(lit.surface, lit.normals[triangle], view, triangle, place);
+                const Vec3 normal = triangle >= PixelIntervals::kFirstFace
+                                        ? turned(view, lit.faces[triangle - PixelIntervals::kFirstFace].normal)
+                                        : normal_at(lit.surface, lit.normals[triangle], view, triangle, place);
                 const double length = glm::length(normal);
                 if (!(length > 0)) continue;
                 const Vec3 to_eye = view.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
@@ -81,7 +90,8 @@ std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitS
 
 std::vector<BoundaryLight> entry_lights(const PixelIntervals& intervals, const SplatScene& scene, const View& view) {
     const double middle = view.to_eye(scene.middle).z;
-    return lights_of(intervals, {scene.volume->boundary, scene.boundary_normals, *scene.shading, middle}, view);
+    return lights_of(intervals, {scene.volume->boundary, scene.boundary_normals, *scene.shading, middle, scene.clip.faces()},
+                     view);
 }
 
 }  // namespace subvol::detail
@@ -99,21 +109,24 @@ struct FirstHits {
     PixelIntervals intervals;
     std::vector<BoundaryLight> lights;
 
-    FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples)
+    FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples, const RayClip& clip)
         : fine(view.camera(), samples * view.width(), samples * view.height()) {
         Box box;
         for (const Vec3& point : boundary.points) box.add(point);
         middle = fine.to_eye(box.center()).z;
         intervals = boundary_intervals(boundary, fine, fine.perspective() ? 1e-4 * box.diagonal() : 0.0, middle);
+        if (!clip.empty()) intervals = clip_intervals(intervals, fine, clip, middle);
         const std::vector<CornerNormals> normals = corner_normals(boundary);
-        lights = lights_of(intervals, {boundary, normals, shading, middle}, fine);
+        lights = lights_of(intervals, {boundary, normals, shading, middle, clip.faces()}, fine);
     }
 };
 
 }  // namespace
 
-void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples) {
-    const FirstHits hits(boundary, view, shading, samples);
+void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples,
+                    const Clip& clip) {
+    const RayClip cuts(clip);
+    const FirstHits hits(boundary, view, shading, samples, cuts);
     const PixelIntervals& intervals = hits.intervals;
     tbb::parallel_for(0, view.height(), [&](int y) {
         for (int x = 0; x < view.width(); ++x) {
@@ -140,14 +153,15 @@ void light_boundary(Image& image, const Surface& boundary, const View& view, con
 }
 
 void color_boundary(Image& image, const Surface& boundary, std::span<const double> values, const View& view,
-                    const Optics& optics, const Shading& shading, int samples) {
+                    const Optics& optics, const Shading& shading, int samples, const Clip& clip) {
     if (values.size() != boundary.points.size()) {
         throw Error(
             ErrorCode::InvalidInput,
             "there are " + std::to_string(values.size()) + " values for " + std::to_string(boundary.points.size()) + " points",
             "boundary");
     }
-    const FirstHits hits(boundary, view, shading, samples);
+    const RayClip cuts(clip);
+    const FirstHits hits(boundary, view, shading, samples, cuts);
     const auto color_of = [&](std::size_t interval, int x, int y) {
         const std::uint32_t triangle = hits.intervals.triangles[interval];
         const Vec2 slopes = hits.fine.slopes(x + 0.5, y + 0.5);
@@ -166,20 +180,27 @@ void color_boundary(Image& image, const Surface& boundary, std::span<const doubl
     tbb::parallel_for(0, view.height(), [&](int y) {
         for (int x = 0; x < view.width(); ++x) {
             Vec3 color(0.0);
-            int met = 0;
+            int met = 0, as_drawn = 0;  // rays that meet the boundary; or that enter through a cut, or inside
             for (int k = 0; k < samples * samples; ++k) {
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
                 const auto ray = static_cast<std::size_t>(row) * static_cast<std::size_t>(hits.fine.width()) +
                                  static_cast<std::size_t>(column);
                 const std::size_t first = hits.intervals.offsets[ray];
                 if (first == hits.intervals.offsets[ray + 1]) continue;
-                if (hits.intervals.triangles[first] == PixelIntervals::kNoTriangle) continue;  // the eye is inside
+                if (hits.intervals.triangles[first] >= PixelIntervals::kFirstFace) {
+                    ++as_drawn;
+                    continue;
+                }
                 color += color_of(first, column, row);
                 ++met;
             }
             if (met == 0) continue;
             const auto pixel = image.pixel(x, y);
-            for (std::size_t c = 0; c < 3; ++c) pixel[c] = pixel[3] * static_cast<float>(color[static_cast<int>(c)] / met);
+            const float drawn = static_cast<float>(as_drawn) / static_cast<float>(met + as_drawn);
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float own = pixel[3] * static_cast<float>(color[static_cast<int>(c)] / met);
+                pixel[c] = drawn > 0 ? own + drawn * (pixel[c] - own) : own;
+            }
         }
     });
 }

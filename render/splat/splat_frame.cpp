@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "clip_intervals.h"
+
 namespace subvol::detail {
 
 namespace {
@@ -115,13 +117,8 @@ void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view,
     frame.sheets = make_sheets(scene, view, sheets);
     frame.tiles_x = (view.width() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
-    // Depths are relative to the middle in double precision: far from the eye, its float would be a different place.
-    const double middle = view.to_eye(scene.middle).z;
-    if (scene.half_weight == 0) {
-        frame.intervals =
-            boundary_intervals(scene.volume->boundary, view, static_cast<double>(frame.sheets.near) + middle, middle);
-        if (scene.shading) frame.entry_lights = entry_lights(frame.intervals, scene, view);
-    }
+    frame.intervals = scene_intervals(scene, view, frame.sheets);
+    if (scene.shading && !frame.intervals.offsets.empty()) frame.entry_lights = entry_lights(frame.intervals, scene, view);
     report_progress(progress, "prepare splats", 0.4);
     eye_splats(frame.kernels, scene, view, classification);
     report_progress(progress, "prepare splats", 0.7);

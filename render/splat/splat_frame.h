@@ -26,7 +26,7 @@ struct SplatFrame {
     const View* view = nullptr;
     const Classification* classification = nullptr;
     SheetStack sheets;
-    PixelIntervals intervals;                 // no offsets: there is no boundary
+    PixelIntervals intervals;                 // no offsets: there is neither a boundary nor a clip
     std::vector<BoundaryLight> entry_lights;  // of each interval; empty without shading
     std::vector<IntervalEnd> ends;            // beside the depths of the intervals
     EyeSplats kernels;

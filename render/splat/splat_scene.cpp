@@ -76,10 +76,9 @@ void check_shading(const Shading& shading, const RbfChannel& channel, bool bound
     }
 }
 
-ColorTable color_table(const Optics& optics) {
+ColorTable color_table(const Optics& optics, double min, double max) {
     constexpr int kCells = PreintegratedTable::kCells;
-    const auto& knots = optics.function().color;
-    ColorTable table{.min = knots.front().value, .max = knots.back().value, .rows = {}};
+    ColorTable table{.min = min, .max = max, .rows = {}};
     if (!(table.min < table.max)) table.max = table.min + 1;
     const auto color_at = [&](int i) {
         const Vec3 c = optics.color(table.min + (table.max - table.min) * i / kCells);
@@ -159,6 +158,21 @@ std::pair<std::size_t, float> row_of(float x) {
     return {static_cast<std::size_t>(static_cast<int>(cell) + 1), x - cell};
 }
 
+/// The box of the boundary, or of the kernels if there is none.
+Box reach_of(const RbfVolume& volume) {
+    Box box;
+    for (const Vec3& point : volume.boundary.points) box.add(point);
+    if (!box.empty()) return box;
+    const double widening = is_radial(volume.kernel) ? 1 : 3;  // the corner of a cube has e = 3
+    for (std::size_t i = 0; i < volume.size(); ++i) {
+        const Mat3 s = widening * matrix(volume.frames[i]);
+        const Vec3 half(std::sqrt(s[0][0]), std::sqrt(s[1][1]), std::sqrt(s[2][2]));
+        box.add(volume.centers[i] - half);
+        box.add(volume.centers[i] + half);
+    }
+    return box;
+}
+
 }  // namespace
 
 std::array<float, 4> Classification::light_at(float x) const {
@@ -203,7 +217,14 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
         check_shading(*scene.shading, scene.opacity_values(), !volume.boundary.triangles.empty());
         scene.boundary_normals = corner_normals(volume.boundary);
     }
+    set_clip(scene, options.clip);
     return scene;
+}
+
+void set_clip(SplatScene& scene, const Clip& clip) {
+    validate(clip);
+    if (scene.reach.empty() && !clip.empty()) scene.reach = reach_of(*scene.volume);
+    scene.clip = RayClip(without_far_faces(clip, scene.reach));
 }
 
 Classification classify(const SplatScene& scene, const Optics& optics) {
@@ -213,8 +234,11 @@ Classification classify(const SplatScene& scene, const Optics& optics) {
         throw Error(ErrorCode::InvalidInput, "the extinction is beyond 32-bit floats", {}, "a larger opacity unit");
     }
     if (scene.color_channel) {
-        classification.colors = color_table(optics);
+        const auto& knots = optics.function().color;
+        classification.colors = color_table(optics, knots.front().value, knots.back().value);
         check_range(scene.color_values(), classification.colors.min, classification.colors.max);
+    } else if (scene.clip.has_slices()) {
+        classification.colors = color_table(optics, classification.table.min, classification.table.max);
     }
     return classification;
 }

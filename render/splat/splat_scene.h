@@ -9,6 +9,7 @@
 #include "corner_normals.h"
 #include "subvol/camera.h"
 #include "subvol/detail/preintegrated_table.h"
+#include "subvol/detail/ray_clip.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/rbf_field.h"
@@ -61,6 +62,8 @@ struct SplatScene {
     std::vector<CornerNormals> boundary_normals{};  // of the boundary's triangles; empty without shading
     Vec3 middle{0.0};                               // of the bounds; depths are relative to its depth
     double diagonal = 0;
+    Box reach{};     // of the kernels and of the boundary
+    RayClip clip{};  // as set_clip
 
     [[nodiscard]] const RbfChannel& opacity_values() const { return volume->channels[channel]; }
     [[nodiscard]] const RbfChannel& color_values() const { return volume->channels[color_channel.value_or(channel)]; }
@@ -78,6 +81,11 @@ struct SplatScene {
 ///         beyond 32-bit floats
 [[nodiscard]] SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options);
 
+/// Sets how the volume is cut open. Faces that do not cut it are left out: they change no bit of a picture.
+///
+/// throws: Error(InvalidInput) as `validate`
+void set_clip(SplatScene& scene, const Clip& clip);
+
 /// The colours of the second channel's values, which are counted in cells: {r, g, b, 0} at a cell's lower end, and the step to
 /// the next. Cells and rows as in PreintegratedTable.
 struct ColorTable {
@@ -92,7 +100,7 @@ struct ColorTable {
 /// The transfer function as tables: extinction and emission, and the colours of the second channel.
 struct Classification {
     PreintegratedTable table;
-    ColorTable colors;  // empty rows: colours are those of `table`
+    ColorTable colors;  // empty rows: colours are those of `table`; of the first channel if slices need its colours
 
     /// Extinction and emission at a value, in cells.
     [[nodiscard]] std::array<float, 4> light_at(float x) const;

@@ -50,13 +50,31 @@ inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t
     return true;
 }
 
+/// Composites a slice: whether there is a value on it.
+inline bool see_slice(const SplatFrame& frame, BlockState& state, std::size_t lane, const IntervalEnd& end, float depth) {
+    if (!(end.x < 0.5f * kUnknownValue)) return false;
+    const std::array<float, 3> color = frame.classification->color_at(frame.scene->color_channel ? end.color : end.x);
+    const float light = state.transmittance[lane];
+    state.red[lane] += light * color[0];
+    state.green[lane] += light * color[1];
+    state.blue[lane] += light * color[2];
+    state.depth[lane] += light * depth;
+    state.transmittance[lane] = 0;
+    return true;
+}
+
 /// Sets the ends of the interval of a pixel; those of a ray that is done or meets no more intervals are kNever.
 inline void take_interval(const SplatFrame& frame, BlockState& state, std::size_t lane) {
-    const std::size_t i = state.interval[lane];
     const auto end_ray = [&] {
         state.enter[lane] = state.exit[lane] = kNever;
         state.enter_x[lane] = state.exit_x[lane] = kUnknownValue;
     };
+    for (; state.interval[lane] < state.intervals_end[lane] && frame.intervals.is_slice(state.interval[lane]);
+         ++state.interval[lane]) {
+        const std::size_t slice = state.interval[lane];
+        if (see_slice(frame, state, lane, frame.ends[2 * slice], frame.intervals.depths[2 * slice])) return end_ray();
+    }
+    const std::size_t i = state.interval[lane];
     if (i >= state.intervals_end[lane]) return end_ray();
     const IntervalEnd &enter = frame.ends[2 * i], &exit = frame.ends[2 * i + 1];
     state.enter[lane] = frame.intervals.depths[2 * i];

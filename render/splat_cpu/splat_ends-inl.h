@@ -183,8 +183,8 @@ private:
         const SplatScene& scene = *frame_.scene;
         const Block& b = scratch().blocks[block];
         const auto weight = hn::Load(d, b.sums);
-        const auto known =
-            scene.normalized ? hn::Gt(weight, hn::Set(d, static_cast<float>(kLeastWeight))) : hn::Eq(weight, weight);
+        auto known = scene.normalized ? hn::Gt(weight, hn::Set(d, static_cast<float>(kLeastWeight))) : hn::Eq(weight, weight);
+        if (scene.half_weight > 0) known = hn::And(known, hn::Gt(weight, hn::Set(d, scene.half_weight)));
         const auto divisor = hn::IfThenElse(known, weight, hn::Set(d, 1.0f));
         const auto far = hn::Set(d, kFarCells);
         const auto mean = [&](std::size_t which, float offset) HWY_ATTR {

@@ -121,7 +121,7 @@ private:
         b.enter[lane] = b.exit[lane] = kNever;
         const auto [x, y] = pixel(block, lane);
         if (x >= view_.width() || y >= view_.height()) return false;
-        if (frame_.scene->half_weight > 0) {
+        if (frame_.intervals.offsets.empty()) {
             b.enter[lane] = sheets_.near;
             return true;
         }
@@ -201,7 +201,7 @@ private:
     /// Whether all values between the sheets of a batch, and between it and the sheet before, are invisible.
     [[nodiscard]] bool invisible(int batch) const {
         const auto& ranges = frame_.kernels.ranges;
-        if (ranges.empty() || classifier_.all_visible()) return false;
+        if (ranges.empty() || classifier_.all_visible() || frame_.scene->clip.has_slices()) return false;
         EyeRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
         const auto& [storage, sums, blocks, offsets, splats, wanted] = scratch();
         const auto b = static_cast<std::size_t>(batch);

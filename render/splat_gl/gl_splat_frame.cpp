@@ -46,7 +46,9 @@ GlSplatFrame gl_splat_frame(const SplatScene& scene, const View& view, const Cla
     frame.sheets = sheets.count;
     frame.batches = (sheets.count + batch - 1) / batch;
     frame.perspective = view.perspective();
-    frame.all_visible = static_cast<std::size_t>(classification.table.visible.back()) == classification.table.rows.size();
+    // Slices are seen in batches whose values are not.
+    frame.all_visible = static_cast<std::size_t>(classification.table.visible.back()) == classification.table.rows.size() ||
+                        scene.clip.has_slices();
     frame.first_depth = sheets.first;
     frame.sheet_distance = sheets.distance;
     frame.middle_depth = sheets.middle;

@@ -22,6 +22,7 @@
 #include <cmath>
 
 #include "boundary_light.h"
+#include "clip_intervals.h"
 #include "gl_boundary.h"
 #include "gl_context.h"
 #include "gl_splat_bins.h"
@@ -69,6 +70,20 @@ void upload(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(values.size() * sizeof(T), values.data());
 }
 
+GlProgram drawing_program(const std::string& defines) {
+    return {"splat_draw.comp",
+            kShader_splat_draw_comp,
+            defines,
+            {{"gl_groups.glsl", kShader_gl_groups_glsl},
+             {"splat_frame.glsl", kShader_splat_frame_glsl},
+             {"splat_sums.glsl", kShader_splat_sums_glsl},
+             {"exp_log.glsl", kShader_exp_log_glsl},
+             {"splat_classify.glsl", kShader_splat_classify_glsl},
+             {"splat_light.glsl", kShader_splat_light_glsl},
+             {"splat_absorb.glsl", kShader_splat_absorb_glsl},
+             {"splat_walk.glsl", kShader_splat_walk_glsl}}};
+}
+
 /// The kernels that may meet some sheets, with a sheet more on each side, so that rounding does not lose one.
 std::vector<std::uint32_t> kernels_between(const SplatScene& scene, const View& view, const SheetStack& sheets, int first_sheet,
                                            int end_sheet) {
@@ -101,15 +116,7 @@ public:
           tuning_(tuning),
           bins_(common_defines(scene, tuning), GlExtras(scene).count),
           boundary_(context.hardware() || tuning.boundary_on_device),
-          draw_("splat_draw.comp", kShader_splat_draw_comp, common_defines(scene, tuning),
-                {{"gl_groups.glsl", kShader_gl_groups_glsl},
-                 {"splat_frame.glsl", kShader_splat_frame_glsl},
-                 {"splat_sums.glsl", kShader_splat_sums_glsl},
-                 {"exp_log.glsl", kShader_exp_log_glsl},
-                 {"splat_classify.glsl", kShader_splat_classify_glsl},
-                 {"splat_light.glsl", kShader_splat_light_glsl},
-                 {"splat_absorb.glsl", kShader_splat_absorb_glsl},
-                 {"splat_walk.glsl", kShader_splat_walk_glsl}}) {
+          draw_(drawing_program(common_defines(scene, tuning) + "#define CLIPPED 0\n")) {
         GLint64 most = 0;
         glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &most);
         const std::size_t bytes = std::min(tuning.most_buffer_bytes, static_cast<std::size_t>(std::max<GLint64>(most, 0)));
@@ -135,6 +142,9 @@ private:
     void split(const View& view, int first, int end, Progress* progress);
     void set_pass(int first, int end);
     void draw_pass();
+    [[nodiscard]] const GlProgram& program();
+    /// Whether rays have intervals: there is a boundary, or a clip.
+    [[nodiscard]] bool has_intervals() const { return scene_.half_weight == 0 || !scene_.clip.empty(); }
     [[nodiscard]] Drawn read(const View& view);
 
     const SplatScene& scene_;
@@ -147,6 +157,7 @@ private:
     GlSplatBins bins_;
     GlBoundary boundary_;
     GlProgram draw_;
+    std::optional<GlProgram> draw_clipped_;  // a volume without a boundary; made when it is clipped for the first time
     GlStages stages_;
     GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_, ends_;
 };
@@ -164,15 +175,18 @@ void GlSplatter::State::prepare(const View& view, const Classification& classifi
 }
 
 void GlSplatter::State::find_intervals(const View& view) {
-    if (scene_.half_weight > 0) return;
+    if (!has_intervals()) return;
     const double middle = view.to_eye(scene_.middle).z, near = static_cast<double>(sheets_.near) + middle;
     const Surface& surface = scene_.volume->boundary;
-    if (scene_.shading) {  // the device does not find the triangles that are seen
-        const PixelIntervals intervals = boundary_intervals(surface, view, near, middle);
+    if (scene_.shading || !scene_.clip.empty()) {  // the device neither finds the triangles that are seen nor clips
+        const PixelIntervals intervals = scene_intervals(scene_, view, sheets_);
         boundary_.set(intervals, view);
-        std::vector<std::array<float, 4>> ends;
-        for (const BoundaryLight& light : entry_lights(intervals, scene_, view)) {
-            ends.insert(ends.end(), 2, {kUnknownValue, 0, light.diffuse, light.specular});
+        std::vector<std::array<float, 4>> ends(intervals.depths.size(), {kUnknownValue, 0, 1, 0});
+        if (scene_.shading) {
+            const std::vector<BoundaryLight> lights = entry_lights(intervals, scene_, view);
+            for (std::size_t i = 0; i < ends.size(); ++i) {
+                ends[i] = {kUnknownValue, 0, lights[i / 2].diffuse, lights[i / 2].specular};
+            }
         }
         upload(ends_, ends);
     } else {
@@ -191,10 +205,16 @@ void GlSplatter::State::set_pass(int first, int end) {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_buffer_.id());
 }
 
+const GlProgram& GlSplatter::State::program() {
+    if (scene_.half_weight == 0 || scene_.clip.empty()) return draw_;
+    if (!draw_clipped_) draw_clipped_.emplace(drawing_program(common_defines(scene_, tuning_) + "#define CLIPPED 1\n"));
+    return *draw_clipped_;
+}
+
 void GlSplatter::State::draw_pass() {
     bins_.list(frame_, stages_);
     stages_.begin("draw");
-    draw_.use();
+    program().use();
     bins_.bind();
     boundary_.bind(5, 6);
     rows_.bind(7);
@@ -218,12 +238,12 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
     prepare(view, classification);
     if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
     // Likewise for the boundary's hits.
-    if (scene_.half_weight == 0 && !boundary_.found_all()) {
+    if (has_intervals() && !boundary_.found_all()) {
         report = {.sheets = sheets_.count, .stages = {}};
         find_intervals(view);
         draw_in_passes(view, 0, frame_.batches, progress);
     }
-    report.boundary_hits = scene_.half_weight == 0 ? boundary_.hits() : 0;
+    report.boundary_hits = has_intervals() ? boundary_.hits() : 0;
     Drawn drawn = read(view);
     report.stages = stages_.times();
     report_progress(progress, "splat", 1);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "subvol/detail/compositor.h"
+#include "subvol/detail/ray_clip.h"
 #include "tet_walk.h"
 
 namespace subvol::detail {
@@ -22,10 +24,18 @@ struct TraceCounts {
     }
 };
 
-/// What has been integrated, up to depth t: every depth counts once, even where a mesh folds over itself.
+/// What has been integrated, up to depth t: every depth counts once, even where a mesh folds over itself. slice: the value on
+/// the slice that ends the ray
 struct LitDepth {
     Segment light;
     double t = 0;
+    std::optional<double> slice{};
+};
+
+/// What is left of a ray, and whether its slices are drawn alone.
+struct WalkCut {
+    RayCut ray;
+    bool slices_alone = false;
 };
 
 /// Through:   the walk arrived at another boundary face
@@ -45,11 +55,16 @@ struct Walk {
 /// Integrates one ray, walk after walk, in one mesh or in several.
 class RayWalker {
 public:
-    /// Keeps references to plane, compositor and counts.
-    RayWalker(const Ray& ray, const RayPlane& plane, Compositor& compositor, TraceCounts& counts)
-        : plane_(plane), speed_(glm::length(ray.direction)), compositor_(compositor), counts_(counts) {}
+    /// Keeps references to plane, cut, compositor and counts.
+    RayWalker(const Ray& ray, const RayPlane& plane, const WalkCut& cut, Compositor& compositor, TraceCounts& counts)
+        : plane_(plane), speed_(glm::length(ray.direction)), cut_(cut), compositor_(compositor), counts_(counts) {}
 
-    [[nodiscard]] const Segment& light() const { return lit_.light; }
+    /// The light, with the slice that ends the ray.
+    [[nodiscard]] Segment light(const Optics& optics) const {
+        Segment light = lit_.light;
+        if (lit_.slice) composite(light, {optics.color(*lit_.slice), 0});
+        return light;
+    }
 
     /// Walks between two boundary faces, from whichever of them is the entry, and composites what has not been integrated yet.
     ///
@@ -76,6 +91,14 @@ public:
     }
 
 private:
+    /// Where a stretch ends: at its first slice, if it has one.
+    [[nodiscard]] std::optional<double> first_slice(double from, double to) const {
+        for (const double slice : cut_.ray.slices) {
+            if (slice >= from && slice <= to) return slice;
+        }
+        return std::nullopt;
+    }
+
     /// Walks from a boundary face and composites what lies between lit_.t and `limit`.
     template <class Mesh>
     Walk integrate(const Mesh& mesh, TetFace start, double limit) {
@@ -87,17 +110,21 @@ private:
         double reached = first.t;
         std::size_t steps = 0;
         const auto visit = [&](const Crossing& next) {
-            const double from = std::max(previous.t, lit_.t), to = std::min(next.t, limit);
-            if (to > from) {
+            const double from = std::max({previous.t, lit_.t, cut_.ray.near});
+            double to = std::min({next.t, limit, cut_.ray.far});
+            const std::optional<double> slice = next.t > previous.t ? first_slice(from, to) : std::nullopt;
+            if (slice) to = *slice;
+            if (to > from || slice) {
                 const double slope = (next.value - previous.value) / (next.t - previous.t);
                 const double front = from == previous.t ? previous.value : previous.value + (from - previous.t) * slope;
                 const double back = to == next.t ? next.value : previous.value + (to - previous.t) * slope;
-                compositor_.add(front, back, (to - from) * speed_);
+                if (!cut_.slices_alone && to > from) compositor_.add(front, back, (to - from) * speed_);
+                if (slice) lit_.slice = back;
                 lit_.t = to;
                 reached = to;
             }
             previous = next;
-            return ++steps <= mesh.tet_count() && !compositor_.opaque();
+            return ++steps <= mesh.tet_count() && !compositor_.opaque() && !lit_.slice;
         };
         compositor_.start(lit_.light);
         const auto end = walk(mesh, plane_, start, *face, visit);
@@ -110,6 +137,7 @@ private:
 
     const RayPlane& plane_;
     double speed_;
+    const WalkCut& cut_;
     Compositor& compositor_;
     TraceCounts& counts_;
     LitDepth lit_;

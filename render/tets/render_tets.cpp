@@ -48,6 +48,7 @@ void draw_tile(const View& view, int samples, const PixelRect& tile, TetPacketTr
 
 struct TetsRenderer::State {
     TetMesh tets;
+    Box box;
     std::optional<BoundaryScene> scene;
     TetsReport built;
 };
@@ -61,7 +62,8 @@ TetsRenderer::TetsRenderer(const HexMesh& mesh, std::string_view field, Progress
     TetMesh& tets = state_->tets;
     tets = build_tet_mesh(mesh, shown.values);
     report_progress(progress, "build", 0.8);
-    state_->scene.emplace(tets, bounds(mesh));
+    state_->box = bounds(mesh);
+    state_->scene.emplace(tets, state_->box);
     report_progress(progress, "build", 1);
     TetsReport& built = state_->built;
     built.tets = tets.tets.size();
@@ -85,10 +87,11 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
     TetsResult result{{}, state_->built};
     TetsReport& report = result.report;
     const Stopwatch watch;
+    const RayClip clip(without_far_faces(options.clip, state_->box));
     tbb::combinable<TraceCounts> sums;
     result.image = Image(view.width(), view.height());
     for_each_tile({0, 0, view.width(), view.height()}, options.progress, [&](const PixelRect& tile) {
-        TetPacketTracer tracer(state_->tets, *state_->scene, optics);
+        TetPacketTracer tracer(state_->tets, *state_->scene, optics, clip);
         draw_tile(view, options.samples, tile, tracer, result.image);
         sums.local() += tracer.counts();
     });

@@ -7,8 +7,8 @@
 
 namespace subvol::detail {
 
-TetPacketTracer::TetPacketTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics)
-    : mesh_(mesh), one_by_one_(mesh, scene, optics) {
+TetPacketTracer::TetPacketTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics, const RayClip& clip)
+    : mesh_(mesh), clip_(clip), one_by_one_(mesh, scene, optics, clip) {
     lanes_.reserve(TetPacket::kLanes);
     for (std::size_t i = 0; i < TetPacket::kLanes; ++i) lanes_.emplace_back(mesh, scene, optics);
 }
@@ -49,6 +49,11 @@ void TetPacketTracer::next_ray(std::size_t i) {
     for (; next_ < rays_.size(); ++next_) {
         const Ray& ray = rays_[next_];
         seen_[next_] = {};
+        clip_.cut(ray, cut_);
+        if (!cut_.whole()) {
+            seen_[next_] = one_by_one_.trace(ray);
+            continue;
+        }
         lane.plane = RayPlane(ray);
         lane.ends.find(lane.plane, ray);
         if (lane.ends.empty()) continue;

@@ -9,11 +9,12 @@
 namespace subvol::detail {
 
 /// Integrates many rays, side by side in vectors. Rays with ties of edge signs, and rays through meshes that fold over their
-/// boundary, are traced one by one instead. In any case a ray gets the same bits as from TetTracer. Keeps scratch memory, so
-/// each thread or tile needs its own.
+/// boundary, are traced one by one instead, and so are rays that a clip cuts. In any case a ray gets the same bits as from
+/// TetTracer. Keeps scratch memory, so each thread or tile needs its own.
 class TetPacketTracer {
 public:
-    TetPacketTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics);
+    /// Keeps references to all of them.
+    TetPacketTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics, const RayClip& clip);
 
     /// seen: the light along each ray, from its origin on
     void trace(std::span<const Ray> rays, std::span<Segment> seen);
@@ -40,6 +41,8 @@ private:
     void trace_alone(std::size_t lane);
 
     const TetMesh& mesh_;
+    const RayClip& clip_;
+    RayCut cut_;
     TetTracer one_by_one_;
     TraceCounts counts_;
     std::vector<Lane> lanes_;

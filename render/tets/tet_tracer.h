@@ -10,8 +10,14 @@ namespace subvol::detail {
 /// Integrates rays through a mesh of tetrahedra, one by one. Keeps scratch memory, so each thread or tile needs its own.
 class TetTracer {
 public:
-    TetTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics)
-        : mesh_(mesh), compositor_(optics, kRayCutoff), ends_(mesh, scene) {}
+    /// Keeps references to all of them.
+    TetTracer(const TetMesh& mesh, const BoundaryScene& scene, const Optics& optics, const RayClip& clip)
+        : mesh_(mesh),
+          optics_(optics),
+          clip_(clip),
+          cut_{{}, clip.slices_alone()},
+          compositor_(optics, kRayCutoff),
+          ends_(mesh, scene) {}
 
     /// The light along the ray, from its origin on.
     [[nodiscard]] Segment trace(const Ray& ray);
@@ -19,6 +25,9 @@ public:
 
 private:
     const TetMesh& mesh_;
+    const Optics& optics_;
+    const RayClip& clip_;
+    WalkCut cut_;
     Compositor compositor_;
     TraceCounts counts_;
     RayEnds ends_;

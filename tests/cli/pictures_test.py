@@ -177,6 +177,23 @@ class Looks(Pictures):
             # Outlines of a coarse ball differ between the limit and its mesh of level 1.
             self.assertGreater(psnr, 28, method)
 
+    def test_all_methods_cut_a_solid_open_alike(self):
+        for cut in (["--clip", "0,0,0,1,-.5,.3"], ["--clip-box=-.5,-9,-.6,.5,.2,9"], ["--slice", "0,0,0,1,-.5,.3"]):
+            for method in ["splat", "dense", "tets"]:
+                done = self.render("-o", method + ".exr", "--method", method, "--levels", 1, "--samples", 1, *cut)
+                self.assertEqual(done.code, 0, done.err)
+            for method in ["dense", "tets"]:
+                psnr = self.run_ok("compare", "splat.exr", method + ".exr", "--json").json()["psnr"]
+                self.assertGreater(psnr, 28, (cut, method))
+
+    def test_wrong_cuts_are_refused(self):
+        for wrong, naming in [(["--clip", "0,0,0,0,0"], "--clip"), (["--clip", "0,0,0,0,0,0"], "no length"),
+                              (["--clip", "0,0,0,0,0,nan"], "6 numbers"), (["--clip-box", "0,0,0,1,1"], "--clip-box"),
+                              (["--clip-box", "1,0,0,0,1,1"], "along x"), (["--slice", "a,b"], "--slice"), (["--around"], "--slice")]:
+            done = self.render("-o", "x.png", *wrong)
+            self.assertEqual((done.code, naming in done.err), (2, True), (wrong, done.err))
+            self.assertEqual(self.files(), [])
+
     def test_four_views_in_one_picture(self):
         self.assertEqual(self.render("-o", "sheet.exr", "--views", 4, size="64x48").code, 0)
         for view, name in [("-y", "front"), ("iso", "iso")]:

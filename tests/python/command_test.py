@@ -47,6 +47,11 @@ def test_points(tmp_path, command, options):
     (["--ortho", "--opacity-unit", ".1"], {"ortho": True, "opacity_unit": .1}),
     (["--camera", "3,-3,2,0,0,0,0,0,1,30"], {"camera": "3,-3,2,0,0,0,0,0,1,30"}),
     (["--levels", "1", "--look", "volume"], {"levels": 1, "look": "volume"}),
+    (["--clip", ".1,0,0,1,-.5,.3"], {"clip": (.1, 0, 0, 1, -.5, .3)}),
+    (["--clip", ".1,0,0,1,0,0", "--clip", "0,0,.2,0,0,1", "--method", "tets", "--look", "volume"],
+     {"clip": [(.1, 0, 0, 1, 0, 0), (0, 0, .2, 0, 0, 1)], "method": "tets", "look": "volume"}),
+    (["--clip-box", "-.4,-.6,-.5,.5,.3,.6", "--slice", "0,0,0,0,1,0", "--around", "--look", "volume"],
+     {"clip_box": (-.4, -.6, -.5, .5, .3, .6), "slice": (0, 0, 0, 0, 1, 0), "around": True, "look": "volume"}),
     (["--sheets", "40", "--look", "volume"], {"sheets": 40, "look": "volume"}),
 ])
 def test_pictures(tmp_path, command, flags, options):

@@ -11,6 +11,7 @@
 #include "subvol/cell_means.h"
 #include "subvol/clamp_channel.h"
 #include "subvol/clamped.h"
+#include "subvol/clip.h"
 #include "subvol/dense_cells.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"

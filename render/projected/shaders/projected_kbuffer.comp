@@ -79,7 +79,7 @@ void main() {
         float from = max(before.x, eye);
         if (cover > 0 && from < here.x && 1.0 - sum.a > kRayCutoff) {
             float value = mix(before.y, here.y, (from - before.x) / (here.x - before.x));
-            sum += (1.0 - sum.a) * segment_light(value, here.y, (here.x - from) * ray_length);
+            sum += (1.0 - sum.a) * visible_light(slope, vec2(from, value), here, ray_length);
         }
         if (here.x < before.x - kTouch) ++late;  // of a late face only the change of cover is used
         else if (cover == 0 || here.x > before.x) before = here;

@@ -59,7 +59,7 @@ void main() {
         float from = max(done, segment.x);
         if (!(from < segment.y)) continue;
         float value = mix(segment.z, segment.w, (from - segment.x) / (segment.y - segment.x));
-        sum += (1.0 - sum.a) * segment_light(value, segment.w, (segment.y - from) * ray_length);
+        sum += (1.0 - sum.a) * visible_light(slope, vec2(from, value), segment.yw, ray_length);
         done = segment.y;
     }
     picture[id] = sum;

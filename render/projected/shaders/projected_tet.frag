@@ -49,7 +49,7 @@ void main() {
 #endif
 #if FRAGMENT_MODE == FRAGMENT_COMPOSITE
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
-    color = segment_light(front.y, back.y, (back.x - front.x) * ray_length);
+    color = visible_light(slope, front, back, ray_length);
 #elif FRAGMENT_MODE == FRAGMENT_KEEP
     segments[offsets[id] + before] = vec4(front.x, back.x, front.y, back.y);
     ranks[offsets[id] + before] = rank;

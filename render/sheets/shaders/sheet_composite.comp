@@ -46,7 +46,7 @@ Seen seen_here(ivec2 at) {
 }
 
 vec2 interval(uint i) {
-#if BOUNDED
+#if INTERVALS
     return intervals[i];
 #else
     return vec2(near, uintBitsToFloat(0x7f800000u));
@@ -54,7 +54,7 @@ vec2 interval(uint i) {
 }
 
 End end_of_interval(uint i) {
-#if BOUNDED
+#if INTERVALS
     return End(ends[i].x, ends[i].y, ends[i].zw);
 #else
     return End(3e38, 0.0, vec2(1.0, 0.0));
@@ -62,7 +62,7 @@ End end_of_interval(uint i) {
 }
 
 uint intervals_end(uint id) {
-#if BOUNDED
+#if INTERVALS
     return interval_offsets[id + 1u];
 #else
     return 1u;
@@ -95,9 +95,14 @@ void main() {
         for (; last.interval < end; ++last.interval) {
             vec2 inside = interval(last.interval);
             if (inside.x >= back_z) break;
-            float skin = kSkin_px * pixel * (perspective ? middle_z + inside.x : 1.0);
-            follow(beam, before, here, front_z, back_z, inside, end_of_interval(2u * last.interval),
-                   end_of_interval(2u * last.interval + 1u), ray_length, skin);
+            End enter = end_of_interval(2u * last.interval);
+            if (inside.x == inside.y) {  // a slice
+                see_slice(beam, enter, inside.x);
+            } else {
+                float skin = kSkin_px * pixel * (perspective ? middle_z + inside.x : 1.0);
+                follow(beam, before, here, front_z, back_z, inside, enter, end_of_interval(2u * last.interval + 1u), ray_length,
+                       skin);
+            }
             if (beam.transmittance < kSplatCutoff) last.interval = end - 1u;
             else if (inside.y > back_z) break;
         }

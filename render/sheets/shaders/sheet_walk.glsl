@@ -32,7 +32,7 @@ void follow(inout Beam beam, Seen front, Seen back, float front_z, float back_z,
     cut_where_weights_end(front, back, front_z, back_z, from, to);
 #endif
     if (!(from < to)) return;
-#if BOUNDED
+#if INTERVALS
     if (inside.x >= front_z && see_boundary(beam, enter, inside.x, inside.y, ray_length, skin)) return;
 #endif
     bool at_enter = inside.x > front_z && enter.x < kUnknown, at_exit = inside.y < back_z && exit.x < kUnknown;

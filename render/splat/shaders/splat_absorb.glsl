@@ -81,6 +81,19 @@ bool see_boundary(inout Beam beam, End end, float enter, float exit, float ray_l
     return true;
 }
 
+// Composites a slice, if there is a value on it.
+void see_slice(inout Beam beam, End end, float depth) {
+    if (!(end.x < kUnknown)) return;
+#if COLORED
+    precise vec3 color = color_at(end.color);
+#else
+    precise vec3 color = color_at(end.x);
+#endif
+    beam.color += beam.transmittance * color;
+    beam.depth += beam.transmittance * depth;
+    beam.transmittance = 0.0;
+}
+
 // Light at the end where a ray enters: the boundary is a surface if the volume is more than half opaque there within a pixel.
 vec2 light_at_entry(float x, vec2 inside, vec2 boundary, float pixel_world) {
     Place at = place_of(x);

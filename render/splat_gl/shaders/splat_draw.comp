@@ -52,7 +52,7 @@ void start_pixel(uint tile) {
     enter_z = exit_z = kNever;
     interval = intervals_end = 0u;
     if (!in_picture) return;
-#if UNBOUNDED
+#if !INTERVALS
     enter_z = near_depth;
 #else
     interval = interval_ranges[pixel_id].x;
@@ -185,7 +185,7 @@ void shift_sums() {
     }
 }
 
-#if !UNBOUNDED
+#if INTERVALS
 // Whether any thread says so.
 bool any_of(bool mine) {
     uint slot = ++step_number % 3u, ready = (step_number + 1u) % 3u;
@@ -217,6 +217,9 @@ void find_ends(uint bin, int first, int end) {
         sum_kernels_at(bin, depth, mine);
         if (!mine) continue;
         Sheet here = first_sum();
+#if UNBOUNDED
+        here.known = here.known && here.weight > half_weight;
+#endif
         vec2 light = here.light;
 #if SHADED
         if (next_end % 2u == 0u) {
@@ -232,7 +235,7 @@ void find_ends(uint bin, int first, int end) {
 
 // Takes the values of the last sheet of a batch that was passed over.
 void look_back(uint bin, int batch) {
-#if !UNBOUNDED
+#if INTERVALS
     find_ends(bin, batch * kBatch + kBatch - 1, batch * kBatch + kBatch);
 #endif
     sum_kernels(bin, batch * kBatch, 1u << (kBatch - 1), true);
@@ -250,7 +253,7 @@ void pass_over(int batch) {
 
 void go_through(uint bin, int batch) {
     int first_sheet = batch * kBatch, end_sheet = min(first_sheet + kBatch, sheets);
-#if !UNBOUNDED
+#if INTERVALS
     find_ends(bin, first_sheet, end_sheet);
 #endif
     bool awake = enter_z < sheet_depth(end_sheet - 1) + 1.5 * sheet_distance;

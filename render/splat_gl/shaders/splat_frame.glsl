@@ -18,6 +18,9 @@ layout(std140, binding = 0) uniform Frame {
 
 const float kNever = 3e38;
 
+// Whether rays have intervals: there is a boundary, or a clip. A slice is an interval without length.
+#define INTERVALS (!UNBOUNDED || CLIPPED)
+
 // Ellipsoids in eye space: splat/eye_splats.h explains the numbers.
 struct Splat {
     vec4 place;   // center x, y, depth, 1 / S_zz

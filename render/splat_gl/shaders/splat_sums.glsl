@@ -206,7 +206,7 @@ void add_kernel(uint j, uint met, int first_sheet) {
     }
 }
 
-#if !UNBOUNDED
+#if INTERVALS
 bool is_usable(float v) { return abs(v) < kMostOfKernel; }  // false for NaN
 
 // Whether a kernel's sums are finite at any depth: not if it is so flat that rounding made its frame indefinite.

@@ -29,11 +29,11 @@ void take_interval() {
 }
 
 End end_of_interval(uint which) {
-#if UNBOUNDED
-    return End(3e38, 0.0, vec2(1.0, 0.0));
-#else
+#if INTERVALS
     vec4 end = ends[2u * interval + which];
     return End(end.x, end.y, end.zw);
+#else
+    return End(3e38, 0.0, vec2(1.0, 0.0));
 #endif
 }
 
@@ -55,13 +55,19 @@ End end_between(Sheet here, float x, float part) {
 
 // Composites the part of the ray between two sheets that lies in its interval.
 void stretch(float front, float back, Sheet here, inout Place place, inout bool placed) {
+#if INTERVALS
+    if (enter_z == exit_z) {
+        see_slice(beam, end_of_interval(0u), enter_z);
+        return;
+    }
+#endif
     float from = max(enter_z, front), to = min(exit_z, back);
 #if UNBOUNDED
     cut_where_weights_end(front, back, here.weight, from, to);
 #endif
     if (!(from < to)) return;
     End enter = end_of_interval(0u), exit = end_of_interval(1u);
-#if !UNBOUNDED
+#if INTERVALS
     float skin = kSkin_px * pixel * (perspective ? middle_depth + enter_z : 1.0);
     if (enter_z >= front && see_boundary(beam, enter, enter_z, exit_z, ray_length, skin)) return;
 #endif

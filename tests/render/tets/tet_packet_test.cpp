@@ -16,6 +16,8 @@ namespace subvol {
 using namespace detail;
 namespace {
 
+const detail::RayClip kNoClip;
+
 // Knots among the values, a stretch without opacity, and one that stops most rays.
 Optics sharp_optics(double unit) {
     return {{{{-1, {.1, .2, .9}}, {0, {.9, .9, .9}}, {1, {.9, .2, .1}}},
@@ -49,8 +51,8 @@ public:
 
     void expect_same(std::size_t count, std::size_t at_once) {
         const std::vector<Ray> all = rays(count);
-        TetTracer one(tets_, scene_, optics_);
-        TetPacketTracer many(tets_, scene_, optics_);
+        TetTracer one(tets_, scene_, optics_, kNoClip);
+        TetPacketTracer many(tets_, scene_, optics_, kNoClip);
         std::vector<Segment> seen(count);
         for (std::size_t i = 0; i < count; i += at_once) {
             const std::size_t size = std::min(at_once, count - i);

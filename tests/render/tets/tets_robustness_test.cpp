@@ -22,6 +22,8 @@ namespace subvol {
 using namespace detail;
 namespace {
 
+const detail::RayClip kNoClip;
+
 constexpr double kLengthTol = 1e-4;  // of the diagonal: the requirement; offsets of 10⁶ diagonals round by 1e-10 of it
 constexpr std::size_t kRays = 3;     // of each kind and direction
 
@@ -38,7 +40,7 @@ public:
           tets_(build_tet_mesh(mesh, std::vector<double>(mesh.points.size(), 1.0))),
           scene_(tets_, box_),
           optics_({{{0, {1, 1, 1}}}, {{0, 0.5}}}, box_.diagonal()),
-          tracer_(tets_, scene_, optics_) {}
+          tracer_(tets_, scene_, optics_, kNoClip) {}
 
     void all_directions() {
         for (const Vec3& d : test::directions()) {

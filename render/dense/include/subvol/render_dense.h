@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/progress.h"
@@ -19,6 +20,7 @@ namespace subvol {
 /// memory:          bytes that grids may take at once: if they need more, parts of the picture are drawn one after the other,
 ///                  and the cells of each part are refined anew. A part of 16 × 16 pixels takes what it needs
 /// samples:         n × n rays for each pixel on a regular grid, 1..16
+/// clip:            how the volume is cut open
 struct DenseOptions {
     RefineOptions refine{};
     std::optional<int> levels{};
@@ -26,6 +28,7 @@ struct DenseOptions {
     double image_tolerance = 1e-3;
     std::size_t memory = std::size_t{2} << 30;
     int samples = 1;
+    Clip clip{};
     Progress* progress = nullptr;
 };
 

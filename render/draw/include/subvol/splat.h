@@ -50,6 +50,11 @@ public:
     Splatter(Splatter&&) noexcept;
     Splatter& operator=(Splatter&&) noexcept;
 
+    /// Cuts the volume of the next pictures open; costs nothing.
+    ///
+    /// throws: Error(InvalidInput) as `validate`
+    void set_clip(const Clip& clip);
+
     /// progress: listener for this picture; null: that of the options
     [[nodiscard]] SplatResult draw(const View& view, const Optics& optics, Progress* progress = nullptr);
 

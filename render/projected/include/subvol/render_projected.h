@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/gl_device.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
@@ -34,6 +35,7 @@ enum class ProjectedOrder { Centroid, Topological, Lists, Havs };
 /// samples:          the mean of n × n pictures, moved by parts of a pixel, is taken, 1..16
 /// count_violations: draws a second time with lists, to find where the order is wrong. Lists compare themselves with the order
 ///                   by centroids; Havs counts without a second picture
+/// clip:             how the volume is cut open
 /// list_bytes:       the most memory of lists, those of Havs too; a picture that needs more is drawn in parts
 struct ProjectedOptions {
     ProjectedOrder order = ProjectedOrder::Topological;
@@ -42,6 +44,7 @@ struct ProjectedOptions {
     double lod = 1;
     int samples = 1;
     bool count_violations = false;
+    Clip clip{};
     std::size_t list_bytes = std::size_t{1} << 28;
     Progress* progress = nullptr;
 };

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/progress.h"
@@ -13,9 +14,11 @@ namespace subvol {
 
 /// step_world: distance between samples, > 0; entries and exits are found by bisection to 1e-9 of it
 /// samples:    n × n rays for each pixel on a regular grid, 1..16
+/// clip:       how the volume is cut open
 struct MarchOptions {
     double step_world = 0.002;
     int samples = 1;
+    Clip clip{};
     Progress* progress = nullptr;
 };
 

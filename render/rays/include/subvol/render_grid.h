@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/progress.h"
@@ -13,8 +14,10 @@ namespace subvol {
 
 /// samples:   n × n rays for each pixel on a regular grid, 1..16
 /// tolerance: how far the value may be from the straight lines that are integrated, as a part of the range of the knots, > 0
+/// clip:      how the volume is cut open
 struct GridOptions {
     int samples = 1;
+    Clip clip{};
     double tolerance = 1e-4;
     Progress* progress = nullptr;
 };

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/splat_options.h"
@@ -16,17 +17,19 @@ namespace subvol {
 ///
 /// boundary: closed, outward, as of RbfVolume
 /// samples:  as those of the picture
-void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples = 1);
+/// clip:     as that of the picture; cuts are lit by the normals of their planes, slices are not lit
+void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples = 1,
+                    const Clip& clip = {});
 
 /// Colours and lights the picture of a body that is opaque from its boundary on by the values on the boundary. Kernels are as
 /// wide as cells: where two bodies touch, or a field is steep, their sums are not the values on the surface. Pixels that no ray
-/// to the boundary meets stay as they are.
+/// to the boundary meets stay as they are, and so do cuts and slices.
 ///
 /// image:    its opacities stay
 /// boundary: closed, outward; values: one for each of its points, linear on triangles
-/// samples:  as those of the picture
+/// samples, clip: as those of the picture
 /// throws:   Error(InvalidInput) if there is not one value for each point
 void color_boundary(Image& image, const Surface& boundary, std::span<const double> values, const View& view,
-                    const Optics& optics, const Shading& shading, int samples = 1);
+                    const Optics& optics, const Shading& shading, int samples = 1, const Clip& clip = {});
 
 }  // namespace subvol

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "subvol/clip.h"
 #include "subvol/progress.h"
 #include "subvol/vec.h"
 
@@ -39,6 +40,7 @@ struct Shading {
 /// channel:       the channel of the volume that is shown
 /// device:        the OpenGL device's number in gl_devices(); none: the first hardware, else software
 /// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
+/// clip:          how the volume is cut open; Splatter::set_clip changes it later
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are
 struct SplatOptions {
     SplatMethod method = SplatMethod::Auto;
@@ -49,6 +51,7 @@ struct SplatOptions {
     std::optional<std::size_t> color_channel{};
     bool normalized = true;
     std::optional<Shading> shading{};
+    Clip clip{};
     Progress* progress = nullptr;
 };
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
@@ -14,8 +15,10 @@
 namespace subvol {
 
 /// samples: n × n rays for each pixel on a regular grid, 1..16
+/// clip:    how the volume is cut open
 struct TetsOptions {
     int samples = 1;
+    Clip clip{};
     Progress* progress = nullptr;
 };
 
@@ -52,7 +55,7 @@ public:
     TetsRenderer(TetsRenderer&&) noexcept;
     TetsRenderer& operator=(TetsRenderer&&) noexcept;
 
-    /// throws: Error(InvalidInput) if samples is out of range
+    /// throws: Error(InvalidInput) if samples is out of range, or as `validate(clip)`
     [[nodiscard]] TetsResult draw(const View& view, const Optics& optics, const TetsOptions& options = {}) const;
     [[nodiscard]] double seconds_build() const;
 

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/clip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "subvol/detail/ray_clip.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+namespace {
+
+bool finite(const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+void check(const CutPlane& plane, const char* kind, std::size_t number) {
+    const std::string where = std::string(kind) + " " + std::to_string(number);
+    if (!finite(plane.point) || !finite(plane.normal)) {
+        throw Error(ErrorCode::InvalidInput, "a plane has a number that is not finite", where, "a point and a normal");
+    }
+    if (plane.normal == Vec3(0.0)) {
+        throw Error(ErrorCode::InvalidInput, "the normal of a plane has no length", where, "a direction such as 0,0,1");
+    }
+}
+
+CutPlane with_unit_normal(const CutPlane& plane) {
+    const Vec3 size = glm::abs(plane.normal);
+    return {plane.point, glm::normalize(plane.normal / std::max({size.x, size.y, size.z}))};
+}
+
+/// The planes of a box, with the normals outwards.
+std::vector<CutPlane> faces_of(const Box& box) {
+    std::vector<CutPlane> faces;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const double sign : {-1.0, 1.0}) {
+            Vec3 normal(0.0);
+            normal[axis] = sign;
+            faces.push_back({sign < 0 ? box.lower : box.upper, normal});
+        }
+    }
+    return faces;
+}
+
+/// Whether no corner of the box is on the normal's side.
+bool keeps(const CutPlane& plane, const Box& box) {
+    for (unsigned k = 0; k < 8; ++k) {
+        const Vec3 corner(k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y,
+                          k & 4 ? box.upper.z : box.lower.z);
+        if (glm::dot(plane.normal, corner - plane.point) > 0) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void validate(const Clip& clip) {
+    for (std::size_t i = 0; i < clip.planes.size(); ++i) check(clip.planes[i], "clip plane", i);
+    for (std::size_t i = 0; i < clip.slices.size(); ++i) check(clip.slices[i], "slice", i);
+    if (!clip.box) return;
+    const auto& [lower, upper] = *clip.box;
+    if (!finite(lower) || !finite(upper) || !(lower.x < upper.x && lower.y < upper.y && lower.z < upper.z)) {
+        throw Error(ErrorCode::InvalidInput, "the clip box is empty", {}, "the lower corner first, then the upper one");
+    }
+}
+
+Clip without_far_faces(const Clip& clip, const Box& box) {
+    Clip near = clip;
+    std::erase_if(near.planes, [&](const CutPlane& plane) { return keeps(plane, box); });
+    if (near.box) {
+        const auto faces = faces_of(*near.box);
+        if (std::ranges::all_of(faces, [&](const CutPlane& face) { return keeps(face, box); })) near.box.reset();
+    }
+    return near;
+}
+
+namespace detail {
+
+RayClip::RayClip(const Clip& clip) : slices_alone_(clip.slices_alone()) {
+    validate(clip);
+    for (const CutPlane& plane : clip.planes) faces_.push_back(with_unit_normal(plane));
+    if (clip.box) {
+        const auto faces = faces_of(*clip.box);
+        faces_.insert(faces_.end(), faces.begin(), faces.end());
+    }
+    for (const CutPlane& plane : clip.slices) slices_.push_back(with_unit_normal(plane));
+}
+
+void RayClip::cut(const Ray& ray, RayCut& result) const {
+    result.near = 0;
+    result.far = std::numeric_limits<double>::infinity();
+    result.near_face = RayCut::kNoFace;
+    result.slices.clear();
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        const double height = glm::dot(faces_[i].normal, faces_[i].point - ray.origin);  // above the ray's origin
+        const double speed = glm::dot(faces_[i].normal, ray.direction);
+        if (speed == 0) {
+            if (height < 0) result.far = -1;
+            continue;
+        }
+        const double depth = height / speed;
+        if (speed > 0) {
+            result.far = std::min(result.far, depth);
+        } else if (depth > result.near) {
+            result.near = depth;
+            result.near_face = i;
+        }
+    }
+    for (const CutPlane& slice : slices_) {
+        const double depth = glm::dot(slice.normal, slice.point - ray.origin) / glm::dot(slice.normal, ray.direction);
+        if (depth > 0 && depth >= result.near && depth <= result.far && std::isfinite(depth)) result.slices.push_back(depth);
+    }
+    std::sort(result.slices.begin(), result.slices.end());
+    if (slices_alone_ && result.slices.empty()) result.far = -1;
+}
+
+}  // namespace detail
+
+}  // namespace subvol

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a clip leaves of a segment. Planes are {normal, offset} in the units of projected_frame.glsl; faces remove places where
+// normal · place + offset > 0.
+#if CLIPPED
+layout(std430, binding = 9) readonly buffer Planes { vec4 planes[]; };  // faces, then slices
+uniform ivec2 plane_counts;
+uniform bool slices_alone;
+
+// On the ray of a pixel the height above a plane is slope.y + slope.x · depth.
+vec2 height_along(vec4 plane, vec2 slope) {
+    float across = dot(plane.xy, slope);
+    return perspective ? vec2(across + plane.z, across * middle_depth + plane.w) : vec2(plane.z, across + plane.w);
+}
+
+vec2 cut_at(float depth, vec2 front, vec2 back) {
+    return vec2(depth, mix(front.y, back.y, clamp((depth - front.x) / (back.x - front.x), 0.0, 1.0)));
+}
+
+// Shortens a segment between two depths with values; false if nothing is left.
+bool clip_segment(vec2 slope, inout vec2 front, inout vec2 back) {
+    for (int i = 0; i < plane_counts.x; ++i) {
+        vec2 height = height_along(planes[i], slope);
+        if (height.x == 0.0) {
+            if (height.y > 0.0) return false;
+            continue;
+        }
+        float depth = -height.y / height.x;
+        if (height.x > 0.0 ? depth <= front.x : depth >= back.x) return false;
+        if (height.x > 0.0 && depth < back.x) back = cut_at(depth, front, back);
+        if (height.x < 0.0 && depth > front.x) front = cut_at(depth, front, back);
+    }
+    return front.x < back.x;
+}
+
+// The light of what is left of a segment, with the first slice in it.
+vec4 visible_light(vec2 slope, vec2 front, vec2 back, float ray_length) {
+    if (!clip_segment(slope, front, back)) return vec4(0.0);
+    bool sliced = false;
+    for (int i = 0; i < plane_counts.y; ++i) {
+        vec2 height = height_along(planes[plane_counts.x + i], slope);
+        float depth = -height.y / height.x;
+        if (!(depth >= front.x && depth <= back.x)) continue;
+        back = cut_at(depth, front, back);
+        sliced = true;
+    }
+    vec4 light = vec4(0.0);
+    if (!slices_alone && back.x > front.x) light = segment_light(front.y, back.y, (back.x - front.x) * ray_length);
+    if (sliced) light += (1.0 - light.a) * vec4(rgba_at(knots_up_to(back.y), back.y).rgb, 1.0);
+    return light;
+}
+#else
+vec4 visible_light(vec2 slope, vec2 front, vec2 back, float ray_length) {
+    return segment_light(front.y, back.y, (back.x - front.x) * ray_length);
+}
+#endif

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clip_intervals.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace subvol::detail {
+
+namespace {
+
+/// What is left of the intervals of one row of pixels.
+struct Row {
+    std::vector<std::uint32_t> counts;  // of each pixel
+    std::vector<float> depths;
+    std::vector<std::uint32_t> triangles;
+
+    void add(float enter, float exit, std::uint32_t triangle) {
+        depths.insert(depths.end(), {enter, exit});
+        triangles.push_back(triangle);
+    }
+};
+
+class IntervalClipper {
+public:
+    IntervalClipper(const RayClip& clip, double middle) : alone_(clip.slices_alone()), middle_(middle) {}
+
+    void add(float enter, float exit, std::uint32_t triangle, const RayCut& cut, Row& row) const {
+        const auto relative = [&](double depth) { return static_cast<float>(depth - middle_); };
+        if (cut.near_face != RayCut::kNoFace && relative(cut.near) > enter) {
+            enter = relative(cut.near);
+            triangle = PixelIntervals::kFirstFace + static_cast<std::uint32_t>(cut.near_face);
+        }
+        exit = std::min(exit, relative(cut.far));
+        for (const double slice : cut.slices) {
+            const float z = relative(slice);
+            if (z < enter || z > exit) continue;
+            if (!alone_ && z > enter) row.add(enter, z, triangle);
+            row.add(z, z, PixelIntervals::kNoTriangle);
+            enter = z;
+            triangle = PixelIntervals::kNoTriangle;
+        }
+        if (!alone_ && exit > enter) row.add(enter, exit, triangle);
+    }
+
+private:
+    bool alone_;
+    double middle_;
+};
+
+/// One interval for each pixel, as deep as all sheets.
+PixelIntervals whole_rays(const View& view, const SheetStack& sheets) {
+    const auto pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
+    const float end = sheets.depth(sheets.count - 1) + sheets.distance;
+    PixelIntervals whole;
+    whole.offsets.resize(pixels + 1);
+    whole.triangles.assign(pixels, PixelIntervals::kNoTriangle);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        whole.offsets[i + 1] = static_cast<std::uint32_t>(i + 1);
+        whole.depths.insert(whole.depths.end(), {sheets.near, end});
+    }
+    return whole;
+}
+
+}  // namespace
+
+PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view, const RayClip& clip, double middle) {
+    std::vector<Row> rows(static_cast<std::size_t>(view.height()));
+    const auto width = static_cast<std::size_t>(view.width());
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
+        const IntervalClipper clipper(clip, middle);
+        Row& row = rows[y];
+        row.counts.resize(width);
+        RayCut cut;
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t first = intervals.offsets[y * width + x], end = intervals.offsets[y * width + x + 1];
+            if (first == end) continue;
+            const std::size_t before = row.triangles.size();
+            clip.cut(view.ray(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5), cut);
+            if (cut.empty()) continue;
+            for (std::size_t i = first; i < end; ++i) {
+                clipper.add(intervals.depths[2 * i], intervals.depths[2 * i + 1], intervals.triangles[i], cut, row);
+            }
+            row.counts[x] = static_cast<std::uint32_t>(row.triangles.size() - before);
+        }
+    });
+    PixelIntervals result;
+    result.hits = intervals.hits;
+    result.offsets.push_back(0);
+    for (const Row& row : rows) {
+        for (const auto count : row.counts) result.offsets.push_back(result.offsets.back() + count);
+        result.depths.insert(result.depths.end(), row.depths.begin(), row.depths.end());
+        result.triangles.insert(result.triangles.end(), row.triangles.begin(), row.triangles.end());
+    }
+    return result;
+}
+
+PixelIntervals scene_intervals(const SplatScene& scene, const View& view, const SheetStack& sheets) {
+    const double middle = view.to_eye(scene.middle).z;
+    if (scene.half_weight > 0) {
+        return scene.clip.empty() ? PixelIntervals{} : clip_intervals(whole_rays(view, sheets), view, scene.clip, middle);
+    }
+    PixelIntervals intervals =
+        boundary_intervals(scene.volume->boundary, view, static_cast<double>(sheets.near) + middle, middle);
+    return scene.clip.empty() ? intervals : clip_intervals(intervals, view, scene.clip, middle);
+}
+
+}  // namespace subvol::detail

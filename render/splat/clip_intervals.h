@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "boundary_intervals.h"
+#include "splat_scene.h"
+#include "subvol/detail/ray_clip.h"
+
+namespace subvol::detail {
+
+/// What a clip leaves of intervals, with its slices as intervals without length.
+///
+/// middle: the depth that those of the intervals are relative to
+[[nodiscard]] PixelIntervals clip_intervals(const PixelIntervals& intervals, const View& view, const RayClip& clip,
+                                            double middle);
+
+/// The intervals in which the rays of a picture are inside what is left of a scene's volume. No offsets if there is neither a
+/// boundary nor a clip.
+[[nodiscard]] PixelIntervals scene_intervals(const SplatScene& scene, const View& view, const SheetStack& sheets);
+
+}  // namespace subvol::detail

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes that are cut open: every renderer against a field with a closed form, and against itself.
+#include <gtest/gtest.h>
+
+#include "lib/expect_error.h"
+#include "lib/test_meshes.h"
+#include "reference_methods.h"
+#include "subvol/boundary_shading.h"
+#include "subvol/render_field.h"
+#include "subvol/sample.h"
+#include "subvol/splat.h"
+
+namespace subvol {
+namespace {
+
+/// The methods of the command.
+enum class Method { Tets, Dense, Grid, Pt, Lists, Havs, Cpu, Gl, Sheets };
+const std::vector<Method> kMethods{Method::Tets, Method::Dense, Method::Grid, Method::Pt,    Method::Lists,
+                                   Method::Havs, Method::Cpu,   Method::Gl,   Method::Sheets};
+const std::vector<std::string> kNames{"Tets", "Dense", "Grid", "Pt", "Lists", "Havs", "Cpu", "Gl", "Sheets"};
+
+bool splats(Method method) {
+    return method >= Method::Cpu;
+}
+
+constexpr int kVoxels = 16;
+const Box kBlock{{-1, -1, -1}, {1, 1, 1}};
+
+/// From 0 to 1, in a direction that is along no axis.
+double linear(const Vec3& p) {
+    return 0.5 + 0.25 * p.x - 0.15 * p.y + 0.1 * p.z;
+}
+
+/// A grid's voxels end half a voxel beyond the outermost centres, with constant values there.
+Vec3 between_centres(Method method, const Vec3& p) {
+    const double rim = method == Method::Grid ? 1.0 / kVoxels : 0;
+    return glm::clamp(p, kBlock.lower + rim, kBlock.upper - rim);
+}
+
+/// The block, its inner points moved.
+HexMesh box_about_origin() {
+    HexMesh mesh = test::jittered_box(4, .2, 3);
+    for (Vec3& p : mesh.points) p = 2.0 * p - 1.0;
+    return mesh;
+}
+
+const Camera kPerspective{.eye = {2.6, -4.2, 2.0}, .target = {.05, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 36};
+const Camera kOrthographic{.eye = {3, -4, 2.5}, .target = {0, .03, 0}, .up = {0, 0, 1}, .ortho_height = 3.2};
+
+Optics smooth_optics() {
+    return Optics({.color = {{0, {.1, .2, .9}}, {.5, {.9, .9, .3}}, {1, {.9, .2, .1}}}, .opacity = {{0, 0}, {1, .5}}}, .5);
+}
+
+HexMesh block_mesh() {
+    HexMesh mesh = box_about_origin();
+    test::add_field(mesh, "f", linear);
+    return mesh;
+}
+
+Image draw(Method method, const View& view, const Optics& optics, const Clip& clip) {
+    const HexMesh mesh = block_mesh();
+    const auto pt = [&](ProjectedOrder order) {
+        return render_projected(mesh, {}, view, optics, {.order = order, .kbuffer = 64, .clip = clip}).image;
+    };
+    const auto splat = [&](SplatMethod way) {
+        return render_splats(sample_rbf_points(mesh, {.per_edge = 2}).volume, view, optics, {.method = way, .clip = clip})
+            .image;
+    };
+    switch (method) {
+        case Method::Tets:
+            return render_tets(mesh, {}, view, optics, {.clip = clip}).image;
+        case Method::Dense:
+            return render_dense(mesh, {}, view, optics, {.levels = 1, .clip = clip}).image;
+        case Method::Grid:
+            return render_grid(test::VoxelBox(kBlock, kVoxels, linear), view, optics, {.clip = clip, .tolerance = 1e-6}).image;
+        case Method::Pt:
+            return pt(ProjectedOrder::Topological);
+        case Method::Lists:
+            return pt(ProjectedOrder::Lists);
+        case Method::Havs:
+            return pt(ProjectedOrder::Havs);
+        case Method::Cpu:
+            return splat(SplatMethod::Cpu);
+        case Method::Gl:
+            return splat(SplatMethod::Gl);
+        case Method::Sheets:
+            return splat(SplatMethod::Sheets);
+    }
+    return {};
+}
+
+struct Cut {
+    const char* name;
+    Clip clip;
+};
+
+std::vector<Cut> cuts() {
+    const CutPlane slanted{{0.1, 0, 0}, {1, -0.5, 0.3}}, level{{0, 0, 0.2}, {0, -0.3, 2}};
+    const Box box{{-0.5, -1.5, -0.7}, {0.6, 0.4, 0.8}};
+    return {{"none", {}},
+            {"clip", {.planes = {slanted}}},
+            {"two planes", {.planes = {slanted, level}}},
+            {"box", {.box = box}},
+            {"slices", {.slices = {slanted, level}}},
+            {"slice in the volume", {.slices = {slanted}, .around_slices = true}},
+            {"all", {.planes = {level}, .box = box, .slices = {slanted}, .around_slices = true}}};
+}
+
+std::vector<View> views() {
+    return {{kPerspective, 40, 36}, {kOrthographic, 36, 40}};
+}
+
+class Clips : public testing::TestWithParam<Method> {
+protected:
+    void SetUp() override {
+        if (GetParam() > Method::Grid && GetParam() != Method::Cpu && gl_devices().empty())
+            GTEST_SKIP() << "no OpenGL 4.5 through EGL";
+    }
+};
+
+TEST_P(Clips, PicturesAreThoseOfTheFieldCutExactlyThere) {
+    // Rays in double or single precision; kernels represent a linear field between boundaries to a few parts in 1e4.
+    const double tolerance = splats(GetParam()) ? 4e-3 : 2e-5;
+    for (const auto& [name, clip] : cuts()) {
+        for (const View& view : views()) {
+            const Optics optics = smooth_optics();
+            const auto field = [](const Vec3& p) { return std::optional(linear(between_centres(GetParam(), p))); };
+            const Image expected = render_field(field, kBlock, view, optics, {.step_world = 1e-3, .clip = clip});
+            const Image drawn = draw(GetParam(), view, optics, clip);
+            const double error = test::largest_difference(drawn, expected);
+            RecordProperty(std::string(name) + (view.perspective() ? ", perspective" : ""),
+                           std::to_string(1e6 * error) + "e-6");
+            EXPECT_LT(error, tolerance) << name << (view.perspective() ? ", perspective" : ", orthographic");
+        }
+    }
+}
+
+TEST_P(Clips, APlaneThatMissesTheVolumeChangesNoBit) {
+    const View view = views()[0];
+    const Clip far{.planes = {{{1.01, 0, 0}, {1, 0, 0}}, {{0, 0, -3}, {0.1, 0, -1}}}, .box = Box{{-2, -2, -2}, {2, 2, 2}}};
+    const Image cut = draw(GetParam(), view, smooth_optics(), far);
+    EXPECT_EQ(cut.rgba, draw(GetParam(), view, smooth_optics(), {}).rgba);
+}
+
+TEST_P(Clips, TwoPlanesAreTheBoxBetweenThem) {
+    const View view = views()[0];
+    const Clip planes{.planes = {{{-0.5, 7, 1}, {-3, 0, 0}}, {{0.25, 0, 0}, {0.5, 0, 0}}}};
+    const Clip box{.box = Box{{-0.5, -9, -9}, {0.25, 9, 9}}};
+    EXPECT_EQ(draw(GetParam(), view, smooth_optics(), planes).rgba, draw(GetParam(), view, smooth_optics(), box).rgba);
+}
+
+TEST_P(Clips, APlaneAlongTheViewLeavesOneSideAsItWas) {
+    const View view({.eye = {0, -4, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 3}, 30, 30);
+    const Image whole = draw(GetParam(), view, smooth_optics(), {});
+    const Image half = draw(GetParam(), view, smooth_optics(), {.planes = {{{0, 0, 0}, {1, 0, 0}}}});
+    for (int y = 0; y < 30; ++y) {
+        for (int x = 0; x < 30; ++x) {
+            for (std::size_t c = 0; c < 4; ++c) ASSERT_EQ(half.pixel(x, y)[c], x < 15 ? whole.pixel(x, y)[c] : 0);
+        }
+    }
+}
+
+TEST_P(Clips, SlicesHaveTheColorsOfValuesThatAreTransparent) {
+    const View view = views()[1];
+    const Optics invisible({.color = smooth_optics().function().color, .opacity = {{0, 0}, {1, 0}}}, 1);
+    const CutPlane plane{{0.1, 0.2, 0}, {0.5, -1, 0.2}};
+    for (const bool around : {false, true}) {
+        const Image drawn = draw(GetParam(), view, invisible, {.slices = {plane}, .around_slices = around});
+        int seen = 0;
+        for (int y = 0; y < view.height(); ++y) {
+            for (int x = 0; x < view.width(); ++x) {
+                if (drawn.pixel(x, y)[3] == 0) continue;
+                ++seen;
+                const Ray ray = view.ray(x + 0.5, y + 0.5);
+                const double t = glm::dot(plane.normal, plane.point - ray.origin) / glm::dot(plane.normal, ray.direction);
+                const Vec3 color = invisible.color(linear(between_centres(GetParam(), ray.origin + t * ray.direction)));
+                EXPECT_EQ(drawn.pixel(x, y)[3], 1.0f);
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(drawn.pixel(x, y)[static_cast<std::size_t>(c)], color[c], splats(GetParam()) ? 4e-3 : 1e-5);
+            }
+        }
+        EXPECT_GT(seen, 300);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Clips, testing::ValuesIn(kMethods),
+                         [](const auto& one) { return kNames[static_cast<std::size_t>(one.param)]; });
+
+/// A plane that looks at the camera, through an opaque, lit block whose values are constant on the plane.
+TEST(ClippedSolid, CapsAreLitByTheirPlane) {
+    const Vec3 normal = glm::normalize(Vec3(0.25, -0.8, 0.4));
+    HexMesh mesh = box_about_origin();
+    test::add_field(mesh, "f", [&](const Vec3& p) { return 0.5 + 0.2 * glm::dot(normal, p); });
+    const Optics solid({.color = {{0, {1, 0, 0}}, {1, {0, 0, 1}}}, .opacity = {{0, 1}}}, 1e-6);
+    const Shading shading;
+    const View view({.eye = 6.0 * Vec3(0.2, -1, 0.3), .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 3}, 41, 41);
+    const Clip clip{.planes = {{{0, 0, 0}, normal}}};
+    Vec3 in_eye;
+    for (int k = 0; k < 3; ++k) in_eye[k] = glm::dot(view.axes()[static_cast<std::size_t>(k)], normal);
+    const Vec3 to_eye(0, 0, -1), key = glm::normalize(shading.key);
+    const double head = glm::dot(in_eye, to_eye), side = std::max(0.0, glm::dot(in_eye, key));
+    const double gloss = std::pow(head, shading.shininess) +
+                         std::pow(std::max(0.0, glm::dot(in_eye, glm::normalize(key + to_eye))), shading.shininess);
+    const Vec3 expected =
+        solid.color(0.5) * (shading.ambient + shading.diffuse * 0.5 * (head + side)) + shading.specular * 0.5 * gloss;
+    const auto expect_cap = [&](const Image& image, const char* what) {
+        for (const auto& [x, y] : {std::pair{20, 20}, {14, 23}, {25, 17}}) {
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(image.pixel(x, y)[static_cast<std::size_t>(c)], expected[c], 4e-3) << what << x << ' ' << y;
+        }
+    };
+    const RbfVolume volume = sample_rbf_points(mesh, {.per_edge = 2}).volume;
+    Image splatted = render_splats(volume, view, solid, {.method = SplatMethod::Cpu, .shading = shading, .clip = clip}).image;
+    expect_cap(splatted, "splats");
+    if (!gl_devices().empty()) {
+        for (const SplatMethod method : {SplatMethod::Gl, SplatMethod::Sheets}) {
+            expect_cap(render_splats(volume, view, solid, {.method = method, .shading = shading, .clip = clip}).image, "GL");
+        }
+    }
+    // Colours of the boundary, here black ones, must not reach the cap.
+    const std::vector<double> nothing(volume.boundary.points.size(), 0);
+    const Optics black({.color = {{0, {0, 0, 0}}}, .opacity = {{0, 1}}}, 1e-6);
+    color_boundary(splatted, volume.boundary, nothing, view, black, shading, 1, clip);
+    expect_cap(splatted, "splats with the boundary's colours");
+
+    Image traced = render_tets(mesh, {}, view, solid, {.clip = clip}).image;
+    light_boundary(traced, boundary_surface(mesh), view, shading, 1, clip);
+    expect_cap(traced, "tetrahedra");
+}
+
+TEST(ClippedKernels, AVolumeWithoutABoundaryIsCutToo) {
+    RbfVolume volume = sample_rbf_points(block_mesh(), {.per_edge = 2}).volume;
+    volume.boundary = {};
+    const View view({.eye = {0, -4, 0}, .target = {0, 0, 0}, .up = {0, 0, 1}, .ortho_height = 3}, 30, 30);
+    // The sum of weights falls to half at some distance from the faces: the cut is compared well inside.
+    const Clip front{.planes = {{{0, 0, 0}, {0, -1, 0}}}};
+    std::vector<SplatMethod> methods{SplatMethod::Cpu};
+    if (!gl_devices().empty()) methods.insert(methods.end(), {SplatMethod::Gl, SplatMethod::Sheets});
+    for (const SplatMethod method : methods) {
+        Splatter splatter(volume, {.method = method});
+        const auto alpha = [&](const Clip& clip) {
+            splatter.set_clip(clip);
+            return static_cast<double>(splatter.draw(view, smooth_optics()).image.pixel(16, 14)[3]);
+        };
+        const double whole = alpha({}), back = alpha(front);
+        const double other = alpha({.planes = {{{0, 0, 0}, {0, 1, 0}}}});
+        EXPECT_GT(back, 0.1);
+        EXPECT_GT(other, 0.1);
+        EXPECT_NEAR((1 - back) * (1 - other), 1 - whole, 2e-4) << "the halves make up the whole";
+        EXPECT_EQ(alpha({}), whole);
+        splatter.set_clip({.slices = {{{0, 0, 0}, {0, 1, 0}}}});
+        const auto slice = splatter.draw(view, smooth_optics()).image;
+        EXPECT_EQ(slice.pixel(16, 14)[3], 1.0f);
+        EXPECT_EQ(slice.pixel(0, 0)[3], 0.0f) << "outside there is nothing";
+    }
+}
+
+TEST(Clip, WrongPlanesAndBoxesAreRefused) {
+    const auto refused = [](const Clip& clip, const char* word) {
+        test::expect_error(ErrorCode::InvalidInput, word, [&] { validate(clip); });
+    };
+    refused({.planes = {{}, {{0, 0, 0}, {0, 0, 0}}}}, "no length");
+    refused({.slices = {{{0, 0, NAN}, {0, 0, 1}}}}, "not finite");
+    refused({.box = Box{{0, 0, 0}, {1, 0, 1}}}, "box");
+    refused({.box = Box{}}, "box");
+    EXPECT_NO_THROW(validate({.planes = {{{0, 0, 0}, {0, 0, 1e-300}}}}));
+}
+
+}  // namespace
+}  // namespace subvol
