@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "choices.h"
+#include "clip_arguments.h"
 #include "grid_input.h"
 #include "input.h"
 #include "outputs.h"
@@ -32,10 +33,11 @@ constexpr std::array kNotHere{"--views",     "--turntable",   "--fps",    "--leg
                               "--seconds",   "--color-field", "--shade"};
 
 /// Options whose values actions change, so that the render command has them from the state; and those that only the window has.
-constexpr std::array kOfTheState{"--size",         "--camera",     "--view",    "--fit",   "--ortho", "--look",
-                                 "--tf",           "--tf-range",   "--opacity", "--clamp", "--axes",  "--edges",
-                                 "--opacity-unit", "--background", "--method",  "--field", "--step",  "--time",
-                                 "--script",       "--screenshot", "--state",   "--json",  "--quiet", "--progress"};
+constexpr std::array kOfTheState{"--clip",    "--clip-box", "--slice", "--around",  "--size",         "--camera",
+                                 "--view",    "--fit",      "--ortho", "--look",    "--tf",           "--tf-range",
+                                 "--opacity", "--clamp",    "--axes",  "--edges",   "--opacity-unit", "--background",
+                                 "--method",  "--field",    "--step",  "--time",    "--script",       "--screenshot",
+                                 "--state",   "--json",     "--quiet", "--progress"};
 
 std::string text_of(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -68,6 +70,7 @@ public:
             ->type_name("N")
             ->check(CLI::Range(1, 16));
         sample_.add_to(app());
+        clip_.add_to(app());
         refine_.add_to(app(), "show the refined mesh of this level (default for tets: 1; for the others: the limit)");
         splat_.add_to(app());
         for (const char* option : kNotHere) app().remove_option(app().get_option(option));
@@ -78,6 +81,7 @@ public:
         group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--values", "--kernel",
                           "--value-kernel", "--correction"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
+        group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
         group("Methods", {"--method", "--samples", "--backend", "--device", "--sheets", "--plain-sums"});
     }
 
@@ -163,6 +167,7 @@ private:
         state.look = picture_.look_options(body.range);
         if (picture_.background) state.background = picture_.background_color();
         state.axes = picture_.axes;
+        state.clip = clip_.clip();
         state.edges = picture_.edges;
         return state;
     }
@@ -201,6 +206,7 @@ private:
     int samples_ = 0;
     bool window_ = false;
     PictureArguments picture_;
+    ClipArguments clip_;
     SampleArguments sample_;
     SplatArguments splat_;
     RefineArguments refine_;

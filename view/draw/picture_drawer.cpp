@@ -122,10 +122,11 @@ struct PictureDrawer::State {
         if (painted) (void)skin_of(progress, picture);
         Splatter& drawer = splatter(samples, lit, state.method == "sheets", progress, picture);
         picture.seconds_build = watch.seconds();
+        drawer.set_clip(state.clip);
         SplatResult drawn = drawer.draw(view, optics, progress);
         if (painted) {
             report_progress(progress, "colors", 0);
-            color_boundary(drawn.image, skin->surface, skin->values.back(), view, optics, Shading{}, samples);
+            color_boundary(drawn.image, skin->surface, skin->values.back(), view, optics, Shading{}, samples, state.clip);
         }
         picture.image = std::move(drawn.image);
         picture.depth = std::move(drawn.depth);
@@ -135,11 +136,11 @@ struct PictureDrawer::State {
     }
 
     /// A coarse picture of a solid, whatever the method: its boundary alone.
-    void draw_preview(const View& view, const Optics& optics, DrawnPicture& picture, Progress* progress) {
+    void draw_preview(const View& view, const Optics& optics, const Clip& clip, DrawnPicture& picture, Progress* progress) {
         const Stopwatch watch;
         const BoundaryValues& boundary = skin_of(progress, picture);
         picture.seconds_build = watch.seconds();
-        Preview preview = surface_preview(boundary, view, optics);
+        Preview preview = surface_preview(boundary, view, optics, clip);
         picture.image = std::move(preview.image);
         picture.depth = std::move(preview.depth);
         picture.backend = "cpu";
@@ -148,7 +149,7 @@ struct PictureDrawer::State {
     }
 
     void light(const ViewState& state, const View& view, int samples, DrawnPicture& picture) {
-        if (is_lit(state.look.look)) light_boundary(picture.image, skin->surface, view, Shading{}, samples);
+        if (is_lit(state.look.look)) light_boundary(picture.image, skin->surface, view, Shading{}, samples, state.clip);
     }
 
     void draw_reference(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
@@ -164,7 +165,7 @@ struct PictureDrawer::State {
         picture.seconds_build = watch.seconds();
         picture.backend = "cpu";
         if (state.method == "tets") {
-            TetsResult drawn = tets->draw(view, optics, {.samples = samples, .progress = progress});
+            TetsResult drawn = tets->draw(view, optics, {.samples = samples, .clip = state.clip, .progress = progress});
             picture.image = std::move(drawn.image);
             picture.points = drawn.report.tets;
         } else {
@@ -173,6 +174,7 @@ struct PictureDrawer::State {
                                               .levels = settings.levels,
                                               .image_tolerance = settings.image_tolerance,
                                               .samples = samples,
+                                              .clip = state.clip,
                                               .progress = progress});
             picture.image = std::move(drawn.image);
             picture.points = drawn.report.micro_cells;
@@ -198,8 +200,8 @@ DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<c
     picture.scale = scale;
     picture.state = state;
     const int samples = scale > 1 ? 1 : state_->settings.samples.value_or(state.look.look == Look::Solid ? 2 : 1);
-    if (scale > 1 && state_->paints(state)) {
-        state_->draw_preview(view, optics, picture, progress);
+    if (scale > 1 && state_->paints(state) && state.clip.slices.empty()) {
+        state_->draw_preview(view, optics, state.clip, picture, progress);
     } else if (state.method == "splat" || state.method == "sheets") {
         state_->draw_splats(state, view, optics, samples, picture, progress);
     } else {

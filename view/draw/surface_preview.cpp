@@ -28,7 +28,16 @@ double side(const Vec2& a, const Vec2& b, const Vec2& p) {
     return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-void fill(const Drawn& triangle, bool perspective, int first, int last, Preview& preview) {
+/// Whether a cut removes a place.
+bool is_cut(const Clip& clip, const Vec3& place) {
+    for (const CutPlane& plane : clip.planes) {
+        if (glm::dot(place - plane.point, plane.normal) > 0) return true;
+    }
+    return clip.box && glm::min(glm::max(place, clip.box->lower), clip.box->upper) != place;
+}
+
+void fill(const Drawn& triangle, const View& view, const Clip& clip, int first, int last, Preview& preview) {
+    const bool perspective = view.perspective();
     const auto& [a, b, c] = triangle.at;
     const double area = side(a, b, c);
     if (area == 0) return;
@@ -44,6 +53,10 @@ void fill(const Drawn& triangle, bool perspective, int first, int last, Preview&
             float& nearest = preview.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(preview.image.width) +
                                            static_cast<std::size_t>(x)];
             if (depth >= nearest) continue;
+            if (!clip.empty()) {
+                const Ray ray = view.ray(p.x, p.y);
+                if (is_cut(clip, ray.origin + static_cast<double>(depth) * ray.direction)) continue;
+            }
             nearest = depth;
             const auto pixel = preview.image.pixel(x, y);
             for (std::size_t k = 0; k < 3; ++k) pixel[k] = static_cast<float>(triangle.color[static_cast<int>(k)]);
@@ -62,7 +75,7 @@ double light_on(const Vec3& normal, const Vec3& to_eye) {
 
 }  // namespace
 
-Preview surface_preview(const BoundaryValues& boundary, const View& view, const Optics& optics) {
+Preview surface_preview(const BoundaryValues& boundary, const View& view, const Optics& optics, const Clip& clip) {
     const Surface& surface = boundary.surface;
     const std::vector<double>& values = boundary.values.back();
     std::vector<Vec3> eye(surface.points.size());
@@ -103,7 +116,7 @@ Preview surface_preview(const BoundaryValues& boundary, const View& view, const 
     }
     tbb::parallel_for(0, bands, [&](int band) {
         for (const std::uint32_t t : of_band[static_cast<std::size_t>(band)])
-            fill(drawn[t], view.perspective(), band * kRows, band * kRows + kRows - 1, preview);
+            fill(drawn[t], view, clip, band * kRows, band * kRows + kRows - 1, preview);
     });
     return preview;
 }

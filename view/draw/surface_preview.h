@@ -5,6 +5,7 @@
 
 #include "subvol/boundary_values.h"
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 
@@ -17,7 +18,8 @@ struct Preview {
 };
 
 /// A quick picture of an opaque body: its boundary's triangles, each in one colour and flatly lit, one place for each pixel.
-/// For while something moves; triangles that reach behind the eye are left out.
-[[nodiscard]] Preview surface_preview(const BoundaryValues& boundary, const View& view, const Optics& optics);
+/// For while something moves; triangles that reach behind the eye are left out, and
+/// through a cut one looks into the hollow body.
+[[nodiscard]] Preview surface_preview(const BoundaryValues& boundary, const View& view, const Optics& optics, const Clip& clip);
 
 }  // namespace subvol::detail

@@ -237,6 +237,46 @@ void window(Session& session, const Json& value) {
     session.look = next;
 }
 
+/// One plane as six numbers, or an array of them.
+std::vector<CutPlane> planes_of(const Json& value) {
+    if (!value.is_array()) throw Error(ErrorCode::InvalidInput, "is not an array", {}, "[[px, py, pz, nx, ny, nz], ...]");
+    std::vector<CutPlane> planes;
+    for (const Json& one : value) {
+        const auto n = numbers(one, 6);
+        planes.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
+    }
+    return planes;
+}
+
+template <class Cut>
+void edit_clip(Session& session, const Cut& cut) {
+    edit_state(session, [&](ViewState& next) {
+        cut(next.clip);
+        validate(next.clip);
+    });
+}
+
+void clip(Session& session, const Json& value) {
+    edit_clip(session, [&](Clip& next) { next.planes = planes_of(value); });
+}
+
+void clip_box(Session& session, const Json& value) {
+    edit_clip(session, [&](Clip& next) {
+        next.box.reset();
+        if (value.is_null()) return;
+        const auto n = numbers(value, 6);
+        next.box = Box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    });
+}
+
+void slice(Session& session, const Json& value) {
+    edit_clip(session, [&](Clip& next) { next.slices = planes_of(value); });
+}
+
+void around(Session& session, const Json& value) {
+    edit_clip(session, [&](Clip& next) { next.around_slices = flag(value); });
+}
+
 void pick_place(Session& session, const Json& value) {
     const auto place = numbers(value, 2);
     const View seen(session.state.camera, session.state.width, session.state.height);
@@ -318,6 +358,10 @@ constexpr std::array kActions{Action{"orbit", orbit},
                               Action{"axes", axes},
                               Action{"edges", edges},
                               Action{"legend", legend},
+                              Action{"clip", clip},
+                              Action{"clip_box", clip_box},
+                              Action{"slice", slice},
+                              Action{"around", around},
                               Action{"compare", compare},
                               Action{"slider", slider},
                               Action{"difference", difference},

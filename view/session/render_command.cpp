@@ -58,6 +58,17 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     if (state.method != "splat") add("--method", state.method);
     add("--field", body.field());
     if (source.times.size() > 1) add("--step", std::to_string(state.step));
+    const auto plane_text = [](const CutPlane& plane) {
+        const Vec3 &at = plane.point, &normal = plane.normal;
+        return comma_separated({at.x, at.y, at.z, normal.x, normal.y, normal.z});
+    };
+    for (const CutPlane& plane : state.clip.planes) add("--clip", plane_text(plane));
+    if (const auto& box = state.clip.box) {
+        const Vec3 &low = box->lower, &high = box->upper;
+        add("--clip-box", comma_separated({low.x, low.y, low.z, high.x, high.y, high.z}));
+    }
+    for (const CutPlane& plane : state.clip.slices) add("--slice", plane_text(plane));
+    if (state.clip.around_slices && !state.clip.slices.empty()) words.emplace_back("--around");
     if (state.axes) words.emplace_back("--axes");
     if (state.edges) words.emplace_back("--edges");
     if (state.legend) words.emplace_back("--legend");

@@ -9,6 +9,14 @@ Json numbers(const Vec3& v) {
     return {v.x, v.y, v.z};
 }
 
+Json numbers(const CutPlane& plane) {
+    return {plane.point.x, plane.point.y, plane.point.z, plane.normal.x, plane.normal.y, plane.normal.z};
+}
+
+Json numbers(const Box& box) {
+    return {box.lower.x, box.lower.y, box.lower.z, box.upper.x, box.upper.y, box.upper.z};
+}
+
 }  // namespace
 
 Json json_of(const ViewState& state) {
@@ -38,6 +46,12 @@ Json json_of(const ViewState& state) {
     json["axes"] = state.axes;
     json["edges"] = state.edges;
     json["legend"] = state.legend;
+    json["clip"] = Json::array();
+    for (const CutPlane& plane : state.clip.planes) json["clip"].push_back(numbers(plane));
+    json["clip_box"] = state.clip.box ? numbers(*state.clip.box) : Json(nullptr);
+    json["slice"] = Json::array();
+    for (const CutPlane& plane : state.clip.slices) json["slice"].push_back(numbers(plane));
+    json["around"] = state.clip.around_slices;
     json["compare"] = state.compare.empty() ? Json(nullptr) : Json(state.compare);
     json["slider"] = state.slider;
     json["difference"] = state.difference;

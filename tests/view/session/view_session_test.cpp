@@ -90,6 +90,27 @@ TEST_F(Session, ReferenceAndSplatsShowTheSame) {
               0.03);  // one kernel for each control point of 3³ cells
 }
 
+TEST_F(Session, CutsThePictureAndBringsItBack) {
+    const auto whole = session.wait();
+    session.run(R"({"clip": [[0, 0, 0, 1, 0, 0]]})");
+    const auto cut = session.wait();
+    const ViewState& state = session.state();
+    const SplatOptions options{.method = SplatMethod::Cpu, .clip = {.planes = {{{0, 0, 0}, {1, 0, 0}}}}};
+    const SplatResult drawn =
+        render_splats(sample_rbf_points(session.body().mesh).volume, View(state.camera, state.width, state.height),
+                      optics_of(state, session.body()), options);
+    EXPECT_EQ(cut->image.rgba, drawn.image.rgba);
+    EXPECT_NE(session.render_command().find("--clip 0,0,0,1,0,0"), std::string::npos);
+    session.run(R"({"clip": []})");
+    EXPECT_EQ(session.wait()->image.rgba, whole->image.rgba);
+    session.run(R"({"slice": [[0, 0, 0, 0, 0, 1]]})");
+    session.run(R"({"clip_box": [-1, -1, -1, 1, 0, 1]})");
+    const auto slice = session.wait();
+    EXPECT_NE(slice->image.rgba, whole->image.rgba);
+    EXPECT_THROW(session.run(R"({"clip": [[0, 0, 0, 0, 0, 0]]})"), Error);
+    EXPECT_THROW(session.run(R"({"clip_box": [1, 0, 0, 0, 1, 1]})"), Error);
+}
+
 TEST_F(Session, StateGoesToAFileAndBack) {
     const auto path = std::filesystem::temp_directory_path() / "subvol_view_state.json";
     session.run(R"({"orbit": [33, 5]})");

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "subvol/camera.h"
+#include "subvol/clip.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/picture_look.h"
 
@@ -20,6 +21,7 @@ namespace subvol {
 /// method:        splat, sheets, tets or dense, as of `subvol render --method`
 /// background:    in linear light; none: that of the look
 /// axes, edges, legend: what is drawn over the picture
+/// clip:          how the volume is cut open
 /// compare:       the method of a second picture, which is shown right of `slider` (0 to 1 of the width); empty: none
 /// difference:    shows the difference of the two instead
 struct ViewState {
@@ -31,6 +33,7 @@ struct ViewState {
     LookOptions look{};
     std::optional<Vec3> background{};
     bool axes = false, edges = false, legend = false;
+    Clip clip{};
     std::string compare{};
     double slider = 0.5;
     bool difference = false;
