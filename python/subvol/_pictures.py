@@ -148,7 +148,7 @@ def _planes_of(planes: Planes, name: str) -> list[list[float]]:
     rows = np.atleast_2d(np.asarray(planes, dtype=float))
     if rows.ndim != 2 or rows.shape[1] != 6:
         raise InvalidInput(f"{name}: a plane is six numbers, a point and the normal", name, "(px, py, pz, nx, ny, nz)")
-    return rows.tolist()
+    return [[float(number) for number in row] for row in rows]
 
 
 def _box_of(box: Optional[Sequence[float]]) -> Optional[list[float]]:
@@ -157,7 +157,7 @@ def _box_of(box: Optional[Sequence[float]]) -> Optional[list[float]]:
     corners = np.asarray(box, dtype=float).ravel()
     if corners.shape != (6,):
         raise InvalidInput("clip_box: a box is six numbers, the lower and the upper corner", "clip_box", "(x0, y0, z0, x1, y1, z1)")
-    return corners.tolist()
+    return [float(number) for number in corners]
 
 
 def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
