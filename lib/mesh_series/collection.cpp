@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "vtk_xml.h"
 
@@ -72,8 +73,8 @@ void add_blocks(const XmlList& list, const pugi::xml_node& element, const std::s
     if (depth > kMostNested) list.xml().fail_at(element, "blocks are nested too deeply");
     int count = 0;
     for (const auto& child : element.children()) {
-        const std::string own = as_utf8(child.attribute("name").as_string());
-        const std::string index = child.attribute("index").as_string(std::to_string(count++).c_str());
+        const std::string own = printable(as_utf8(child.attribute("name").as_string()));
+        const std::string index = printable(as_utf8(child.attribute("index").as_string(std::to_string(count++).c_str())));
         if (std::string_view(child.name()) == "DataSet") {
             if (!child.attribute("file")) continue;  // an empty block
             const bool of_piece = std::string_view(element.name()) == "Piece" && !name.empty();
@@ -95,7 +96,7 @@ Collection read_pvd(const std::filesystem::path& path) {
     for (const auto& node : list.xml().data_set().children("DataSet")) {
         const double time = node.attribute("timestep").as_double();
         if (!std::isfinite(time)) list.xml().fail_at(node, "its timestep is not a number");
-        steps.add(time, list.file(node, "file", as_utf8(node.attribute("name").as_string())));
+        steps.add(time, list.file(node, "file", printable(as_utf8(node.attribute("name").as_string()))));
     }
     Collection collection = std::move(steps).collection();
     if (collection.times.empty()) list.xml().fail_at(list.xml().data_set(), "it lists no files");

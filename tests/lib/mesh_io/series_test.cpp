@@ -126,6 +126,16 @@ TEST_F(Series, ArraysThatAPieceLacksAreLeftOut) {
     EXPECT_EQ(result.mesh.attributes.size(), 1u);
 }
 
+TEST_F(Series, NamesOfBlocksHaveNoControlCharacters) {
+    write("a.vtu", row(0, 1));
+    const std::string csi = "\xC2\x9B";  // terminals obey what follows it
+    write("all.vtm", list("vtkMultiBlockDataSet", "<DataSet index=\"0\" name=\"a" + csi + "31m\" file=\"a.vtu\"/>"));
+    const ReadResult all = read_mesh(path("all.vtm"));
+    ASSERT_EQ(all.blocks.size(), 1u);
+    EXPECT_EQ(all.blocks[0].name, "a\\xc2\\x9b31m");
+    EXPECT_EQ(read_mesh(path("all.vtm"), {.blocks = {all.blocks[0].name}}).mesh.cells.size(), 1u);
+}
+
 TEST_F(Series, BlocksAreListedAndChosen) {
     write("a.vtu", row(0, 1));
     write("b.vtu", row(1, 2));
