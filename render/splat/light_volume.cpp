@@ -6,8 +6,7 @@
 
 namespace subvol::detail {
 
-std::array<float, 2> LightVolume::at(const Vec3& world) const {
-    const Vec3 place = to_nodes * world + offset;
+GridCorners corners_around(const Vec3& place, const std::array<int, 3>& size) {
     std::array<std::size_t, 3> cell{};
     std::array<double, 3> part{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -17,12 +16,20 @@ std::array<float, 2> LightVolume::at(const Vec3& world) const {
         part[k] = x - low;
     }
     const auto width = static_cast<std::size_t>(size[0]), height = static_cast<std::size_t>(size[1]);
-    std::array<double, 2> sum{};
+    GridCorners corners;
     for (std::size_t corner = 0; corner < 8; ++corner) {
         const std::size_t x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
-        const double weight = (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
-        const auto& node = nodes[((cell[2] + z) * height + cell[1] + y) * width + cell[0] + x];
-        for (std::size_t c = 0; c < 2; ++c) sum[c] += weight * static_cast<double>(node[c]);
+        corners.nodes[corner] = ((cell[2] + z) * height + cell[1] + y) * width + cell[0] + x;
+        corners.weights[corner] = (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
+    }
+    return corners;
+}
+
+std::array<float, 2> LightVolume::at(const Vec3& world) const {
+    const GridCorners corners = corners_around(to_nodes * world + offset, size);
+    std::array<double, 2> sum{};
+    for (std::size_t k = 0; k < 8; ++k) {
+        for (std::size_t c = 0; c < 2; ++c) sum[c] += corners.weights[k] * static_cast<double>(nodes[corners.nodes[k]][c]);
     }
     return {static_cast<float>(sum[0]), static_cast<float>(sum[1])};
 }

@@ -9,6 +9,15 @@
 
 namespace subvol::detail {
 
+/// The nodes of a grid about a place, and their weights in it.
+struct GridCorners {
+    std::array<std::size_t, 8> nodes{};
+    std::array<double, 8> weights{};
+};
+
+/// place: in numbers of nodes; beyond the grid's ends it is moved to them. size: at least 2 along each axis, x fastest
+[[nodiscard]] GridCorners corners_around(const Vec3& place, const std::array<int, 3>& size);
+
 /// How much light arrives at places, on a grid that is linear between its nodes. Each node: the part of the key light that the
 /// volume lets through, and the part of the surroundings that is open. Beyond its ends the grid continues with its last nodes.
 struct LightVolume {

@@ -44,22 +44,9 @@ struct LightSheets {
     }
 
     [[nodiscard]] double at(const Vec3& node) const {
-        const std::array<int, 3> size{view.width(), view.height(), sheets.count};
-        std::array<std::size_t, 3> cell{};
-        std::array<double, 3> part{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double x = std::clamp(node[static_cast<int>(k)], 0.0, static_cast<double>(size[k] - 1));
-            const double low = std::min(std::floor(x), static_cast<double>(size[k] - 2));
-            cell[k] = static_cast<std::size_t>(low);
-            part[k] = x - low;
-        }
-        const auto width = static_cast<std::size_t>(size[0]), height = static_cast<std::size_t>(size[1]);
+        const GridCorners corners = corners_around(node, {view.width(), view.height(), sheets.count});
         double sum = 0;
-        for (std::size_t corner = 0; corner < 8; ++corner) {
-            const std::size_t x = corner & 1, y = corner >> 1 & 1, z = corner >> 2;
-            const double weight = (x ? part[0] : 1 - part[0]) * (y ? part[1] : 1 - part[1]) * (z ? part[2] : 1 - part[2]);
-            sum += weight * static_cast<double>(depths[((cell[2] + z) * height + cell[1] + y) * width + cell[0] + x]);
-        }
+        for (std::size_t k = 0; k < 8; ++k) sum += corners.weights[k] * static_cast<double>(depths[corners.nodes[k]]);
         return sum;
     }
 };
