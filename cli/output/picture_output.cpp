@@ -62,7 +62,8 @@ void warn_if_blank(const Image& image, const Vec3& background, Report& report) {
 void warn_if_empty(float opacity, Report& report) {
     constexpr float kLeastByte = 0.5F / 255;  // what is less is 0 in a .png
     if (opacity == 0) {
-        report.warn("the picture is empty: no pixel is hit where the volume is opaque (--fit, --view, --opacity, --samples)");
+        report.warn(
+            "the picture is empty: no pixel is hit where the volume is opaque (--fit, --view, --clip, --opacity, --samples)");
     } else if (opacity < kLeastByte) {
         report.warn(text("the picture is nearly empty: no pixel is more opaque than ", opacity,
                          " (a shorter --opacity-unit makes the volume more opaque)"));

@@ -2,8 +2,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "choices.h"
@@ -41,7 +43,7 @@ constexpr std::array kOfTheState{"--clip",    "--clip-box", "--slice", "--around
 
 std::string text_of(const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw Error(ErrorCode::Io, "cannot be opened", file, "a JSON array of actions");
+    if (!stream) throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(errno), file);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     if (stream.bad() || text.empty())
         throw Error(ErrorCode::InvalidInput, "is empty or cannot be read", file, "a JSON array of actions");

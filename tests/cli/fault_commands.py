@@ -74,6 +74,7 @@ def is_json(content):
 
 def prepare(inputs):
     (inputs / "study.json").write_text(json.dumps(STUDY))
+    (inputs / "actions.json").write_text('[{"orbit": [20, 5]}, {"wait": true}]')
     (inputs / "ffmpeg").write_text(FFMPEG)
     (inputs / "ffmpeg").chmod(0o755)
     for words in ("render model:ball:3 -o a.png --size 256 --backend cpu", "render model:ball:4 -o b.png --size 256 --backend cpu",
@@ -112,6 +113,8 @@ def commands(inputs):
                 environment={"PATH": f"{inputs}:{os.environ['PATH']}"}),
         Command("compare --heatmap", f"compare {inputs}/a.png {inputs}/b.png --heatmap a.png"),
         Command("compare fields", f"compare {inputs}/a.ply {inputs}/a.vtu"),
+        Command("page", "page model:ball:4 -o a.html --size 160"),
+        Command("view", f"view model:ball:4 --script {inputs}/actions.json --screenshot a.png --size 160 --backend cpu"),
         Command("study", f"study {inputs}/study.json -o out --jobs 2", children=True),
         Command("demo", "demo -o out --size 48 --resolution 4"),
     ]
