@@ -32,6 +32,10 @@ void check_memory(std::size_t cells, int levels) {
 }  // namespace
 
 Scheme scheme_named(const std::string& name) {
+    if (name == "tetoct" || name == "boxspline") {
+        throw Error(ErrorCode::InvalidInput, name + " refines tetrahedra, and this verb or input has hexahedra only",
+                    "--scheme", "subdivide, points, render, vdb, surface and slice take it");
+    }
     check_choice("--scheme", name, {"mcq", "cc", "bsxw", "linear"});
     if (name == "cc") return Scheme::CatmullClark;
     if (name == "bsxw") return Scheme::Bsxw;
@@ -42,9 +46,9 @@ void RefineArguments::add_scheme_to(CLI::App& app) {
     app.add_option(
            "--scheme", scheme,
            "mcq (smooth, through the control points; the default), cc (Catmull-Clark), bsxw (Bajaj-Schaefer-Warren-Xu), "
-           "linear")
+           "linear; of tetrahedra as tetrahedra: tetoct, boxspline")
         ->type_name("NAME")
-        ->check(offered({"mcq", "cc", "bsxw", "linear"}));
+        ->check(offered({"mcq", "cc", "bsxw", "linear", "tetoct", "boxspline"}));
     app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
         ->type_name("W")
         ->check(CLI::Range(0.0, 0.125));

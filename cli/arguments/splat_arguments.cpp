@@ -70,6 +70,7 @@ void report_splats(const SplatReport& splats, Report& report) {
     if (splats.seconds_light > 0) report.add_seconds("light", splats.seconds_light);
     report.add_seconds("prepare", splats.seconds_prepare - splats.seconds_light);
     report.add_seconds("draw", splats.seconds_draw);
+    if (splats.seconds_colors > 0) report.add_seconds("colors", splats.seconds_colors);
     report["backend"] = splats.backend;
     report["device"] = splats.device;
     report["sheets"] = splats.sheets;

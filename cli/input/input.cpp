@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "steps.h"
+#include "subvol/bricks.h"
 #include "subvol/error.h"
 #include "subvol/expression.h"
 #include "subvol/model.h"
@@ -73,6 +74,10 @@ bool is_model(const std::string& input) {
 
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
+    if (is_bricks(input)) {
+        throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which this command does not take yet", input,
+                    "info, points, vdb, render and probe do; each .vtu file in it is a mesh");
+    }
     const bool model = is_model(input);
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");

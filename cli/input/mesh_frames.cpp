@@ -26,6 +26,11 @@ bool same_fields(const HexMesh& a, const HexMesh& b) {
 
 }  // namespace
 
+FrameRange frames_of(const Share& share, const FrameRange& all) {
+    const auto [begin, end] = share.range(static_cast<std::size_t>(all.count()));
+    return {all.first + static_cast<int>(begin), all.first + static_cast<int>(end) - 1};
+}
+
 FrameRange parse_frames(const std::string& text) {
     const std::string_view all = text;
     const std::size_t dash = all.find('-');

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "share.h"
 #include "subvol/hex_mesh.h"
 
 namespace subvol::cli {
@@ -17,6 +18,9 @@ struct FrameRange {
 
     [[nodiscard]] int count() const { return last - first + 1; }
 };
+
+/// The frames of a share; `last` is before `first` if there are none.
+[[nodiscard]] FrameRange frames_of(const Share& share, const FrameRange& all);
 
 /// "3-12", or "10" for 1 to 10.
 ///

@@ -33,10 +33,14 @@ RbfVolume read_points_input(const std::string& input, Report& report) {
     return volume;
 }
 
+RbfVolume load_all_points(const std::string& input, const CLI::App& app, Report& report) {
+    refuse_options(app, kOfMeshes, "needs a mesh; these are points that have been sampled already");
+    return read_points_input(input, report);
+}
+
 RbfVolume load_points(const std::string& input, const CommonOptions& options, const std::optional<std::string>& second,
                       const CLI::App& app, Report& report) {
-    refuse_options(app, kOfMeshes, "needs a mesh; these are points that have been sampled already");
-    RbfVolume volume = read_points_input(input, report);
+    RbfVolume volume = load_all_points(input, app, report);
     const auto channel = [&](const std::string& name) { return volume.channels[find_channel(volume, name, input)]; };
     std::vector<RbfChannel> chosen{channel(options.field.value_or(volume.channels.front().name))};
     if (second && *second != chosen.front().name) chosen.push_back(channel(*second));

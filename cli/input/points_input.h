@@ -18,6 +18,11 @@ namespace subvol::cli {
 /// Reads them, timed; puts "input" and "points" into the report.
 [[nodiscard]] RbfVolume read_points_input(const std::string& input, Report& report);
 
+/// `read_points_input` with all fields.
+///
+/// throws: Error(InvalidInput) if an option of `app` was given that applies to meshes only
+[[nodiscard]] RbfVolume load_all_points(const std::string& input, const CLI::App& app, Report& report);
+
 /// `read_points_input` with only the field that the options select, and with the field `second` if that is given.
 ///
 /// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that applies to meshes only

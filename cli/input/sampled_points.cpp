@@ -4,6 +4,7 @@
 #include "grid_input.h"
 #include "subvol/error.h"
 #include "subvol/reduce.h"
+#include "subvol/sample_mixed.h"
 #include "subvol/vdb_sample.h"
 #include "subvol/visible_points.h"
 #include "text.h"
@@ -84,6 +85,27 @@ RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const 
         all = sample_and_warn(std::move(mesh), options, report);
     }
     RbfVolume volume = without_invisible(std::move(all), arguments, seen, report);
+    report["points"] = volume.size();
+    return volume;
+}
+
+RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
+                               const std::optional<TransferFunction>& seen, Report& report) {
+    const SampleOptions options = arguments.options(bounds(mesh), {});
+    const bool placed = options.per_edge != 1 || options.spacing_world > 0 || options.footprint || options.tolerance > 0 ||
+                        arguments.reduce_rmse > 0 || options.values != ValueRule::Scheme;
+    if (placed) {
+        throw Error(ErrorCode::InvalidInput, "the schemes of tetrahedra have one kernel at each point of a level", "--scheme",
+                    "--levels makes more of them");
+    }
+    SampleResult sampled = report.timed("sample", [&] {
+        return sample_rbf_points(join_split_cells(mesh),
+                                 {.correction = options.correction, .kernel = options.kernel, .progress = report.progress()});
+    });
+    if (sampled.report.flat_frames > 0) {
+        report.warn(text(sampled.report.flat_frames, " points lie where cells are flat; their kernels were thickened"));
+    }
+    RbfVolume volume = without_invisible(std::move(sampled.volume), arguments, seen, report);
     report["points"] = volume.size();
     return volume;
 }

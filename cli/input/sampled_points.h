@@ -19,6 +19,12 @@ namespace subvol::cli {
 [[nodiscard]] RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const RefineArguments& refinement,
                                         const std::optional<TransferFunction>& seen, Report& report);
 
+/// One kernel at each point of a mesh of tetrahedra on its limit, which TetRefinement made hexahedra of.
+///
+/// throws: Error(InvalidInput) for options that place kernels otherwise
+[[nodiscard]] RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
+                                             const std::optional<TransferFunction>& seen, Report& report);
+
 /// The same of a grid's voxels.
 ///
 /// app: the verb's; its options that apply to meshes only are refused

@@ -44,6 +44,16 @@ void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, c
     vdb().rasterize_parts(mesh, fields, options, memory_bytes, take);
 }
 
+BlockGrids rasterize_block(const HexMesh& part, std::span<const std::string> fields, const RasterizeOptions& options,
+                           const VoxelCubes& block) {
+    return vdb().rasterize_block(part, fields, options, block);
+}
+
+Grids rasterize_share(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options, int part,
+                      int of) {
+    return vdb().rasterize_share(mesh, fields, options, part, of);
+}
+
 Grids rasterize_points(const RbfVolume& volume, std::span<const std::size_t> channels, const RasterizeOptions& options) {
     return vdb().rasterize_points(volume, channels, options);
 }
@@ -107,6 +117,34 @@ VdbGrid scalar_of(const VdbGrid& grid, std::optional<int> component, const std::
 
 void clamp_voxels(VdbGrid& grid, const FieldRange& range) {
     vdb().clamp_voxels(grid, range);
+}
+
+VdbGrid join_grids(Grids parts) {
+    return vdb().join_grids(std::move(parts));
+}
+
+std::optional<std::string> text_of_grid(const VdbGrid& grid, const std::string& name) {
+    return vdb().text_of_grid(grid, name);
+}
+
+void set_text_of_grid(VdbGrid& grid, const std::string& name, const std::optional<std::string>& text) {
+    vdb().set_text_of_grid(grid, name, text);
+}
+
+void store_in_half(VdbGrid& grid, bool half) {
+    vdb().store_in_half(grid, half);
+}
+
+std::string detail::bytes_of_grids(std::span<const VdbGrid> grids) {
+    return vdb().bytes_of_grids(grids);
+}
+
+Grids detail::grids_from_bytes(const std::string& bytes) {
+    return vdb().grids_from_bytes(bytes);
+}
+
+std::uint64_t hash_of_grid(const VdbGrid& grid) {
+    return vdb().hash_of_grid(grid);
 }
 
 GridDifference compare_voxels(const VdbGrid& a, const VdbGrid& b) {

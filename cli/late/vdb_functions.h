@@ -11,8 +11,10 @@
 
 #include "subvol/detail/vdb_file.h"
 #include "subvol/grid_error.h"
+#include "subvol/join_grids.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
+#include "subvol/rasterize_block.h"
 #include "subvol/spread_vectors.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
@@ -28,6 +30,8 @@ struct VdbFunctions {
     RefinementTables (*rasterization_tables)(const HexMesh&, const RasterizeOptions&);
     void (*rasterize_parts)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, std::size_t,
                             const std::function<void(GridPart)>&);
+    BlockGrids (*rasterize_block)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, const VoxelCubes&);
+    std::vector<VdbGrid> (*rasterize_share)(const HexMesh&, std::span<const std::string>, const RasterizeOptions&, int, int);
     std::vector<VdbGrid> (*rasterize_points)(const RbfVolume&, std::span<const std::size_t>, const RasterizeOptions&);
     VdbGrid (*sample_at_voxels)(const VdbGrid&, const std::string&,
                                 const std::function<std::vector<double>(std::span<const Vec3>)>&);
@@ -48,6 +52,14 @@ struct VdbFunctions {
     VdbContents (*read_vdb_contents)(const std::filesystem::path&);
     VdbGrid (*scalar_of)(const VdbGrid&, std::optional<int>, const std::string&);
     void (*clamp_voxels)(VdbGrid&, const FieldRange&);
+
+    VdbGrid (*join_grids)(std::vector<VdbGrid>);
+    std::optional<std::string> (*text_of_grid)(const VdbGrid&, const std::string&);
+    void (*set_text_of_grid)(VdbGrid&, const std::string&, const std::optional<std::string>&);
+    void (*store_in_half)(VdbGrid&, bool);
+    std::string (*bytes_of_grids)(std::span<const VdbGrid>);
+    std::vector<VdbGrid> (*grids_from_bytes)(const std::string&);
+    std::uint64_t (*hash_of_grid)(const VdbGrid&);
 
     GridDifference (*compare_voxels)(const VdbGrid&, const VdbGrid&);
     const GridReport& (*report)(const VdbGrid&);

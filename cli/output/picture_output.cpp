@@ -6,6 +6,8 @@
 
 #include "mesh_frames.h"
 #include "outputs.h"
+#include "ranked_splats.h"
+#include "subvol/detail/picture_part.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
@@ -90,6 +92,26 @@ PictureOutput::PictureOutput(const std::string& path, std::optional<int> frames,
     }
 }
 
+void PictureOutput::set_share(const Share& share, PartNote note) {
+    share_ = share;
+    note_ = std::move(note);
+    if (video_) {
+        throw Error(ErrorCode::InvalidInput, "a video is not made in shares", path_.string(),
+                    "numbered pictures: NAME_####.png");
+    }
+    if (sheet_) throw Error(ErrorCode::InvalidInput, "a sheet of views is not made in shares", "--views");
+    if (!frames_ && path_.extension() != ".exr") {
+        throw Error(ErrorCode::InvalidInput, "a share of a picture is written as .exr", path_.string(),
+                    ".exr; `subvol join` writes .png or .exr");
+    }
+}
+
+bool PictureOutput::wants_next() const {
+    if (!share_ || !frames_) return true;
+    const auto [begin, end] = share_->range(static_cast<std::size_t>(*frames_));
+    return written_ >= begin && written_ < end;
+}
+
 void PictureOutput::write_sheet(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
                                 Report& report) {
     const int width = views.front().width(), height = views.front().height();
@@ -111,6 +133,7 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
             }
         }
     }
+    if (silent_) return;
     opacity_ = most_opaque(sheet.image);
     if (path_.extension() == ".png") warn_if_blank(sheet.image, background_, report);
     const detail::Stopwatch watch;
@@ -123,10 +146,18 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
                           Report& report) {
     if (sheet_) return write_sheet(views, draw, report);
     for (const View& view : views) {
+        if (!wants_next()) {
+            skip();
+            continue;
+        }
         FrameProgress of_frame(report.progress(), written_, static_cast<std::size_t>(frames_.value_or(1)));
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
         Picture picture = draw(view, progress);
+        if (silent_) {
+            ++written_;
+            continue;
+        }
         opacity_ = std::max(opacity_, most_opaque(picture.image));
         if (written_ == 0 && path_.extension() == ".png") warn_if_blank(picture.image, background_, report);
         const detail::Stopwatch watch;
@@ -138,14 +169,18 @@ void PictureOutput::write(const std::vector<View>& views, const std::function<Pi
 }
 
 void PictureOutput::finish(Report& report) {
-    warn_if_empty(opacity_, report);
+    if (silent_) return;
+    if (!share_) warn_if_empty(opacity_, report);
+    if (share_) report["part"] = share_->name();
     report["output"] = frame_path(0).string();
     if (!frames_) return;
     report["frames"] = *frames_;
     if (video_) {
         report.timed("write", [&] { video_->finish(); });
     } else {
-        for (std::size_t i = 0; i < written_; ++i) report["outputs"].push_back(frame_path(i).string());
+        const auto [begin, end] = share_.value_or(Share{}).range(static_cast<std::size_t>(*frames_));
+        report["outputs"] = Json::array();
+        for (std::size_t i = begin; i < std::min(end, written_); ++i) report["outputs"].push_back(frame_path(i).string());
     }
 }
 
@@ -162,9 +197,29 @@ std::filesystem::path PictureOutput::frame_path(std::size_t frame) const {
 void PictureOutput::write_frame(std::size_t frame, const Picture& picture) {
     if (video_) {
         video_->write(srgb_bytes(picture.image, background_));
+    } else if (share_ && !frames_) {
+        write_rows(picture);
     } else {
         write_image(frame_path(frame), picture.image, background_, picture.depth);
     }
+}
+
+/// A share without rows, as there may be more shares than bands, has one transparent row that does not count.
+void PictureOutput::write_rows(const Picture& picture) {
+    const Image& image = picture.image;
+    const PictureRows rows = rows_of(*share_, image.height);
+    const int first = std::min(rows.first, image.height - 1), count = std::max(rows.end - rows.first, 1);
+    detail::PicturePart part{.rows = Image(image.width, count), .first_row = first, .whole_height = image.height};
+    const auto begin = static_cast<std::ptrdiff_t>(first) * image.width;
+    std::copy_n(image.rgba.begin() + 4 * begin, part.rows.rgba.size(), part.rows.rgba.begin());
+    if (!picture.depth.empty())
+        part.depth.assign(picture.depth.begin() + begin, picture.depth.begin() + begin + count * image.width);
+    note_.how = {{"first_row", rows.first},
+                 {"end_row", rows.end},
+                 {"height", image.height},
+                 {"background", {background_.x, background_.y, background_.z}}};
+    part.note = text_of(note_);
+    detail::write_picture_part(path_, part);
 }
 
 }  // namespace subvol::cli

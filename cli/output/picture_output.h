@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "part_note.h"
 #include "picture_arguments.h"
 #include "picture_notes.h"
 #include "report.h"
+#include "share.h"
 #include "subvol/image.h"
 #include "video_file.h"
 
@@ -25,6 +27,20 @@ public:
     /// throws: Error(InvalidInput), Error(Io), Error(MissingCapability)
     PictureOutput(const std::string& path, std::optional<int> frames, const PictureArguments& arguments, int first = 0);
 
+    /// Only a share is to be drawn and written: of frames those of the share, of a single picture its rows, as a part (.exr).
+    ///
+    /// note:   of a single picture; it gets the rows
+    /// throws: Error(InvalidInput) if the output is a video or, for a single picture, not .exr
+    void set_share(const Share& share, PartNote note);
+
+    /// Writes nothing, as another rank does it.
+    void set_silent() { silent_ = true; }
+
+    /// Whether the next frame is one of the share's.
+    [[nodiscard]] bool wants_next() const;
+    /// Passes over the next frame.
+    void skip() { ++written_; }
+
     /// What is drawn over every picture from now on.
     void set_notes(PictureNotes notes) { notes_ = std::move(notes); }
 
@@ -39,6 +55,7 @@ private:
     void write_sheet(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
                      Report& report);
     void write_frame(std::size_t frame, const Picture& picture);
+    void write_rows(const Picture& picture);
 
     std::filesystem::path path_;
     std::optional<int> frames_;
@@ -48,6 +65,9 @@ private:
     PictureNotes notes_{};
     std::size_t written_ = 0;
     float opacity_ = 0;  // the largest of a pixel
+    std::optional<Share> share_;
+    PartNote note_{};
+    bool silent_ = false;
     std::optional<VideoFile> video_;
 };
 

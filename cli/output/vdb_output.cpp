@@ -31,10 +31,14 @@ std::optional<double> seen_density(const GridReport& grid) {
     return kDepth / (most * across);
 }
 
-Json about(const GridReport& grid) {
+Json about(const GridReport& grid, const VdbOutput& output) {
     Json json{{"name", grid.name}, {"kind", grid.kind}, {"active_voxels", grid.active_voxels},
               {"min", grid.min},   {"max", grid.max},   {"bytes", grid.bytes}};
-    if (const auto density = seen_density(grid)) json["density"] = *density;
+    if (grid.name == output.level_set) {
+        json["level_set"] = true;  // distances: a renderer that took them for a density would show a shell around the body
+    } else if (const auto density = seen_density(grid)) {
+        json["density"] = *density;
+    }
     return json;
 }
 
@@ -57,6 +61,10 @@ void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
 
 }  // namespace
 
+VdbCompression compression_named(const std::string& name) {
+    return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
+}
+
 bool has_voxels(std::span<const VdbGrid> grids) {
     return std::ranges::any_of(grids, [](const VdbGrid& grid) { return grid.report().active_voxels > 0; });
 }
@@ -76,17 +84,26 @@ Error no_voxels(const std::string& input, const std::string& hint) {
     return {ErrorCode::InvalidInput, "no voxel centre lies inside", input, hint};
 }
 
-void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+void write_share(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
     const GridReport& first = grids.front().report();
-    if (first.active_voxels == 0) report.warn("the grid \"" + first.name + "\" is empty: no voxel centre lies inside");
     report.timed("write", [&] { write_files(grids, output); });
     report["output"] = output.path;
     report["active_voxels"] = first.active_voxels;
     report["voxel_size"] = first.voxel_size_world;
-    for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report()));
+    for (const VdbGrid& grid : grids) report["grids"].push_back(about(grid.report(), output));
+}
+
+void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report) {
+    const GridReport& first = grids.front().report();
+    if (first.active_voxels == 0) report.warn("the grid \"" + first.name + "\" is empty: no voxel centre lies inside");
+    write_share(grids, output, report);
     if (const auto density = seen_density(first)) {
         report.note(text(first.name, " is ", detail::number_text(first.min, 5), " to ", detail::number_text(first.max, 5),
                          "; a renderer shows it with a density of ", detail::number_text(*density, 2), " times the value"));
+    }
+    if (!output.level_set.empty()) {
+        report.note(
+            text(output.level_set, " is a level set: distances have no density; a renderer makes a surface of it at 0"));
     }
 }
 
@@ -96,7 +113,7 @@ void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& out
                {"output", output.path},
                {"active_voxels", grids.front().report().active_voxels},
                {"grids", Json::array()}};
-    for (const VdbGrid& grid : grids) entry["grids"].push_back(about(grid.report()));
+    for (const VdbGrid& grid : grids) entry["grids"].push_back(about(grid.report(), output));
     report["frames"].push_back(std::move(entry));
 }
 
@@ -122,7 +139,7 @@ void write_parts(const std::string& input, const HexMesh& mesh, std::span<const 
         report["voxel_size"] = voxel_size_world = first.voxel_size_world;
         Json entry{{"file", name}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
         if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
-        for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report()));
+        for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report(), output));
         parts.push_back(std::move(entry));
     });
     if (active == 0) throw no_voxels(input, finer_voxels(mesh));

@@ -17,7 +17,11 @@ struct VdbOutput {
     VdbCompression compression = VdbCompression::Blosc;
     std::size_t memory_bytes = 0;  // 0: in one piece
     bool nano = false;             // also NAME.nvdb
+    std::string level_set{};       // the name of the grid that is one; empty: none is
 };
+
+/// "zip", "none", else blosc.
+[[nodiscard]] VdbCompression compression_named(const std::string& name);
 
 /// Whether a grid has an active voxel.
 [[nodiscard]] bool has_voxels(std::span<const VdbGrid> grids);
@@ -38,6 +42,9 @@ void write_parts(const std::string& input, const HexMesh& mesh, std::span<const 
 
 /// Writes grids; puts what is in them into the report.
 void write_reported(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);
+
+/// Writes the grids of a share, which may be empty; puts what is in them into the report.
+void write_share(std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);
 
 /// Writes the grids of one frame; adds it to the report's "frames".
 void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& output, Report& report);

@@ -12,12 +12,16 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
+#include <thread>
 
 #include "choices.h"
 #include "help.h"
 #include "interrupt.h"
 #include "manual.h"
 #include "mistakes.h"
+#include "rank_report.h"
+#include "ranks.h"
 #include "subvol/detail/printable.h"
 #include "subvol/detail/unfinished_files.h"
 #include "subvol/error.h"
@@ -58,8 +62,15 @@ int exit_code(ErrorCode code) {
     return kBadInput;
 }
 
+/// Of several processes that MPI started, one speaks for all.
+bool speaks() {
+    const auto rank = subvol::cli::rank_in_environment();
+    return !rank || rank->rank == 0;
+}
+
 /// Says what is wrong on standard error; with --json an object on standard output says it, too.
 int complain(const Error& error, int code, bool json) {
+    if (!speaks()) return code;
     subvol::cli::say_at_last([&] {
         std::cerr << "subvol: " << printable(error.what()) << '\n';
         if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
@@ -77,6 +88,48 @@ int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
         const std::string where = error.where().empty() ? input : input + ": " + error.where();
         throw Error(error.code(), error.message(), where, error.allowed());
     }
+}
+
+/// Runs a verb in all processes together: they end together, and if one fails, all fail with its error.
+int run_in_ranks(subvol::cli::Verb& verb, subvol::cli::Report& report, subvol::cli::Ranks& ranks) {
+    const auto fail = [&](const Error& error) {
+        if (!ranks.agreed()) ranks.agree(&error);
+    };
+    int code = 0;
+    try {
+        try {
+            code = run_naming_input(verb, report);
+            subvol::cli::report_ranks(ranks, report);
+        } catch (const Error& error) {
+            fail(error);
+            throw;
+        } catch (const std::bad_alloc&) {
+            fail(Error(ErrorCode::MissingCapability, "not enough memory for this; try a lower resolution or more processes"));
+            throw;
+        } catch (const std::exception& error) {
+            fail(Error(ErrorCode::InvalidInput, error.what()));
+            throw;
+        }
+    } catch (...) {
+        ranks.finish();
+        throw;
+    }
+    ranks.finish();
+    return code;
+}
+
+/// The options of a process whose words nobody shall read, because another one speaks.
+subvol::cli::CommonOptions silent(subvol::cli::CommonOptions options) {
+    options.json = false;
+    options.quiet = true;
+    options.progress = "off";
+    return options;
+}
+
+/// The number of threads if none was chosen: the cores of this computer, divided among the processes that MPI started on it.
+std::size_t default_threads(const std::optional<subvol::cli::RankInEnvironment>& rank) {
+    if (!rank) return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return std::max(1U, std::thread::hardware_concurrency() / static_cast<unsigned>(rank->on_host));
 }
 
 /// "help VERB" is "VERB --help", "help" alone "--help".
@@ -119,17 +172,23 @@ int run(CLI::App& program, std::vector<std::string> arguments) {
     }
     for (const auto& verb : verbs) {
         if (!verb->chosen()) continue;
+        const auto rank = subvol::cli::rank_in_environment();
+        if (rank && !verb->works_in_ranks()) {
+            throw Error(ErrorCode::InvalidInput, "is done by one process, not by several of MPI", verb->name(),
+                        "leave out mpirun; points, vdb, render and info work in ranks");
+        }
         const auto threads = static_cast<std::size_t>(verb->common().threads);
-        const tbb::global_control limit(
-            tbb::global_control::max_allowed_parallelism,
-            threads > 0 ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-        if (verb->common().json) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                        threads > 0 ? threads : default_threads(rank));
+        if (verb->common().json && speaks()) {
             subvol::cli::say_when_interrupted(
                 [](int code) { return subvol::cli::error_json(Error(ErrorCode::Cancelled, "cancelled"), code) + "\n"; });
         }
+        std::optional<subvol::cli::Ranks> ranks;
+        if (rank) verb->set_ranks(&ranks.emplace());
         subvol::cli::catch_interrupts();
-        subvol::cli::Report report(verb->common());
-        const int code = run_naming_input(*verb, report);
+        subvol::cli::Report report(speaks() ? verb->common() : silent(verb->common()));
+        const int code = ranks ? run_in_ranks(*verb, report, *ranks) : run_naming_input(*verb, report);
         report.finish();
         return code;
     }
@@ -167,7 +226,7 @@ int main(int argc, char** argv) {
     try {
         return run(program, arguments);
     } catch (const CLI::Success& wanted) {  // --help, --version
-        return program.exit(wanted);
+        return speaks() ? program.exit(wanted) : 0;
     } catch (const Error& error) {
         return complain(error, exit_code(error.code()), json);
     } catch (const std::bad_alloc&) {

@@ -32,7 +32,7 @@ model:NAME:RESOLUTION generate a mesh.
 An output file is complete or absent: it is written under a temporary name beside its place, and takes its name when it is done. What
 was there before stays if the command fails. A row of # in a name stands for the number of a frame.)"}}};
 
-const std::array<Chapter, 5> kLastChapters{
+const std::array<Chapter, 6> kLastChapters{
     {{"OUTPUT FOR PROGRAMS",
       R"(With --json a verb prints one JSON object on standard output, and nothing else there. Numbers are in SI or
 world units, seconds and bytes. warnings is a list of sentences; seconds has the time of each stage; peak_bytes is the most memory that
@@ -70,6 +70,14 @@ Take it to a renderer of films.
 grids minutes: draw a smaller --size first, or fewer --levels. The time of a grid grows with the number of its voxels, eightfold for
 twice the --resolution. Every level makes eight cells of one. The progress bar on a terminal estimates the time left; Ctrl-C ends the
 command within half a second and leaves no unfinished file.)"},
+     {"SHARES OF THE WORK",
+      R"(Of points, vdb, render and info, --part K/N does one of N shares, K from 1 to N, and writes it as a file of its own: for
+the array jobs of batch systems. join puts the files together; the result has the bits of one process. mpirun -n N subvol VERB does all
+shares at once, in builds with MPI; rank 0 writes the one output, and speaks for all.
+
+  subvol vdb part.vtu -o slab1.vdb --part 1/2
+  subvol vdb part.vtu -o slab2.vdb --part 2/2
+  subvol join slab1.vdb slab2.vdb -o part.vdb)"},
      {"ENVIRONMENT", R"(SOURCE_DATE_EPOCH = the date of this page, in seconds, where it is made.
 
 COLUMNS, LINES = not used: help is 80 columns wide.
@@ -78,6 +86,6 @@ TMPDIR = where a file that goes to a pipe or a device is made first.)"},
      {"SEE ALSO", R"(ffmpeg(1), for videos; paraview(1); blender(1).
 
 The documents of the sources: docs/pictures.md (looks and colours), docs/studies.md (error studies), docs/formats.md (files),
-docs/science.md (what is computed), docs/cookbook.md (other programs).)"}}};
+docs/science.md (what is computed), docs/cookbook.md (other programs), docs/shares.md (shares of the work).)"}}};
 
 }  // namespace subvol::cli

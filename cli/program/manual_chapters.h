@@ -14,6 +14,6 @@ struct Chapter {
 
 /// Before the verbs, and after them.
 extern const std::array<Chapter, 3> kFirstChapters;
-extern const std::array<Chapter, 5> kLastChapters;
+extern const std::array<Chapter, 6> kLastChapters;
 
 }  // namespace subvol::cli

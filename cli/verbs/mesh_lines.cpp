@@ -10,8 +10,6 @@
 namespace subvol::cli {
 namespace {
 
-constexpr std::size_t kCellsNamed = 8;
-
 std::string number(double value) {
     return text(std::setprecision(6), value);
 }
@@ -47,10 +45,14 @@ void add_fields(const ReadResult& read, Lines& lines) {
 }  // namespace
 
 std::string verdict(const HexMesh& mesh, const MeshReport& report) {
+    return verdict(report, report.inverted_cells > 0 ? inverted_cells(mesh, kCellsNamed) : std::vector<std::size_t>());
+}
+
+std::string verdict(const MeshReport& report, std::span<const std::size_t> inverted) {
     std::vector<std::string> faults;
     if (report.inverted_cells > 0) {
         std::vector<std::string> numbers;
-        for (const std::size_t c : inverted_cells(mesh, kCellsNamed)) numbers.push_back(std::to_string(c));
+        for (const std::size_t c : inverted) numbers.push_back(std::to_string(c));
         if (report.inverted_cells > kCellsNamed) numbers.emplace_back("…");
         faults.push_back(counted(report.inverted_cells, "cell") + " inverted: " + join(numbers));
     }
@@ -64,6 +66,13 @@ std::string verdict(const HexMesh& mesh, const MeshReport& report) {
 }
 
 std::string mesh_lines(const ReadResult& read, const MeshReport& mesh, const Json& seconds) {
+    return mesh_lines(read,
+                      {mesh, {}, mesh.inverted_cells > 0 ? inverted_cells(read.mesh, kCellsNamed) : std::vector<std::size_t>()},
+                      seconds);
+}
+
+std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds) {
+    const MeshReport& mesh = joined.counts;
     Lines lines;
     const std::size_t unused = mesh.points - mesh.points_used;
     lines.emplace_back("cells", count_text(mesh.cells));
@@ -85,7 +94,7 @@ std::string mesh_lines(const ReadResult& read, const MeshReport& mesh, const Jso
     for (const auto& [stage, value] : seconds.items()) stages.push_back(stage + " " + seconds_text(value.get<double>()));
     lines.emplace_back("time", join(stages));
     lines.emplace_back("memory", bytes_text(static_cast<double>(peak_memory_bytes())));
-    lines.emplace_back("verdict", verdict(read.mesh, mesh));
+    lines.emplace_back("verdict", verdict(mesh, joined.inverted));
     return aligned(lines);
 }
 

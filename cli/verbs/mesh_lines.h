@@ -4,6 +4,7 @@
 #include <string>
 
 #include "report.h"
+#include "subvol/detail/mesh_share.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
@@ -14,6 +15,15 @@ namespace subvol::cli {
 ///
 /// seconds: of each stage, as in the report
 [[nodiscard]] std::string mesh_lines(const ReadResult& read, const MeshReport& mesh, const Json& seconds);
+
+/// The same for all shares joined.
+[[nodiscard]] std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds);
+
+/// The number of inverted cells that a verdict names.
+inline constexpr std::size_t kCellsNamed = 8;
+
+/// inverted: the first cells that are
+[[nodiscard]] std::string verdict(const MeshReport& report, std::span<const std::size_t> inverted);
 
 /// "sound", or what is wrong, as "51 cells inverted: 3, 17, 20, …".
 [[nodiscard]] std::string verdict(const HexMesh& mesh, const MeshReport& report);

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "subvol/error.h"
+
 namespace subvol::cli {
 
 Verb::Verb(CLI::App& program, const std::string& name, const std::string& description, const std::string& examples, Reads reads)
@@ -15,6 +17,21 @@ void Verb::group(const std::string& heading, std::initializer_list<const char*> 
     for (const char* option : options) app_.get_option(option)->group(heading);
 }
 
+void Verb::refuse_shares_of_bricks(const ShareArgument& part, const std::string& bricks) const {
+    if (!shares(part)) return;
+    throw Error(ErrorCode::InvalidInput, "is a folder of bricks, whose work is not done in shares", bricks,
+                ranks_ != nullptr ? "one process, or a mesh in one file" : "no --part, or a mesh in one file");
+}
+
+Share Verb::share_of(const ShareArgument& part) const {
+    if (ranks_ == nullptr) return part.share();
+    if (part.given()) {
+        throw Error(ErrorCode::InvalidInput, "each process of MPI is a share already", "--part",
+                    "either mpirun, or --part without it");
+    }
+    return ranks_->share();
+}
+
 bool Verb::chosen() const {
     return app_.parsed();
 }
@@ -23,7 +40,7 @@ std::vector<std::unique_ptr<Verb>> make_verbs(CLI::App& program) {
     std::vector<std::unique_ptr<Verb>> verbs;
     for (auto make : {make_model_verb, make_info_verb, make_subdivide_verb, make_fit_verb, make_points_verb, make_vdb_verb,
                       make_render_verb, make_view_verb, make_page_verb, make_probe_verb, make_slice_verb, make_surface_verb,
-                      make_compare_verb, make_study_verb, make_demo_verb}) {
+                      make_split_verb, make_join_verb, make_compare_verb, make_study_verb, make_demo_verb}) {
         verbs.push_back(make(program));
     }
     return verbs;

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "common_options.h"
+#include "ranks.h"
 #include "report.h"
+#include "share.h"
 
 namespace CLI {
 class App;
@@ -33,11 +35,32 @@ public:
     /// The options that --help shows; --help-all shows all. None: all of the verb's own.
     [[nodiscard]] const std::vector<std::string>& essentials() const { return essentials_; }
 
+    /// Whether the verb can be done by several processes of MPI together.
+    [[nodiscard]] virtual bool works_in_ranks() const { return false; }
+    /// Before `run`: the other processes that do the verb. They must live as long as the verb runs.
+    void set_ranks(Ranks* ranks) { ranks_ = ranks; }
+
     /// returns: the exit code
     virtual int run(Report& report) = 0;
 
 protected:
     [[nodiscard]] CLI::App& app() { return app_; }
+
+    /// Null: this process is alone.
+    [[nodiscard]] Ranks* ranks() const { return ranks_; }
+
+    /// Whether this process writes what all do together, and speaks.
+    [[nodiscard]] bool speaks() const { return ranks_ == nullptr || ranks_->first(); }
+
+    /// Whether this process does one share of the work only.
+    [[nodiscard]] bool shares(const ShareArgument& part) const { return ranks_ != nullptr || part.given(); }
+    /// The share that --part or the rank says; else the whole.
+    ///
+    /// throws: Error(InvalidInput) if both do
+    [[nodiscard]] Share share_of(const ShareArgument& part) const;
+
+    /// throws: Error(InvalidInput) if a share is asked for of a folder of bricks, which are not divided yet
+    void refuse_shares_of_bricks(const ShareArgument& part, const std::string& bricks) const;
 
     void set_essentials(std::vector<std::string> options) { essentials_ = std::move(options); }
 
@@ -47,6 +70,7 @@ protected:
 private:
     CLI::App& app_;
     CommonOptions common_;
+    Ranks* ranks_ = nullptr;
     std::string name_;
     std::vector<std::string> essentials_;
 };
@@ -63,6 +87,8 @@ private:
 [[nodiscard]] std::unique_ptr<Verb> make_probe_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_slice_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_surface_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_split_verb(CLI::App& program);
+[[nodiscard]] std::unique_ptr<Verb> make_join_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_compare_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_study_verb(CLI::App& program);
 [[nodiscard]] std::unique_ptr<Verb> make_demo_verb(CLI::App& program);

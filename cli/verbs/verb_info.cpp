@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <iomanip>
 
+#include "bricks_input.h"
 #include "grid_input.h"
 #include "input.h"
+#include "mesh_figures.h"
 #include "mesh_lines.h"
+#include "part_note.h"
 #include "points_input.h"
+#include "share.h"
 #include "steps.h"
 #include "subvol/error.h"
+#include "subvol/join_grids.h"
 #include "subvol/mesh_report.h"
 #include "subvol/points_io.h"
 #include "subvol/splat.h"
@@ -35,27 +41,6 @@ Json to_json(const Box& box) {
     return Json::array({to_json(box.lower), to_json(box.upper)});
 }
 
-void put_mesh_report(Report& report, const MeshReport& mesh) {
-    Json valences = Json::object();
-    for (const auto& [valence, count] : mesh.interior_edge_valence) valences[std::to_string(valence)] = count;
-    report["points"] = mesh.points;
-    report["points_used"] = mesh.points_used;
-    report["cells"] = mesh.cells;
-    report["edges"] = mesh.edges;
-    report["faces"] = mesh.faces;
-    report["boundary_faces"] = mesh.boundary_faces;
-    report["interior_edges"] = mesh.interior_edges;
-    report["interior_edge_valence"] = valences;
-    report["singular_nodes"] = mesh.singular_nodes;
-    report["inverted_cells"] = mesh.inverted_cells;
-    report["degenerate_cells"] = mesh.degenerate_cells;
-    report["min_scaled_jacobian"] = mesh.min_scaled_jacobian;
-    report["nonmanifold_edges"] = mesh.nonmanifold_edges;
-    report["nonmanifold_faces"] = mesh.nonmanifold_faces;
-    report["volume"] = mesh.volume;
-    report["bounds"] = to_json(mesh.bounds);
-}
-
 class InfoVerb : public Verb {
 public:
     explicit InfoVerb(CLI::App& program)
@@ -71,13 +56,23 @@ public:
                         "print the values of a .vdb file's grids there, or of the one that --field names (repeatable)")
             ->type_name("X,Y,Z")
             ->allow_extra_args(false);
+        share_.add_to(app(), "the figures of some cells of a mesh, with --json");
     }
 
+    [[nodiscard]] bool works_in_ranks() const override { return true; }
+
     int run(Report& report) override {
+        if (shares(share_) && (list_fields_ || gl_ || input_.empty() || holds_points(input_) || is_vdb_file(input_))) {
+            throw Error(ErrorCode::InvalidInput, "only the figures of a mesh are found in shares",
+                        ranks() != nullptr ? "info in several processes" : "--part");
+        }
         if (list_fields_) return list_fields(report);
         if (gl_) describe_gl(report);
         if (input_.empty()) {
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
+        } else if (is_bricks_input(input_)) {
+            refuse_shares_of_bricks(share_, input_);
+            describe_bricks(report);
         } else if (holds_points(input_)) {
             describe_points(report);
         } else if (is_vdb_file(input_)) {
@@ -104,7 +99,9 @@ private:
             report["fields"].push_back({{"name", name}});
             report.say(name);
         };
-        if (holds_points(input_)) {
+        if (is_bricks_input(input_)) {
+            for (const BrickField& field : open_bricks_input(input_, app(), report).fields) list(field.name);
+        } else if (holds_points(input_)) {
             for (const RbfChannel& channel : read_points_input(input_, report).channels) list(channel.name);
         } else if (is_vdb_file(input_)) {
             for (const VdbGrid& grid : read_vdb(input_)) list(grid.report().name);
@@ -124,8 +121,15 @@ private:
         refuse_at("a mesh");
         const ReadResult read = read_input(input_, common(), report);
         if (!is_model(input_)) put_steps(read, report);
-        const MeshReport about = report.timed("inspect", [&] { return inspect(read.mesh); });
-        put_mesh_report(report, about);
+        detail::MeshShare about;
+        if (shares(share_)) {
+            about = share_of_mesh(read.mesh, report);
+            if (!speaks()) return;
+        } else {
+            about.counts = report.timed("inspect", [&] { return inspect(read.mesh); });
+            if (about.counts.inverted_cells > 0) about.inverted = inverted_cells(read.mesh, kCellsNamed);
+        }
+        put_mesh_report(report, about.counts);
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
             report["fields"].push_back({{"name", field.name},
@@ -134,12 +138,53 @@ private:
                                         {"min", field.min},
                                         {"max", field.max}});
         }
-        report["verdict"] = verdict(read.mesh, about);
+        if (!share_.given()) report["verdict"] = verdict(about.counts, about.inverted);
         if (gl_) return;  // the table has all
         std::string lines = mesh_lines(read, about, report.json().at("seconds"));
         lines.pop_back();
         report.say(lines);
         report.all_said();
+    }
+
+    void describe_bricks(Report& report) {
+        refuse_at("bricks");
+        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const MeshReport about = report.timed("inspect", [&] { return inspect(bricks, report.progress()); });
+        put_mesh_report(report, about);
+        report["halo_layers"] = bricks.halo_layers;
+        std::uint64_t bytes = 0;
+        for (const Brick& brick : bricks.bricks) bytes += brick.bytes;
+        report["bytes"] = bytes;
+        report["fields"] = Json::array();
+        for (const BrickField& field : bricks.fields) {
+            report["fields"].push_back({{"name", field.name},
+                                        {"location", "point"},
+                                        {"components", field.channels},
+                                        {"min", field.shortest},
+                                        {"max", field.longest}});
+        }
+    }
+
+    /// The figures of this process's share; those of all ranks, joined, at rank 0.
+    [[nodiscard]] detail::MeshShare share_of_mesh(const HexMesh& mesh, Report& report) {
+        const Share share = share_of(share_);
+        if (share_.given() && !common().json) {
+            throw Error(ErrorCode::InvalidInput, "the figures of a share are for `subvol join`, which reads JSON", "--part",
+                        "--json, and the output in a file");
+        }
+        detail::MeshShare own =
+            report.timed("inspect", [&] { return detail::inspect_share(mesh, share.part, share.of, kCellsNamed); });
+        if (ranks() == nullptr) {
+            report["part"] = share.name();
+            report["part_note"] = text_of(make_note(app(), input_, share));
+            report["part_figures"] = json_of(own);
+            return own;
+        }
+        std::vector<detail::MeshShare> all;
+        for (const std::string& bytes : ranks()->gather(json_of(own).dump())) {
+            all.push_back(mesh_share_from(Json::parse(bytes), "rank"));
+        }
+        return all.empty() ? own : detail::join_shares(all, kCellsNamed);
     }
 
     void put_steps(const ReadResult& read, Report& report) const {
@@ -177,7 +222,8 @@ private:
                                        {"bounds", to_json(about.bounds)},
                                        {"min", about.min},
                                        {"max", about.max},
-                                       {"bytes", about.bytes}});
+                                       {"bytes", about.bytes},
+                                       {"hash", text(std::hex, std::setw(16), std::setfill('0'), hash_of_grid(grid))}});
         }
         for (const auto& [name, type] : contents.others) report["grids"].push_back({{"name", name}, {"kind", type}});
         if (points_.empty()) return;
@@ -214,6 +260,7 @@ private:
     bool gl_ = false;
     bool list_fields_ = false;
     std::vector<std::string> points_;
+    ShareArgument share_;
 };
 
 }  // namespace

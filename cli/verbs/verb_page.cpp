@@ -11,7 +11,6 @@
 #include "sample_arguments.h"
 #include "sampled_points.h"
 #include "steps.h"
-#include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
@@ -214,11 +213,8 @@ private:
         if (solid) splat.shading = Shading{};
         Image image = report.timed("reference", [&] {
             Splatter splatter(step.volume, splat);
-            Image drawn = splatter.draw(views.front(), optics, report.progress()).image;
-            if (solid) {
-                color_boundary(drawn, step.boundary.surface, step.boundary.values.front(), views.front(), optics, Shading{}, 2);
-            }
-            return drawn;
+            if (solid) splatter.set_boundary_colors(step.boundary.surface, step.boundary.values.front());
+            return splatter.draw(views.front(), optics, report.progress()).image;
         });
         options.reference = std::move(image);
     }

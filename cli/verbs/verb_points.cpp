@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 
+#include "bricks_input.h"
 #include "choices.h"
 #include "grid_fields.h"
 #include "grid_input.h"
 #include "input.h"
 #include "outputs.h"
+#include "part_note.h"
 #include "picture_arguments.h"
 #include "points_input.h"
 #include "quantities.h"
+#include "rank_report.h"
 #include "sampled_points.h"
+#include "share.h"
 #include "steps.h"
 #include "subvol/clamp_channel.h"
+#include "subvol/detail/kernel_bytes.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_points.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -33,6 +40,7 @@ public:
                "  subvol points model:ball -o dense.ply --per-edge 2 --splats\n"
                "  subvol points run.exo -o 'run_####.ply' --step all\n"
                "  subvol points smoke.vdb -o smoke.ply --threshold 0   one kernel per voxel\n"
+               "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
@@ -50,6 +58,7 @@ public:
         app().add_flag("--error", error_,
                        "also write a channel NAME_error: about how far the sum of kernels is from the limit near each");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
+        share_.add_to(app(), "a range of the points in their order, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
                         "--reduce", "--levels", "--scheme"});
         group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
@@ -58,6 +67,8 @@ public:
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
 
+    [[nodiscard]] bool works_in_ranks() const override { return true; }
+
     int run(Report& report) override {
         check_output(output_, {".ply", ".vtp", ".vdb"});
         const std::string extension = std::filesystem::path(output_).extension().string();
@@ -65,16 +76,35 @@ public:
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
         check_choice("--up", up_, {"x", "y", "z"});
+        const Share share = share_of(share_);
         if (app().count("--up") > 0 && !splats_) {
             throw Error(ErrorCode::InvalidInput, "turns what viewers of splats read; all else keeps its place", "--up",
                         "--splats");
         }
+        tets_ = TetRefinement(refine_);
         report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
-        if (asks_for_steps(common())) {
-            write_steps(report);
+        if (is_bricks_input(input_)) {
+            refuse_shares_of_bricks(share_, input_);
+            write_bricks(report);
             return 0;
         }
-        const RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
+        if (asks_for_steps(common())) {
+            write_steps(share, report);
+            return 0;
+        }
+        if (share_.given() && extension == ".vdb") {
+            throw Error(ErrorCode::InvalidInput, "a share of points is not written as .vdb, which rounds their places", output_,
+                        ".ply or .vtp; `subvol join` writes .vdb");
+        }
+        RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
+        if (share_.given()) {
+            const auto [begin, end] = share.range(volume.size());
+            volume = detail::kernels_between(volume, begin, end);
+            report["points"] = volume.size();
+            report["part"] = share.name();
+            note_ = text_of(make_note(app(), input_, share, {{"ascii", ascii_}, {"splats", splats_}, {"up", up_}}));
+        }
+        if (ranks() != nullptr && !gather(volume, report)) return 0;
         write(output_, volume, report);
         report["output"] = output_;
         const bool inside = extension == ".ply" && !splats_;
@@ -88,15 +118,56 @@ private:
             if (path.ends_with(".vdb")) {
                 write_vdb_points(path, volume);
             } else {
-                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis()});
+                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis(), .note = note_});
             }
         });
     }
 
-    void write_steps(Report& report) {
+    /// Brick by brick into one file; the memory is that of a brick.
+    void write_bricks(Report& report) {
+        if (!output_.ends_with(".ply") || ascii_ || splats_) {
+            throw Error(ErrorCode::InvalidInput, "points of bricks are written as binary .ply only", output_,
+                        "-o NAME.ply without --ascii and --splats");
+        }
+        refuse_options(app(), {"--levels", "--threshold", "--tf", "--reduce", "--clamp", "--error"},
+                       "needs the whole mesh in memory; this is a folder of bricks");
+        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const StreamedField field = select_brick_field(bricks, common(), report);
+        const SampleOptions options = sample_.options(bricks.bounds, refine_.options(0, report));
+        const BrickPointsReport written = report.timed("sample", [&] {
+            return write_points_of_bricks(output_, bricks, options,
+                                          [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); });
+        });
+        note_beyond(report.json().at("field"), {field.min, field.max}, {written.min, written.max}, report);
+        report["points"] = written.points;
+        report["boundary_triangles"] = written.triangles;
+        report["output"] = output_;
+    }
+
+    /// Puts the shares of all ranks together at rank 0; false elsewhere.
+    bool gather(RbfVolume& volume, Report& report) const {
+        const auto [begin, end] = ranks()->share().range(volume.size());
+        const RbfVolume own = detail::kernels_between(volume, begin, end);
+        volume = {};
+        report.timed("gather", [&] {
+            for (const std::string& bytes : ranks()->gather(detail::bytes_of_kernels(own, /*with_boundary=*/true))) {
+                RbfVolume next = detail::kernels_from_bytes(bytes);
+                if (volume.channels.empty()) {
+                    volume = std::move(next);
+                } else {
+                    detail::append_kernels(volume, next);
+                }
+            }
+        });
+        return ranks()->first();
+    }
+
+    void write_steps(const Share& share, Report& report) {
         check_numbered(output_);
         const MeshSeries series = open_series(input_);
-        const FrameRange range = chosen_steps(series, common());
+        const FrameRange range = frames_of(share, chosen_steps(series, common()));
+        if (share_.given()) report["part"] = share.name();
+        report["frames"] = Json::array();
         for (int step = range.first; step <= range.last; ++step) {
             const std::string path = with_number(output_, step);
             write(path, points_of_mesh(of_step(common(), step), report), report);
@@ -105,15 +176,18 @@ private:
                                         {"points", report["points"]},
                                         {"output", path}});
         }
+        if (ranks() != nullptr) gather_list(*ranks(), report, "frames");
         report["input"] = input_;
         report["output"] = output_;
     }
 
     [[nodiscard]] RbfVolume points_of_mesh(const CommonOptions& options, Report& report) {
         HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report);
-        const HexMesh compared = error_ ? mesh : HexMesh{};
         const Range given = field_range(mesh);
-        RbfVolume volume = sample_reported(std::move(mesh), sample_, refine_, seen(given), report);
+        mesh = tets_.hexes(std::move(mesh), 1, report);
+        const HexMesh compared = error_ ? mesh : HexMesh{};
+        RbfVolume volume = tets_.asked() ? sample_tets_reported(mesh, sample_, seen(given), report)
+                                         : sample_reported(std::move(mesh), sample_, refine_, seen(given), report);
         if (clamp_) {
             report["clamped"] = clamp_channel(volume.channels.front(), given.min, given.max);
         } else {
@@ -156,8 +230,11 @@ private:
     bool ascii_ = false;
     bool splats_ = false, clamp_ = false, error_ = false;
     std::string up_ = "z", transfer_function_;
+    std::string note_;  // of a share
+    ShareArgument share_;
     SampleArguments sample_;
     RefineArguments refine_;
+    TetRefinement tets_;
 };
 
 }  // namespace

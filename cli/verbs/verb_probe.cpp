@@ -3,11 +3,13 @@
 #include <algorithm>
 
 #include "block_cells.h"
+#include "bricks_input.h"
 #include "input.h"
 #include "outputs.h"
 #include "places_input.h"
 #include "quantities.h"
 #include "refine_arguments.h"
+#include "subvol/brick_probe.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
@@ -74,6 +76,10 @@ public:
         const std::vector<Vec3> places = collect_places();
         check_outputs();
         const LimitOptions limit{.scheme = scheme_.options(0, report).scheme, .progress = report.progress()};
+        if (is_bricks_input(input_)) {
+            probe_the_bricks(places, limit, report);
+            return 0;
+        }
         ReadResult read = read_input(input_, common(), report);
         const HexMesh mesh = used_mesh(std::move(read.mesh), common());
         const HexMesh chosen = with_chosen_first(mesh, report);
@@ -124,9 +130,32 @@ private:
         return chosen;
     }
 
+    void probe_the_bricks(const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) {
+        refuse_options(app(), {"--stats"}, "needs the whole mesh in memory; this is a folder of bricks");
+        const Bricks bricks = open_bricks_input(input_, app(), report);
+        (void)select_brick_field(bricks, common(), report);
+        const ProbeResult found = report.timed("probe", [&] {
+            LimitOptions quiet = limit;
+            quiet.progress = nullptr;
+            const auto chosen_first = [&](HexMesh brick) {
+                const std::string first = report.json().at("field");
+                (void)std::ranges::stable_partition(brick.attributes,
+                                                    [&](const Attribute& field) { return field.name == first; });
+                if (brick.attributes.empty()) brick.attributes.push_back(select_field(brick, {}).scalar);
+                return brick;
+            };
+            return probe_bricks(bricks, places, {.limit = quiet}, chosen_first, report.progress());
+        });
+        show(found, places, report);
+        if (!output_.empty()) report["output"] = output_;
+    }
+
     void probe(const HexMesh& mesh, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) const {
         const auto probe = report.timed("prepare", [&] { return LimitProbe(mesh, {.limit = limit}); });
-        const ProbeResult found = report.timed("probe", [&] { return probe.at(places, report.progress()); });
+        show(report.timed("probe", [&] { return probe.at(places, report.progress()); }), places, report);
+    }
+
+    void show(const ProbeResult& found, const std::vector<Vec3>& places, Report& report) const {
         std::size_t inside = 0;
         for (std::size_t p = 0; p < places.size(); ++p) inside += found.inside(p) ? 1 : 0;
         report["places"] = places.size();

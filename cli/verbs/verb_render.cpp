@@ -4,24 +4,32 @@
 #include <functional>
 #include <utility>
 
+#include "bricks_input.h"
 #include "choices.h"
 #include "clip_arguments.h"
 #include "grid_input.h"
 #include "input.h"
+#include "part_note.h"
 #include "picture_arguments.h"
 #include "picture_output.h"
 #include "points_input.h"
+#include "rank_report.h"
+#include "ranked_splats.h"
 #include "reference_arguments.h"
 #include "reference_pictures.h"
 #include "sampled_points.h"
+#include "share.h"
 #include "splat_arguments.h"
 #include "steps.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/error.h"
 #include "subvol/progressive.h"
+#include "subvol/render_bricks.h"
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -73,10 +81,18 @@ public:
         sample_.add_to(app());
         refine_.add_to(app(), "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
         splat_.add_to(app());
+        app()
+            .add_option("--memory", memory_bytes_,
+                        "of bricks: what kernels take while a part of the picture is drawn (default 1G)")
+            ->type_name("BYTES")
+            ->transform(CLI::AsSizeValue(false));
+        share_.add_to(app(), "rows of the picture, or some of the frames");
         set_essentials({"--output", "--field", "--look", "--tf", "--opacity", "--background", "--size", "--view", "--views",
                         "--camera", "--turntable", "--legend", "--per-edge", "--method", "--levels", "--json"});
         set_groups();
     }
+
+    [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
@@ -86,17 +102,22 @@ public:
         options_.samples = reference_.samples;
         options_.clip = reference_.clip = clip_.clip();
         if (picture_.lit()) options_.shading = Shading{};
+        tets_ = TetRefinement(refine_);
         check_reference();
         picture_.check();
         report.if_long(method_ == "dense"  ? "--levels 2, a smaller --size, or --method splat"
                        : drawn_by_splats() ? "a smaller --size, a larger --spacing, or fewer --sheets"
                                            : "a smaller --size, fewer --samples, or --method splat");
-        if (asks_for_steps(common())) {
+        if (asks_for_steps(common()) && !is_bricks_input(input_)) {
             draw_steps(report);
             return 0;
         }
         PictureOutput output(output_, picture_.turntable_frames, picture_);
-        if (method_ == "grid") {
+        set_share(output, picture_.turntable_frames.has_value());
+        if (is_bricks_input(input_)) {
+            refuse_shares_of_bricks(share_, input_);
+            draw_bricks(output, report);
+        } else if (method_ == "grid") {
             draw_voxels(output, report);
         } else if (holds_points(input_)) {
             draw_points(output, report);
@@ -105,11 +126,32 @@ public:
         } else {
             draw_mesh(output, report);
         }
-        output.finish(report);
+        finish(output, report);
         return 0;
     }
 
 private:
+    /// Shares are of frames; of a single picture they are of rows, which only splats can be drawn in.
+    void set_share(PictureOutput& output, bool frames) {
+        if (!shares(share_)) return;
+        const Share share = share_of(share_);
+        if (!frames && (!drawn_by_splats() || splat_.seconds)) {
+            throw Error(ErrorCode::InvalidInput, "is not drawn in shares", splat_.seconds ? "--seconds" : "--method " + method_,
+                        "--method splat, or shares of frames: --turntable N, --step all");
+        }
+        by_rows_ = !frames;
+        if (ranks() == nullptr || frames) {
+            output.set_share(share, make_note(app(), input_, share));
+        } else if (!ranks()->first()) {
+            output.set_silent();
+        }
+    }
+
+    void finish(PictureOutput& output, Report& report) {
+        output.finish(report);
+        if (ranks() != nullptr && !by_rows_) gather_list(*ranks(), report, "outputs");
+    }
+
     void set_groups() {
         group("Camera", {"--size", "--camera", "--view", "--views", "--fit", "--ortho", "--turntable", "--fps"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
@@ -119,7 +161,7 @@ private:
                           "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
         group("Methods", {"--method", "--samples", "--seconds", "--backend", "--device", "--sheets", "--plain-sums",
-                          "--tolerance-image", "--order", "--kbuffer", "--lod"});
+                          "--tolerance-image", "--order", "--kbuffer", "--lod", "--memory", "--part"});
     }
 
     [[nodiscard]] bool drawn_by_splats() const { return method_ == "splat" || method_ == "sheets"; }
@@ -154,6 +196,7 @@ private:
 
     [[nodiscard]] HexMesh shown_mesh(const CommonOptions& options, Report& report) const {
         HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report, splat_.color_field);
+        mesh = tets_.hexes(std::move(mesh), drawn_by_splats() ? 1 : 2, report);
         check_coordinates(mesh);
         return mesh;
     }
@@ -169,6 +212,7 @@ private:
         const MeshSeries series = open_series(input_);
         const FrameRange steps = chosen_steps(series, common());
         PictureOutput output(output_, steps.count(), picture_, steps.first);
+        set_share(output, true);
         Box box;
         Range range, colors;
         std::string field_name, color_name;
@@ -186,6 +230,10 @@ private:
         const LegendOptions legend = picture_.legend_options({field_name, range}, {color_name, colors});
         std::vector<View> views;
         for (int step = steps.first; step <= steps.last; ++step) {
+            if (!output.wants_next()) {
+                output.skip();
+                continue;
+            }
             const HexMesh mesh = shown_mesh(of_step(common(), step), report);
             PictureNotes notes = make_notes(picture_, optics, legend, &mesh);
             if (views.empty()) views = picture_.make_views(box);
@@ -193,9 +241,9 @@ private:
             draw(mesh, views, optics, output, report);
         }
         output.set_notes({});  // the last mesh is gone
-        output.finish(report);
+        finish(output, report);
         report["times"] = std::vector(series.times.begin() + steps.first, series.times.begin() + steps.last + 1);
-        picture_.write_legend(optics, legend, report);
+        if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {
@@ -208,7 +256,7 @@ private:
         output.set_notes(make_notes(picture_, optics, legend, &mesh));
         draw(mesh, picture_.make_views(box, picture_.framed_points(mesh, optics)), optics, output, report);
         output.set_notes({});
-        picture_.write_legend(optics, legend, report);
+        if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
     void draw(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
@@ -230,8 +278,55 @@ private:
             // Shadows and occlusion are those of the kernels: the boundary's own colours have none.
             const bool own_light = splat_.shadows || splat_.ambient_occlusion > 0;
             if (!own_light && picture_.paints_boundary(app(), refine_)) skin = skin_of(mesh, report);
-            splat(sample_reported(mesh, sample_, refine_, optics.function(), report), views, optics, output, report, skin);
+            const RbfVolume volume = tets_.asked() ? sample_tets_reported(mesh, sample_, optics.function(), report)
+                                                   : sample_reported(mesh, sample_, refine_, optics.function(), report);
+            splat(volume, views, optics, output, report, skin);
         }
+    }
+
+    /// Each brick is sampled once for each view; its kernels wait in files until their part of the picture is drawn.
+    void draw_bricks(PictureOutput& output, Report& report) {
+        if (method_ != "splat") {
+            throw Error(ErrorCode::InvalidInput, "a folder of bricks can only be splatted", "--method " + method_, "splat");
+        }
+        refuse_options(app(), {"--levels", "--threshold", "--reduce", "--seconds", "--edges", "--color-field"},
+                       "needs the whole mesh in memory; this is a folder of bricks");
+        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const StreamedField field = select_brick_field(bricks, common(), report);
+        const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); };
+        const Range range{field.min, field.max};
+        const Optics optics = picture_.make_optics(bricks.bounds, range, range);
+        const std::string name = report.json().at("field");
+        const LegendOptions legend = picture_.legend_options({name, range}, {name, range});
+        output.set_notes(make_notes(picture_, optics, legend, nullptr));
+        std::vector<Vec3> framed;
+        if (picture_.look == Look::Solid) framed = report.timed("frame", [&] { return gather_hull(bricks).mesh.points; });
+        const std::vector<View> views = picture_.make_views(bricks.bounds, framed);
+        const RefineOptions refine = refine_.options(0, report);
+        BrickSplatOptions options{
+            .sample = sample_.options(bricks.bounds, refine), .splat = options_, .memory_bytes = memory_bytes_};
+        options.splat.color_channel.reset();
+        options.splat.progress = report.progress();
+        BoundaryValues skin;
+        if (picture_.paints_boundary(app(), refine_)) {
+            skin = report.timed("boundary", [&] { return boundary_values(bricks, fields, refine.scheme); });
+        }
+        Surface boundary = report.timed("boundary", [&] { return sample_bricks_boundary(bricks, options.sample); });
+        const auto draw = [&](const View& view, Progress*) {
+            SplatResult drawn = report.timed("draw", [&] {
+                return render_bricks(bricks, fields, views.size() > 1 ? boundary : std::move(boundary), view, optics, options);
+            });
+            report["method"] = method_;
+            report["points"] = drawn.report.points;
+            report_splats(drawn.report, report);
+            if (!skin.values.empty()) {
+                color_boundary(drawn.image, skin.surface, skin.values.back(), view, optics, Shading{}, reference_.samples,
+                               options_.clip);
+            }
+            return Picture{std::move(drawn.image), std::move(drawn.depth)};
+        };
+        output.write(views, draw, report);
+        picture_.write_legend(optics, legend, report);
     }
 
     using Draw = std::function<Picture(const View&, Progress*)>;
@@ -243,7 +338,7 @@ private:
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " lights the boundary only", "--look isosurface",
                         "use --method splat or sheets, or --tf isosurface for surfaces without light");
         }
-        const int levels = picture_levels(mesh, refine_.levels);
+        const int levels = picture_levels(mesh, tets_.asked() ? std::optional(0) : refine_.levels);
         RefineOptions options = refine_.options(levels, report);
         options.levels = levels;
         return report.timed("boundary", [&] { return boundary_values(mesh, options); });
@@ -290,7 +385,7 @@ private:
             return draw_grid(*voxels, view, optics, reference_, progress, report);
         };
         output.write(picture_.make_views(box), draw, report);
-        picture_.write_legend(optics, legend, report);
+        if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
     void splat_voxels(PictureOutput& output, Report& report) {
@@ -305,7 +400,7 @@ private:
         output.set_notes(make_notes(picture_, optics, legend, nullptr));
         const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
         splat(volume, picture_.make_views(box), optics, output, report);
-        picture_.write_legend(optics, legend, report);
+        if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
@@ -319,24 +414,52 @@ private:
         output.set_notes(make_notes(picture_, optics, legend, nullptr));
         const std::vector<View> views = picture_.make_views(volume.bounds);
         splat(volume, views, optics, output, report);
-        picture_.write_legend(optics, legend, report);
+        if (speaks()) picture_.write_legend(optics, legend, report);
+    }
+
+    /// One picture, of which this process draws its rows; the whole at rank 0.
+    [[nodiscard]] SplatResult draw_rows(const RbfVolume& volume, const BoundaryValues& skin, const View& view,
+                                        const Optics& optics, Progress* progress, Report& report) const {
+        SplatOptions options = options_;
+        const auto drawn_of = [&](const RbfVolume& band) {
+            Splatter splatter(band, options);
+            if (!skin.values.empty()) splatter.set_boundary_colors(skin.surface, skin.values.back());
+            return splatter.draw(view, optics, progress);
+        };
+        if (ranks() == nullptr) {
+            const RbfVolume band = kernels_of_rows(volume, share_of(share_), view, optics, options);
+            return drawn_of(band);
+        }
+        const auto [begin, end] = ranks()->share().range(volume.size());
+        RbfVolume own = detail::kernels_between(volume, begin, end);
+        own.boundary = volume.boundary;
+        ShippedKernels shipped;
+        const RbfVolume band = ship_kernels(own, view, optics, options, *ranks(), shipped);
+        std::vector<std::int64_t> counts{static_cast<std::int64_t>(shipped.kernels), static_cast<std::int64_t>(shipped.bytes)};
+        ranks()->sum(counts);
+        report["kernels_shipped"] = counts[0];
+        report["kernel_bytes_sent"] = counts[1];
+        SplatResult drawn = drawn_of(band);
+        drawn.report.points = volume.size();
+        return drawn;
     }
 
     /// skin: if it is not empty, the boundary of a solid, which gets its colours from it
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                Report& report, const BoundaryValues& skin = {}) const {
-        Splatter splatter(volume, options_);
+        std::optional<Splatter> splatter;
+        if (!by_rows_) {
+            splatter.emplace(volume, options_);
+            if (!skin.values.empty()) splatter->set_boundary_colors(skin.surface, skin.values.back());
+        }
         const auto draw = [&](const View& view, Progress* progress) {
-            SplatResult drawn = splatter.draw(view, optics, progress);
+            SplatResult drawn =
+                splatter ? splatter->draw(view, optics, progress) : draw_rows(volume, skin, view, optics, progress, report);
             report["method"] = method_;
             report_splats(drawn.report, report);
-            if (!skin.values.empty()) {
-                report.timed("colors", [&] {
-                    color_boundary(drawn.image, skin.surface, skin.values.back(), view, optics, Shading{}, reference_.samples,
-                                   options_.clip);
-                });
-            }
-            return Picture{std::move(drawn.image), std::move(drawn.depth)};
+            Picture picture{std::move(drawn.image), std::move(drawn.depth)};
+            if (by_rows_ && ranks() != nullptr) gather_rows(picture, *ranks());
+            return picture;
         };
         output.write(views, draw, report);
     }
@@ -360,6 +483,7 @@ private:
 
     std::string input_;
     std::string output_;
+    std::uint64_t memory_bytes_ = std::uint64_t{1} << 30;
     std::string method_ = "splat";
     PictureArguments picture_;
     ReferenceArguments reference_;
@@ -368,6 +492,9 @@ private:
     SplatArguments splat_;
     SplatOptions options_;
     RefineArguments refine_;
+    ShareArgument share_;
+    bool by_rows_ = false;  // this process draws some rows only
+    TetRefinement tets_;
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
 #include "subvol/overlay.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -67,7 +68,8 @@ public:
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");
-        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        const TetRefinement tets(scheme_);
+        const HexMesh mesh = tets.hexes(with_selected_field(load_mesh(input_, common(), report), common(), report), 2, report);
         const Vec3 center = bounds(mesh).center();
         if (plane.empty()) plane = {center.x, center.y, center.z, 0, 0, 1};
         const LimitSlice slice = report.timed("slice", [&] {

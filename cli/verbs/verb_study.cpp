@@ -8,14 +8,17 @@
 #include <iostream>
 #include <set>
 
+#include "child_process.h"
 #include "input.h"
 #include "kept_studies.h"
 #include "outputs.h"
 #include "quantities.h"
 #include "study_host.h"
+#include "study_input.h"
 #include "study_runner.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
+#include "subvol/mesh_io.h"
 #include "subvol/study.h"
 #include "subvol/study_report.h"
 #include "subvol/study_run.h"
@@ -30,6 +33,7 @@ namespace fs = std::filesystem;
 
 constexpr int kCaseFailed = 1;  // or a demand is not met
 constexpr double kLong_s = 10;
+constexpr const char* kPageBytes = "6e6";  // of a page beside the report
 
 /// A number that is not known becomes null.
 Json to_json(const StudyTable& table) {
@@ -67,6 +71,8 @@ public:
         auto* resume = app().add_flag(
             "--resume", resume_, "keep the cases that an earlier run of this version finished in the folder (the default)");
         app().add_flag("--fresh", fresh_, "run all cases again")->excludes(resume);
+        app().add_flag("--pages", pages_,
+                       "also a page for each input, on which it can be turned (as `page`); the report links to them");
         app().add_flag("--list", list_, "list the studies");
         app().add_option("--print", print_, "print a built-in study's file, as a start for your own")->type_name("NAME");
         app().add_option("--case", case_)->group("");  // how the verb runs its cases, each in a process of its own
@@ -163,7 +169,8 @@ private:
             report_results(all.back(), report);
         }
         const std::size_t unmet = report_demands(all, report);
-        write_page(std::move(all), report);
+        const ReportFacts pages = pages_ ? make_pages(studies, report) : ReportFacts{};
+        write_page(std::move(all), pages, report);
         return failed > 0 || unmet > 0 ? kCaseFailed : 0;
     }
 
@@ -185,8 +192,37 @@ private:
         return unmet;
     }
 
+    /// A page of each input, made by the verb `page` in a process of its own. returns: names and paths
+    [[nodiscard]] ReportFacts make_pages(const std::vector<Study>& studies, Report& report) const {
+        ReportFacts pages;
+        const fs::path folder = fs::path(output_) / "pages";
+        std::set<std::string> known;
+        for (const Study& study : studies) {
+            for (const StudyCase& of : study.cases) {
+                if (!of.has("input") || !(of.has("input.model") || of.has("input.file"))) continue;
+                const std::string name = plain_name(of.text("input"));
+                if (!known.insert(name).second) continue;
+                fs::create_directories(folder);
+                const fs::path mesh = folder / (name + ".vtu"), page = folder / (name + ".html");
+                (void)write_mesh(mesh, study_mesh(of));
+                const ChildResult made = report.timed("pages", [&] {
+                    return run_self(
+                        {"page", mesh.string(), "-o", page.string(), "--title", name, "--max-bytes", kPageBytes, "--quiet"});
+                });
+                fs::remove(mesh);
+                if (made.code != 0) {
+                    report.warn(text("no page of ", name, ": ", made.err.substr(0, made.err.find('\n'))));
+                    continue;
+                }
+                pages.emplace_back(of.text("input"), "pages/" + name + ".html");
+                report["pages"].push_back(page.string());
+            }
+        }
+        return pages;
+    }
+
     /// The page has what earlier runs left in the folder, too.
-    void write_page(std::vector<StudyResults> all, Report& report) const {
+    void write_page(std::vector<StudyResults> all, const ReportFacts& pages, Report& report) const {
         std::set<std::string> names, commands;
         std::string lines;
         const auto add_command = [&](const std::string& words) {
@@ -202,7 +238,7 @@ private:
         add_command(command(names_));
         std::ranges::move(all, std::back_inserter(shown));
         const fs::path page = fs::path(output_) / "report.html";
-        detail::write_text_file(page, report_html(shown, output_, {study_host(), study_versions(), lines}));
+        detail::write_text_file(page, report_html(shown, output_, {study_host(), study_versions(), lines, pages}));
         report["output"] = output_;
         report["report"] = page.string();
         report.say("\n" + text("The report is ", page.string()));
@@ -273,6 +309,7 @@ private:
     bool resume_ = true;
     bool fresh_ = false;
     bool list_ = false;
+    bool pages_ = false;
     std::string print_;
     std::string case_;
     std::string case_of_;

@@ -5,9 +5,12 @@
 #include "input.h"
 #include "outputs.h"
 #include "refine_arguments.h"
+#include "subvol/error.h"
 #include "subvol/field_range.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
+#include "subvol/mixed_file.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -26,12 +29,16 @@ public:
             ->type_name("FILE")
             ->required();
         refine_.add_to(app(), "number of refinements (default 1)");
-        app().add_flag("--on-limit", on_limit_,
-                       "move the refined points to the limit (cc and bsxw; those of the other schemes lie on it)");
+        app().add_flag("--on-limit", on_limit_, "move the refined points to the limit (those of mcq and linear lie on it)");
         app().add_flag("--clamp", clamp_, "keep values within the ranges of the fields: interpolating schemes overshoot");
     }
 
     int run(Report& report) override {
+        const TetRefinement tets(refine_);
+        if (tets.asked()) {
+            write_tets(tets, report);
+            return 0;
+        }
         const RefineOptions options = refine_.options(1, report);
         check_output(output_, {".vtu", ".mesh"});
         report.if_long("fewer --levels");
@@ -48,6 +55,18 @@ public:
     }
 
 private:
+    void write_tets(const TetRefinement& tets, Report& report) const {
+        if (clamp_) throw Error(ErrorCode::InvalidInput, "the schemes of tetrahedra do not overshoot as others do", "--clamp");
+        check_output(output_, {".vtu"});
+        report.if_long("fewer --levels");
+        const HexMesh mesh = load_mesh(input_, common(), report);
+        const MixedMesh fine = tets.refined(mesh, 1, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
+        report.timed("write", [&] { write_mixed_mesh(output_, fine); });
+        report["output"] = output_;
+        report["points"] = fine.points.size();
+        report["cells"] = fine.cells();
+    }
+
     void keep_in_range(const HexMesh& control, HexMesh& fine, Report& report) const {
         for (std::size_t f = 0; f < fine.attributes.size(); ++f) {
             const FieldRange given = range_of(control.attributes[f]);

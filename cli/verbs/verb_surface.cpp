@@ -9,6 +9,7 @@
 #include "refine_arguments.h"
 #include "subvol/error.h"
 #include "subvol/limit_surface.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -62,6 +63,7 @@ public:
             throw Error(ErrorCode::InvalidInput, ".stl has no colours", "--color-field", ".ply, .vtp, .obj, .glb");
         }
         report.if_long("a larger --tolerance");
+        const TetRefinement tets(scheme_);
         SurfaceOptions options{.scheme = scheme_.options(0, report).scheme,
                                .isos = isos_,
                                .boundary = boundary_ || isos_.empty(),
@@ -70,7 +72,7 @@ public:
                                .max_level = max_level_,
                                .improve = !keep_slivers_,
                                .progress = report.progress()};
-        const HexMesh mesh = load_mesh(input_, common(), report);
+        const HexMesh mesh = tets.hexes(load_mesh(input_, common(), report), 2, report);
         HexMesh chosen = with_selected_field(mesh, common(), report);
         const std::string field = chosen.attributes.front().name;
         for (const Attribute& attribute : mesh.attributes) {

@@ -3,20 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bricks_input.h"
+#include "bricks_vdb.h"
 #include "choices.h"
 #include "grid_fields.h"
 #include "input.h"
 #include "mesh_frames.h"
 #include "outputs.h"
+#include "part_note.h"
 #include "points_input.h"
 #include "quantities.h"
+#include "rank_report.h"
 #include "refine_arguments.h"
+#include "share.h"
 #include "steps.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/field_expression.h"
 #include "subvol/field_range.h"
 #include "subvol/grid_error.h"
+#include "subvol/join_grids.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_motion.h"
 #include "subvol/mesh_report.h"
@@ -26,7 +32,9 @@
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"
 #include "subvol/version.h"
+#include "tet_refinement.h"
 #include "text.h"
+#include "vdb_arguments.h"
 #include "vdb_output.h"
 #include "verb.h"
 #include "voxels_of_points.h"
@@ -36,17 +44,12 @@ namespace {
 
 constexpr double kBytesOfChannel = 5.5;     // a voxel's float in leaves that are not all full, with their masks
 constexpr double kMostCellsOfTables = 8e6;  // refined cells, about 200 bytes each
-constexpr const char* kDefaultLevelSet = "sdf";
 constexpr const char* kVelocity = "vel";
 // Velocities are written beyond the volume as far as it moves in this time: renderers open the shutter for a frame at most,
 // usually centred on the frame's time.
 constexpr double kShutter_frames = 0.5;
 // In voxels. With more, the grid of a volume 200 voxels wide would have more voxels outside the volume than inside.
 constexpr int kMostVelocityLayers = 64;
-
-VdbCompression compression_named(const std::string& name) {
-    return name == "zip" ? VdbCompression::Zip : name == "none" ? VdbCompression::None : VdbCompression::Blosc;
-}
 
 std::vector<std::string> names_of(const HexMesh& mesh) {
     std::vector<std::string> names;
@@ -66,42 +69,60 @@ public:
                "  subvol vdb run.pvd -o 'run_####.vdb' --step all --velocity\n"
                "  subvol vdb rest.vtu --to bent.vtu -o 'bend_##.vdb' --frames 24\n"
                "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
-               "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G") {
+               "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G\n"
+               "  subvol vdb big.vtu -o part2.vdb --part 2/4           a share, for join") {
         app().add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb)"))->required();
         app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
-        add_size_options();
+        asked_.add_sizes_to(app());
         refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the limit");
-        add_grid_options();
-        add_file_options();
-        add_frame_options();
+        asked_.add_grids_to(app());
+        asked_.add_files_to(app());
+        share_.add_to(app(), "a slab of the voxels, or some of the frames");
+        asked_.add_frames_to(app());
         set_essentials({"--output", "--resolution", "--voxel-size", "--fields", "--levels", "--sdf", "--half", "--frames",
                         "--to", "--velocity", "--memory", "--nano"});
         group("Voxels", {"--voxel-size", "--resolution", "--like", "--budget"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle", "--from", "--per-edge"});
         group("Grids", {"--fields", "--cell-ids", "--mask", "--coverage", "--error", "--sdf", "--half-width", "--half"});
-        group("Files", {"--compression", "--memory", "--nano"});
+        group("Files", {"--compression", "--memory", "--part", "--nano"});
         group("Sequences", {"--frames", "--to", "--velocity", "--fps"});
     }
 
+    [[nodiscard]] bool works_in_ranks() const override { return true; }
+
     int run(Report& report) override {
-        check_choice("--from", from_, {"mesh", "points"});
-        check_choice("--up", up_, {"z", "y"});
-        fields_wanted_ = parse_grid_fields(fields_);
-        for (const std::string& remap : remaps_) parsed_remaps_.push_back(parse_remap(remap));
-        if (output_.nano && !has_nanovdb()) {
+        if (const auto one = asked_.level_set()) output_.level_set = one->name;
+        check_choice("--from", asked_.from, {"mesh", "points"});
+        check_choice("--up", asked_.up, {"z", "y"});
+        fields_wanted_ = parse_grid_fields(asked_.fields);
+        tets_ = TetRefinement(refine_);
+        for (const std::string& remap : asked_.remaps) parsed_remaps_.push_back(parse_remap(remap));
+        if (asked_.nano && !has_nanovdb()) {
             throw Error(ErrorCode::MissingCapability, "this build has no NanoVDB", "--nano",
                         "configure again where libnanovdb-dev is installed");
         }
-        output_.compression = compression_named(compression_);
+        output_.memory_bytes = asked_.memory_bytes;
+        output_.nano = asked_.nano;
+        output_.compression = compression_named(asked_.compression);
         report.if_long("a lower --resolution, or --levels 1");
         check_output(output_.path, {".vdb"});
-        if (!like_.empty()) like_grids_ = read_vdb(like_);
-        if (asks_for_steps(common())) {
-            run_steps(report);
-        } else if (!frames_.empty() || !to_.empty() || has_number(input_)) {
-            run_frames(report);
+        const Share share = share_of(share_);
+        if (!asked_.like.empty()) like_grids_ = read_vdb(asked_.like);
+        if (is_bricks_input(input_)) {
+            refuse_shares_of_bricks(share_, input_);
+            run_bricks(report);
+        } else if (asks_for_steps(common())) {
+            run_steps(share, report);
+        } else if (!asked_.frames.empty() || !asked_.to.empty() || has_number(input_)) {
+            run_frames(share, report);
         } else if (holds_points(input_)) {
+            if (shares(share_)) {
+                throw Error(ErrorCode::InvalidInput, "works with a mesh only, not with points",
+                            ranks() != nullptr ? "vdb in several processes" : "--part");
+            }
             run_points(report);
+        } else if (shares(share_)) {
+            run_share(share, report);
         } else {
             run_one(report);
         }
@@ -109,123 +130,20 @@ public:
     }
 
 private:
-    void add_size_options() {
-        auto* size = app().add_option("--voxel-size", voxel_size_, "edge of a voxel in world units");
-        size->type_name("H")->check(CLI::PositiveNumber);
-        auto* resolution =
-            app().add_option("--resolution", resolution_, "voxels along the longest side of the bounding box (default 200)");
-        resolution->type_name("N")->check(CLI::Range(1, 1 << 20))->excludes(size);
-        auto* like = app().add_option("--like", like_, "use the transform of the first grid in this .vdb file");
-        like->type_name("FILE")->excludes(size)->excludes(resolution);
-        app()
-            .add_option("--budget", budget_bytes_, "choose voxels so that the grids take about this much memory, e.g. 500M")
-            ->type_name("BYTES")
-            ->transform(CLI::AsSizeValue(false))
-            ->excludes(size)
-            ->excludes(resolution)
-            ->excludes(like);
-    }
-
-    void add_grid_options() {
-        app()
-            .add_option(
-                "--fields", fields_,
-                "fields to write, the first as fog volume; a field with three components becomes a grid of vectors, "
-                "NAME.k is its component k. GRID=FIELD names the grid; GRID=EXPRESSION computes it from x, y, z and the "
-                "fields, e.g. \"heat=(Temp-293)/620,speed=length(V)\"")
-            ->type_name("A,B=C");
-        app()
-            .add_option(
-                "--remap", remaps_,
-                "values from LO to HI become 0 to 1, or A to B, what is beyond becomes the nearer of these; of the first "
-                "field or of GRID (repeatable)")
-            ->type_name("[GRID=]LO,HI[:A,B]")
-            ->allow_extra_args(false);
-        app().add_flag("--clamp", clamp_, "keep values within the range of the field: interpolating schemes overshoot");
-        app()
-            .add_option("--up", up_, "the axis that is up: z, or y as in most programs for pictures (default z)")
-            ->type_name("AXIS");
-        app().add_option("--scale", scale_, "multiply all coordinates by this")->type_name("S")->check(CLI::PositiveNumber);
-        app().add_flag("--cell-ids", cell_numbers_, "also write a grid: the number of the control cell");
-        app().add_flag("--mask", mask_, "also write a grid: a mask of the volume");
-        app().add_flag("--error", error_,
-                       "also write for each field a grid NAME_error: an upper bound of |value - limit| at each voxel");
-        app().add_flag("--coverage", coverage_, "also write a grid: the part of each voxel that the volume fills");
-        level_set_option_ =
-            app().add_option("--sdf", level_set_.name,
-                             "also write a level set, named NAME or sdf: the distance to the boundary, negative "
-                             "inside, in a narrow band");
-        level_set_option_->type_name("[NAME]")->expected(0, 1);
-        app()
-            .add_option("--half-width", level_set_.half_width_voxels, "the band's reach to either side, in voxels (default 3)")
-            ->type_name("N")
-            ->check(CLI::Range(1.0, 1000.0))
-            ->needs(level_set_option_);
-        app().add_flag("--half", half_, "store floats in 16 bits");
-        app()
-            .add_option(
-                "--from", from_,
-                "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; not needed "
-                "for a FILE of points (.ply, .vtp, .vdb)")
-            ->type_name("WHAT")
-            ->check(offered({"mesh", "points"}));
-        app()
-            .add_option("--per-edge", per_edge_, "with --from points: sample intervals per edge")
-            ->type_name("N")
-            ->check(CLI::Range(1, 64));
-    }
-
-    void add_file_options() {
-        app()
-            .add_option("--compression", compression_, "blosc (the default), zip, none")
-            ->type_name("NAME")
-            ->check(one_of({"blosc", "zip", "none"}));
-        app()
-            .add_option("--memory", output_.memory_bytes,
-                        "write parts whose grids take no more than this, e.g. 2G: NAME_0000.vdb and so on, and NAME.json, "
-                        "which lists them")
-            ->type_name("BYTES")
-            ->transform(CLI::AsSizeValue(false));
-        app().add_flag("--nano", output_.nano, "also write a NanoVDB file, NAME.nvdb; needs a build with NanoVDB");
-    }
-
-    void add_frame_options() {
-        app()
-            .add_option(
-                "--frames", frames_,
-                "a sequence: A-B, or N for 1-N. In FILE and --output a row of # is replaced by the number of the frame, "
-                "padded with zeros to that many digits")
-            ->type_name("A-B");
-        app()
-            .add_option("--to", to_,
-                        "a sequence from FILE to this mesh of the same cells: points and values are interpolated linearly")
-            ->type_name("FILE");
-        auto* velocity =
-            app().add_flag("--velocity", velocity_,
-                           "also write a grid of vectors, named vel: the velocity of the volume, in world units per frame; of "
-                           "steps per unit of their time");
-        app()
-            .add_option("--fps", frames_per_second_,
-                        "with --velocity: in world units per second, at this many frames per second")
-            ->type_name("F")
-            ->check(CLI::PositiveNumber)
-            ->needs(velocity);
-    }
-
     [[nodiscard]] HexMesh load(const std::string& input, Report& report) const {
-        HexMesh mesh = with_written_fields(load_mesh(input, common(), report), report);
+        HexMesh mesh = with_written_fields(tets_.hexes(load_mesh(input, common(), report), 2, report), report);
         for (const Remap& remap : parsed_remaps_) apply(remap, mesh);
-        if (up_ == "y") turn_y_up(mesh);
-        if (scale_ != 1) scale_points(mesh, scale_);
+        if (asked_.up == "y") turn_y_up(mesh);
+        if (asked_.scale != 1) scale_points(mesh, asked_.scale);
         return mesh;
     }
 
     void run_one(Report& report) {
-        if (velocity_) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
+        if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
         const HexMesh mesh = load(input_, report);
         const RasterizeOptions options = set_up(mesh, report);
         if (output_.memory_bytes > 0) {
-            if (error_) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
+            if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
             refuse_with_memory();
             write_parts(input_, mesh, names_of(mesh), options, output_, report,
                         [&](std::vector<VdbGrid>& grids) { clamp_grids(mesh, grids); });
@@ -234,12 +152,81 @@ private:
         std::vector<VdbGrid> grids = grids_of(mesh, options, report);
         if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
         note_overshoot(mesh, grids, report);
-        const auto errors = error_ ? add_errors(mesh, options, grids, report) : std::vector<GridErrorFigures>();
+        const auto errors = asked_.error ? add_errors(mesh, options, grids, report) : std::vector<GridErrorFigures>();
         write_reported(grids, output_, report);
         for (const auto& [grid, max, rms] : errors) {
             report["grids"][grid]["error_max"] = max;
             report["grids"][grid]["error_rms"] = rms;
         }
+    }
+
+    /// Block by block of voxels, each from the cells about it.
+    void run_bricks(Report& report) {
+        refuse_options(app(),
+                       {"--budget", "--remap", "--clamp", "--up", "--scale", "--cell-ids", "--error", "--coverage", "--sdf",
+                        "--from", "--nano", "--frames", "--to", "--velocity"},
+                       "needs the whole mesh in memory; this is a folder of bricks");
+        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const Vec3 size = bricks.bounds.size();
+        RasterizeOptions options = options_of_grids(report);
+        options.voxel_size_world = !like_grids_.empty()    ? like_grids_.front().report().voxel_size_world
+                                   : asked_.voxel_size > 0 ? asked_.voxel_size
+                                                           : std::max({size.x, size.y, size.z}) / asked_.resolution;
+        options.refine = refine_.options(0, report);
+        options.on_limit = !interpolates(options.refine.scheme.kind);
+        options.metadata.emplace_back("subvol_scheme", refine_.scheme);
+        std::vector<StreamedField> fields;
+        for (const auto& [name, source] : fields_wanted_) {
+            if (name != source)
+                throw Error(ErrorCode::InvalidInput, "of bricks, fields are written as they are", "--fields", source);
+            fields.push_back(named_brick_field(bricks, name, true));
+        }
+        if (fields.empty()) fields.push_back(select_brick_field(bricks, common(), report));
+        write_bricks_vdb({bricks, fields, options, !refine_.levels.has_value()}, output_, report);
+    }
+
+    /// One slab of the voxels, as a file of its own.
+    void run_share(const Share& share, Report& report) {
+        refuse_options(app(), {"--velocity", "--error", "--memory", "--nano"},
+                       ranks() != nullptr ? "does not work in several processes of MPI" : "does not work with --part");
+        if (asked_.from == "points") throw Error(ErrorCode::InvalidInput, "is not done in shares", "--from points");
+        const HexMesh mesh = load(input_, report);
+        const RasterizeOptions options = set_up(mesh, report);
+        std::vector<VdbGrid> grids =
+            report.timed("rasterize", [&] { return rasterize_share(mesh, names_of(mesh), options, share.part, share.of); });
+        clamp_grids(mesh, grids);
+        for (VdbGrid& grid : grids) store_in_half(grid, false);  // whoever has all voxels rounds them
+        if (ranks() != nullptr) {
+            grids = gathered(std::move(grids), report);
+            if (!ranks()->first()) return;
+            if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
+            note_overshoot(mesh, grids, report);
+            write_reported(grids, output_, report);
+            return;
+        }
+        const std::string note =
+            text_of(make_note(app(), input_, share, {{"half", asked_.half}, {"compression", asked_.compression}}));
+        for (VdbGrid& grid : grids) set_text_of_grid(grid, kPartNote, note);
+        report["part"] = share.name();
+        write_share(grids, output_, report);
+    }
+
+    /// The grids of all ranks, joined, at rank 0; nothing elsewhere.
+    std::vector<VdbGrid> gathered(std::vector<VdbGrid> own, Report& report) const {
+        return report.timed("gather", [&] {
+            const std::string bytes = detail::bytes_of_grids(own);
+            own.clear();
+            std::vector<std::vector<VdbGrid>> of_ranks;
+            for (const std::string& one : ranks()->gather(bytes)) of_ranks.push_back(detail::grids_from_bytes(one));
+            std::vector<VdbGrid> joined;
+            for (std::size_t g = 0; !of_ranks.empty() && g < of_ranks.front().size(); ++g) {
+                std::vector<VdbGrid> parts;
+                for (std::vector<VdbGrid>& grids : of_ranks) parts.push_back(std::move(grids.at(g)));
+                joined.push_back(join_grids(std::move(parts)));
+                store_in_half(joined.back(), asked_.half);
+            }
+            return joined;
+        });
     }
 
     struct GridErrorFigures {
@@ -258,7 +245,7 @@ private:
             if (field == nullptr || field->channels != 1) continue;
             GridError error = report.timed("error", [&] {
                 return grid_error(grids[g], mesh, field->name,
-                                  {.scheme = options.refine.scheme, .half = half_, .progress = report.progress()});
+                                  {.scheme = options.refine.scheme, .half = asked_.half, .progress = report.progress()});
             });
             figures.push_back({g, error.max, error.rms});
             outside = std::max(outside, error.outside);
@@ -271,13 +258,13 @@ private:
     }
 
     void run_points(Report& report) {
-        if (error_) throw Error(ErrorCode::InvalidInput, "needs a mesh; these are points", "--error");
-        if (velocity_) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
-        from_ = "points";
+        if (asked_.error) throw Error(ErrorCode::InvalidInput, "needs a mesh; these are points", "--error");
+        if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
+        asked_.from = "points";
         RasterizeOptions options = options_of_grids(report);
-        options.voxel_size_world = voxel_size_;
-        options.resolution = resolution_;
-        options.level_set = level_set();
+        options.voxel_size_world = asked_.voxel_size;
+        options.resolution = asked_.resolution;
+        options.level_set = asked_.level_set();
         refuse_options(app(), {"--remap", "--clamp", "--up", "--scale"}, "needs a mesh; these are points");
         std::vector<std::string> names;
         for (const GridField& field : fields_wanted_) {
@@ -294,20 +281,21 @@ private:
         write_reported(grids, output_, report);
     }
 
-    void run_frames(Report& report) {
-        if (error_) throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--error");
+    void run_frames(const Share& share, Report& report) {
+        if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--error");
         check_frame_names();
-        const FrameRange range = parse_frames(frames_);
-        if (to_.empty()) check_frames(input_, range);
-        MeshFrames frames(input_, to_.empty() ? std::nullopt : std::optional(to_), range,
+        const FrameRange range = parse_frames(asked_.frames);
+        if (asked_.to.empty()) check_frames(input_, range);
+        MeshFrames frames(input_, asked_.to.empty() ? std::nullopt : std::optional(asked_.to), range,
                           [&](const std::string& name) { return load(name, report); });
-        write_frames(range, frames, {}, report);
+        write_frames(share, range, frames, {}, report);
     }
 
-    void run_steps(Report& report) {
-        if (error_) throw Error(ErrorCode::InvalidInput, "works with one step only", "--error", "--step N");
-        if (!frames_.empty() || !to_.empty()) {
-            throw Error(ErrorCode::InvalidInput, "a series has steps", frames_.empty() ? "--to" : "--frames", "--step A-B");
+    void run_steps(const Share& share, Report& report) {
+        if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one step only", "--error", "--step N");
+        if (!asked_.frames.empty() || !asked_.to.empty()) {
+            throw Error(ErrorCode::InvalidInput, "a series has steps", asked_.frames.empty() ? "--to" : "--frames",
+                        "--step A-B");
         }
         if (app().count("--fps") > 0) {
             throw Error(ErrorCode::InvalidInput, "the velocity of steps follows from their times", "--fps");
@@ -316,17 +304,21 @@ private:
         const MeshSeries series = open_series(input_);
         const FrameRange range = chosen_steps(series, common());
         MeshFrames frames(range, series.times, [&](int step) {
-            return with_written_fields(load_mesh(input_, of_step(common(), step), report), report);
+            return with_written_fields(tets_.hexes(load_mesh(input_, of_step(common(), step), report), 2, report), report);
         });
-        report["times"] = std::vector(series.times.begin() + range.first, series.times.begin() + range.last + 1);
-        write_frames(range, frames, series.times, report);
+        const FrameRange own = frames_of(share, range);
+        report["times"] = std::vector(series.times.begin() + own.first, series.times.begin() + own.last + 1);
+        write_frames(share, range, frames, series.times, report);
     }
 
     /// The first frame determines the voxel size and the level of all frames. times: of the steps of a series; else empty
-    void write_frames(const FrameRange& range, MeshFrames& frames, const std::vector<double>& times, Report& report) {
+    void write_frames(const Share& share, const FrameRange& all, MeshFrames& frames, const std::vector<double>& times,
+                      Report& report) {
         if (output_.memory_bytes > 0)
             throw Error(ErrorCode::InvalidInput, "works with one mesh only, not with frames", "--memory");
-        const HexMesh first = frames.mesh(range.first);
+        const FrameRange range = frames_of(share, all);
+        if (share_.given()) report["part"] = share.name();
+        const HexMesh first = frames.mesh(all.first);
         RasterizeOptions options = set_up(first, report);
         const auto metadata = options.metadata;
         std::optional<RefinementTables> tables;
@@ -336,6 +328,7 @@ private:
             tables = report.timed("tables", [&] { return rasterization_tables(first, options); });
         }
         std::size_t active_voxels = 0;
+        report["frames"] = Json::array();
         for (int frame = range.first; frame <= range.last; ++frame) {
             report.begin_part(text("frame ", frame - range.first + 1, " of ", range.count()),
                               static_cast<std::size_t>(frame - range.first), static_cast<std::size_t>(range.count()));
@@ -348,11 +341,11 @@ private:
                 options.metadata.emplace_back("subvol_step", std::to_string(frame));
                 options.metadata.emplace_back("subvol_time", detail::number_text(times[step], 12));
                 const std::size_t other = step == 0 ? 1 : step - 1;
-                if (velocity_) frames_per_second_ = 1 / std::abs(times[step] - times.at(other));
+                if (asked_.velocity) asked_.frames_per_second = 1 / std::abs(times[step] - times.at(other));
             }
-            if (velocity_) add_velocity(frames.velocity(frame), mesh, times.empty() ? frames_per_second_ : 1);
+            if (asked_.velocity) add_velocity(frames.velocity(frame), mesh, times.empty() ? asked_.frames_per_second : 1);
             LimitCells of_frame;  // with tables the first limit serves all meshes with the same cells
-            if (options.limit && !options.tables && (velocity_ || frame > range.first)) {
+            if (options.limit && !options.tables && (asked_.velocity || frame > all.first)) {
                 of_frame = find_limit(mesh, options.refine, options.voxel_size_world, report);
                 options.limit = &of_frame;
             } else if (options.limit) {
@@ -361,7 +354,7 @@ private:
             VdbOutput output = output_;
             output.path = with_number(output_.path, frame);
             std::vector<VdbGrid> grids = grids_of(mesh, options, report);
-            if (velocity_) spread_velocity(frame, grids, report);
+            if (asked_.velocity) spread_velocity(frame, grids, report);
             report["voxel_size"] = grids.front().report().voxel_size_world;
             report["active_voxels"] = active_voxels += grids.front().report().active_voxels;
             if (!has_voxels(grids)) {
@@ -369,18 +362,19 @@ private:
             }
             write_frame(frame, grids, output, report);
         }
+        if (ranks() != nullptr) gather_list(*ranks(), report, "frames");
         report["input"] = input_;
         report["output"] = output_.path;
     }
 
     void check_frame_names() const {
-        if (frames_.empty()) throw Error(ErrorCode::InvalidInput, "is needed for a sequence", "--frames", "1-10");
+        if (asked_.frames.empty()) throw Error(ErrorCode::InvalidInput, "is needed for a sequence", "--frames", "1-10");
         if (!has_number(output_.path)) {
             throw Error(ErrorCode::InvalidInput, "has no # for the number of the frame", output_.path, "out_####.vdb");
         }
-        if (to_.empty() != has_number(input_)) {
+        if (asked_.to.empty() != has_number(input_)) {
             throw Error(ErrorCode::InvalidInput,
-                        to_.empty() ? "has no # for the number of the frame" : "has a # for a number, but --to is given",
+                        asked_.to.empty() ? "has no # for the number of the frame" : "has a # for a number, but --to is given",
                         input_, "in_####.vtu, or one mesh and --to another");
         }
     }
@@ -398,7 +392,7 @@ private:
         const auto velocity = std::ranges::find(grids, kVelocity, [](const VdbGrid& grid) { return grid.report().name; });
         if (velocity == grids.end() || velocity->report().kind != "vector" || velocity->report().max == 0) return;
         const GridReport& about = velocity->report();
-        const double way_voxels = kShutter_frames * about.max / frames_per_second_ / about.voxel_size_world;
+        const double way_voxels = kShutter_frames * about.max / asked_.frames_per_second / about.voxel_size_world;
         if (way_voxels > kMostVelocityLayers) {
             report.warn(text("frame ", frame, ": in half a frame something moves by ", way_voxels,
                              " voxels; the velocities reach ", kMostVelocityLayers,
@@ -425,12 +419,12 @@ private:
         options.refine = refinement;
         options.on_limit = !interpolates(refinement.scheme.kind);
         options.limit = refine_.levels ? nullptr : &limit_;
-        options.level_set = level_set();
+        options.level_set = asked_.level_set();
         if (options.level_set && mesh.find_attribute(options.level_set->name)) {
             throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
                         "--sdf with another name");
         }
-        options.metadata.emplace_back("subvol_scheme", refine_.scheme);
+        options.metadata.emplace_back("subvol_scheme", tets_.asked() ? tets_.name() : refine_.scheme);
         options.metadata.emplace_back("subvol_level", std::to_string(levels));
         return options;
     }
@@ -438,24 +432,17 @@ private:
     /// The options that do not depend on the mesh.
     [[nodiscard]] RasterizeOptions options_of_grids(Report& report) const {
         return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
-                .half = half_,
-                .cell_numbers = cell_numbers_,
-                .mask = mask_,
-                .coverage = coverage_,
-                .metadata = {{"subvol_input", input_}, {"subvol_from", from_}, {"subvol_version", SUBVOL_VERSION}},
+                .half = asked_.half,
+                .cell_numbers = asked_.cell_numbers,
+                .mask = asked_.mask,
+                .coverage = asked_.coverage,
+                .metadata = {{"subvol_input", input_}, {"subvol_from", asked_.from}, {"subvol_version", SUBVOL_VERSION}},
                 .progress = report.progress()};
     }
 
-    [[nodiscard]] std::optional<LevelSetOptions> level_set() const {
-        if (level_set_option_->count() == 0) return std::nullopt;
-        LevelSetOptions options = level_set_;
-        if (options.name.empty()) options.name = kDefaultLevelSet;
-        return options;
-    }
-
     [[nodiscard]] std::vector<VdbGrid> grids_of(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const {
-        std::vector<VdbGrid> grids = from_ == "points"
-                                         ? kernel_sums(mesh, options, per_edge_, report)
+        std::vector<VdbGrid> grids = asked_.from == "points"
+                                         ? kernel_sums(mesh, options, asked_.per_edge, report)
                                          : report.timed("rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
         clamp_grids(mesh, grids);
         return grids;
@@ -466,7 +453,7 @@ private:
         for (VdbGrid& grid : grids) {
             const Attribute* field = mesh.find_attribute(grid.report().name);
             if (field == nullptr || field->name == kVelocity) continue;
-            if (clamp_) clamp_voxels(grid, range_of(*field));
+            if (asked_.clamp) clamp_voxels(grid, range_of(*field));
             for (const Remap& remap : parsed_remaps_) {
                 if (remap.grid.empty() ? field == &mesh.attributes.front() : remap.grid == field->name)
                     clamp_voxels(grid, {{std::min(remap.to_low, remap.to_high)}, {std::max(remap.to_low, remap.to_high)}});
@@ -477,7 +464,7 @@ private:
     void note_overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, Report& report) const {
         for (const VdbGrid& grid : grids) {
             const Attribute* field = mesh.find_attribute(grid.report().name);
-            if (field == nullptr || field->channels != 1 || clamp_) continue;
+            if (field == nullptr || field->channels != 1 || asked_.clamp) continue;
             const bool mapped = std::ranges::any_of(parsed_remaps_, [&](const Remap& remap) {
                 return remap.grid.empty() ? field == &mesh.attributes.front() : remap.grid == field->name;
             });
@@ -488,7 +475,7 @@ private:
     }
 
     void refuse_with_memory() const {
-        if (from_ == "points") throw Error(ErrorCode::InvalidInput, "works with a mesh only", "--memory");
+        if (asked_.from == "points") throw Error(ErrorCode::InvalidInput, "works with a mesh only", "--memory");
         if (output_.nano) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--nano");
     }
 
@@ -513,15 +500,15 @@ private:
     }
 
     [[nodiscard]] double voxel_size_world(const HexMesh& mesh) const {
-        if (voxel_size_ > 0) return voxel_size_;
-        if (budget_bytes_ > 0) {
-            double channels = cell_numbers_ ? 1 : 0;
+        if (asked_.voxel_size > 0) return asked_.voxel_size;
+        if (asked_.budget_bytes > 0) {
+            double channels = asked_.cell_numbers ? 1 : 0;
             for (const Attribute& attribute : mesh.attributes) channels += attribute.channels;
             return std::cbrt(std::abs(measure_cells(mesh).volume) * kBytesOfChannel * channels /
-                             static_cast<double>(budget_bytes_));
+                             static_cast<double>(asked_.budget_bytes));
         }
         const Vec3 size = bounds(mesh).size();
-        return std::max({size.x, size.y, size.z}) / resolution_;
+        return std::max({size.x, size.y, size.z}) / asked_.resolution;
     }
 
     /// The report's "levels" is the finest level, its "cells" the number of curved pieces, 27 vertices each.
@@ -541,28 +528,15 @@ private:
     }
 
     std::string input_;
+    VdbArguments asked_;
     VdbOutput output_;
-    double voxel_size_ = 0;
-    int resolution_ = 200;
-    std::uint64_t budget_bytes_ = 0;
-    std::string like_;
     std::vector<VdbGrid> like_grids_;
-    std::vector<std::string> fields_, remaps_;
     std::vector<GridField> fields_wanted_;
     std::vector<Remap> parsed_remaps_;
-    bool clamp_ = false;
-    std::string up_ = "z";
-    double scale_ = 1;
-    bool half_ = false, cell_numbers_ = false, mask_ = false, coverage_ = false, error_ = false;
-    LevelSetOptions level_set_{.name = {}};
-    CLI::Option* level_set_option_ = nullptr;
-    std::string from_ = "mesh", compression_ = "blosc";
-    int per_edge_ = 1;
-    std::string frames_, to_;
-    bool velocity_ = false;
-    double frames_per_second_ = 1;
     LimitCells limit_;
     RefineArguments refine_;
+    ShareArgument share_;
+    TetRefinement tets_;
 };
 
 }  // namespace

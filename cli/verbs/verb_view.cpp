@@ -16,6 +16,7 @@
 #include "picture_arguments.h"
 #include "points_input.h"
 #include "sample_arguments.h"
+#include "sampled_points.h"
 #include "splat_arguments.h"
 #include "steps.h"
 #include "subvol/error.h"
@@ -57,15 +58,17 @@ public:
                "  subvol view part.vtk\n"
                "  subvol view run.pvd --field T --tf coolwarm\n"
                "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
-        app().add_option("FILE", input_, input_help())->required();
+        app()
+            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
+            ->required();
         app().add_option("--script", script_, "play these actions, then quit; without a window")->type_name("FILE.json");
         app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");
         app().add_flag("--window", window_, "play the --script in the window; --screenshot is then of the whole window");
         app().add_option("--state", saved_, "begin with a state that a session has saved")->type_name("FILE.json");
         app()
-            .add_option("--method", method_, "splat (the default), sheets, tets or dense, as of render")
+            .add_option("--method", method_, "splat (the default), sheets, tets, pt, dense or grid, as of render")
             ->type_name("NAME")
-            ->check(offered({"splat", "sheets", "tets", "dense"}));
+            ->check(offered({"splat", "sheets", "tets", "pt", "dense", "grid"}));
         picture_.add_to(app());
         app()
             .add_option("--samples", samples_, "n x n rays for each pixel (default: 2 for solids, else 1)")
@@ -88,25 +91,49 @@ public:
     }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "sheets", "tets", "dense"});
-        picture_.settle_look(true);
+        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
+        const bool voxels = !holds_points(input_) && is_vdb_file(input_);
+        const bool points = voxels || holds_points(input_);
+        picture_.settle_look(!points);
         picture_.check();
         const SplatOptions splat = splat_.options(method_ == "sheets");
         if (!screenshot_.empty()) check_output(screenshot_, {".png", ".exr"});
         const bool headless = !window_ && (!script_.empty() || !screenshot_.empty());
         const std::string script = script_.empty() ? "[]" : text_of(script_);
-        if (holds_points(input_) || is_vdb_file(input_)) {
-            throw Error(ErrorCode::InvalidInput, "holds points or voxels; a session needs a mesh", input_, "use render");
-        }
-        play(script, splat, headless, report);
+        ViewSource from = source(report);
+        if (points) from.points = voxels ? voxels_of_file(report) : points_of_file(report);
+        play(std::move(from), script, splat, headless, report);
         return 0;
     }
 
 private:
-    void play(const std::string& script, const SplatOptions& splat, bool headless, Report& report) {
-        HexMesh mesh = load_mesh(input_, common(), report);
-        const std::optional<std::string> field = common().density ? std::optional<std::string>("density") : common().field;
-        const ViewBody body = view_body(mesh, field);
+    [[nodiscard]] ViewPoints points_of_file(Report& report) {
+        const auto volume = std::make_shared<const RbfVolume>(load_all_points(input_, app(), report));
+        if (common().field) (void)find_channel(*volume, *common().field, input_);
+        return {.volume = volume, .box = volume->bounds};
+    }
+
+    [[nodiscard]] ViewPoints voxels_of_file(Report& report) {
+        const VdbGrid grid = load_grid(input_, common(), report);
+        RbfVolume volume = sample_reported(grid, sample_, std::nullopt, app(), report);
+        volume.channels.front().name = grid.report().name;
+        return {.volume = std::make_shared<const RbfVolume>(std::move(volume)),
+                .voxels = grid.voxels(),
+                .box = box_of(grid.report()),
+                .range = ValueRange{grid.report().min, grid.report().max}};
+    }
+
+    void play(ViewSource from, const std::string& script, const SplatOptions& splat, bool headless, Report& report) {
+        const bool points = from.points.volume != nullptr;
+        HexMesh mesh = points ? mesh_of_points(*from.points.volume) : load_mesh(input_, common(), report);
+        std::optional<std::string> field = common().density ? std::optional<std::string>("density") : common().field;
+        if (points && !field) field = from.points.volume->channels.front().name;
+        const ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
+        const auto methods = methods_of(body);
+        if (std::ranges::find(methods, method_) == methods.end()) {
+            throw Error(ErrorCode::InvalidInput, points ? "points and voxels have no cells" : "a mesh has no voxels",
+                        "--method " + method_, join(methods));
+        }
         report["field"] = body.field();
         DrawSettings settings{.sample = sample_.options(body.box, refine_.options(0, report)),
                               .levels = refine_.levels,
@@ -114,7 +141,7 @@ private:
                               .painted = picture_.look != Look::Solid || picture_.paints_boundary(app(), refine_)};
         settings.sample.progress = nullptr;
         if (samples_ > 0) settings.samples = samples_;
-        ViewSession session(source(report), std::move(mesh), start_state(body, field), settings);
+        ViewSession session(std::move(from), std::move(mesh), start_state(body, field), settings);
         if (!saved_.empty()) session.run(Json{{"load_state", saved_}}.dump());
         if (!headless) {
             open_window(session, script);
@@ -161,9 +188,12 @@ private:
     /// What `render` would show: the same camera, colours and light.
     [[nodiscard]] ViewState start_state(const ViewBody& body, const std::optional<std::string>& field) const {
         const Optics optics = picture_.make_optics(body.box, body.range, body.range);
-        const View view = picture_.make_views(body.box, picture_.framed_points(body.mesh, optics)).front();
+        const std::vector<Vec3> framed =  // of kernels and voxels it is their box, as in `render`
+            body.points.volume ? std::vector<Vec3>{} : picture_.framed_points(body.mesh, optics);
+        const View view = picture_.make_views(body.box, framed).front();
         ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
-        const auto series_step = is_model(input_) ? std::nullopt : one_step(input_, common());
+        const bool one_state = is_model(input_) || body.points.volume;
+        const auto series_step = one_state ? std::nullopt : one_step(input_, common());
         state.step = series_step.value_or(times().size() - 1);
         state.method = method_;
         state.look = picture_.look_options(body.range);
@@ -175,7 +205,8 @@ private:
     }
 
     [[nodiscard]] std::vector<double> times() const {
-        return is_model(input_) ? std::vector<double>{0} : open_series(input_).times;
+        const bool one_state = is_model(input_) || holds_points(input_) || is_vdb_file(input_);
+        return one_state ? std::vector<double>{0} : open_series(input_).times;
     }
 
     [[nodiscard]] ViewSource source(Report& report) {

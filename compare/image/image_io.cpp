@@ -41,10 +41,39 @@ void check_image(const Image& image) {
     }
 }
 
-std::uint8_t encoded_byte(double linear) {
-    if (!(linear > 0)) return 0;  // NaN too
-    return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::min(linear, 1.0))));
-}
+/// Bytes of linear values, looked up: a power for each channel of each pixel takes longer than the compression of the file.
+class EncodedBytes {
+public:
+    EncodedBytes() {
+        least_.front() = 0;
+        for (std::size_t byte = 1; byte < 256; ++byte) {
+            double low = 0, high = 1;  // the byte of `low` is below this one
+            for (double middle = 0.5; middle > low && middle < high; middle = 0.5 * (low + high)) {
+                (rounded(middle) < byte ? low : high) = middle;
+            }
+            least_[byte] = high;
+        }
+        least_.back() = HUGE_VAL;
+        for (std::size_t i = 0; i <= kBins; ++i) start_[i] = rounded(static_cast<double>(i) / kBins);
+    }
+
+    [[nodiscard]] std::uint8_t operator()(double linear) const {
+        if (!(linear > 0)) return 0;  // NaN too
+        std::size_t byte = start_[static_cast<std::size_t>(std::min(linear, 1.0) * kBins)];
+        while (linear >= least_[byte + 1]) ++byte;
+        return static_cast<std::uint8_t>(byte);
+    }
+
+private:
+    static constexpr std::size_t kBins = 4096;
+
+    static std::uint8_t rounded(double linear) {
+        return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(linear)));
+    }
+
+    std::array<double, 257> least_;  // values with each byte, and the end
+    std::array<std::uint8_t, kBins + 1> start_;
+};
 
 /// write: to the path that it is given
 void write_file(const fs::path& path, const std::function<std::optional<PictureFault>(const std::string&)>& write) {
@@ -99,6 +128,7 @@ Image linear_image(const DecodedPicture& picture) {
 }  // namespace
 
 std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background) {
+    static const EncodedBytes encoded_byte;
     check_image(image);
     std::vector<std::uint8_t> bytes;
     bytes.reserve(image.rgba.size() / 4 * 3);

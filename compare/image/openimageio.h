@@ -18,17 +18,28 @@ namespace subvol::detail {
 /// alpha:        which of the channels is alpha; -1: none
 /// integers:     the file has integers
 /// unassociated: colours are not premultiplied
+/// first_row, whole_width, whole_height: where the pixels lie in a larger picture, if the file says so
+/// depth:        the channel Z, if it was asked for and the file has one
+/// note:         a text of `PictureValues::note`
 struct DecodedPicture {
     int width = 0, height = 0, channels = 0;
     int alpha = -1;
     bool integers = false, unassociated = false;
     std::vector<float> values;
+    int first_row = 0, whole_width = 0, whole_height = 0;
+    bool wants_depth = false;
+    std::vector<float> depth{};
+    std::string note{};
 };
 
 /// Pixels for a file: linear floats whose channels are R, G, B, A and, if there are five, Z.
+///
+/// whole_height: > 0: these are rows, from `first_row` on, of a picture of this height; `note` is a text beside them
 struct PictureValues {
     int width = 0, height = 0, channels = 0;
     const float* values = nullptr;
+    int first_row = 0, whole_height = 0;
+    const char* note = nullptr;
 };
 
 struct PictureFault {

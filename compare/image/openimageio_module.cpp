@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GB as float RGBA
 
+constexpr const char* kNote = "subvolPart";
+
 using Outcome = std::optional<PictureFault>;
 
 PictureFault io_fault(const std::string& why) {
@@ -35,7 +37,7 @@ std::string first_line(const std::string& text) {
 bool is_whole(const std::string& path, const OIIO::ImageSpec& spec) {
     const auto input = OIIO::ImageInput::open(path);
     std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
-    return input && input->read_scanline(spec.height - 1, 0, OIIO::TypeDesc::FLOAT, row.data());
+    return input && input->read_scanline(spec.y + spec.height - 1, 0, OIIO::TypeDesc::FLOAT, row.data());
 }
 
 OIIO::ImageSpec spec_of(const PictureValues& picture) {
@@ -45,6 +47,12 @@ OIIO::ImageSpec spec_of(const PictureValues& picture) {
         spec.channelnames = {"R", "G", "B", "A", "Z"};
         spec.z_channel = 4;
     }
+    if (picture.whole_height > 0) {
+        spec.y = picture.first_row;
+        spec.full_width = picture.width;
+        spec.full_height = picture.whole_height;
+    }
+    if (picture.note != nullptr) spec.attribute(kNote, picture.note);
     return spec;
 }
 
@@ -91,6 +99,16 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
                           static_cast<std::size_t>(spec.height));
     if (!input->read_image(0, 0, 0, picture.channels, OIIO::TypeDesc::FLOAT, picture.values.data())) {
         return PictureFault{ErrorCode::InvalidInput, "is not a complete image: " + input->geterror()};
+    }
+    picture.first_row = spec.y - spec.full_y;
+    picture.whole_width = spec.full_width;
+    picture.whole_height = spec.full_height;
+    picture.note = spec.get_string_attribute(kNote);
+    if (picture.wants_depth && spec.nchannels == 5) {
+        picture.depth.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));
+        if (!input->read_image(0, 0, 4, 5, OIIO::TypeDesc::FLOAT, picture.depth.data())) {
+            return PictureFault{ErrorCode::InvalidInput, "is not a complete image: " + input->geterror()};
+        }
     }
     return {};
 }

@@ -162,6 +162,18 @@ std::string facts_html(const ReportFacts& facts) {
     return html + "</dl>\n";
 }
 
+/// Links to pages on which the inputs can be turned.
+std::string pages_html(const ReportFacts& pages) {
+    if (pages.empty()) return {};
+    std::string html =
+        "<section id=\"inputs\">\n<h2>The inputs, to turn</h2>\n<p>Each page draws its volume in the browser, with the "
+        "colours and opacities, a clip plane and values at a click.</p>\n<ul>\n";
+    for (const auto& [name, path] : pages) {
+        html += "<li><a href=\"" + escaped(path) + "\">" + escaped(spaced(name)) + "</a></li>\n";
+    }
+    return html + "</ul>\n</section>\n";
+}
+
 }  // namespace
 
 std::vector<StudyPlot> make_plots(const StudyResults& results) {
@@ -190,6 +202,7 @@ std::string report_html(std::span<const StudyResults> studies, const std::filesy
         std::string(embedded("style")) + "</style>\n</head>\n<body>\n<header>\n<h1>Error studies of subdivision volumes</h1>\n";
     html += summary_html(studies) + "</header>\n<main>\n";
     for (const StudyResults& results : studies) html += study_html(results, folder, options);
+    html += pages_html(options.pages);
     html += "<section id=\"machine\">\n<h2>Machine, versions, and how to reproduce this report</h2>\n<h3>Machine</h3>\n";
     html += facts_html(options.host) + "<h3>Versions</h3>\n" + facts_html(options.versions) + citation_html(options);
     html += "<h3>Command</h3>\n<pre>" + escaped(options.command) +

@@ -37,7 +37,7 @@ WeightTable make_table(const Neighborhood& neighborhood, const SchemeOptions& sc
 
     std::vector<Index> nodes;
     DenseBlock(level).nodes(patch.mesh, 0, nodes);
-    WeightTable table{.points = points, .offsets = {0}, .columns = {}, .weights = {}};
+    WeightTable table{.points = points, .used = {}, .offsets = {0}, .columns = {}, .weights = {}};
     for (const Index node : nodes) {
         const double* row = &patch.mesh.attributes.front().values[node * points];
         for (std::size_t p = 0; p < points; ++p) {
@@ -49,6 +49,11 @@ WeightTable make_table(const Neighborhood& neighborhood, const SchemeOptions& sc
     }
     table.columns.shrink_to_fit();
     table.weights.shrink_to_fit();
+    std::vector<std::uint8_t> has_weight(points, 0);
+    for (const std::uint16_t p : table.columns) has_weight[p] = 1;
+    for (std::size_t p = 0; p < points; ++p) {
+        if (has_weight[p] != 0) table.used.push_back(static_cast<std::uint16_t>(p));
+    }
     return table;
 }
 

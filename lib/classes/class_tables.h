@@ -16,10 +16,11 @@ namespace subvol::detail {
 /// The vertices of a cell's refinement as sums over the points of its neighbourhood: row i is the vertex at (u, v, w) of the
 /// grid of side³, side = 2^level + 1, i = u + side·(v + side·w).
 ///
-/// points:  of the neighbourhood
+/// points:  of the neighbourhood; used: those that have weights, ascending
 /// offsets: row i has columns[offsets[i] .. offsets[i+1]), ascending, with weights beside them
 struct WeightTable {
     std::size_t points = 0;
+    std::vector<std::uint16_t> used;
     std::vector<std::uint32_t> offsets;
     std::vector<std::uint16_t> columns;
     std::vector<double> weights;

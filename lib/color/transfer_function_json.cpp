@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <fstream>
 #include <ios>
 #include <nlohmann/json.hpp>
@@ -6,8 +7,10 @@
 
 #include "curves.h"
 #include "knot_values.h"
+#include "subvol/color_map_file.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "subvol/srgb.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {
@@ -139,6 +142,50 @@ TransferFunction read_transfer_function(const std::filesystem::path& path, const
     for (const SharpKnot& p : points) corners.push_back({p.value, p.alpha});
     check(colors, corners, file);
     return {straight_pieces(colors, space), straight_pieces(points)};
+}
+
+namespace {
+
+constexpr double kColorError = 1.0 / 1024;  // of sRGB between points
+
+Vec3 srgb_of(const Vec3& linear) {
+    return {srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z)};
+}
+
+/// Adds the points after `a` up to `b`: halves of the way, until straight lines in sRGB are those in linear light.
+void add_points(const TransferFunction::ColorKnot& a, const TransferFunction::ColorKnot& b, int depth, json& points) {
+    const TransferFunction::ColorKnot middle{0.5 * (a.value + b.value), 0.5 * (a.rgb + b.rgb)};
+    const Vec3 off = glm::abs(srgb_of(middle.rgb) - 0.5 * (srgb_of(a.rgb) + srgb_of(b.rgb)));
+    const bool between = middle.value > a.value && middle.value < b.value;
+    if (depth > 0 && between && std::max({off.x, off.y, off.z}) > kColorError) {
+        add_points(a, middle, depth - 1, points);
+        add_points(middle, b, depth - 1, points);
+        return;
+    }
+    const Vec3 rgb = srgb_of(b.rgb);
+    for (const double number : {b.value, rgb.x, rgb.y, rgb.z}) points.push_back(number);
+}
+
+}  // namespace
+
+std::string color_map_json(const TransferFunction& function, const std::string& name) {
+    validate(function);
+    json colors = json::array(), opacities = json::array();
+    const auto& first = function.color.front();
+    const Vec3 rgb = srgb_of(first.rgb);
+    for (const double number : {first.value, rgb.x, rgb.y, rgb.z}) colors.push_back(number);
+    for (std::size_t k = 0; k + 1 < function.color.size(); ++k) add_points(function.color[k], function.color[k + 1], 8, colors);
+    for (const auto& knot : function.opacity) {
+        for (const double number : {knot.value, knot.alpha, 0.5, 0.0}) opacities.push_back(number);
+    }
+    nlohmann::ordered_json map;
+    map["Name"] = name;
+    map["ColorSpace"] = "RGB";
+    map["RGBPoints"] = std::move(colors);
+    map["Points"] = std::move(opacities);
+    nlohmann::ordered_json maps = nlohmann::ordered_json::array();
+    maps.push_back(std::move(map));
+    return maps.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace subvol

@@ -117,6 +117,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view text) {
+    if (text.empty()) return;  // an empty view may be a null pointer, which fwrite must not be given
     if (std::fwrite(text.data(), 1, text.size(), stream_) != text.size()) fail(errno);
 }
 
@@ -130,6 +131,15 @@ void OutputFile::overwrite(std::uint64_t position, std::string_view text) {
     if (::fseeko(stream_, static_cast<off_t>(position), SEEK_SET) != 0) fail(errno);
     write(text);
     if (::fseeko(stream_, 0, SEEK_END) != 0) fail(errno);
+}
+
+void OutputFile::seek(std::uint64_t position) {
+    if (::fseeko(stream_, static_cast<off_t>(position), SEEK_SET) != 0) fail(errno);
+}
+
+void OutputFile::write_at(std::uint64_t position, std::string_view text) {
+    seek(position);
+    write(text);
 }
 
 void OutputFile::close() {

@@ -28,6 +28,9 @@ public:
     [[nodiscard]] std::uint64_t position() const;
     /// Overwrites bytes that are already written.
     void overwrite(std::uint64_t position, std::string_view text);
+    /// Writes at a place, also beyond the end; the next bytes are written after them.
+    void write_at(std::uint64_t position, std::string_view text);
+    void seek(std::uint64_t position);
     /// Closes the file; nothing can be written afterwards.
     void close();
     /// Closes the file and gives it its final name.

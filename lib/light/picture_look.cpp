@@ -55,6 +55,16 @@ Vec3 background_of(Look look) {
     return look == Look::Xray ? Vec3(1.0) : linear_from_srgb(Vec3(0xe4, 0xe6, 0xe9) / 255.0);
 }
 
+double opacity_unit_of(Look look, const Box& box) {
+    return box.diagonal() / (look == Look::Solid ? kSolidUnitsPerDiagonal : kOpacityUnitsPerDiagonal);
+}
+
+void make_solid(TransferFunction& function, bool plain) {
+    for (auto& knot : function.opacity) knot.alpha = 1;
+    if (!plain) return;
+    for (auto& knot : function.color) knot.rgb = linear_from_srgb(kPlainColor);
+}
+
 TransferFunction find_transfer_function(const std::string& name, const ValueRange& range, bool stretch) {
     const std::filesystem::path path(name);
     const std::size_t end = name.find(".json:");  // FILE.json:NAME picks one of several maps
@@ -76,23 +86,14 @@ Optics picture_optics(const LookOptions& options, const Box& box, const ValueRan
     const std::string map = colors_of(options);
     TransferFunction function = find_transfer_function(map, options.range.value_or(field), options.stretch);
     function.color = find_transfer_function(map, options.range.value_or(colors), options.stretch).color;
-    double unit_world = box.diagonal() / kOpacityUnitsPerDiagonal;
-    if (options.look == Look::Solid) {
-        unit_world = box.diagonal() / kSolidUnitsPerDiagonal;
-        for (auto& knot : function.opacity) knot.alpha = 1;
-        // Where all values are the same, a colour of the map would mean nothing.
-        const bool constant = !(colors.min < colors.max);
-        if (constant && options.colors.empty()) {
-            for (auto& knot : function.color) knot.rgb = linear_from_srgb(kPlainColor);
-        }
-    }
+    if (options.look == Look::Solid) make_solid(function, !(colors.min < colors.max) && options.colors.empty());
     if (!options.opacity.empty()) function.opacity = options.opacity;
     if (options.clamp) {
         TransferFunction kept = clamped(function, field.min, field.max);
         kept.color = clamped(function, colors.min, colors.max).color;
         function = std::move(kept);
     }
-    return {std::move(function), options.opacity_unit_world.value_or(unit_world)};
+    return {std::move(function), options.opacity_unit_world.value_or(opacity_unit_of(options.look, box))};
 }
 
 std::vector<Vec3> framed_points(const HexMesh& mesh, Look look, const Optics& optics) {

@@ -129,11 +129,10 @@ Surface boundary_of_child(const HexMesh& mesh, std::span<const std::uint8_t> on_
 
 namespace {
 
-/// Refines the cells at the boundary, with their attributes. on_hull: becomes that of the last level's points
+/// Refines the cells at the boundary, with their attributes. on_hull: of the mesh's points; becomes that of the last level's
 HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_hull) {
     RefineOptions once = options;
     once.levels = 1;
-    on_hull = hull_points(mesh);
     for (int level = 0; level < options.levels; ++level) {
         HullCells near(mesh, on_hull, true);
         Topology topology = build_topology(near.mesh);
@@ -148,8 +147,12 @@ HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_
 }  // namespace
 
 Surface boundary_at_level(HexMesh mesh, const RefineOptions& options) {
+    HullFlags on_hull = hull_points(mesh);
+    return boundary_at_level(std::move(mesh), std::move(on_hull), options);
+}
+
+Surface boundary_at_level(HexMesh mesh, std::vector<std::uint8_t> on_hull, const RefineOptions& options) {
     mesh.attributes.clear();
-    HullFlags on_hull;
     mesh = hull_at_level(std::move(mesh), options, on_hull);
     return boundary_surface_where(mesh, [&](const auto& face) { return on_hull[face[0]] != 0; });
 }
@@ -160,26 +163,49 @@ namespace subvol {
 
 using namespace detail;
 
+namespace {
+
+/// A mesh in which each point is where its number is on the first axis.
+HexMesh numbered(HexMesh mesh) {
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) mesh.points[p] = Vec3(static_cast<double>(p), 0, 0);
+    mesh.attributes.clear();
+    return mesh;
+}
+
+std::vector<Index> numbers_in(std::span<const Vec3> points) {
+    std::vector<Index> numbers;
+    for (const Vec3& p : points) numbers.push_back(static_cast<Index>(p.x));
+    return numbers;
+}
+
+}  // namespace
+
 BoundaryValues boundary_values(HexMesh mesh, const RefineOptions& options) {
+    validate(mesh);
+    mesh = without_unused_points(std::move(mesh));
+    HullFlags on_hull = hull_points(mesh);
+    return boundary_values_of_hull(std::move(mesh), std::move(on_hull), options);
+}
+
+BoundaryValues detail::boundary_values_of_hull(HexMesh mesh, std::vector<std::uint8_t> on_hull, const RefineOptions& options) {
     check_levels(options.levels);
     for (const Attribute& field : mesh.attributes) {
         if (field.channels != 1) throw Error(ErrorCode::InvalidInput, "has more than one component", "field " + field.name);
     }
-    HullFlags on_hull;
-    mesh = hull_at_level(control_mesh(std::move(mesh), options.scheme), options, on_hull);
-    // The points of the mesh that the surface uses, in its order: a surface in which they stand for the positions.
-    const auto at_hull = [&](const auto& face) { return on_hull[face[0]] != 0; };
-    BoundaryValues boundary{boundary_surface_where(mesh, at_hull), {}};
-    for (const Attribute& field : mesh.attributes) {
-        HexMesh numbers{.points = std::vector<Vec3>(mesh.points.size()),
-                        .cells = mesh.cells,
-                        .attributes = {},
-                        .creases = {},
-                        .sharp_faces = {}};
-        for (std::size_t p = 0; p < numbers.points.size(); ++p) numbers.points[p].x = field.values[p];
-        const Surface values = boundary_surface_where(numbers, at_hull);
+    mesh = control_mesh(std::move(mesh), options.scheme);
+    mesh = hull_at_level(std::move(mesh), options, on_hull);
+    BoundaryValues boundary;
+    // The points of the mesh that the surface uses, in its order: a surface in which numbers stand for the positions.
+    const std::vector<Vec3> points = std::move(mesh.points);
+    std::vector<Attribute> fields = std::move(mesh.attributes);
+    mesh.points.resize(points.size());
+    Surface names = boundary_surface_where(numbered(std::move(mesh)), [&](const auto& face) { return on_hull[face[0]] != 0; });
+    boundary.surface.triangles = std::move(names.triangles);
+    const std::vector<Index> used = numbers_in(names.points);
+    for (const Index p : used) boundary.surface.points.push_back(points[p]);
+    for (const Attribute& field : fields) {
         std::vector<double>& of_field = boundary.values.emplace_back();
-        for (const Vec3& value : values.points) of_field.push_back(value.x);
+        for (const Index p : used) of_field.push_back(field.values[p]);
     }
     return boundary;
 }
@@ -224,23 +250,6 @@ struct BoundaryTables::State {
         return values;
     }
 };
-
-namespace {
-
-/// A mesh in which each point is where its number is on the first axis.
-HexMesh numbered(HexMesh mesh) {
-    for (std::size_t p = 0; p < mesh.points.size(); ++p) mesh.points[p] = Vec3(static_cast<double>(p), 0, 0);
-    mesh.attributes.clear();
-    return mesh;
-}
-
-std::vector<Index> numbers_in(std::span<const Vec3> points) {
-    std::vector<Index> numbers;
-    for (const Vec3& p : points) numbers.push_back(static_cast<Index>(p.x));
-    return numbers;
-}
-
-}  // namespace
 
 BoundaryTables::BoundaryTables(const HexMesh& whole, const RefineOptions& options) : state_(std::make_unique<State>()) {
     check_levels(options.levels);
@@ -291,10 +300,14 @@ BoundaryValues BoundaryTables::apply(const HexMesh& mesh) const {
     return boundary;
 }
 
-int picture_levels(const HexMesh& mesh, std::optional<int> most) {
+int detail::picture_levels(std::size_t triangles, std::optional<int> most) {
     constexpr std::size_t kManyTriangles = 8000;
     if (most) return std::min(2, *most);
-    return boundary_surface(mesh).triangles.size() > kManyTriangles ? 1 : 2;
+    return triangles > kManyTriangles ? 1 : 2;
+}
+
+int picture_levels(const HexMesh& mesh, std::optional<int> most) {
+    return detail::picture_levels(most ? 0 : boundary_surface(mesh).triangles.size(), most);
 }
 
 }  // namespace subvol

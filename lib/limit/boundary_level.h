@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "subvol/boundary_values.h"
 #include "subvol/refine.h"
 #include "subvol/surface.h"
 
@@ -20,5 +24,16 @@ namespace subvol::detail {
 /// mesh: valid, with its creases; options.scheme.crease_angle_deg is not used
 /// cost: about 20 points for each point of the boundary
 [[nodiscard]] Surface boundary_at_level(HexMesh mesh, const RefineOptions& options);
+
+/// The same for a mesh that may be a part of another one, as long as it has all cells at the other's hull. on_hull: a flag for
+/// each point of the mesh
+[[nodiscard]] Surface boundary_at_level(HexMesh mesh, std::vector<std::uint8_t> on_hull, const RefineOptions& options);
+
+/// `boundary_values` of a mesh that may be a part, in the same way.
+[[nodiscard]] BoundaryValues boundary_values_of_hull(HexMesh mesh, std::vector<std::uint8_t> on_hull,
+                                                     const RefineOptions& options);
+
+/// `picture_levels` for a boundary of so many triangles.
+[[nodiscard]] int picture_levels(std::size_t triangles, std::optional<int> most);
 
 }  // namespace subvol::detail

@@ -68,7 +68,7 @@ struct CellRefiner::State {
             (void)level.walks.local().find(members[0].cell, layers(levels), to.found);
             return to.found;
         });
-        to.lanes.load(level.mesh, members);
+        to.lanes.load(level.mesh, members, *table);
         to.lanes.apply(*table);
         to.grid.resize(level.mesh, block.node_count());
         for (std::size_t lane = 0; lane < members.size(); ++lane) {
@@ -160,11 +160,12 @@ struct CellRefiner::State {
 
     /// Some cells, and those of their children that the visitor asks for.
     ///
-    /// is_open: flags of cells that the visitor has seen at level 1 already, and wants finer
-    void descend_batch(const Cut& cut, std::span<const Index> cells, const std::vector<std::uint8_t>& is_open, int most_levels,
+    /// seen: for each cell of the control mesh the children that the visitor wants finer, if it has seen the cell at levels 1
+    ///       and 2 already
+    void descend_batch(const Cut& cut, std::span<const Index> cells, const std::vector<std::uint8_t>& seen, int most_levels,
                        const Descent& visitor) {
         Patch patch = refine_patch(cut(cells, 2), scheme, 2);
-        const std::vector<Index> open = visit_first_level(patch, cells, is_open, visitor);
+        const std::vector<Index> open = visit_first_level(patch, cells, seen, visitor);
         if (open.empty() || most_levels < 2) return;
         std::vector<Index> children;
         for (const Index cell : open) {
@@ -176,13 +177,19 @@ struct CellRefiner::State {
         const Cut cut_patch = [&](std::span<const Index> wanted, int layers) { return sub_patch(patch, wanted, layers); };
         const auto parent = [&](Index child) { return cells[open[child / 8]]; };
 
+        const auto wanted_of = [&](std::size_t i) { return seen[cells[open[i]]]; };
         std::vector<CellGrid> grids(open.size());
-        parallel_each(grids.size(), [&](std::size_t i) { grids[i].resize(patch.mesh, 125); });
-        evaluate(level, cut_patch, classes_of(level, children, 1, 0), 1,
+        parallel_each(grids.size(), [&](std::size_t i) {
+            if (wanted_of(i) == 0) grids[i].resize(patch.mesh, 125);
+        });
+        std::vector<Index> unseen;
+        std::ranges::copy_if(children, std::back_inserter(unseen), [&](Index child) { return wanted_of(child / 8) == 0; });
+        evaluate(level, cut_patch, classes_of(level, unseen, 1, 0), 1,
                  [&](Index child, const CellGrid& part) { grids[child / 8].take_child(part, child % 8, 2); });
         std::vector<std::uint8_t> goes_on(children.size());
         parallel_each(open.size(), [&](std::size_t i) {
-            const std::uint8_t wanted = visitor.whole(grids[i].dense_cell(cells[open[i]], 2));
+            const std::uint8_t wanted =
+                wanted_of(i) != 0 ? wanted_of(i) : visitor.whole(grids[i].dense_cell(cells[open[i]], 2));
             for (std::size_t k = 0; k < 8; ++k) goes_on[8 * i + k] = wanted >> k & 1;
         });
         grids.clear();
@@ -209,7 +216,7 @@ struct CellRefiner::State {
     /// Shows the visitor the cells of a patch of their children that it has not seen yet. Returns places in `cells` of those
     /// that it wants finer, and of those that are open already.
     [[nodiscard]] std::vector<Index> visit_first_level(const Patch& patch, std::span<const Index> cells,
-                                                       const std::vector<std::uint8_t>& is_open, const Descent& visitor) const {
+                                                       const std::vector<std::uint8_t>& seen, const Descent& visitor) const {
         std::vector<std::uint8_t> wanted(cells.size());
         HexMesh moved;
         if (moves) moved = on_limit(patch.mesh, scheme.kind);
@@ -220,7 +227,7 @@ struct CellRefiner::State {
             grid.resize(mesh, block.node_count());
             std::vector<Index> nodes;
             for (std::size_t i = range.begin(); i != range.end(); ++i) {
-                if (is_open[cells[i]] != 0) {
+                if (seen[cells[i]] != 0) {
                     wanted[i] = 1;
                     continue;
                 }
@@ -240,13 +247,19 @@ struct CellRefiner::State {
     void descend(int most_levels, Progress* progress, const Descent& visitor) {
         std::vector<Index> cells(control.cells.size());
         std::iota(cells.begin(), cells.end(), Index{0});
-        std::vector<std::uint8_t> is_open(cells.size(), 0), is_done(cells.size(), 0);
+        std::vector<std::uint8_t> is_done(cells.size(), 0), seen(cells.size(), 0);
         for (std::size_t first = 0; first < cells.size(); first += kClassified) {
             const auto run = std::span(cells).subspan(first, std::min(kClassified, cells.size() - first));
             Classified classified = classes_of(top, run, 2);
             std::erase_if(classified.members, [](const Member& member) { return member.key == kNoClass; });
             evaluate(top, {}, classified, 1, [&](Index cell, const CellGrid& grid) {
-                (visitor.cell(grid.dense_cell(cell, 1)) ? is_open : is_done)[cell] = 1;
+                if (!visitor.cell(grid.dense_cell(cell, 1))) is_done[cell] = 1;
+            });
+            if (most_levels < 2) continue;
+            std::erase_if(classified.members, [&](const Member& member) { return is_done[member.cell] != 0; });
+            evaluate(top, {}, classified, 2, [&](Index cell, const CellGrid& grid) {
+                seen[cell] = visitor.whole(grid.dense_cell(cell, 2));
+                if (seen[cell] == 0) is_done[cell] = 1;
             });
         }
         std::erase_if(cells, [&](Index cell) { return is_done[cell] != 0; });
@@ -258,8 +271,7 @@ struct CellRefiner::State {
         tbb::parallel_for(std::size_t{0}, batches, [&](std::size_t b) {
             report_progress(progress, "limit", static_cast<double>(done) / static_cast<double>(batches));
             const std::size_t first = b * cells.size() / batches, last = (b + 1) * cells.size() / batches;
-            run_nested(
-                [&] { descend_batch(cut, std::span(cells).subspan(first, last - first), is_open, most_levels, visitor); });
+            run_nested([&] { descend_batch(cut, std::span(cells).subspan(first, last - first), seen, most_levels, visitor); });
             ++done;
         });
         report_progress(progress, "limit", 1);

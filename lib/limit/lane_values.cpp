@@ -5,14 +5,15 @@
 
 namespace subvol::detail {
 
-void LaneValues::load(const HexMesh& mesh, std::span<const Member> cells) {
+void LaneValues::load(const HexMesh& mesh, std::span<const Member> cells, const WeightTable& table) {
     const std::size_t points = cells[0].point_count;
     channels_ = 3;
     for (const Attribute& attribute : mesh.attributes) channels_ += static_cast<std::size_t>(attribute.channels);
-    in_.assign(channels_ * points * kTableLanes, 0.0);
     stride_ = points * kTableLanes;
+    if (cells.size() < kTableLanes) in_.clear();  // nothing but zeros in the lanes that have no cell
+    in_.resize(channels_ * stride_, 0.0);
     for (std::size_t lane = 0; lane < cells.size(); ++lane) {
-        for (std::size_t p = 0; p < points; ++p) {
+        for (const std::size_t p : table.used) {
             const Index point = cells[lane].points[p];
             double* to = &in_[p * kTableLanes + lane];
             for (int d = 0; d < 3; ++d, to += stride_) *to = mesh.points[point][d];

@@ -14,7 +14,8 @@ namespace subvol::detail {
 /// Values of kTableLanes cells of one class: channel by channel, point by point, cell by cell.
 class LaneValues {
 public:
-    void load(const HexMesh& mesh, std::span<const Member> cells);
+    /// The points that the table uses.
+    void load(const HexMesh& mesh, std::span<const Member> cells, const WeightTable& table);
     void apply(const WeightTable& table);
 
     /// The rows of one cell as its grid. turn: from the axes of the rows to those of the cell

@@ -13,12 +13,14 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "cell_refiner.h"
 #include "piece_cutter.h"
 #include "refine_steps.h"
 #include "subvol/cell.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/limit_level.h"
 
@@ -67,13 +69,14 @@ using FoundByThreads = tbb::enumerable_thread_specific<Found>;
 
 class Search {
 public:
-    Search(const HexMesh& mesh, const RefineOptions& refinement, const LimitCellsOptions& options)
+    Search(const HexMesh& mesh, const RefineOptions& refinement, const LimitCellsOptions& options,
+           const std::vector<double>& value_scales)
         : control_(control_mesh(mesh, refinement.scheme, 1)),
           refiner_(control_, refinement.scheme, true),
           options_(options),
           progress_(refinement.progress),
-          found_([&, scales = value_scales(mesh)] {
-              return Found{PieceCutter(scales, options_), {}, 0};
+          found_([this, value_scales] {
+              return Found{PieceCutter(value_scales, options_), {}, 0};
           }) {
         for (const Attribute& attribute : control_.attributes) node_size_ += static_cast<std::size_t>(attribute.channels);
     }
@@ -198,16 +201,37 @@ private:
 
 }  // namespace
 
-LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options) {
+namespace {
+
+LimitCells search(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options,
+                  const std::function<std::vector<double>()>& scales) {
     const std::size_t count = mesh.cells.size();
     if (count == 0 || options.max_levels < 1) {
         return {.cell_levels = {}, .converged = count == 0};
     }
     validate(mesh);
     refinement.levels = 1;
-    Search search(mesh, refinement, options);
+    Search search(mesh, refinement, options, scales());
     search.run();
     return search.result(mesh);
+}
+
+}  // namespace
+
+LimitCells find_limit_cells(const HexMesh& mesh, RefineOptions refinement, const LimitCellsOptions& options) {
+    return search(mesh, refinement, options, [&] { return value_scales(mesh); });
+}
+
+LimitCells detail::find_limit_cells(const HexMesh& part, RefineOptions refinement, const LimitCellsOptions& options,
+                                    std::span<const std::array<double, 2>> ranges) {
+    return search(part, refinement, options, [&] {
+        std::vector<double> scales;
+        for (std::size_t a = 0; a < part.attributes.size(); ++a) {
+            scales.insert(scales.end(), static_cast<std::size_t>(part.attributes[a].channels),
+                          value_scale(ranges[a][0], ranges[a][1]));
+        }
+        return scales;
+    });
 }
 
 bool are_pieces_of(const LimitPieces& pieces, const HexMesh& mesh) {

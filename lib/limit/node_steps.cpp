@@ -93,6 +93,12 @@ double levels_between(double tolerance, double step) {
     return std::ceil(std::log2(step / tolerance) / 2);
 }
 
+double value_scale(double min, double max) {
+    constexpr double kRounding = 1e-12;  // relative: a field that varies less is constant
+    const bool varies = max - min > kRounding * std::max(std::abs(min), std::abs(max));
+    return varies ? 1 / (max - min) : 0.0;
+}
+
 std::vector<double> value_scales(const HexMesh& mesh) {
     std::vector<std::uint8_t> used(mesh.points.size(), 0);
     for (const auto& cell : mesh.cells) {
@@ -107,9 +113,7 @@ std::vector<double> value_scales(const HexMesh& mesh) {
             min = std::min(min, attribute.values[i]);
             max = std::max(max, attribute.values[i]);
         }
-        constexpr double kRounding = 1e-12;  // relative: a field that varies less is constant
-        const bool varies = max - min > kRounding * std::max(std::abs(min), std::abs(max));
-        scales.insert(scales.end(), channels, varies ? 1 / (max - min) : 0.0);
+        scales.insert(scales.end(), channels, value_scale(min, max));
     }
     return scales;
 }

@@ -65,4 +65,7 @@ private:
 /// value. The mesh must be valid.
 [[nodiscard]] std::vector<double> value_scales(const HexMesh& mesh);
 
+/// The scale of values between a least and a largest one.
+[[nodiscard]] double value_scale(double min, double max);
+
 }  // namespace subvol::detail

@@ -67,7 +67,10 @@ void PieceCutter::gather(const DenseCell& grid, const Part& part, std::size_t si
 
 void PieceCutter::add(const DenseCell& grid, const Part& part, const Step& left, PieceList& list) {
     gather(grid, part, 3);
-    const double step = nodes_.largest_step(Prediction::Trilinear, scales_).position;
+    add_gathered(grid, part, left, nodes_.largest_step(Prediction::Trilinear, scales_).position, list);
+}
+
+void PieceCutter::add_gathered(const DenseCell& grid, const Part& part, const Step& left, double step, PieceList& list) {
     list.cells.push_back(grid.cell);
     list.levels.push_back(static_cast<std::uint8_t>(part.level));
     list.lowest.push_back(part.lowest);
@@ -83,9 +86,9 @@ void PieceCutter::add(const DenseCell& grid, const Part& part, const Step& left,
 bool PieceCutter::cut_cell(const DenseCell& grid, bool last, PieceList& list) {
     const Part whole{.level = 0, .lowest = {}, .first = {}, .width = 2};
     gather(grid, whole, 3);
-    const Step left = quarter(nodes_.largest_step(Prediction::Trilinear, scales_));
-    if (!last && !is_near(left)) return false;
-    add(grid, whole, left, list);
+    const Step step = nodes_.largest_step(Prediction::Trilinear, scales_);
+    if (!last && !is_near(quarter(step))) return false;
+    add_gathered(grid, whole, quarter(step), step.position, list);
     return true;
 }
 

@@ -58,6 +58,8 @@ private:
     [[nodiscard]] bool is_near(const Step& left) const;
     void gather(const DenseCell& grid, const Part& part, std::size_t side);
     void add(const DenseCell& grid, const Part& part, const Step& left, PieceList& list);
+    /// The same with the part's 27 nodes gathered. step: of their positions, from trilinear predictions
+    void add_gathered(const DenseCell& grid, const Part& part, const Step& left, double step, PieceList& list);
     std::uint8_t cut_part(const DenseCell& grid, const Part& part, Step left, bool last, PieceList& list);
 
     std::vector<double> scales_;

@@ -10,6 +10,7 @@
 #include "assemble.h"
 #include "curved_cells.h"
 #include "edge_classes.h"
+#include "split_grids.h"
 #include "subvol/cell.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
@@ -41,10 +42,6 @@ const FileArray* find_array(const MeshFile& found, std::string_view name, bool a
     return nullptr;
 }
 
-std::size_t octant_corner(std::size_t x, std::size_t y, std::size_t z) {
-    return kCornerOctants[x + 2 * y + 4 * z];
-}
-
 // Replaces every hexahedron of a mesh with curved ones by a grid of smaller ones, with points on the curved shape.
 class CurvedSplit {
 public:
@@ -63,7 +60,6 @@ public:
             report_straight();
             return false;
         }
-        number_points();
         fill();
         report();
         return true;
@@ -274,115 +270,17 @@ private:
         return {pieces_[class_of_[c][0]], pieces_[class_of_[c][1]], pieces_[class_of_[c][2]]};
     }
 
-    // The corners of a face from its smallest one, over the smaller of that one's neighbours: the same for both cells.
-    struct Face {
-        std::size_t axis, side;
-        std::array<std::size_t, 2> axes;    // along the face, the one to the smaller neighbour first
-        std::array<std::size_t, 2> upward;  // whether the smallest corner is at their lower end
-        std::array<Index, 4> key;
-    };
-
-    [[nodiscard]] static Face face_of(const Hex& cell, std::size_t axis, std::size_t side) {
-        Face face{axis, side, {(axis + 1) % 3, (axis + 2) % 3}, {}, {}};
-        const auto corner = [&](std::size_t a, std::size_t b) {
-            std::array<std::size_t, 3> at{};
-            at[axis] = side;
-            at[(axis + 1) % 3] = a;
-            at[(axis + 2) % 3] = b;
-            return cell[octant_corner(at[0], at[1], at[2])];
-        };
-        std::size_t a = 0, b = 0;
-        for (std::size_t k = 1; k < 4; ++k) {
-            if (corner(k % 2, k / 2) < corner(a, b)) a = k % 2, b = k / 2;
-        }
-        const bool first = corner(1 - a, b) < corner(a, 1 - b);
-        if (!first) std::swap(face.axes[0], face.axes[1]);
-        face.upward = first ? std::array<std::size_t, 2>{1 - a, 1 - b} : std::array<std::size_t, 2>{1 - b, 1 - a};
-        face.key = {corner(a, b), first ? corner(1 - a, b) : corner(a, 1 - b), corner(1 - a, 1 - b),
-                    first ? corner(a, 1 - b) : corner(1 - a, b)};
-        return face;
-    }
-
-    void number_points() {
-        std::size_t count = 0;
-        const auto add = [&](std::size_t more) {
-            const std::size_t first = count;
-            count += more;
-            if (count >= kNone) fail("its curved cells would be split into too many hexahedra", "a larger tolerance");
-            return first;
-        };
-        corners_.assign(found_.points.size(), kNone);
-        for (const Hex& cell : cells_) {
-            for (const Index p : cell) corners_[p] = 0;
-        }
-        for (Index& corner : corners_) {
-            if (corner == 0) corner = static_cast<Index>(add(1));
-        }
-        for (std::size_t e = 0; e < edges_.size(); ++e) edge_starts_.push_back(add(pieces_[edges_.class_of(e)] - 1));
-        for (std::size_t c = 0; c < cells_.size(); ++c) {
-            const Sizes n = pieces_of(c);
-            for (std::size_t f = 0; f < 6; ++f) {
-                const auto [start, is_new] = face_starts_.try_emplace(face_of(cells_[c], f / 2, f % 2).key, count);
-                if (is_new) start->second = add((n[(f / 2 + 1) % 3] - 1) * (n[(f / 2 + 2) % 3] - 1));
-            }
-            cell_starts_.push_back(add((n[0] - 1) * (n[1] - 1) * (n[2] - 1)));
-        }
-        point_count_ = count;
-    }
-
-    // The new points of a cell, the first direction fastest.
-    [[nodiscard]] std::vector<Index> grid_of(std::size_t c) const {
-        const Hex& cell = cells_[c];
-        const Sizes n = pieces_of(c);
-        const auto at = [&](const Sizes& p) { return p[0] + (n[0] + 1) * (p[1] + (n[1] + 1) * p[2]); };
-        std::vector<Index> grid((n[0] + 1) * (n[1] + 1) * (n[2] + 1));
-        for (std::size_t k = 0; k < 8; ++k) {
-            Sizes place{};
-            for (std::size_t a = 0; a < 3; ++a) place[a] = kCornerParameters[k][a] == 0 ? 0 : n[a];
-            grid[at(place)] = corners_[cell[k]];
-        }
-        for (std::size_t e = 0; e < 12; ++e) {
-            const auto from = static_cast<std::size_t>(kCellEdges[e][0]), to = static_cast<std::size_t>(kCellEdges[e][1]);
-            const std::size_t axis = e / 4, start = edge_starts_[edges_.edge(cell, e)];
-            Sizes place{};
-            for (std::size_t a = 0; a < 3; ++a) place[a] = kCornerParameters[from][a] == 0 ? 0 : n[a];
-            for (std::size_t i = 1; i < n[axis]; ++i) {
-                place[axis] = i;
-                grid[at(place)] = static_cast<Index>(start + (cell[from] < cell[to] ? i : n[axis] - i) - 1);
-            }
-        }
-        for (std::size_t f = 0; f < 6; ++f) {
-            const Face face = face_of(cell, f / 2, f % 2);
-            const std::size_t start = face_starts_.at(face.key);
-            const std::size_t n0 = n[face.axes[0]], n1 = n[face.axes[1]];
-            Sizes place{};
-            place[face.axis] = face.side == 0 ? 0 : n[face.axis];
-            for (std::size_t j = 1; j < n1; ++j) {
-                for (std::size_t i = 1; i < n0; ++i) {
-                    place[face.axes[0]] = face.upward[0] != 0 ? i : n0 - i;
-                    place[face.axes[1]] = face.upward[1] != 0 ? j : n1 - j;
-                    grid[at(place)] = static_cast<Index>(start + (i - 1) + (n0 - 1) * (j - 1));
-                }
-            }
-        }
-        std::size_t inside = cell_starts_[c];
-        for (std::size_t z = 1; z < n[2]; ++z) {
-            for (std::size_t y = 1; y < n[1]; ++y) {
-                for (std::size_t x = 1; x < n[0]; ++x) grid[at({x, y, z})] = static_cast<Index>(inside++);
-            }
-        }
-        return grid;
-    }
-
     void fill() {
-        std::vector<Vec3> points(point_count_);
+        const SplitGrids grids(cells_, edges_, pieces_, found_.points.size());
+        if (grids.point_count() >= kNone) fail("its curved cells would be split into too many hexahedra", "a larger tolerance");
+        std::vector<Vec3> points(grids.point_count());
         std::vector<std::vector<double>> values;
-        for (const FileArray* array : arrays_) values.emplace_back(point_count_ * static_cast<std::size_t>(array->components));
-        std::vector<std::uint8_t> filled(point_count_);
+        for (const FileArray* array : arrays_) values.emplace_back(points.size() * static_cast<std::size_t>(array->components));
+        std::vector<std::uint8_t> filled(points.size());
         FileCells<8> hexes;
         for (std::size_t c = 0; c < cells_.size(); ++c) {
             const Sizes n = pieces_of(c);
-            const auto grid = grid_of(c);
+            const auto grid = grids.grid_of(c);
             const auto at_grid = shape_of(c).at_grid(n);
             for (std::size_t i = 0; i < grid.size(); ++i) {
                 const Index p = grid[i];
@@ -495,10 +393,6 @@ private:
     std::vector<Sizes> class_of_;
     std::vector<std::size_t> pieces_;  // of each class of edges
     bool limited_ = false;
-    std::vector<Index> corners_;
-    std::vector<std::size_t> edge_starts_, cell_starts_;
-    std::map<std::array<Index, 4>, std::size_t> face_starts_;
-    std::size_t point_count_ = 0;
     FileCells<8> new_hexes_;
 };
 

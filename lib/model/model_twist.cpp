@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "model_block.h"
+#include "subvol/detail/twist_block.h"
 #include "subvol/model.h"
 
 namespace subvol {
@@ -49,17 +50,39 @@ std::optional<double> TwistField::value(const Vec3& x) const {
     return density(p);
 }
 
-HexMesh detail::model::make_twist(Index resolution) {
-    HexMesh mesh = parameter_block({resolution, resolution, resolution});
+HexMesh detail::twist_block(std::uint64_t n, const CellRange& cells) {
+    HexMesh mesh;
     Attribute field{.name = "density", .channels = 1, .values = {}};
-    field.values.reserve(mesh.points.size());
-    for (Vec3& p : mesh.points) {
-        field.values.push_back(TwistField::density(p));
-        const Vec3 x = TwistField::position(p);
-        p = {rounded_to_float(x.x), rounded_to_float(x.y), rounded_to_float(x.z)};  // as the published benchmark has it
+    const auto coordinate = [n](std::uint64_t i) { return -1 + 2.0 * static_cast<double>(i) / static_cast<double>(n); };
+    for (std::uint64_t z = cells.begin[2]; z <= cells.end[2]; ++z) {
+        for (std::uint64_t y = cells.begin[1]; y <= cells.end[1]; ++y) {
+            for (std::uint64_t x = cells.begin[0]; x <= cells.end[0]; ++x) {
+                const Vec3 parameter(coordinate(x), coordinate(y), coordinate(z));
+                field.values.push_back(TwistField::density(parameter));
+                const Vec3 at = TwistField::position(parameter);
+                // Rounded, as the published benchmark has it.
+                mesh.points.emplace_back(rounded_to_float(at.x), rounded_to_float(at.y), rounded_to_float(at.z));
+            }
+        }
     }
     mesh.attributes.push_back(std::move(field));
+    const auto row = static_cast<Index>(cells.end[0] - cells.begin[0] + 1);
+    const auto layer = static_cast<Index>(row * (cells.end[1] - cells.begin[1] + 1));
+    for (std::uint64_t z = cells.begin[2]; z < cells.end[2]; ++z) {
+        for (std::uint64_t y = cells.begin[1]; y < cells.end[1]; ++y) {
+            for (std::uint64_t x = cells.begin[0]; x < cells.end[0]; ++x) {
+                const auto p = static_cast<Index>(x - cells.begin[0] + row * (y - cells.begin[1]) +
+                                                  std::uint64_t{layer} * (z - cells.begin[2]));
+                const Index q = p + layer;
+                mesh.cells.push_back({p, p + 1, p + 1 + row, p + row, q, q + 1, q + 1 + row, q + row});
+            }
+        }
+    }
     return mesh;
+}
+
+HexMesh detail::model::make_twist(Index resolution) {
+    return twist_block(resolution, {{0, 0, 0}, {resolution, resolution, resolution}});
 }
 
 }  // namespace subvol

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <bit>
+#include <cassert>
 #include <cstdint>
 
 #include "number_writer.h"
 #include "output_file.h"
 #include "ply_splats.h"
 #include "points_file.h"
+#include "subvol/detail/ply_rows.h"
 #include "subvol/detail/surface_io.h"
+#include "subvol/error.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
@@ -23,8 +26,8 @@ public:
         if (with_splats_) splats_ = ply_splats(volume, turn_);
     }
 
-    [[nodiscard]] std::string header() const {
-        std::string text = "element vertex " + std::to_string(volume_.size()) + "\n";
+    [[nodiscard]] std::string header(std::uint64_t count) const {
+        std::string text = "element vertex " + std::to_string(count) + "\n";
         const auto properties = [&](const char* type, const auto& names, const std::string& suffix = {}) {
             for (const auto name : names) text += std::string("property ") + type + " " + std::string(name) + suffix + "\n";
         };
@@ -44,13 +47,15 @@ public:
         return text;
     }
 
-    void write(NumberWriter& out) const {
+    /// out: a NumberWriter, or RowBytes
+    template <class Numbers>
+    void write(Numbers& out) const {
         for (std::size_t i = 0; i < volume_.size(); ++i) {
             if (with_splats_) {
-                out.put_point<float>(turn_ * volume_.centers[i]);
+                out.template put_point<float>(turn_ * volume_.centers[i]);
                 out.put_all(splats_[i]);
             }
-            out.put_point<double>(volume_.centers[i]);
+            out.template put_point<double>(volume_.centers[i]);
             for (const RbfChannel& channel : volume_.channels) {
                 out.put(channel.values[i]);
                 out.put_all(channel.gradients[i]);
@@ -69,8 +74,9 @@ private:
     std::vector<PlySplat> splats_;
 };
 
-std::string comments(const RbfVolume& volume) {
-    std::string text =
+std::string comments(const RbfVolume& volume, const Surface& boundary, const std::string& note) {
+    std::string text = note.empty() ? "" : "comment" + (kNoteMark + without_controls(note)) + "\n";
+    text +=
         "comment OpenSubVol points: with d = x - centre and e = d.inverse(S).d a point stands for value + g.d + moment*e\n"
         "comment + d.H.d/2, H being 0 where it is left out;\n"
         "comment the field is their mean inside the boundary, weighted by the kernel at (its support radius)*sqrt(e)\n"
@@ -79,7 +85,7 @@ std::string comments(const RbfVolume& volume) {
     for (const RbfChannel& channel : volume.channels) {
         text += "comment channel " + without_controls(channel.name) + "\n";
     }
-    return text + "comment boundary_triangles " + std::to_string(volume.boundary.triangles.size()) + "\n";
+    return text + "comment boundary_triangles " + std::to_string(boundary.triangles.size()) + "\n";
 }
 
 std::string boundary_header(const Surface& boundary) {
@@ -105,8 +111,9 @@ void write_boundary(NumberWriter& out, const Surface& boundary) {
 void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
     const VertexElement vertices(volume, options);
     OutputFile out(path);
-    out.write(std::string("ply\nformat ") + (options.ascii ? "ascii" : kBinary) + " 1.0\n" + comments(volume) +
-              vertices.header() + (options.splats ? "" : boundary_header(volume.boundary)) + "end_header\n");
+    out.write(std::string("ply\nformat ") + (options.ascii ? "ascii" : kBinary) + " 1.0\n" +
+              comments(volume, volume.boundary, options.note) + vertices.header(volume.size()) +
+              (options.splats ? "" : boundary_header(volume.boundary)) + "end_header\n");
     NumberWriter numbers(out, options.ascii);
     vertices.write(numbers);
     if (!options.splats) write_boundary(numbers, volume.boundary);
@@ -114,6 +121,73 @@ void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const
     out.close();
     if (options.splats) BoundaryFile(path, volume.boundary).commit();
     out.commit();
+}
+
+namespace {
+
+/// Rows as bytes.
+struct RowBytes {
+    std::string bytes;
+
+    template <class Number>
+    void put(Number number) {
+        bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+    }
+    template <class Numbers>
+    void put_all(const Numbers& numbers) {
+        for (const auto number : numbers) put(number);
+    }
+    template <class Number>
+    void put_point(const Vec3& p) {
+        for (int k = 0; k < 3; ++k) put(static_cast<Number>(p[k]));
+    }
+    void end_row() {}
+};
+
+}  // namespace
+
+struct PlyRows::State {
+    std::filesystem::path path;
+    OutputFile out;
+    std::uint64_t points, first = 0, row = 0, written = 0;
+};
+
+PlyRows::PlyRows(const std::filesystem::path& path, const RbfVolume& like, std::uint64_t points, const Surface& boundary)
+    : state_(new State{path, OutputFile(path), points}) {
+    const PointsWriteOptions options;
+    state_->out.write(std::string("ply\nformat ") + kBinary + " 1.0\n" + comments(like, boundary, {}) +
+                      VertexElement(like, options).header(points) + boundary_header(boundary) + "end_header\n");
+    state_->first = state_->out.position();
+}
+
+PlyRows::~PlyRows() = default;
+
+void PlyRows::write(std::span<const std::uint64_t> numbers, const RbfVolume& points) {
+    if (numbers.empty()) return;
+    RowBytes rows;
+    VertexElement(points, {}).write(rows);
+    const std::uint64_t row = rows.bytes.size() / numbers.size();
+    assert(state_->row == 0 || state_->row == row);
+    state_->row = row;
+    for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
+        for (end = begin + 1; end < numbers.size() && numbers[end] == numbers[begin] + (end - begin);) ++end;
+        state_->out.write_at(state_->first + row * numbers[begin],
+                             std::string_view(rows.bytes).substr(row * begin, row * (end - begin)));
+    }
+    state_->written += numbers.size();
+}
+
+void PlyRows::finish(const Surface& boundary) {
+    if (state_->written != state_->points) {
+        throw Error(ErrorCode::InvalidInput,
+                    std::to_string(state_->written) + " of " + std::to_string(state_->points) + " points were found",
+                    state_->path.string());
+    }
+    state_->out.seek(state_->first + state_->row * state_->points);
+    NumberWriter numbers(state_->out);
+    write_boundary(numbers, boundary);
+    numbers.flush();
+    state_->out.commit();
 }
 
 }  // namespace subvol::detail

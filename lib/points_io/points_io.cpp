@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/points_io.h"
 
+#include <fstream>
+
 #include "points_file.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
@@ -31,7 +33,7 @@ void write_points(const std::filesystem::path& path, const RbfVolume& volume, co
     if (format_of(path) == ".PLY") {
         write_ply(path, volume, options);
     } else {
-        write_vtp(path, volume);
+        write_vtp(path, volume, options.note);
     }
 }
 
@@ -50,6 +52,23 @@ RbfVolume read_points(const std::filesystem::path& path) {
         if (said.starts_with(path.string()) || said.starts_with(boundary_path(path).string())) throw;
         throw Error(error.code(), error.what(), path.string());
     }
+}
+
+std::optional<std::string> read_points_note(const std::filesystem::path& path) {
+    constexpr std::size_t kStart = 1 << 16;  // bytes; notes come first
+    std::ifstream file(path, std::ios::binary);
+    if (!file) throw Error(ErrorCode::Io, "cannot be read", path.string());
+    std::string start(kStart, '\0');
+    file.read(start.data(), kStart);
+    start.resize(static_cast<std::size_t>(file.gcount()));
+    const std::string_view mark = kNoteMark;
+    const std::size_t at = start.find(mark);
+    if (at == std::string::npos) return std::nullopt;
+    const std::size_t end = start.find('\n', at);
+    if (end == std::string::npos) return std::nullopt;
+    std::string note = start.substr(at + mark.size(), end - at - mark.size());
+    if (note.ends_with(kNoteEnd)) note.resize(note.size() - std::string_view(kNoteEnd).size());
+    return note;
 }
 
 }  // namespace subvol

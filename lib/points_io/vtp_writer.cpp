@@ -103,10 +103,19 @@ void write_point_data(VtkXmlWriter& out, const RbfVolume& volume) {
     out.line("</PointData>");
 }
 
-void write_points(OutputFile& out, const RbfVolume& volume) {
+/// Two hyphens would end a comment of XML; the notes are JSON, which has another way to write them.
+std::string without_hyphens(std::string note) {
+    for (std::size_t at = note.find("--"); at != std::string::npos; at = note.find("--", at)) {
+        note.replace(at, 2, "\\u002d\\u002d");
+    }
+    return note;
+}
+
+void write_points(OutputFile& out, const RbfVolume& volume, const std::string& note) {
     std::vector<std::int64_t> vertices(volume.size());
     for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<std::int64_t>(i);
     VtkXmlWriter xml(out, "PolyData");
+    if (!note.empty()) xml.line("<!--" + (kNoteMark + without_hyphens(without_controls(note))) + kNoteEnd);
     write_field_data(xml, volume);
     write_piece(xml, volume.centers, volume.size(), 0);
     write_cells(xml, "Verts", vertices, 1);
@@ -128,10 +137,10 @@ void write_surface(OutputFile& out, const Surface& surface) {
 
 }  // namespace
 
-void write_vtp(const std::filesystem::path& path, const RbfVolume& volume) {
+void write_vtp(const std::filesystem::path& path, const RbfVolume& volume, const std::string& note) {
     check_names(volume);
     OutputFile out(path);
-    write_points(out, volume);
+    write_points(out, volume, note);
     out.close();
     BoundaryFile(path, volume.boundary).commit();
     out.commit();

@@ -4,15 +4,19 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include "boundary_level.h"
 #include "child_topology.h"
 #include "refine_steps.h"
 #include "sample_counts.h"
 #include "sample_ways.h"
+#include "subvol/boundary_values.h"
 #include "subvol/detail/number_text.h"
+#include "subvol/detail/sample_part.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
+#include "subvol/sample_tables.h"
 
 namespace subvol {
 
@@ -75,7 +79,11 @@ Surface boundary_of(const HexMesh& control, const Known& known, int intervals, c
     const int levels = options.boundary_levels.value_or(std::min(half_an_interval, kMostDefaultBoundaryLevels));
     const RefineOptions refine_options = refinement(options, levels);
     if (levels == 1 && interpolates(options.scheme.kind)) return detail::boundary_of_child(control, known, options.scheme);
-    return detail::boundary_at_level(control, refine_options);
+    if constexpr (std::is_same_v<Known, Topology>) {
+        return detail::boundary_at_level(control, refine_options);
+    } else {
+        return detail::boundary_at_level(control, known, refine_options);
+    }
 }
 
 void count_entities(SampleReport& report, const Topology& topology, std::size_t n) {
@@ -102,7 +110,7 @@ void mark_hull(const detail::MeshPart& part, std::vector<std::uint8_t>& on_hull)
 }
 
 /// The samples are the control points. The topology is built part by part, to save memory.
-SampledLevel control_level(HexMesh control, const SampleOptions& options) {
+SampledLevel control_level(HexMesh control, const SampleOptions& options, bool with_boundary = true) {
     const std::size_t points = control.points.size();
     detail::LinesOfParts lines;
     std::vector<std::uint8_t> on_hull(points);
@@ -112,7 +120,7 @@ SampledLevel control_level(HexMesh control, const SampleOptions& options) {
     });
     SampledLevel level;
     level.lines = lines.finish(points);
-    level.boundary = boundary_of(control, on_hull, options.per_edge, options);
+    if (with_boundary) level.boundary = boundary_of(control, on_hull, options.per_edge, options);
     level.counts.at_vertices = points;
     level.mesh = std::move(control);
     return level;
@@ -171,7 +179,76 @@ Box bounds_of(const RbfVolume& volume) {
     return box;
 }
 
+void check_part(const SampleOptions& options) {
+    check(options);
+    if (level_of_samples(options) != 0 || !interpolates(options.scheme.kind)) {
+        throw Error(ErrorCode::InvalidInput, "parts of a mesh are sampled at their points only", {},
+                    "--per-edge 1, --scheme mcq or linear");
+    }
+}
+
 }  // namespace
+
+SampleResult detail::sample_part(HexMesh part, const SampleOptions& options, double diagonal) {
+    check_part(options);
+    SampledLevel level = control_level(control_mesh(std::move(part), options.scheme), options, false);
+    level.mesh.cells = std::vector<std::array<Index, 8>>();
+    SampleResult result =
+        sample_at_points(std::move(level.mesh), level.lines, options.scheme.kind != Scheme::Linear, options, diagonal);
+    result.report.at_vertices = result.report.points;
+    result.volume.bounds = bounds_of(result.volume);
+    return result;
+}
+
+Surface detail::sample_hull(HexMesh hull, const std::vector<std::uint8_t>& on_hull, const SampleOptions& options) {
+    check_part(options);
+    return boundary_of(control_mesh(std::move(hull), options.scheme), on_hull, options.per_edge, options);
+}
+
+int detail::layers_of_samples(const SampleOptions& options) {
+    // A derivative at a point takes up to three points ahead on a line: the line through the second of them is known from all
+    // its cells. A Hessian takes the gradients of the neighbours too.
+    return options.correction == Correction::Full ? 4 : 3;
+}
+
+struct SampleTables::State {
+    SampleOptions options;
+    detail::PointLines lines;
+    BoundaryTables boundary;
+};
+
+bool SampleTables::are_for(const SampleOptions& options) {
+    return level_of_samples(options) == 0 && interpolates(options.scheme.kind);
+}
+
+SampleTables::SampleTables(const HexMesh& mesh, const SampleOptions& options) {
+    check(options);
+    if (!are_for(options)) {
+        throw Error(ErrorCode::InvalidInput, "there are tables for one kernel at each control point only", "per_edge", "1");
+    }
+    const HexMesh control = detail::control_mesh(HexMesh(mesh), options.scheme);
+    detail::LinesOfParts lines;
+    detail::each_part(control, [&](const detail::MeshPart& part) { lines.add(part); });
+    BoundaryTables boundary(control, refinement(options, options.boundary_levels.value_or(1)));
+    state_ = std::make_unique<State>(State{options, lines.finish(control.points.size()), std::move(boundary)});
+}
+
+SampleTables::~SampleTables() = default;
+SampleTables::SampleTables(SampleTables&&) noexcept = default;
+SampleTables& SampleTables::operator=(SampleTables&&) noexcept = default;
+
+SampleResult SampleTables::apply(const HexMesh& mesh) const {
+    const State& state = *state_;
+    HexMesh points = without_unused_points(HexMesh(mesh));
+    Surface boundary = state.boundary.apply(points).surface;
+    points.cells = std::vector<std::array<Index, 8>>();
+    SampleResult result =
+        detail::sample_at_points(std::move(points), state.lines, state.options.scheme.kind != Scheme::Linear, state.options);
+    result.volume.boundary = std::move(boundary);
+    result.volume.bounds = bounds_of(result.volume);
+    result.report.at_vertices = result.report.points;
+    return result;
+}
 
 SampleResult sample_rbf_points(HexMesh mesh, const SampleOptions& options) {
     check(options);

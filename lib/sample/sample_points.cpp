@@ -119,18 +119,20 @@ private:
 
 }  // namespace
 
-SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool across_points, const SampleOptions& options) {
+SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool across_points, const SampleOptions& options,
+                              std::optional<double> diagonal) {
     constexpr std::size_t kTurn = std::size_t{1} << 20;  // points between two reports of progress
     SampleResult result;
     result.volume = empty_volume(on_limit, lines.size(), options);
     Box box;
     for (const Vec3& p : on_limit.points) box.add(p);
+    const double size = diagonal.value_or(box.diagonal());
     std::atomic<std::size_t> flat{0};
     for (std::size_t turn = 0; turn < lines.size(); turn += kTurn) {
         report_progress(options.progress, "sample", static_cast<double>(turn) / static_cast<double>(lines.size()));
         const tbb::blocked_range<std::size_t> points(turn, std::min(lines.size(), turn + kTurn), 256);
         tbb::parallel_for(points, [&](const auto& range) {
-            PointSampler sampler(on_limit, box.diagonal(), lines, across_points, options, result.volume);
+            PointSampler sampler(on_limit, size, lines, across_points, options, result.volume);
             std::size_t flat_here = 0;
             for (std::size_t p = range.begin(); p != range.end(); ++p) flat_here += sampler.sample(static_cast<Index>(p));
             flat += flat_here;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "point_lines.h"
 #include "subvol/sample.h"
 #include "subvol/topology.h"
@@ -11,8 +13,9 @@ namespace subvol::detail {
 /// the lines through a point, one-sided where a line ends.
 ///
 /// across_points: whether the limit is smooth across the points of a line; if not, each edge gives its own derivative
+/// diagonal:      of the bounding box, if the points are part of a larger mesh
 [[nodiscard]] SampleResult sample_at_points(HexMesh on_limit, const PointLines& lines, bool across_points,
-                                            const SampleOptions& options);
+                                            const SampleOptions& options, std::optional<double> diagonal = {});
 
 /// Kernels at any number of intervals on each edge, entity by entity. Values and derivatives are those of quartics through the
 /// cells of the twice refined mesh, whose points must lie on the limit.

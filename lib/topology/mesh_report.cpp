@@ -8,6 +8,8 @@
 
 #include "mesh_parts.h"
 #include "subvol/cell.h"
+#include "subvol/detail/inspect_part.h"
+#include "subvol/detail/mesh_share.h"
 
 namespace subvol {
 
@@ -87,18 +89,28 @@ void count_points(const detail::MeshPart& part, MeshReport& report) {
     }
 }
 
+constexpr std::size_t kPart = 4096;  // cells that are summed together, so that rounding does not depend on the threads
+
+std::size_t part_count(const HexMesh& mesh) {
+    return (mesh.cells.size() + kPart - 1) / kPart;
+}
+
+/// The shapes of some parts of the cells, from part `begin` to before `end`.
+std::vector<ShapeReport> shapes_of_parts(const HexMesh& mesh, std::size_t begin, std::size_t end) {
+    std::vector<ShapeReport> parts(end - begin);
+    tbb::parallel_for(begin, end, [&](std::size_t i) {
+        for (std::size_t c = i * kPart; c < std::min(mesh.cells.size(), (i + 1) * kPart); ++c) {
+            add(parts[i - begin], quality_of(mesh, c));
+        }
+    });
+    return parts;
+}
+
 }  // namespace
 
 ShapeReport measure_cells(const HexMesh& mesh) {
-    constexpr std::size_t kPart = 4096;  // cells that are summed together, so that rounding does not depend on the threads
-    std::vector<ShapeReport> parts((mesh.cells.size() + kPart - 1) / kPart);
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t i) {
-        for (std::size_t c = i * kPart; c < std::min(mesh.cells.size(), (i + 1) * kPart); ++c) {
-            add(parts[i], quality_of(mesh, c));
-        }
-    });
     ShapeReport report;
-    for (const ShapeReport& part : parts) {
+    for (const ShapeReport& part : shapes_of_parts(mesh, 0, part_count(mesh))) {
         report.volume += part.volume;
         report.inverted_cells += part.inverted_cells;
         report.degenerate_cells += part.degenerate_cells;
@@ -113,6 +125,37 @@ std::vector<std::size_t> inverted_cells(const HexMesh& mesh, std::size_t at_most
         if (quality_of(mesh, c).inverted) numbers.push_back(c);
     }
     return numbers;
+}
+
+void detail::add_part(const HexMesh& part, std::span<const std::uint8_t> owned_points,
+                      std::span<const std::uint8_t> owned_cells, MeshReport& report) {
+    HexMesh bare;  // tags matter only to schemes
+    bare.points = part.points;
+    bare.cells = part.cells;
+    validate(bare);
+    each_part(bare, [&](const MeshPart& piece) {
+        MeshPart owned = piece;
+        for (std::size_t p = 0; p < owned.own.size(); ++p) owned.own[p] = owned.own[p] && owned_points[owned.points[p]];
+        count_points(owned, report);
+        count_edges(owned, report);
+        count_faces(owned, report);
+    });
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < part.cells.size(); ++c) {
+        if (!owned_cells[c]) continue;
+        for (const Index p : bare.cells[c]) report.bounds.add(bare.points[p]);
+        bare.cells[kept++] = bare.cells[c];
+    }
+    bare.cells.resize(kept);
+    const ShapeReport shape = measure_cells(bare);
+    const bool first = report.cells == 0;
+    report.cells += kept;
+    for (const std::uint8_t owned : owned_points) report.points += owned;
+    report.inverted_cells += shape.inverted_cells;
+    report.degenerate_cells += shape.degenerate_cells;
+    report.min_scaled_jacobian =
+        first ? shape.min_scaled_jacobian : std::min(report.min_scaled_jacobian, shape.min_scaled_jacobian);
+    report.volume += shape.volume;
 }
 
 MeshReport inspect(const HexMesh& mesh) {
@@ -139,6 +182,68 @@ MeshReport inspect(const HexMesh& mesh) {
     report.min_scaled_jacobian = shape.min_scaled_jacobian;
     report.volume = shape.volume;
     return report;
+}
+
+detail::MeshShare detail::inspect_share(const HexMesh& mesh, int part, int of, std::size_t inverted_at_most) {
+    validate(mesh);
+    HexMesh untagged;
+    if (!mesh.creases.empty() || !mesh.sharp_faces.empty()) {
+        untagged.points = mesh.points;
+        untagged.cells = mesh.cells;
+    }
+    MeshShare share;
+    MeshReport& counts = share.counts;
+    counts.points = mesh.points.size();
+    counts.cells = mesh.cells.size();
+    counts.bounds = bounds(mesh);
+    counts.min_scaled_jacobian = 1;
+    each_part_of_share(untagged.cells.empty() ? mesh : untagged, part, of, [&](const MeshPart& some) {
+        count_points(some, counts);
+        count_edges(some, counts);
+        count_faces(some, counts);
+    });
+    const std::size_t parts = part_count(mesh), shares = static_cast<std::size_t>(of);
+    const std::size_t begin = parts * static_cast<std::size_t>(part - 1) / shares,
+                      end = parts * static_cast<std::size_t>(part) / shares;
+    for (const ShapeReport& shape : shapes_of_parts(mesh, begin, end)) {
+        share.volumes.push_back(shape.volume);
+        counts.inverted_cells += shape.inverted_cells;
+        counts.degenerate_cells += shape.degenerate_cells;
+        counts.min_scaled_jacobian = std::min(counts.min_scaled_jacobian, shape.min_scaled_jacobian);
+    }
+    for (std::size_t c = begin * kPart; c < std::min(end * kPart, mesh.cells.size()); ++c) {
+        if (counts.inverted_cells == 0 || share.inverted.size() == inverted_at_most) break;
+        if (quality_of(mesh, c).inverted) share.inverted.push_back(c);
+    }
+    return share;
+}
+
+detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::size_t inverted_at_most) {
+    MeshShare whole;
+    MeshReport& all = whole.counts;
+    all.points = shares.front().counts.points;
+    all.cells = shares.front().counts.cells;
+    all.bounds = shares.front().counts.bounds;
+    all.min_scaled_jacobian = 1;
+    for (const auto& [counts, volumes, inverted] : shares) {
+        all.points_used += counts.points_used;
+        all.edges += counts.edges;
+        all.faces += counts.faces;
+        all.boundary_faces += counts.boundary_faces;
+        all.interior_edges += counts.interior_edges;
+        for (const auto& [valence, count] : counts.interior_edge_valence) all.interior_edge_valence[valence] += count;
+        all.singular_nodes += counts.singular_nodes;
+        all.inverted_cells += counts.inverted_cells;
+        all.degenerate_cells += counts.degenerate_cells;
+        all.min_scaled_jacobian = std::min(all.min_scaled_jacobian, counts.min_scaled_jacobian);
+        all.nonmanifold_edges += counts.nonmanifold_edges;
+        all.nonmanifold_faces += counts.nonmanifold_faces;
+        for (const double volume : volumes) all.volume += volume;
+        for (const std::size_t cell : inverted) {
+            if (whole.inverted.size() < inverted_at_most) whole.inverted.push_back(cell);
+        }
+    }
+    return whole;
 }
 
 }  // namespace subvol

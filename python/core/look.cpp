@@ -6,6 +6,7 @@
 #include "subvol/camera_fit.h"
 #include "subvol/image_io.h"
 #include "subvol/legend.h"
+#include "subvol/picture_look.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol::python {
@@ -90,6 +91,48 @@ py::bytes png_of(const Picture& picture, const py::object& background) {
     const std::vector<std::uint8_t> rgb = srgb_bytes(picture.image, background_of(picture, background));
     const py::bytes bytes(reinterpret_cast<const char*>(rgb.data()), rgb.size());
     return py::module_::import("subvol._png").attr("encode")(bytes, picture.image.width, picture.image.height);
+}
+
+/// What pictures of a look are without options, as the command has it.
+void bind_default_looks(py::module_& module) {
+    py::enum_<Look>(module, "Look")
+        .value("solid", Look::Solid)
+        .value("volume", Look::Volume)
+        .value("xray", Look::Xray)
+        .value("isosurface", Look::Isosurface);
+    module.def(
+        "look_named",
+        [](const std::string& name) {
+            const std::optional<Look> look = look_named(name);
+            if (!look) throw unknown_word(name, "look", "solid, volume, xray or isosurface");
+            return *look;
+        },
+        py::arg("name"));
+    module.def(
+        "look_colors", [](Look look) { return subvol::colors_of(LookOptions{.look = look}); }, py::arg("look"));
+    module.def(
+        "look_background", [](Look look) { return as_tuple(subvol::background_of(look)); }, py::arg("look"));
+    module.def(
+        "look_opacity_unit", [](Look look, const py::object& bounds) { return opacity_unit_of(look, box_of(bounds)); },
+        py::arg("look"), py::arg("bounds"));
+    module.def(
+        "solid",
+        [](TransferFunction knots, bool keep_opacity, bool plain) {
+            const auto own = knots.opacity;
+            make_solid(knots, plain);
+            if (keep_opacity) knots.opacity = own;
+            return knots;
+        },
+        py::arg("knots"), py::arg("keep_opacity"), py::arg("plain"));
+    module.def(
+        "framed_points",
+        [](const HexMesh& mesh, Look look, const TransferFunction& knots, double opacity_unit) {
+            const std::vector<Vec3> points = framed_points(mesh, look, Optics(knots, opacity_unit));
+            std::vector<double> rows;
+            for (const Vec3& p : points) rows.insert(rows.end(), {p.x, p.y, p.z});
+            return owned(std::move(rows), {length(points.size()), 3});
+        },
+        py::arg("mesh"), py::arg("look"), py::arg("knots"), py::arg("opacity_unit"));
 }
 
 void bind_image(py::module_& module) {
@@ -210,6 +253,7 @@ void bind_look(py::module_& module) {
                 return py::make_tuple(as_tuple(c.eye), as_tuple(c.target), as_tuple(c.up), c.fovy_deg, c.ortho_height);
             },
             [](const py::tuple& s) { return camera_of(s[0], s[1], s[2], s[3].cast<double>(), s[4].cast<double>()); }));
+    bind_default_looks(module);
     bind_image(module);
 }
 

@@ -248,11 +248,13 @@ void bind_points(py::module_& module) {
         "is_points_file", [](const std::string& path) { return is_points_file(path); }, py::arg("path"));
     module.def(
         "write_points",
-        [](const std::string& path, const RbfVolume& volume, bool ascii, bool splats) {
+        [](const std::string& path, const RbfVolume& volume, bool ascii, bool splats, const std::string& up) {
+            if (up != "x" && up != "y" && up != "z") throw unknown_word(up, "up", "x, y or z");
+            const UpAxis axis = up == "x" ? UpAxis::X : up == "y" ? UpAxis::Y : UpAxis::Z;
             const py::gil_scoped_release without_gil;
-            write_points(path, volume, {.ascii = ascii, .splats = splats});
+            write_points(path, volume, {.ascii = ascii, .splats = splats, .up = axis});
         },
-        py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"));
+        py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"), py::arg("up"));
     module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"), py::arg("extent"), py::arg("terms"));
     module.def(
         "named_kernel", [](const std::string& name) { return to_json(named_kernel(name)); }, py::arg("name"));

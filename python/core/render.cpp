@@ -80,14 +80,18 @@ void check_channel(const RbfVolume& volume, std::size_t channel) {
 
 Picture splat(const RbfVolume& volume, const Scene& scene, const std::string& backend, const std::optional<int>& device,
               int samples, int sheets, std::size_t channel, const std::optional<std::size_t>& color_channel, bool shade,
-              const py::object& progress) {
+              bool shadows, double ambient_occlusion, const BoundaryValues* skin, const py::object& progress) {
     check_channel(volume, channel);
     if (color_channel) check_channel(volume, *color_channel);
     SplatOptions options = splat_options(backend, device, samples, sheets, channel, color_channel, shade);
     options.clip = scene.clip;
+    options.shadows = shadows;
+    options.ambient_occlusion = ambient_occlusion;
     return picture_of(result_of(progress, [&](Progress* listener) {
         options.progress = listener;
-        return render_splats(volume, scene.view, scene.optics, options);
+        Splatter splatter(volume, options);
+        if (skin != nullptr) splatter.set_boundary_colors(skin->surface, skin->values.back());
+        return splatter.draw(scene.view, scene.optics);
     }));
 }
 
@@ -195,16 +199,10 @@ BoundaryValues skin(const HexMesh& mesh, const std::string& scheme, double tensi
     return boundary_values(mesh, refine_options(scheme, picture_levels(mesh, levels), tension, crease_angle));
 }
 
-/// colored: the body's values give the colours; else the picture keeps its own
-Picture lit(const Picture& picture, const BoundaryValues& skin, const Scene& scene, int samples, bool colored) {
+Picture lit(const Picture& picture, const BoundaryValues& skin, const Scene& scene, int samples) {
     Picture result{picture.image, picture.depth, picture.report.attr("copy")()};
     const py::gil_scoped_release without_gil;
-    if (colored) {
-        color_boundary(result.image, skin.surface, skin.values.back(), scene.view, scene.optics, Shading{}, samples,
-                       scene.clip);
-    } else {
-        light_boundary(result.image, skin.surface, scene.view, Shading{}, samples, scene.clip);
-    }
+    light_boundary(result.image, skin.surface, scene.view, Shading{}, samples, scene.clip);
     return result;
 }
 
@@ -233,8 +231,10 @@ void bind_render(py::module_& module) {
                       const std::vector<SixNumbers>&, const std::optional<SixNumbers>&, const std::vector<SixNumbers>&, bool>(),
              py::arg("camera"), py::arg("size"), py::arg("knots"), py::arg("opacity_unit"), py::arg("clip"),
              py::arg("clip_box"), py::arg("slices"), py::arg("around"));
+    py::class_<BoundaryValues>(module, "BoundaryValues", "A boundary with the limit's values on it.");
     module.def("splat", &splat, py::arg("volume"), py::arg("scene"), py::arg("backend"), py::arg("device"), py::arg("samples"),
-               py::arg("sheets"), py::arg("channel"), py::arg("color_channel"), py::arg("shade"), py::arg("progress"));
+               py::arg("sheets"), py::arg("channel"), py::arg("color_channel"), py::arg("shade"), py::arg("shadows"),
+               py::arg("ambient_occlusion"), py::arg("skin").none(true), py::arg("progress"));
     module.def("splat_in_time", &splat_in_time, py::arg("mesh"), py::arg("scene"), py::arg("seconds"), py::arg("scheme"),
                py::arg("backend"), py::arg("device"), py::arg("samples"), py::arg("sheets"), py::arg("shade"),
                py::arg("progress"));
@@ -244,10 +244,9 @@ void bind_render(py::module_& module) {
     module.def("dense", &dense, py::arg("mesh"), py::arg("field"), py::arg("scene"), py::arg("scheme"), py::arg("tension"),
                py::arg("crease_angle"), py::arg("levels"), py::arg("image_tolerance"), py::arg("samples"), py::arg("progress"));
     module.def("grid", &grid, py::arg("voxels"), py::arg("scene"), py::arg("samples"), py::arg("progress"));
-    py::class_<BoundaryValues>(module, "BoundaryValues", "A boundary with the limit's values on it.");
     module.def("skin", &skin, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
                py::arg("levels"));
-    module.def("lit", &lit, py::arg("picture"), py::arg("skin"), py::arg("scene"), py::arg("samples"), py::arg("colored"));
+    module.def("lit", &lit, py::arg("picture"), py::arg("skin"), py::arg("scene"), py::arg("samples"));
     module.def("gl_devices", &devices);
 }
 

@@ -6,6 +6,7 @@ those that calls return are yours. Long calls release the GIL, stop at Ctrl-C, a
 fraction. Errors are `subvol.Error`; what was chosen or left out is warned about (`SubvolWarning`). docs/python.md says more.
 """
 from . import _core
+from ._colors import TransferFunction
 from ._core import Camera, Field, HexMesh, Image, RbfVolume, Refinement, Study, StudyCase, StudyResults, gl_devices, set_threads
 from ._errors import Cancelled, Error, FileError, InvalidInput, MissingCapability, SubvolWarning
 from ._exchange import from_meshio, from_pyvista, to_meshio, to_pyvista
@@ -13,8 +14,7 @@ from ._fields import LimitSamples, as_field, evaluate, evaluate_limit
 from ._measure import PointsError, ProbeSamples, Slice, SurfaceMesh, measure, points_error, probe, slice, surface
 from ._mesh import Series, model, models, open_series, read_mesh, subdivide, write_mesh
 from ._page import Page, page
-from ._pictures import (FieldComparison, ImageComparison, TransferFunction, compare, compare_fields, compare_images, read_image, render,
-                        write_image)
+from ._pictures import FieldComparison, ImageComparison, compare, compare_fields, compare_images, read_image, render, write_image
 from ._points import fit, kernels, read_points, reduce, sample, write_points
 from ._studies import run_study, studies, study
 from ._vdb import Grid, rasterize, read_vdb, sample_grid, write_vdb

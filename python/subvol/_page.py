@@ -8,9 +8,9 @@ from typing import Any, Optional, Union
 
 from . import _core
 from ._arguments import Path
+from ._colors import TransferFunction, _camera_of, _knots_of, _look_of, _range_of
 from ._core import Camera, HexMesh
 from ._errors import InvalidInput
-from ._pictures import (_LIGHT_GREY, _OPACITY_UNITS_PER_DIAGONAL, TransferFunction, _camera_of, _knots_of, _linear, _look_of, _range_of)
 from ._points import _selected, sample
 from ._progress import Progress, listening
 
@@ -63,15 +63,17 @@ def page(mesh: HexMesh, field: Optional[str] = None, *, per_edge: int = 1, look:
     name = next(iter(chosen.fields))
     low, high = _range_of(chosen.fields[name])
     bounds = chosen.bounds
-    diagonal = float(((bounds[1] - bounds[0]) ** 2).sum() ** 0.5)
-    knots = _knots_of(tf, "volume" if kind == "solid" else kind, low, high)
-    if kind == "solid":  # a body whose values are all the same is plain
+    solid = kind == _core.Look.solid
+    of_volume = _core.Look.volume if solid else kind  # opacities are those of the look volume, which readers can choose
+    knots = _knots_of(tf, of_volume, low, high)
+    if solid:  # a body whose values are all the same is plain
         knots = _core.Knots(_knots_of(tf, kind, low, high).color, knots.opacity)
-    eye = _camera_of(view, camera, bounds, chosen.points, kind, (512, 512), False)
-    behind = {"solid": _linear(_LIGHT_GREY), "xray": (1.0, 1.0, 1.0)}.get(kind, (0.0, 0.0, 0.0))
+    unit_world = opacity_unit or _core.look_opacity_unit(of_volume, bounds)
+    shown = _core.framed_points(chosen, kind, knots, unit_world)
+    eye = _camera_of(view, camera, bounds, shown, (512, 512), False)
     volume = sample(chosen, name, per_edge, scheme=scheme, progress=progress)
     skin = _core.skin(chosen, scheme, 1 / 16, None, None)
     with listening(progress) as listener:
-        text, report = _core.page(volume, skin, knots, unit, low, high, kind, eye, opacity_unit or diagonal / _OPACITY_UNITS_PER_DIAGONAL,
-                                  (behind[0], behind[1], behind[2]), title or name, "a mesh in Python", max_bytes, listener)
+        text, report = _core.page(volume, skin, knots, unit, low, high, kind.name, eye, unit_world,
+                                  _core.look_background(kind), title or name, "a mesh in Python", max_bytes, listener)
     return Page(text, report)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures: colours, the camera, the renderers, and the distance between two pictures or fields."""
+"""Pictures: the renderers, and the distance between two pictures or fields."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import Path, path_bytes, warn
+from ._colors import TransferFunction, _camera_of, _is_lit, _knots_of, _look_of, _range_of
 from ._core import Camera, Field, HexMesh, Image, RbfVolume
 from ._errors import InvalidInput
 from ._fields import as_field
@@ -18,127 +19,8 @@ from ._points import _selected
 from ._progress import Progress, listening
 from ._vdb import Grid, sample_grid
 
-# What the command draws without options (cli/arguments/picture_arguments.cpp); tests hold the two equal.
-_OPACITY_UNITS_PER_DIAGONAL = 100
-_SOLID_UNITS_PER_DIAGONAL = 1e6  # all light ends far within a pixel
-_PLAIN_COLOR = (0.72, 0.76, 0.82)  # of a body whose values are all the same, sRGB
-_LIGHT_GREY = (0xE4 / 255, 0xE6 / 255, 0xE9 / 255)  # sRGB
-
-
-def _linear(srgb: Sequence[float]) -> tuple[float, ...]:
-    return tuple(s / 12.92 if s <= 0.04045 else ((s + 0.055) / 1.055) ** 2.4 for s in srgb)
-
-
-class TransferFunction:
-    """Colours and opacities of the values of a field.
-
-    name:    viridis, plasma, inferno, cividis, turbo, coolwarm, grey, bone, xray, isosurface, surface or constant; or a colour-map
-             file of ParaView (.json)
-    range:   the values that the map covers; None: the range of the field that is drawn (a file keeps its own values)
-    opacity: pairs (value, opacity), linear in between, or text as "0%:0,50%:.2"; None: those of the map
-    map:     the name of one of several maps in a file
-    """
-
-    def __init__(self, name: Path = "viridis", range: Optional[tuple[float, float]] = None,
-                 opacity: Union[None, str, npt.ArrayLike] = None, *, map: str = "") -> None:
-        self.name = name
-        self.map = map
-        self.range: Optional[tuple[float, float]] = None
-        if range is not None:
-            low, high = range
-            self.range = (float(low), float(high))
-        self.opacity = opacity
-        self._color: Optional[npt.NDArray[np.float64]] = None
-        # Mistakes are found here, not when a picture is drawn.
-        self.knots(*(self.range or (0.0, 1.0)))
-
-    @staticmethod
-    def from_knots(color: npt.ArrayLike, opacity: npt.ArrayLike) -> TransferFunction:
-        """color: (n,4): value and linear rgb in [0,1]; opacity: (m,2): value and opacity. Values ascend."""
-        rows = np.array(color, float)
-        _core.Knots(rows, np.asarray(opacity))
-        function = TransferFunction(opacity=np.array(opacity, float))
-        function._color = rows
-        function.name = "knots"
-        return function
-
-    def knots(self, low: float, high: float) -> _core.Knots:
-        """The function over the range of a field; of no effect if it has a range of its own."""
-        low, high = self.range or (low, high)
-        if self._color is not None:
-            assert self.opacity is not None
-            return _core.Knots(self._color, self.opacity)
-        import os
-
-        name = os.fsdecode(self.name)
-        if os.path.splitext(name)[1] or os.path.dirname(name):
-            knots = _core.read_transfer_function(path_bytes(self.name), self.map)
-            if self.range is not None:
-                knots = _core.stretched(knots, low, high)
-        else:
-            knots = _core.preset(name, low, high)
-        if self.opacity is None:
-            return knots
-        alphas = _core.parse_opacity(self.opacity, low, high) if isinstance(self.opacity, str) else self.opacity
-        return _core.Knots(knots.color, alphas)
-
-    def legend(self, title: str = "", low: float = 0, high: float = 1, width: int = 360) -> str:
-        """A colour bar with ticks and the opacities, as SVG."""
-        low, high = self.range or (low, high)
-        return _core.legend_svg(self.knots(low, high), title, low, high, width)
-
-    def _repr_svg_(self) -> str:
-        return self.legend()
-
-    def __repr__(self) -> str:
-        over = "" if self.range is None else f", {self.range[0]:g} to {self.range[1]:g}"
-        return f"<subvol.TransferFunction: {self.name!s}{over}>"
-
-
 Drawable = Union[HexMesh, RbfVolume, Grid]
 Planes = Union[None, Sequence[float], Sequence[Sequence[float]], npt.ArrayLike]  # six numbers each: a point and the normal
-
-
-def _range_of(values: npt.NDArray[Any]) -> tuple[float, float]:
-    return float(values.min()), float(values.max())
-
-
-def _look_of(look: Optional[str], body: bool, tf: Any, opacity_unit: Optional[float]) -> str:
-    if look is None:
-        return "solid" if body and tf is None and opacity_unit is None else "volume"
-    if look not in ("solid", "volume", "xray", "isosurface"):
-        raise InvalidInput(f"look: '{look}' is not known (solid, volume, xray or isosurface)", "look",
-                           "solid, volume, xray or isosurface")
-    return look
-
-
-def _knots_of(tf: Union[None, str, TransferFunction], look: str, low: float, high: float) -> _core.Knots:
-    name = {"xray": "xray", "isosurface": "isosurface"}.get(look, "viridis")
-    function = TransferFunction(name) if tf is None else tf if isinstance(tf, TransferFunction) else TransferFunction(tf)
-    knots = function.knots(low, high)
-    if look != "solid":
-        return knots
-    opacity, color = knots.opacity, knots.color
-    if function.opacity is None:
-        opacity[:, 1] = 1
-    if tf is None and not low < high:
-        color[:, 1:] = _linear(_PLAIN_COLOR)
-    return _core.Knots(color, opacity)
-
-
-def _camera_of(view: str, camera: Union[None, str, Camera], bounds: npt.NDArray[Any], points: Optional[npt.NDArray[Any]], look: str,
-               size: tuple[int, int], ortho: bool) -> Camera:
-    aspect = size[0] / size[1]
-    if isinstance(camera, Camera):
-        return camera
-    if not isinstance(camera, (str, type(None))):
-        raise TypeError(f"camera: a Camera or text is needed, not {type(camera).__name__}")
-    given = Camera.parse(view if camera is None else camera, bounds, aspect)
-    if ortho and given.ortho_height == 0:
-        given = given.orthographic(bounds, aspect)
-    if look == "solid" and camera is None and points is not None:
-        return given.fit(points, aspect)
-    return given
 
 
 def _planes_of(planes: Planes, name: str) -> list[list[float]]:
@@ -163,13 +45,12 @@ def _box_of(box: Optional[Sequence[float]]) -> Optional[list[float]]:
 def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
            size: tuple[int, int] = (512, 512), field: Optional[str] = None, color_field: Optional[str] = None,
            tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None, look: Optional[str] = None,
-           shade: bool = False, samples: Optional[int] = None, sheets: int = 0, levels: Optional[int] = None, scheme: str = "mcq",
+           shade: bool = False, shadows: bool = False, ambient_occlusion: float = 0, samples: Optional[int] = None, sheets: int = 0, levels: Optional[int] = None, scheme: str = "mcq",
            tension: float = 1 / 16, crease_angle: Optional[float] = None, per_edge: int = 1, seconds: Optional[float] = None,
            order: str = "topological", image_tolerance: float = 1e-3, backend: str = "auto", device: Optional[int] = None,
            clip: Planes = None, clip_box: Optional[Sequence[float]] = None, slice: Planes = None, around: bool = False,
            progress: Progress = None) -> Image:
-    """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit; but views of volumes of
-    which only a part is visible frame the whole.
+    """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
     method:       "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "tets" (rays through tetrahedra), "pt" (tetrahedra
                   projected by OpenGL), "dense" (rays through the limit's cells), "grid" (rays through voxels)
@@ -180,6 +61,8 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     opacity_unit: the world distance that opacities are for; None: 1/100 of the bounding box's diagonal
     look:         "solid" (opaque and lit; what a mesh without tf, opacity_unit and shade gets), "volume", "xray" or "isosurface"
     shade:        lit surfaces of equal value (splats only)
+    shadows:      the volume shadows itself from the light at the upper left (splats only)
+    ambient_occlusion: > 0: darkens hollows that are narrower than this part of the bounding box's diagonal, at most 1 (splats only)
     samples:      n x n rays or places for each pixel, 1 to 16; None: 2 for solids, else 1
     levels:       draw the trilinear cells of this level; None: 1 for tets and pt, the limit for the others
     seconds:      a time limit (splat and pt)
@@ -215,57 +98,62 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
         raise InvalidInput("method: a mesh has no voxels", "method", "subvol.rasterize makes a grid of it")
     if not splats and shade:
         raise InvalidInput(f"shade: method {method} draws without light", "shade", "splat or sheets")
+    if (shadows or ambient_occlusion) and method != "splat":
+        raise InvalidInput(f"shadows, ambient_occlusion: method {method} draws without them (splat does)", "shadows", "splat")
+    if seconds is not None and (shadows or ambient_occlusion):
+        raise InvalidInput("seconds: pictures within a time have no shadows", "seconds", "without shadows and ambient_occlusion")
     if seconds is not None and method not in ("splat", "sheets", "pt"):
         raise InvalidInput(f"seconds: method {method} has no time limit", "seconds", "splat, sheets or pt")
     kind = _look_of(look, body and not shade, tf, opacity_unit)
-    lit = kind in ("solid", "isosurface")
-    if lit and not splats and kind != "solid":
+    solid, lit = kind == _core.Look.solid, _is_lit(kind)
+    if lit and not splats and not solid:
         raise InvalidInput(f"look: method {method} lights the boundary only", "look", "solid")
-    many = samples if samples is not None else 2 if kind == "solid" else 1
+    many = samples if samples is not None else 2 if solid else 1
 
     channel, color_channel = 0, None
     if isinstance(what, HexMesh):
         mesh = _selected(what, field)
         values = next(iter(mesh.fields.values()))
         low, high = _range_of(values)
-        bounds, points = mesh.bounds, mesh.points
+        bounds = mesh.bounds
     elif isinstance(what, RbfVolume):
         names = list(what.values)
         channel = _channel(names, field)
         if color_field is not None:
             color_channel = _channel(names, color_field)
         low, high = _range_of(what.values[names[channel]])
-        bounds, points = what.bounds, None
+        bounds = what.bounds
     else:
         about = what.report
         low, high = about["min"], about["max"]
         half = about["voxel_size"] / 2
-        bounds, points = np.array(what.bounds) + [[-half], [half]], None
+        bounds = np.array(what.bounds) + [[-half], [half]]
     knots = _knots_of(tf, kind, low, high)
     if color_channel is not None and isinstance(what, RbfVolume):
         other = _knots_of(tf, kind, *_range_of(what.values[names[color_channel]]))
         knots = _core.Knots(other.color, knots.opacity)
-    diagonal = float(np.linalg.norm(bounds[1] - bounds[0]))
-    unit = opacity_unit or diagonal / (_SOLID_UNITS_PER_DIAGONAL if kind == "solid" else _OPACITY_UNITS_PER_DIAGONAL)
-    eye = _camera_of(view, camera, bounds, points, kind, size, ortho)
+    unit = opacity_unit or _core.look_opacity_unit(kind, bounds)
+    framed = _core.framed_points(mesh, kind, knots, unit) if isinstance(what, HexMesh) else None
+    eye = _camera_of(view, camera, bounds, framed, size, ortho)
     scene = _core.Scene(eye, (int(size[0]), int(size[1])), knots, unit, _planes_of(clip, "clip"), _box_of(clip_box),
                         _planes_of(slice, "slice"), around)
     way = "sheets" if method == "sheets" else backend
 
     with listening(progress) as listener:
         if isinstance(what, RbfVolume):
-            image = _core.splat(what, scene, way, device, many, sheets, channel, color_channel, shade or lit, listener)
+            image = _core.splat(what, scene, way, device, many, sheets, channel, color_channel, shade or lit, shadows, ambient_occlusion, None,
+                                listener)
         elif isinstance(what, Grid):
             image = _core.grid(what.voxels(), scene, many, listener)
         elif splats and seconds is not None:
             image = _core.splat_in_time(mesh, scene, seconds, scheme, way, device, many, sheets, shade or lit, listener)
         elif splats:
             volume = _sampled(mesh, levels, scheme, tension, crease_angle, per_edge, listener)
-            image = _core.splat(volume, scene, way, device, many, sheets, 0, None, shade or lit, listener)
             own_opacity = isinstance(tf, TransferFunction) and tf.opacity is not None
-            if kind == "solid" and levels is None and opacity_unit is None and sheets == 0 and per_edge == 1 and not own_opacity:
-                skin = _core.skin(mesh, scheme, tension, crease_angle, None)
-                image = _core.lit(image, skin, scene, many, True)
+            painted = solid and levels is None and opacity_unit is None and sheets == 0 and per_edge == 1 and not own_opacity
+            skin = _core.skin(mesh, scheme, tension, crease_angle, None) if painted and not (shadows or ambient_occlusion) else None
+            image = _core.splat(volume, scene, way, device, many, sheets, 0, None, shade or lit, shadows, ambient_occlusion, skin,
+                                listener)
         else:
             name = next(iter(mesh.fields))
             if method == "dense":
@@ -278,9 +166,9 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
                 else:
                     image = _core.projected(fine, name, scene, order, device, many, seconds, listener)
             if lit:
-                image = _core.lit(image, _core.skin(mesh, scheme, tension, crease_angle, levels), scene, many, False)
+                image = _core.lit(image, _core.skin(mesh, scheme, tension, crease_angle, levels), scene, many)
     image.report["method"] = method
-    image.report["background"] = _linear(_LIGHT_GREY) if lit else (1.0, 1.0, 1.0) if kind == "xray" else (0.0, 0.0, 0.0)
+    image.report["background"] = _core.look_background(kind)
     lost = image.report.get("lost_rays", 0)
     if lost:
         warn(f"{lost} rays were lost inside the mesh")

@@ -8,6 +8,7 @@ from typing import Any, Optional
 from . import _core
 from ._arguments import Kernel, Path, extension, kernel_json, path_bytes, warn
 from ._core import Camera, HexMesh, RbfVolume
+from ._errors import InvalidInput
 from ._progress import Progress, listening
 
 
@@ -89,19 +90,21 @@ def read_points(path: Path) -> RbfVolume:
     return _core.read_points(path_bytes(path))
 
 
-def write_points(volume: RbfVolume, path: Path, *, ascii: bool = False, splats: bool = False) -> None:
+def write_points(volume: RbfVolume, path: Path, *, ascii: bool = False, splats: bool = False, up: Optional[str] = None) -> None:
     """Writes points as .ply, .vtp (ParaView) or .vdb (Houdini). Numbers are exact: reading gives the same bits, but of the
     positions in .vdb.
 
     ascii:  .ply: text instead of binary numbers
     splats: .ply: also for viewers of Gaussian splats
+    up:     with splats: the axis that these viewers show at the top, "x", "y" or "z"; None: z
     """
+    if up is not None and not splats:
+        raise InvalidInput("up: turns what viewers of splats read; all else keeps its place", "up", "with splats=True")
     if extension(path) == ".vdb":
         from . import _grids
-        from ._errors import InvalidInput
 
         if ascii or splats:
             raise InvalidInput("only .ply files have it", "ascii" if ascii else "splats")
         _grids.write_points(path_bytes(path), volume)
     else:
-        _core.write_points(path_bytes(path), volume, ascii, splats)
+        _core.write_points(path_bytes(path), volume, ascii, splats, up or "z")

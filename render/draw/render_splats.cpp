@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "gl_context.h"
 #include "gl_sheets.h"
@@ -13,6 +15,7 @@
 #include "make_light_volume.h"
 #include "pixel_tiles.h"
 #include "splat_cpu.h"
+#include "subvol/boundary_shading.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 #include "subvol/splat.h"
@@ -104,6 +107,26 @@ void take_means(SplatResult& drawn, int n) {
     drawn.depth = std::move(depth);
 }
 
+/// What the light in a volume depends on besides its kernels: the view's axes, to which the key light is fixed, the opacities,
+/// and what is cut away. Moving along these axes and coming nearer changes none of them.
+std::vector<double> light_key(const View& view, const Optics& optics, const Clip& clip) {
+    std::vector<double> key{optics.opacity_unit(), static_cast<double>(clip.planes.size()), clip.slices_alone() ? 1.0 : 0.0};
+    const auto add = [&](const Vec3& v) { key.insert(key.end(), {v.x, v.y, v.z}); };
+    for (const Vec3& axis : view.axes()) add(axis);
+    for (const CutPlane& plane : clip.planes) {
+        add(plane.point);
+        add(plane.normal);
+    }
+    if (clip.box) {
+        add(clip.box->lower);
+        add(clip.box->upper);
+    }
+    // The knots of the colours, too: tables of opacities are made between all knots.
+    for (const double knot : optics.knots()) key.push_back(knot);
+    for (const auto& knot : optics.function().opacity) key.insert(key.end(), {knot.value, knot.alpha});
+    return key;
+}
+
 }  // namespace
 
 struct Splatter::State {
@@ -146,7 +169,10 @@ struct Splatter::State {
 
     SplatOptions options;
     detail::SplatScene scene;
-    detail::LightVolume light{};  // of the last picture
+    const Surface* boundary = nullptr;  // whose values give the colours; null: kernels do
+    std::span<const double> values{};
+    detail::LightVolume light{};      // of the last picture
+    std::vector<double> light_key{};  // what it was made of, besides the kernels
     std::optional<detail::GlSplatter> gpu;
     std::unique_ptr<SheetDrawer> sheets;
     detail::SplatFrame frame{};  // its memory is used for every picture
@@ -163,6 +189,13 @@ Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 
 void Splatter::set_clip(const Clip& clip) {
     detail::set_clip(state_->scene, clip);
+    state_->options.clip = clip;
+}
+
+void Splatter::set_boundary_colors(const Surface& boundary, std::span<const double> values) {
+    const bool shown = !values.empty() && !state_->scene.shadowed();
+    state_->boundary = shown ? &boundary : nullptr;
+    state_->values = values;
 }
 
 SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
@@ -173,7 +206,10 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     const detail::Stopwatch watch;
     const auto classification = detail::classify(state.scene, optics);
     if (state.scene.shadowed()) {
-        state.light = detail::make_light_volume(state.scene, view, classification);
+        if (std::vector<double> key = light_key(view, optics, state.options.clip); key != state.light_key) {
+            state.light = detail::make_light_volume(state.scene, view, classification);
+            state.light_key = std::move(key);
+        }
         state.scene.light = &state.light;
         report.seconds_light = watch.seconds();
     }
@@ -186,6 +222,13 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     result.depth = std::move(drawn.depth);
     take_means(result, n);
     report.seconds_draw = watch.seconds() - report.seconds_prepare;
+    if (state.boundary != nullptr) {
+        report_progress(progress, "colors", 0);
+        const detail::Stopwatch coloring;
+        color_boundary(result.image, *state.boundary, state.values, view, optics, state.options.shading.value_or(Shading{}), n,
+                       state.options.clip);
+        report.seconds_colors = coloring.seconds();
+    }
     report.points = state.scene.volume->size();
     return result;
 }

@@ -14,6 +14,7 @@
 // the same pixels on the GPU.
 #include "boundary_intervals.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -263,12 +264,17 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
         }
     }
 
+    struct Scratch {
+        std::vector<Hit> hits, sorted;
+        std::vector<std::uint32_t> ends;
+    };
     std::vector<Band> bands(static_cast<std::size_t>(band_count));
+    tbb::enumerable_thread_specific<Scratch> scratches;
     tbb::parallel_for(0, band_count, [&](int b) {
         const int y0 = b * kBandRows, y1 = std::min(view.height(), y0 + kBandRows);
         Band& band = bands[static_cast<std::size_t>(b)];
-        std::vector<Hit> hits, sorted;
-        std::vector<std::uint32_t> ends;
+        auto& [hits, sorted, ends] = scratches.local();
+        hits.clear();
         for (const auto* t : of_band[static_cast<std::size_t>(b)]) rasterize(*t, view, middle, y0, y1, hits);
         const std::size_t pixels = static_cast<std::size_t>(y1 - y0) * static_cast<std::size_t>(view.width());
         sort_hits(hits, pixels, ends, sorted);
@@ -284,6 +290,7 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
     });
 
     PixelIntervals result;
+    result.offsets.reserve(static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height()) + 1);
     result.offsets.push_back(0);
     for (const Band& band : bands) {
         for (const auto count : band.counts) result.offsets.push_back(result.offsets.back() + count);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "clip_intervals.h"
@@ -15,10 +16,17 @@ namespace subvol::detail {
 
 namespace {
 
+/// The points of a surface in eye space.
+std::vector<Vec3> eye_points(const Surface& surface, const View& view) {
+    std::vector<Vec3> eye(surface.points.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, eye.size(), 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) eye[i] = view.to_eye(surface.points[i]);
+    });
+    return eye;
+}
+
 /// The shares of a triangle's corners in a place on it (eye space), each at least 0; their sum is not 1.
-std::array<double, 3> shares_at(const Surface& surface, const View& view, std::uint32_t triangle, const Vec3& place) {
-    std::array<Vec3, 3> eye;
-    for (std::size_t k = 0; k < 3; ++k) eye[k] = view.to_eye(surface.points[surface.triangles[triangle][k]]);
+std::array<double, 3> shares_at(const std::array<Vec3, 3>& eye, const Vec3& place) {
     const Vec3 flat = glm::cross(eye[1] - eye[0], eye[2] - eye[0]);
     std::array<double, 3> shares;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -34,13 +42,15 @@ Vec3 turned(const View& view, const Vec3& direction) {
     return {glm::dot(right, direction), glm::dot(up, direction), glm::dot(forward, direction)};
 }
 
-/// Interpolates the normals of a triangle at a place on it (eye space).
-Vec3 normal_at(const Surface& surface, const CornerNormals& corners, const View& view, std::uint32_t triangle,
-               const Vec3& place) {
-    const std::array<double, 3> shares = shares_at(surface, view, triangle, place);
-    Vec3 sum(0.0);
-    for (std::size_t k = 0; k < 3; ++k) sum += shares[k] * Vec3(corners[k][0], corners[k][1], corners[k][2]);
-    return turned(view, sum);
+/// x to a power that is a whole number as a rule.
+double power(double x, double exponent) {
+    constexpr double kMostFactors = 256;
+    if (exponent != std::floor(exponent) || exponent < 0 || exponent > kMostFactors) return std::pow(x, exponent);
+    double result = 1;
+    for (auto left = static_cast<unsigned>(exponent); left != 0; left >>= 1, x *= x) {
+        if ((left & 1) != 0) result *= x;
+    }
+    return result;
 }
 
 /// arrives: the part of the key light, and of that from all around
@@ -49,7 +59,7 @@ BoundaryLight light_on(const Shading& shading, const Vec3& normal, const Vec3& t
     const double from_key = static_cast<double>(arrives[0]), open = static_cast<double>(arrives[1]);
     const double head = std::max(0.0, glm::dot(normal, to_eye)), side = from_key * std::max(0.0, glm::dot(normal, to_key));
     const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
-    const double gloss = std::pow(head, shading.shininess) + from_key * std::pow(halfway, shading.shininess);
+    const double gloss = power(head, shading.shininess) + from_key * power(halfway, shading.shininess);
     return {static_cast<float>(open * (shading.ambient + shading.diffuse * 0.5 * (head + side))),
             static_cast<float>(open * (shading.specular * 0.5 * gloss))};
 }
@@ -73,27 +83,59 @@ struct LitSurface {
     const LightVolume* light = nullptr;
 };
 
+/// The places where rays enter a surface.
+class EntryShader {
+public:
+    /// lit, view: are kept by reference
+    EntryShader(const LitSurface& lit, const View& view) : lit_(lit), view_(view), eye_(eye_points(lit.surface, view)) {}
+
+    /// The light at the entry into an interval, which has a triangle or a face of the clip.
+    ///
+    /// shares: set to those of the triangle's corners
+    [[nodiscard]] BoundaryLight at(const PixelIntervals& intervals, std::size_t i, const Vec2& slopes,
+                                   std::array<double, 3>& shares) const {
+        const std::uint32_t triangle = intervals.triangles[i];
+        const double z = static_cast<double>(intervals.depths[2 * i]) + lit_.middle;
+        const Vec3 place = view_.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
+        const Vec3 normal =
+            turned(view_, triangle >= PixelIntervals::kFirstFace ? lit_.faces[triangle - PixelIntervals::kFirstFace].normal
+                                                                 : normal_at(triangle, place, shares));
+        const double length = glm::length(normal);
+        if (!(length > 0)) return {};
+        const Vec3 to_eye = view_.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
+        std::array<float, 2> arrives{1, 1};
+        if (lit_.light) arrives = light_before(*lit_.light, view_, place, normal / length, lit_.shading);
+        return light_on(lit_.shading, normal / length, to_eye, arrives);
+    }
+
+private:
+    /// Interpolates the normals of a triangle at a place on it (eye space).
+    [[nodiscard]] Vec3 normal_at(std::uint32_t triangle, const Vec3& place, std::array<double, 3>& shares) const {
+        const auto& [a, b, c] = lit_.surface.triangles[triangle];
+        shares = shares_at({eye_[a], eye_[b], eye_[c]}, place);
+        Vec3 sum(0.0);
+        const CornerNormals& corners = lit_.normals[triangle];
+        for (std::size_t k = 0; k < 3; ++k) sum += shares[k] * Vec3(corners[k][0], corners[k][1], corners[k][2]);
+        return sum;
+    }
+
+    const LitSurface& lit_;
+    const View& view_;
+    std::vector<Vec3> eye_;
+};
+
 std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitSurface& lit, const View& view) {
     std::vector<BoundaryLight> lights(intervals.triangles.size());
+    const EntryShader shader(lit, view);
     tbb::parallel_for(0, view.height(), [&](int y) {
+        std::array<double, 3> shares{};
         for (int x = 0; x < view.width(); ++x) {
             const auto pixel =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
             const Vec2 slopes = view.slopes(x + 0.5, y + 0.5);
             for (std::size_t i = intervals.offsets[pixel]; i < intervals.offsets[pixel + 1]; ++i) {
-                const std::uint32_t triangle = intervals.triangles[i];
-                if (triangle == PixelIntervals::kNoTriangle) continue;
-                const double z = static_cast<double>(intervals.depths[2 * i]) + lit.middle;
-                const Vec3 place = view.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
-                const Vec3 normal = triangle >= PixelIntervals::kFirstFace
-                                        ? turned(view, lit.faces[triangle - PixelIntervals::kFirstFace].normal)
-                                        : normal_at(lit.surface, lit.normals[triangle], view, triangle, place);
-                const double length = glm::length(normal);
-                if (!(length > 0)) continue;
-                const Vec3 to_eye = view.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
-                std::array<float, 2> arrives{1, 1};
-                if (lit.light) arrives = light_before(*lit.light, view, place, normal / length, lit.shading);
-                lights[i] = light_on(lit.shading, normal / length, to_eye, arrives);
+                if (intervals.triangles[i] == PixelIntervals::kNoTriangle) continue;
+                lights[i] = shader.at(intervals, i, slopes, shares);
             }
         }
     });
@@ -117,12 +159,14 @@ using namespace detail;
 
 namespace {
 
-/// The first hits of a picture's rays on a boundary, and the light there.
+/// The first hits of a picture's rays on a boundary, which are shaded as they are asked for.
 struct FirstHits {
     View fine;  // a pixel for each ray
     double middle;
     PixelIntervals intervals;
-    std::vector<BoundaryLight> lights;
+    std::vector<CornerNormals> normals;
+    std::optional<LitSurface> lit;
+    std::optional<EntryShader> shader;
 
     FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples, const RayClip& clip)
         : fine(view.camera(), samples * view.width(), samples * view.height()) {
@@ -131,8 +175,24 @@ struct FirstHits {
         middle = fine.to_eye(box.center()).z;
         intervals = boundary_intervals(boundary, fine, fine.perspective() ? 1e-4 * box.diagonal() : 0.0, middle);
         if (!clip.empty()) intervals = clip_intervals(intervals, fine, clip, middle);
-        const std::vector<CornerNormals> normals = corner_normals(boundary);
-        lights = lights_of(intervals, {boundary, normals, shading, middle, clip.faces()}, fine);
+        normals = corner_normals(boundary);
+        lit.emplace(LitSurface{boundary, normals, shading, middle, clip.faces()});
+        shader.emplace(*lit, fine);
+    }
+    FirstHits(const FirstHits&) = delete;
+    FirstHits& operator=(const FirstHits&) = delete;
+
+    /// The first interval of a ray; none if it meets nothing.
+    [[nodiscard]] std::optional<std::size_t> first(int column, int row) const {
+        const auto ray =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.width()) + static_cast<std::size_t>(column);
+        if (intervals.offsets[ray] == intervals.offsets[ray + 1]) return {};
+        return intervals.offsets[ray];
+    }
+
+    [[nodiscard]] BoundaryLight light(std::size_t interval, int column, int row, std::array<double, 3>& shares) const {
+        if (intervals.triangles[interval] == PixelIntervals::kNoTriangle) return {};
+        return shader->at(intervals, interval, fine.slopes(column + 0.5, row + 0.5), shares);
     }
 };
 
@@ -142,18 +202,18 @@ void light_boundary(Image& image, const Surface& boundary, const View& view, con
                     const Clip& clip) {
     const RayClip cuts(clip);
     const FirstHits hits(boundary, view, shading, samples, cuts);
-    const PixelIntervals& intervals = hits.intervals;
     tbb::parallel_for(0, view.height(), [&](int y) {
+        std::array<double, 3> shares{};
         for (int x = 0; x < view.width(); ++x) {
             double diffuse = 0, specular = 0;
             int met = 0;
             for (int k = 0; k < samples * samples; ++k) {
-                const auto row = static_cast<std::size_t>(y * samples + k / samples);
-                const auto id =
-                    row * static_cast<std::size_t>(hits.fine.width()) + static_cast<std::size_t>(x * samples + k % samples);
-                if (intervals.offsets[id] == intervals.offsets[id + 1]) continue;
-                diffuse += static_cast<double>(hits.lights[intervals.offsets[id]].diffuse);
-                specular += static_cast<double>(hits.lights[intervals.offsets[id]].specular);
+                const int row = y * samples + k / samples, column = x * samples + k % samples;
+                const auto first = hits.first(column, row);
+                if (!first) continue;
+                const BoundaryLight light = hits.light(*first, column, row, shares);
+                diffuse += static_cast<double>(light.diffuse);
+                specular += static_cast<double>(light.specular);
                 ++met;
             }
             // A ray may hit the body just beside the outline of these triangles: there the surface is seen edge-on.
@@ -179,17 +239,14 @@ void color_boundary(Image& image, const Surface& boundary, std::span<const doubl
     const FirstHits hits(boundary, view, shading, samples, cuts);
     const auto color_of = [&](std::size_t interval, int x, int y) {
         const std::uint32_t triangle = hits.intervals.triangles[interval];
-        const Vec2 slopes = hits.fine.slopes(x + 0.5, y + 0.5);
-        const double z = static_cast<double>(hits.intervals.depths[2 * interval]) + hits.middle;
-        const Vec3 place = hits.fine.perspective() ? z * Vec3(slopes, 1) : Vec3(slopes, z);
-        const std::array<double, 3> shares = shares_at(boundary, hits.fine, triangle, place);
+        std::array<double, 3> shares{};
+        const BoundaryLight light = hits.light(interval, x, y, shares);
         double sum = 0, value = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             sum += shares[k];
             value += shares[k] * values[boundary.triangles[triangle][k]];
         }
         value = sum > 0 ? value / sum : values[boundary.triangles[triangle][0]];
-        const BoundaryLight& light = hits.lights[interval];
         return static_cast<double>(light.diffuse) * optics.color(value) + static_cast<double>(light.specular);
     };
     tbb::parallel_for(0, view.height(), [&](int y) {
@@ -198,15 +255,13 @@ void color_boundary(Image& image, const Surface& boundary, std::span<const doubl
             int met = 0, as_drawn = 0;  // rays that meet the boundary; or that enter through a cut, or inside
             for (int k = 0; k < samples * samples; ++k) {
                 const int row = y * samples + k / samples, column = x * samples + k % samples;
-                const auto ray = static_cast<std::size_t>(row) * static_cast<std::size_t>(hits.fine.width()) +
-                                 static_cast<std::size_t>(column);
-                const std::size_t first = hits.intervals.offsets[ray];
-                if (first == hits.intervals.offsets[ray + 1]) continue;
-                if (hits.intervals.triangles[first] >= PixelIntervals::kFirstFace) {
+                const auto first = hits.first(column, row);
+                if (!first) continue;
+                if (hits.intervals.triangles[*first] >= PixelIntervals::kFirstFace) {
                     ++as_drawn;
                     continue;
                 }
-                color += color_of(first, column, row);
+                color += color_of(*first, column, row);
                 ++met;
             }
             if (met == 0) continue;

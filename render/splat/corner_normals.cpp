@@ -14,10 +14,10 @@ namespace {
 // a machined part at 45 or more.
 constexpr double kSmoothCosine = 0.766;  // of 40 degrees
 
-/// The triangles around each point.
+/// The corners around each point: corner 3i + k is corner k of triangle i.
 struct Fans {
     std::vector<std::size_t> begin;
-    std::vector<std::uint32_t> triangles;
+    std::vector<std::uint32_t> corners;
 };
 
 Fans fans_of(const Surface& surface) {
@@ -27,10 +27,12 @@ Fans fans_of(const Surface& surface) {
         for (const Index p : t) ++fans.begin[p + 1];
     }
     for (std::size_t p = 1; p < fans.begin.size(); ++p) fans.begin[p] += fans.begin[p - 1];
-    fans.triangles.resize(fans.begin.back());
+    fans.corners.resize(fans.begin.back());
     std::vector<std::size_t> next(fans.begin.begin(), fans.begin.end() - 1);
     for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-        for (const Index p : surface.triangles[i]) fans.triangles[next[p]++] = static_cast<std::uint32_t>(i);
+        for (std::size_t k = 0; k < 3; ++k) {
+            fans.corners[next[surface.triangles[i][k]]++] = static_cast<std::uint32_t>(3 * i + k);
+        }
     }
     return fans;
 }
@@ -41,10 +43,9 @@ Vec3 direction(const Vec3& v) {
     return length > 0 ? v / length : Vec3(0.0);
 }
 
-double angle_at(const Surface& surface, const std::array<Index, 3>& t, Index point) {
-    const std::size_t k = t[0] == point ? 0 : t[1] == point ? 1 : 2;
-    const Vec3 a = direction(surface.points[t[(k + 1) % 3]] - surface.points[point]);
-    const Vec3 b = direction(surface.points[t[(k + 2) % 3]] - surface.points[point]);
+double angle_at(const Surface& surface, const std::array<Index, 3>& t, std::size_t k) {
+    const Vec3& point = surface.points[t[k]];
+    const Vec3 a = direction(surface.points[t[(k + 1) % 3]] - point), b = direction(surface.points[t[(k + 2) % 3]] - point);
     return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
 }
 
@@ -54,9 +55,11 @@ std::vector<CornerNormals> corner_normals(const Surface& surface) {
     const Fans fans = fans_of(surface);
     const std::size_t count = surface.triangles.size();
     std::vector<Vec3> flat(count);
+    std::vector<double> angles(3 * count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         const auto& [a, b, c] = surface.triangles[i];
         flat[i] = direction(glm::cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]));
+        for (std::size_t k = 0; k < 3; ++k) angles[3 * i + k] = angle_at(surface, surface.triangles[i], k);
     });
     std::vector<CornerNormals> normals(count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
@@ -64,9 +67,10 @@ std::vector<CornerNormals> corner_normals(const Surface& surface) {
             const Index point = surface.triangles[i][k];
             Vec3 sum(0.0);
             for (std::size_t at = fans.begin[point]; at < fans.begin[point + 1]; ++at) {
-                const std::uint32_t other = fans.triangles[at];
-                const bool smooth = flat[i] == Vec3(0.0) || glm::dot(flat[i], flat[other]) > kSmoothCosine;
-                if (smooth) sum += angle_at(surface, surface.triangles[other], point) * flat[other];
+                const std::uint32_t corner = fans.corners[at];
+                const Vec3& other = flat[corner / 3];
+                const bool smooth = flat[i] == Vec3(0.0) || glm::dot(flat[i], other) > kSmoothCosine;
+                if (smooth) sum += angles[corner] * other;
             }
             const Vec3 normal = direction(sum);
             normals[i][k] = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "kernel_axes.h"
+#include "sheet_count.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 
@@ -257,35 +258,47 @@ constexpr double kSheetsPerReach = 4;
 constexpr double kFinestShare = 0.05;  // of the kernels: these may have fewer sheets, so that a few slivers do not decide
 constexpr int kFewestSheets = 64, kMostSheets = 2048;
 
-/// The distances in depth from the kernels' middles to where they end, one for each kernel.
-std::vector<float> depth_reaches(const SplatScene& scene, const View& view) {
-    const RbfVolume& volume = *scene.volume;
+}  // namespace
+
+float depth_reach(const SplatScene& scene, const View& view, const Symmetric3& frame) {
     const Vec3& forward = view.axes()[2];
     const double widening = scene.form == KernelForm::Separable ? 3 : 1;
+    const double szz = widening * glm::dot(forward, matrix(frame) * forward);
+    return static_cast<float>(std::sqrt(std::max(0.0, szz)));
+}
+
+std::vector<float> depth_reaches(const SplatScene& scene, const View& view) {
+    const RbfVolume& volume = *scene.volume;
     std::vector<float> reaches(volume.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, volume.size(), 4096), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const double szz = widening * glm::dot(forward, matrix(volume.frames[i]) * forward);
-            reaches[i] = static_cast<float>(std::sqrt(std::max(0.0, szz)));
-        }
+        for (std::size_t i = range.begin(); i < range.end(); ++i) reaches[i] = depth_reach(scene, view, volume.frames[i]);
     });
     return reaches;
 }
 
+std::size_t place_of_finest(std::size_t kernels) {
+    return static_cast<std::size_t>(kFinestShare * static_cast<double>(kernels - 1));
+}
+
+int sheets_for_reach(float finest, double depth_range) {
+    const double needed = kSheetsPerReach * depth_range / std::max(static_cast<double>(finest), 1e-9 * depth_range);
+    return static_cast<int>(std::clamp(std::ceil(needed) + 1, double{kFewestSheets}, double{kMostSheets}));
+}
+
+namespace {
+
 int sheets_needed(const SplatScene& scene, const View& view, double depth_range) {
     std::vector<float> reaches = depth_reaches(scene, view);
     if (reaches.empty()) return kFewestSheets;
-    const auto finest = reaches.begin() + static_cast<std::ptrdiff_t>(kFinestShare * static_cast<double>(reaches.size() - 1));
+    const auto finest = reaches.begin() + static_cast<std::ptrdiff_t>(place_of_finest(reaches.size()));
     std::nth_element(reaches.begin(), finest, reaches.end());
-    const double needed = kSheetsPerReach * depth_range / std::max(static_cast<double>(*finest), 1e-9 * depth_range);
-    return static_cast<int>(std::clamp(std::ceil(needed) + 1, double{kFewestSheets}, double{kMostSheets}));
+    return sheets_for_reach(*finest, depth_range);
 }
 
 }  // namespace
 
-SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
+DepthRange depth_range_of(const SplatScene& scene, const View& view) {
     const RbfVolume& volume = *scene.volume;
-    const double middle = view.to_eye(scene.middle).z;
     double z_min = std::numeric_limits<double>::infinity(), z_max = -z_min;
     const auto add = [&](double z, double around) {
         z_min = std::min(z_min, z - around);
@@ -302,6 +315,12 @@ SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
     const double near = view.perspective() ? 1e-4 * scene.diagonal : 0.0;
     z_min = std::max(z_min, near);
     z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all is behind the eye: the picture is empty
+    return {z_min, z_max, near};
+}
+
+SheetStack make_sheets(const SplatScene& scene, const View& view, int count) {
+    const double middle = view.to_eye(scene.middle).z;
+    const auto [z_min, z_max, near] = depth_range_of(scene, view);
     if (count == 0) count = sheets_needed(scene, view, z_max - z_min);
     return {.count = count,
             .first = static_cast<float>(z_min - middle),

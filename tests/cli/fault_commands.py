@@ -78,7 +78,8 @@ def prepare(inputs):
     (inputs / "ffmpeg").write_text(FFMPEG)
     (inputs / "ffmpeg").chmod(0o755)
     for words in ("render model:ball:3 -o a.png --size 256 --backend cpu", "render model:ball:4 -o b.png --size 256 --backend cpu",
-                  "points model:ball:4 -o a.ply", "vdb model:ball:3 -o a.vdb --resolution 40", "model ball --resolution 4 -o a.vtu"):
+                  "points model:ball:4 -o a.ply", "vdb model:ball:3 -o a.vdb --resolution 40", "model ball --resolution 4 -o a.vtu",
+                  "split model:ball:4 -o b.bricks --bricks 3"):
         subprocess.run([COMMAND, *words.split()], cwd=inputs, check=True, capture_output=True)
 
 
@@ -97,6 +98,9 @@ def commands(inputs):
         Command("vdb", "vdb model:ball:4 -o a.vdb --resolution 80"),
         Command("vdb --memory", "vdb model:ball:4 -o a.vdb --resolution 80 --memory 1M"),
         Command("surface", "surface model:ball:6 -o a.ply --iso 0.3 --cap"),
+        Command("points of bricks", f"points {inputs}/b.bricks -o a.ply"),
+        Command("vdb of bricks", f"vdb {inputs}/b.bricks -o a.vdb --resolution 80 --memory 2M"),
+        Command("render bricks", f"render {inputs}/b.bricks --size 160 -o a.png --backend cpu"),
         Command("slice", "slice model:ball:6 -o a.png --plane 0,0,0,0,0,1"),
         Command("slice .csv", "slice model:ball:6 -o a.csv --plane 0,0,0,0,0,1 --resolution 200"),
         Command("probe", "probe model:ball:6 -o a.csv --line -1,0,0,1,0,0 --count 5000"),

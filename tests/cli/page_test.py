@@ -51,6 +51,20 @@ class Page(InFolder):
         self.assertNotIn(str(self.folder), text)
         self.assertNotIn("http", re.sub(r"<script type=\"text/plain\".*?</script>", "", text, flags=re.S))
 
+    def test_several_steps_share_ranges_and_camera(self):
+        for step in (0, 1):
+            self.run_ok("model", "ball", "--resolution", 3 + step, "-o", f"ball_{step}.vtu")
+        (self.folder / "run.pvd").write_text(
+            '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="ball_0.vtu"/>'
+            '<DataSet timestep="2.5" file="ball_1.vtu"/></Collection></VTKFile>')
+        both = self.run_ok("page", "run.pvd", "-o", "run.html", "--step", "0-1", "--json").json()
+        one = self.run_ok("page", "run.pvd", "-o", "one.html", "--step", "0", "--json").json()
+        self.assertGreater(both["points"], one["points"])
+        text = (self.folder / "run.html").read_text()
+        for label in ("0 (t = 0)", "1 (t = 2.5)"):
+            self.assertIn(label, text)
+        self.assertLessEqual(both["fields"][0]["range"][0], one["fields"][0]["range"][0])
+
     def test_titles_are_not_html(self):
         self.run_ok("page", "model:ball:4", "-o", "a.html", "--title", "</script><b>&")
         text = (self.folder / "a.html").read_text()
@@ -197,6 +211,23 @@ class InTheBrowser(unittest.TestCase):
         self.assertGreater(opacity, 0.5)
         self.assertNotEqual(self.shot("page_opacity.png"), cut)
         self.assertEqual(self.browser.requests(), [])
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_steps_are_chosen(self):
+        for step in (0, 1):
+            self.command("model", "ball", "--resolution", 2 + step, "-o", f"ball_{step}.vtu")
+        (self.folder / "run.pvd").write_text(
+            '<VTKFile type="Collection"><Collection><DataSet timestep="0" file="ball_0.vtu"/>'
+            '<DataSet timestep="1" file="ball_1.vtu"/></Collection></VTKFile>')
+        self.command("page", "run.pvd", "-o", "run.html", "--step", "0-1", "--look", "volume")
+        self.open("run.html", 300)
+        before = self.shot("page_step.png")
+        camera = self.browser.evaluate("subvolPage.camera.eye.slice()")
+        choice = "document.getElementById('step')"
+        last = self.browser.evaluate(f"{choice}.value")
+        self.browser.evaluate(f"(s => {{ s.value = {1 - int(last)}; for (const e of ['input', 'change']) s.dispatchEvent(new Event(e)); }})({choice})")
+        self.assertNotEqual(self.shot(), before)
+        self.assertEqual(self.browser.evaluate("subvolPage.camera.eye.slice()"), camera)
         self.assertEqual(self.browser.complaints(), [])
 
     def test_fits_a_phone(self):

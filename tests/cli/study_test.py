@@ -80,6 +80,19 @@ class Study(StudyFolder):
         (self.folder / "out/small/study.json").write_text("{")
         self.assertIn("leaves out the study in out/small", subvol("study", "o.json", "-o", "out", folder=self.folder).err)
 
+    def test_the_report_links_to_pages_of_the_inputs(self):
+        few = {"methods": [{"method": "field", "seed": [1], "places": 100}], "pictures": False}
+        self.write(SMALL | few)
+        said = self.run_ok("study", "s.json", "-o", "out", "--pages", "--json").json()
+        self.assertEqual(len(said["pages"]), 1)
+        report = (self.folder / "out/report.html").read_text()
+        link = report.split('<a href="pages/')[1].split('"')[0]
+        page = self.folder / "out/pages" / link
+        self.assertIn("OpenSubVol", page.read_text())
+        self.assertEqual(list(page.parent.iterdir()), [page])  # the mesh that it was made of is gone
+        self.run_ok("study", "s.json", "-o", "plain")
+        self.assertNotIn("pages/", (self.folder / "plain/report.html").read_text())
+
     def test_figures_say_how_well_they_are_known(self):
         self.run_ok("study", self.write(SMALL | {"plots": [{"x": "seconds", "y": "rmse", "series": "label"}]}), "-o", "out")
         for row in csv.DictReader((self.folder / "out/small/results.csv").read_text().splitlines()):

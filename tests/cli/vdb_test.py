@@ -133,6 +133,9 @@ class Grids(InFolder):
         made = self.vdb("--resolution", 60, "--sdf", "--half-width", 4, source="model:ball:8")
         self.assertEqual([grid["name"] for grid in made["grids"]], ["density", "sdf"])
         h, level_set = made["voxel_size"], made["grids"][1]
+        self.assertIn("density", made["grids"][0])
+        self.assertNotIn("density", level_set)  # distances have none
+        self.assertTrue(level_set["level_set"])
         self.assertLess(abs(level_set["min"] + 4 * h), 0.1 * h)  # the band is whole on both sides
         self.assertLess(abs(level_set["max"] - 4 * h), 0.1 * h)
         shell = 4 * 3.14159 * 8 / h**2  # voxels of a shell of radius 1

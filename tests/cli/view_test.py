@@ -34,6 +34,27 @@ class WithoutWindow(InSession):
             self.run_ok("render", BALL, *SMALL, *options, "-o", "render.png", "--quiet")
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("render.png"), options)
 
+    def test_shows_points_and_voxels(self):
+        self.run_ok("points", BALL, "-o", "ball.ply", "--quiet")
+        self.run_ok("vdb", BALL, "-o", "ball.vdb", "--resolution", "20", "--quiet")
+        for model, options in (("ball.ply", []), ("ball.vdb", ["--method", "grid"]), ("ball.vdb", ["--look", "solid"])):
+            said = self.view(options=options, model=model)
+            self.run_ok("render", model, *SMALL, *options, "-o", "render.png", "--quiet")
+            self.assertEqual(self.bytes_of("view.png"), self.bytes_of("render.png"), (model, options))
+            self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
+            self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
+        for words in (["ball.ply", "--method", "tets"], [BALL, "--method", "grid"], ["ball.ply", "--per-edge", "2"],
+                      ["ball.ply", "--field", "T"]):
+            done = subvol("view", *words, *SMALL, "--screenshot", "x.png", folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+
+    def test_shadows_are_those_of_render(self):
+        options = ["--shadows", "--ambient-occlusion", ".1"]
+        for action in ({"zoom": 1.2}, {"orbit": [30, 0]}, {"clip": [[0, 0, .3, 0, 0, 1]]}):  # only the first keeps the light
+            said = self.view({"wait": True}, action, options=options)
+            self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
+            self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
+
     def test_its_command_draws_the_same(self):
         for actions in (
                 [{"orbit": [40, -15]}, {"zoom": 1.3}, {"pan": [0.1, 0]}],

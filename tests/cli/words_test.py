@@ -6,7 +6,8 @@ import unittest
 
 from command import CUBE, InFolder, subvol
 
-VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "view", "page", "probe", "slice", "surface", "compare", "study", "demo"]
+VERBS = ["model", "info", "subdivide", "fit", "points", "vdb", "render", "view", "page", "probe", "slice", "surface", "split", "join", "compare", "study",
+         "demo"]
 
 # What was typed, and what the one line must contain.
 SLIPS = [

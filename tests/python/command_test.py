@@ -30,6 +30,18 @@ def test_points(tmp_path, command, options):
     same(tmp_path / "a.ply", tmp_path / "b.ply")
 
 
+def test_splats_for_other_viewers_stand_upright(tmp_path, command):
+    points = subvol.sample(subvol.model("ball", 3))
+    for up in ("x", "y", None):
+        command("points", "model:ball:3", "-o", tmp_path / "a.ply", "--splats", *(["--up", up] if up else []))
+        subvol.write_points(points, tmp_path / "b.ply", splats=True, up=up)
+        same(tmp_path / "a.ply", tmp_path / "b.ply")
+    with pytest.raises(subvol.InvalidInput, match="splats"):
+        subvol.write_points(points, tmp_path / "b.ply", up="y")
+    with pytest.raises(subvol.InvalidInput, match="x, y or z"):
+        subvol.write_points(points, tmp_path / "b.ply", splats=True, up="w")
+
+
 @pytest.mark.parametrize("flags, options", [
     ([], {}),
     (["--look", "volume"], {"look": "volume"}),
@@ -39,6 +51,10 @@ def test_points(tmp_path, command, options):
     (["--tf", "grey", "--tf-range", "-.5,.5"], {"tf": subvol.TransferFunction("grey", range=(-.5, .5))}),
     (["--opacity", "0%:0,100%:.3"], {"tf": subvol.TransferFunction("viridis", opacity="0%:0,100%:.3"), "look": "volume"}),
     (["--shade", "--per-edge", "2"], {"shade": True, "per_edge": 2}),
+    (["--shadows"], {"shadows": True}),
+    (["--shadows", "--ambient-occlusion", ".2", "--look", "volume"], {"shadows": True, "ambient_occlusion": .2, "look": "volume"}),
+    (["--look", "volume", "--opacity", "80%:0,100%:.5"],
+     {"look": "volume", "tf": subvol.TransferFunction("viridis", opacity="80%:0,100%:.5")}),
     (["--method", "tets"], {"method": "tets"}),
     (["--method", "tets", "--levels", "2", "--look", "volume", "--samples", "2"],
      {"method": "tets", "levels": 2, "look": "volume", "samples": 2}),

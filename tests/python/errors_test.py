@@ -65,6 +65,8 @@ def test_unknown_words_are_answered_with_the_known_ones(cube):
                         (lambda: subvol.sample(cube, values="some"), "cubic"),
                         (lambda: subvol.render(cube, method="splats"), "splat"),
                         (lambda: subvol.render(cube, look="glass"), "solid"),
+                        (lambda: subvol.render(cube, method="tets", shadows=True), "splat"),
+                        (lambda: subvol.render(cube, method="sheets", ambient_occlusion=.1), "splat"),
                         (lambda: subvol.render(cube, backend="metal", method="splat"), "cpu"),
                         (lambda: subvol.render(cube, tf="virids"), "viridis"),
                         (lambda: subvol.fit("square"), "gaussian"),

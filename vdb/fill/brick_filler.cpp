@@ -273,6 +273,7 @@ SurfaceColumns BrickFiller::columns_through(std::span<VoxelBrick* const> bricks)
 void BrickFiller::drop_leaks(std::size_t leaf_channels) {
     std::ranges::sort(doubtful_);
     doubtful_.erase(std::unique(doubtful_.begin(), doubtful_.end()), doubtful_.end());
+    folded_ = !doubtful_.empty();
     if (doubtful_.empty()) return;
     const SurfaceColumns columns = columns_through(doubtful_);
     tbb::parallel_for(std::size_t{0}, doubtful_.size(), [&](std::size_t i) {

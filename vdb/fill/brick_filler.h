@@ -30,6 +30,9 @@ public:
     /// part: only these voxels, whole bricks; none: all voxels
     [[nodiscard]] VoxelBricks run(const std::optional<VoxelBox>& part = {});
 
+    /// Whether cells of the last run fold over.
+    [[nodiscard]] bool folded() const { return folded_; }
+
 private:
     struct Batch;
     void load(std::span<const Index> blocks, Batch& batch);
@@ -50,7 +53,8 @@ private:
     double orientation_ = 1;              // -1 for a mesh of left-handed cells
     std::vector<std::uint8_t> boundary_;  // of curved cells: which sides
     std::vector<VoxelBox> boxes_;         // of every block, after the first run
-    std::vector<VoxelBrick*> doubtful_;   // of this run
+    bool folded_ = false;
+    std::vector<VoxelBrick*> doubtful_;  // of this run
 };
 
 }  // namespace subvol::detail

@@ -173,21 +173,32 @@ void set_nodes(const CellBlock& block, std::size_t lowest, std::size_t step, Cel
             shape.node_values[kCurvedNodes * c + n] = block.values[node * channels + c];
         }
     }
+    for (auto& along : shape.nodes) std::fill(along.begin() + kCurvedNodes, along.end(), along[kCurvedNodes - 1]);
+}
+
+/// A piece or small cell, but for what only its tetrahedra need.
+void set_places(const CellBlock& block, const std::array<std::size_t, 8>& nodes, std::size_t step, CellShape& shape) {
+    shape.origin = block.points[nodes[0]];
+    Box box;
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Vec3& at = block.points[nodes[k]];
+        box.add(at);
+        const Vec3 p = at - shape.origin;
+        for (std::size_t d = 0; d < 3; ++d) shape.corners[d][k] = p[static_cast<int>(d)];
+    }
+    shape.size = std::max({box.size().x, box.size().y, box.size().z});
+    shape.curved = block.curved;
+    if (block.curved) set_nodes(block, nodes[0], step, shape);
 }
 
 void set_shape(const CellBlock& block, const std::array<std::size_t, 8>& nodes, std::size_t step, CellShape& shape) {
     const std::size_t channels = block.channels;
-    shape.origin = block.points[nodes[0]];
+    set_places(block, nodes, step, shape);
     shape.split = &split_of(block, nodes);
     shape.values.resize(8 * channels);
     for (std::size_t k = 0; k < 8; ++k) {
-        const Vec3 p = block.points[nodes[k]] - shape.origin;
-        for (std::size_t d = 0; d < 3; ++d) shape.corners[d][k] = p[static_cast<int>(d)];
         for (std::size_t c = 0; c < channels; ++c) shape.values[8 * c + k] = block.values[nodes[k] * channels + c];
     }
-    shape.curved = block.curved;
-    if (!block.curved) return;
-    set_nodes(block, nodes[0], step, shape);
 }
 
 /// Calls visit with the lowest node of every cell of step³ smaller ones.
@@ -242,7 +253,6 @@ void fill_small_cell(const CellBlock& block, std::size_t lowest, std::size_t ste
     const VoxelBox voxels = common(voxels_between(box.lower, box.upper), within);
     if (voxels.empty()) return;
     set_shape(block, nodes, step, shape);
-    shape.size = std::max({box.size().x, box.size().y, box.size().z});
     HWY_DYNAMIC_DISPATCH(fill_cell)(shape, voxels, block, brick);
 }
 
@@ -284,13 +294,7 @@ void fill_block(const CellBlock& block, CellShape& shape, VoxelBrick& brick) {
         const VoxelBox voxels = common(*piece++, within);
         if (voxels.empty()) return;
         const auto nodes = corner_nodes(lowest, 2, block);
-        Box box;
-        for (const std::size_t n : nodes) box.add(block.points[n]);
-        const auto take_piece = [&] {
-            set_shape(block, nodes, 2, shape);
-            shape.size = std::max({box.size().x, box.size().y, box.size().z});
-        };
-        take_piece();
+        set_places(block, nodes, 2, shape);
         const PieceBounds bounds = bounds_of(block, lowest);
         if (fill_piece_here(shape, bounds, voxels, block, brick)) return;
         const std::size_t doubtful = brick.doubtful.size();
@@ -299,7 +303,7 @@ void fill_block(const CellBlock& block, CellShape& shape, VoxelBrick& brick) {
             fill_small_cell(block, part, 1, within, shape, brick);
         }
         if (brick.doubtful.size() > doubtful) brick.doubtful.push_back(voxels);
-        take_piece();
+        set_places(block, nodes, 2, shape);
         HWY_DYNAMIC_DISPATCH(fill_rest_of_piece)(shape, bounds, voxels, block, brick);
     });
 }

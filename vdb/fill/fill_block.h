@@ -60,19 +60,20 @@ inline const Vec3 kCentreStep = Vec3(4295, 3565, 3049) / 4294967296.0;  // about
 
 /// The nodes of a curved cell: three along each axis, u fastest, then v, then w.
 constexpr std::size_t kCurvedNodes = 27;
+constexpr std::size_t kPaddedNodes = 32;  // whole vectors
 
 /// One of a block's small cells. Positions are relative to `origin`, its first corner; corners are in VTK order.
 ///
 /// values: channels × 8
-/// curved: the cell is a part of a larger one with these nodes and channels × 27 node_values: in the parameters of the larger
-///         one it begins at `first_part` and is `part` long along each axis
+/// curved: the cell is a part of a larger one with these nodes, the last one repeated, and channels × 27 node_values: in the
+///         parameters of the larger one it begins at `first_part` and is `part` long along each axis
 /// size:   the longest side of its bounding box
 struct CellShape {
     Vec3 origin;
     std::array<std::array<double, 8>, 3> corners;
     std::vector<double> values;
     bool curved = false;
-    std::array<std::array<double, kCurvedNodes>, 3> nodes;
+    alignas(64) std::array<std::array<double, kPaddedNodes>, 3> nodes;
     double part = 1;
     std::array<double, 3> first_part{};
     std::vector<double> node_values;

@@ -32,6 +32,74 @@ constexpr double kLeastDeterminant = 1e-3;  // relative to the largest: below, t
 constexpr double kMostBend = 0.3;           // in parameters: beyond, Newton's method may miss
 constexpr double kBetweenNodes = 2;         // a triquadratic function exceeds its nodes' range about 0 by less: 1.25³
 
+/// The parameters of the nodes, the last one repeated.
+struct NodeParameters {
+    alignas(64) double at[3][kPaddedNodes];
+    constexpr NodeParameters() : at{} {
+        for (std::size_t n = 0; n < kPaddedNodes; ++n) {
+            const std::size_t node = n < kCurvedNodes ? n : kCurvedNodes - 1;
+            at[0][n] = 0.5 * static_cast<double>(node % 3);
+            at[1][n] = 0.5 * static_cast<double>(node / 3 % 3);
+            at[2][n] = 0.5 * static_cast<double>(node / 9);
+        }
+    }
+};
+inline constexpr NodeParameters kNodes;
+
+/// For rows of centres along z, those that may lie inside a piece: between two planes for each parameter.
+class RowIntervals {
+public:
+    RowIntervals(const MiddleOfCell& middle, const PieceBounds& bounds, const std::array<double, 3>& margins,
+                 const Vec3& origin, const VoxelBox& box)
+        : lowest_(box.lower[2]), highest_(box.upper[2]) {
+        const Vec3 start = Vec3(box.lower[0], box.lower[1], 0) + kCentreStep - origin;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const auto [at, slope] = middle.along_z(a, start);
+            const double along_x = middle.slope(a, 0), along_y = middle.slope(a, 1);
+            const double low = bounds.lower[a] - margins[a] - at, high = bounds.upper[a] + margins[a] - at;
+            Planes& p = planes_[a];
+            p.is_level = std::abs(slope) * kBrickSide < 1e-9;  // the parameter does not change along a row
+            if (p.is_level) {
+                p = {low - slope * lowest_ - 1e-9, high - slope * lowest_ + 1e-9, -along_x, -along_y, true};
+            } else {
+                const double inverse = 1 / slope;
+                p = {(slope > 0 ? low : high) * inverse, (slope > 0 ? high : low) * inverse, -along_x * inverse,
+                     -along_y * inverse, false};
+            }
+        }
+    }
+
+    /// x, y: of the rows, from the first one. Returns false if all intervals are empty.
+    HWY_ATTR bool find(Doubles x, Doubles y, double* first, double* last) const {
+        const Lanes d;
+        auto from = hn::Set(d, lowest_), to = hn::Set(d, highest_);
+        for (const Planes& p : planes_) {
+            const auto moved = hn::MulAdd(hn::Set(d, p.along_x), x, hn::Mul(hn::Set(d, p.along_y), y));
+            const auto low = hn::Add(hn::Set(d, p.low), moved), high = hn::Add(hn::Set(d, p.high), moved);
+            if (p.is_level) {
+                const auto outside = hn::Or(hn::Gt(low, hn::Zero(d)), hn::Lt(high, hn::Zero(d)));
+                to = hn::IfThenElse(outside, hn::Set(d, lowest_ - 1), to);
+            } else {
+                from = hn::Max(from, low);
+                to = hn::Min(to, high);
+            }
+        }
+        from = hn::Ceil(from);
+        to = hn::Floor(to);
+        hn::Store(from, d, first);
+        hn::Store(to, d, last);
+        return !hn::AllFalse(d, hn::Le(from, to));
+    }
+
+private:
+    struct Planes {
+        double low, high, along_x, along_y;
+        bool is_level;
+    };
+    std::array<Planes, 3> planes_;
+    double lowest_, highest_;
+};
+
 class CurvedFiller {
 public:
     HWY_ATTR CurvedFiller(const CellShape& shape, const PieceBounds& bounds, const CellBlock& block, VoxelBrick& brick)
@@ -53,11 +121,24 @@ public:
     }
 
 private:
+    /// One row along z per lane.
     HWY_ATTR void fill(const VoxelBox& box) {
-        for (int x = box.lower[0]; x <= box.upper[0]; ++x) {
-            for (int y = box.lower[1]; y <= box.upper[1]; ++y) {
-                const auto [first, last] = interval(x, y, box.lower[2], box.upper[2]);
-                if (first <= last) add_row({x, y, first}, last);
+        const Lanes d;
+        const RowIntervals intervals(values_.middle(), bounds_, margins_, shape_.origin, box);
+        const int along_y = box.upper[1] - box.lower[1] + 1;
+        const int rows = (box.upper[0] - box.lower[0] + 1) * along_y;
+        for (int row = 0; row < rows; row += static_cast<int>(kLanes)) {
+            const auto numbers = hn::Iota(d, row);
+            const auto x = hn::Floor(hn::Mul(hn::Add(numbers, hn::Set(d, 0.5)), hn::Set(d, 1.0 / along_y)));
+            const auto y = hn::NegMulAdd(x, hn::Set(d, along_y), numbers);
+            HWY_ALIGN double first[kLanes], last[kLanes];
+            if (!intervals.find(x, y, first, last)) continue;
+            const int end = std::min(rows, row + static_cast<int>(kLanes));
+            for (int r = row; r < end; ++r) {
+                const auto lane = static_cast<std::size_t>(r - row);
+                if (!(first[lane] <= last[lane])) continue;
+                add_row({box.lower[0] + r / along_y, box.lower[1] + r % along_y, static_cast<int>(first[lane])},
+                        static_cast<int>(last[lane]));
             }
         }
         flush();
@@ -66,18 +147,10 @@ private:
     /// Where the map has the same orientation at all nodes, how far the linear map is from the parameters of the nodes.
     HWY_ATTR bool set_margins() {
         const Lanes d;
-        HWY_ALIGN double u[3][32], x[3][32];
-        for (std::size_t n = 0; n < 32; ++n) {
-            const std::size_t node = std::min(n, kCurvedNodes - 1);
-            u[0][n] = 0.5 * static_cast<double>(node % 3);
-            u[1][n] = 0.5 * static_cast<double>(node / 3 % 3);
-            u[2][n] = 0.5 * static_cast<double>(node / 9);
-            for (std::size_t a = 0; a < 3; ++a) x[a][n] = shape_.nodes[a][node];
-        }
         auto least = hn::Inf(d);
         auto most = hn::Zero(d), bend_u = most, bend_v = most, bend_w = most;
-        for (std::size_t n = 0; n < 32; n += kLanes) {
-            const Parameters q{hn::Load(d, &u[0][n]), hn::Load(d, &u[1][n]), hn::Load(d, &u[2][n])};
+        for (std::size_t n = 0; n < kPaddedNodes; n += kLanes) {
+            const Parameters q{hn::Load(d, &kNodes.at[0][n]), hn::Load(d, &kNodes.at[1][n]), hn::Load(d, &kNodes.at[2][n])};
             const auto zero = hn::Zero(d);
             const Residual rx = residual(values_.map()[0], q, zero), ry = residual(values_.map()[1], q, zero);
             const Residual rz = residual(values_.map()[2], q, zero);
@@ -88,8 +161,8 @@ private:
                 hn::Mul(hn::Set(d, block_.orientation), hn::MulAdd(rx.du, ax, hn::MulAdd(ry.du, ay, hn::Mul(rz.du, az))));
             least = hn::Min(least, determinant);
             most = hn::Max(most, determinant);
-            const Parameters p =
-                values_.middle().parameters(hn::Load(d, &x[0][n]), hn::Load(d, &x[1][n]), hn::Load(d, &x[2][n]));
+            const Parameters p = values_.middle().parameters(hn::Load(d, &shape_.nodes[0][n]), hn::Load(d, &shape_.nodes[1][n]),
+                                                             hn::Load(d, &shape_.nodes[2][n]));
             bend_u = hn::Max(bend_u, hn::Abs(hn::Sub(p.u, q.u)));
             bend_v = hn::Max(bend_v, hn::Abs(hn::Sub(p.v, q.v)));
             bend_w = hn::Max(bend_w, hn::Abs(hn::Sub(p.w, q.w)));
@@ -101,25 +174,6 @@ private:
                            std::max({margins_[0], margins_[1], margins_[2]}) < kMostBend;  // false for NaN
         for (double& margin : margins_) margin = kBetweenNodes * margin + 1e-6;
         return plain;
-    }
-
-    /// The centres of a row that may lie inside.
-    std::pair<int, int> interval(int x, int y, int lowest, int highest) const {
-        const Vec3 place = Vec3(x, y, 0) + kCentreStep - shape_.origin;
-        double first = lowest, last = highest;
-        for (std::size_t a = 0; a < 3; ++a) {
-            const auto [at, slope] = values_.middle().along_z(a, place);
-            const double low = bounds_.lower[a] - margins_[a] - at, high = bounds_.upper[a] + margins_[a] - at;
-            if (std::abs(slope) * kBrickSide < 1e-9) {
-                if (low > 1e-9 + slope * lowest || high < slope * lowest - 1e-9) return {1, 0};
-                continue;
-            }
-            const double from = (slope > 0 ? low : high) / slope, to = (slope > 0 ? high : low) / slope;
-            first = std::max(first, from);
-            last = std::min(last, to);
-        }
-        if (!(first <= last)) return {1, 0};
-        return {static_cast<int>(std::ceil(first)), static_cast<int>(std::floor(last))};
     }
 
     /// The inactive voxels of a row are candidates.
@@ -153,16 +207,17 @@ private:
         for (std::size_t i = found_.count; i % kLanes != 0; ++i) {
             for (auto& along : found_.places) along[i] = along[found_.count - 1];
         }
-        for (std::size_t first = 0; first < found_.count; first += kLanes) {
-            Parameters q;
-            const auto good = values_.find(found_, first, q);
+        Parameters q[ValueFiller<Triquadratic>::kVectors] = {};
+        bool any = false;
+        for (std::size_t first = 0, v = 0; first < found_.count; first += kLanes, ++v) {
+            const auto good = values_.find(found_, first, q[v]);
             const auto within = [&](Doubles u, std::size_t a) HWY_ATTR {
                 return hn::And(hn::Ge(u, hn::Set(d, bounds_.lower[a])), hn::Le(u, hn::Set(d, bounds_.upper[a])));
             };
             std::uint8_t bits[8] = {};
-            hn::StoreMaskBits(d, hn::And(hn::And(good, within(q.u, 0)), hn::And(within(q.v, 1), within(q.w, 2))), bits);
+            hn::StoreMaskBits(d, hn::And(hn::And(good, within(q[v].u, 0)), hn::And(within(q[v].v, 1), within(q[v].w, 2))),
+                              bits);
             const std::size_t count = std::min(kLanes, found_.count - first);
-            bool any = false;
             for (std::size_t i = 0; i < count; ++i) {
                 float*& value = found_.values[first + i];
                 value = nullptr;
@@ -175,8 +230,8 @@ private:
                 value = leaf->values.get() + kLeafVoxels / kLeafSide * word + bit;
                 any = true;
             }
-            if (any) values_.store(found_, first, count, q);
         }
+        if (any) values_.store(found_, q);
         found_.count = 0;
     }
 

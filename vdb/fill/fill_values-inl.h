@@ -85,12 +85,20 @@ struct Triquadratic {
 
     explicit Triquadratic(const double* v) {
         std::copy_n(v, kCurvedNodes, c);
-        for (std::size_t stride = 1; stride < kCurvedNodes; stride *= 3) {
-            for (std::size_t n = 0; n < kCurvedNodes; ++n) {
-                if (n / stride % 3 != 0) continue;
-                const double low = c[n], middle = c[n + stride], high = c[n + 2 * stride];
-                c[n + stride] = 4 * middle - 3 * low - high;
-                c[n + 2 * stride] = 2 * (low + high - 2 * middle);
+        along<1>();
+        along<3>();
+        along<9>();
+    }
+
+private:
+    /// From values to coefficients along one axis. kStride: between its nodes
+    template <std::size_t kStride>
+    void along() {
+        for (std::size_t line = 0; line < kCurvedNodes; line += 3 * kStride) {
+            for (std::size_t n = line; n < line + kStride; ++n) {
+                const double low = c[n], middle = c[n + kStride], high = c[n + 2 * kStride];
+                c[n + kStride] = 4 * middle - 3 * low - high;
+                c[n + 2 * kStride] = 2 * (low + high - 2 * middle);
             }
         }
     }
@@ -183,6 +191,9 @@ public:
         return {0.5 + at, row[2]};
     }
 
+    /// How parameter `a` changes along axis d.
+    [[nodiscard]] double slope(std::size_t a, std::size_t d) const { return inverse_[a][d]; }
+
     /// A Newton step of at most m ≤ 1 parameters that ends near the cell leaves a residual of at most bend·m². Infinite where
     /// the map is so bent or so flat that rounding might matter.
     [[nodiscard]] double bend() const { return bend_; }
@@ -233,7 +244,14 @@ public:
         for (std::size_t i = found.count; i % kLanes != 0; ++i) {
             for (auto& along : found.places) along[i] = found.count > 0 ? along[found.count - 1] : 0;
         }
-        for (std::size_t i = 0; i < found.count; i += kLanes) fill(found, i, std::min(kLanes, found.count - i));
+        Parameters q[kVectors] = {};
+        hn::Mask<Lanes> good[kVectors];
+        for (std::size_t v = 0; v * kLanes < found.count; ++v) good[v] = find(found, v * kLanes, q[v]);
+        store(found, q);
+        for (std::size_t v = 0; v * kLanes < found.count; ++v) {
+            const std::size_t first = v * kLanes;
+            if (!hn::AllTrue(Lanes(), good[v])) mend(found, first, std::min(kLanes, found.count - first), good[v]);
+        }
         found.count = 0;
     }
 
@@ -246,8 +264,10 @@ public:
                       hn::Load(d, &found.places[2][first]), q);
     }
 
-    /// Stores the values at a vector of centres, except those whose place for a value is null.
-    HWY_ATTR void store(const FoundVoxels& found, std::size_t first, std::size_t count, const Parameters& q) const {
+    /// Stores the values at all centres, except those whose place for a value is null.
+    ///
+    /// q: the parameters of each vector of centres
+    HWY_ATTR void store(const FoundVoxels& found, const Parameters* q) const {
         const Lanes d;
         for (std::size_t c = 0; c < block_.channels; ++c) {
             const std::span<const double> nodes = values_of<Map>(shape_, c);
@@ -255,31 +275,29 @@ public:
             // Between a bent face and its two triangles the weights leave [0,1], but values must stay in the cell's range. A
             // parabola exceeds the range of its nodes by an eighth at most.
             const double beyond = shape_.curved ? (highest - lowest) / 8 : 0;
-            const auto value =
-                hn::Clamp(value_at(Map(nodes.data()), q), hn::Set(d, lowest - beyond), hn::Set(d, highest + beyond));
-            HWY_ALIGN double values[kLanes];
-            hn::Store(value, d, values);
-            for (std::size_t i = 0; i < count; ++i) {
-                if (found.values[first + i]) found.values[first + i][c * kLeafVoxels] = static_cast<float>(values[i]);
+            const auto least = hn::Set(d, lowest - beyond), most = hn::Set(d, highest + beyond);
+            const Map map(nodes.data());
+            for (std::size_t first = 0; first < found.count; first += kLanes, ++q) {
+                HWY_ALIGN double values[kLanes];
+                hn::Store(hn::Clamp(value_at(map, *q), least, most), d, values);
+                for (std::size_t i = first; i < std::min(first + kLanes, found.count); ++i) {
+                    if (found.values[i]) found.values[i][c * kLeafVoxels] = static_cast<float>(values[i - first]);
+                }
             }
+            q -= (found.count + kLanes - 1) / kLanes;
         }
         if (!block_.cell_numbers) return;
-        for (std::size_t i = 0; i < count; ++i) {
-            if (found.values[first + i]) found.values[first + i][block_.channels * kLeafVoxels] = bits_of(block_.cell);
+        for (std::size_t i = 0; i < found.count; ++i) {
+            if (found.values[i]) found.values[i][block_.channels * kLeafVoxels] = bits_of(block_.cell);
         }
     }
+
+    static constexpr std::size_t kVectors = FoundVoxels::kMost / kLanes;
 
     [[nodiscard]] const std::array<Map, 3>& map() const { return map_; }
     [[nodiscard]] const MiddleOfCell& middle() const { return middle_; }
 
 private:
-    HWY_ATTR void fill(const FoundVoxels& found, std::size_t first, std::size_t count) {
-        Parameters q;
-        const auto good = find(found, first, q);
-        store(found, first, count, q);
-        if (!hn::AllTrue(Lanes(), good)) mend(found, first, count, good);
-    }
-
     static float bits_of(Index cell) { return std::bit_cast<float>(static_cast<std::uint32_t>(cell)); }
 
     HWY_ATTR Parameters start(Doubles px, Doubles py, Doubles pz) const {

@@ -15,6 +15,7 @@
 #include "level_set.h"
 #include "subvol/error.h"
 #include "subvol/mesh_report.h"
+#include "subvol/rasterize_block.h"
 #include "vdb_data.h"
 
 namespace subvol {
@@ -141,6 +142,8 @@ public:
         return result;
     }
 
+    [[nodiscard]] bool folded() const { return filler_.folded(); }
+
 private:
     [[nodiscard]] openvdb::GridBase::Ptr distances(const openvdb::MaskGrid& inside, const std::optional<VoxelBox>& part) const {
         report_progress(options_.progress, "level set", 0);
@@ -199,6 +202,28 @@ std::vector<double> bytes_of_layers(const CellRequest& request, std::size_t byte
     return bytes;
 }
 
+/// The slab of whole bricks across x that is one of `of` shares; those of all shares take about as many bytes each, and the
+/// outermost two extend to the largest voxel index. Empty if there are more shares than layers of bricks.
+std::optional<VoxelBox> slab_of_share(const CellRequest& request, std::size_t bytes_per_voxel, int part, int of) {
+    int first = 0;
+    const std::vector<double> bytes = bytes_of_layers(request, bytes_per_voxel, first);
+    double all = 0;
+    for (const double layer : bytes) all += layer;
+    // A layer belongs to the share in which its middle lies.
+    const auto share_at = [&](double held) { return std::min(of, 1 + static_cast<int>(of * (all > 0 ? held / all : 0))); };
+    std::optional<VoxelBox> slab;
+    double held = 0;
+    for (std::size_t l = 0; l < bytes.size(); ++l) {
+        const int share = share_at(held + bytes[l] / 2);
+        held += bytes[l];
+        if (share != part) continue;
+        const int layer = (first + static_cast<int>(l)) * kBrickSide;
+        if (!slab) slab = VoxelBox{{l == 0 ? -kFar : layer, -kFar, -kFar}, {kFar - 1, kFar - 1, kFar - 1}};
+        slab->upper[0] = l + 1 == bytes.size() ? kFar - 1 : layer + kBrickSide - 1;
+    }
+    return slab;
+}
+
 /// Slabs of whole bricks across x. The outermost two extend to the largest voxel index, as refined cells may lie beyond the
 /// control cells.
 std::vector<VoxelBox> slabs_of(const CellRequest& request, std::size_t bytes_per_voxel, std::size_t memory_bytes) {
@@ -239,6 +264,39 @@ void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, c
     for (std::size_t s = 0; s < slabs.size(); ++s) {
         take({static_cast<int>(s), static_cast<int>(slabs.size()), rasterizer.run(slabs[s])});
     }
+}
+
+BlockGrids rasterize_block(const HexMesh& part, std::span<const std::string> fields, const RasterizeOptions& options,
+                           const VoxelCubes& block) {
+    static_assert(VoxelCubes::kSide == kBrickSide);
+    if (options.cell_numbers || options.coverage || options.level_set) {
+        throw Error(ErrorCode::InvalidInput, "blocks of voxels have no cell numbers, coverage and level sets");
+    }
+    if (!options.like && !(options.voxel_size_world > 0)) {
+        throw Error(ErrorCode::InvalidInput, "blocks of voxels need a voxel size");
+    }
+    const CellRequest request = make_request(part, fields, options);
+    MeshRasterizer rasterizer(request, options);
+    VoxelBox box;
+    for (std::size_t d = 0; d < 3; ++d) {
+        box.lower[d] = block.lower[d] * kBrickSide;
+        box.upper[d] = block.upper[d] * kBrickSide - 1;
+    }
+    BlockGrids result{rasterizer.run(box), false};
+    result.folded = rasterizer.folded();
+    return result;
+}
+
+std::vector<VdbGrid> rasterize_share(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
+                                     int part, int of) {
+    if (of < 1 || part < 1 || part > of) {
+        throw Error(ErrorCode::InvalidInput, "there is no part " + std::to_string(part) + " of " + std::to_string(of), {},
+                    "1 to the number of parts");
+    }
+    const CellRequest request = make_request(mesh, fields, options);
+    MeshRasterizer rasterizer(request, options);
+    constexpr VoxelBox kNowhere{{kBrickSide, kBrickSide, kBrickSide}, {kBrickSide - 1, kBrickSide - 1, kBrickSide - 1}};
+    return rasterizer.run(slab_of_share(request, bytes_per_voxel(request, options), part, of).value_or(kNowhere));
 }
 
 }  // namespace subvol

@@ -13,7 +13,10 @@
 #include "subvol/limit.h"
 #include "subvol/refine.h"
 #include "subvol/render_dense.h"
+#include "subvol/render_grid.h"
+#include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
+#include "subvol/sample_tables.h"
 #include "subvol/splat.h"
 #include "surface_preview.h"
 
@@ -21,26 +24,15 @@ namespace subvol {
 
 using namespace detail;
 
-ViewBody view_body(HexMesh mesh, const std::optional<std::string>& field) {
-    SelectedField selected = select_field(mesh, field);
-    mesh.attributes.assign(1, std::move(selected.scalar));
-    const auto [min, max] = std::ranges::minmax(mesh.attributes.front().values);
-    const Box box = bounds(mesh);
-    return {.mesh = std::move(mesh), .box = box, .range = {min, max}};
-}
-
-Optics optics_of(const ViewState& state, const ViewBody& body) {
-    return picture_optics(state.look, body.box, body.range, body.range);
-}
-
 struct PictureDrawer::State {
     DrawSettings settings;
     std::shared_ptr<const ViewBody> body{};
-    std::optional<BoundaryTables> tables{};  // of the cells of the body; kept while it is moved only
+    std::optional<BoundaryTables> tables{};       // of the cells of the body; made when it is moved
+    std::optional<SampleTables> kernel_tables{};  // likewise
     std::optional<BoundaryValues> skin{};
     std::optional<RbfVolume> volume{};
     std::optional<TetsRenderer> tets{};
-    std::size_t tet_count = 0;
+    std::optional<ProjectedRenderer> projected{};
 
     /// A splatter for each way of drawing: samples, light, sheet buffers.
     using SplatterKey = std::tuple<int, bool, bool>;
@@ -48,12 +40,16 @@ struct PictureDrawer::State {
 
     void take(const std::shared_ptr<const ViewBody>& next) {
         if (body == next) return;
-        if (body && body->shape != next->shape) tables.reset();
+        if (body && body->shape != next->shape) {
+            tables.reset();
+            kernel_tables.reset();
+        }
         body = next;
         splatters.clear();  // they refer to the volume
         skin.reset();
         volume.reset();
         tets.reset();
+        projected.reset();
     }
 
     [[nodiscard]] HexMesh refined(int levels, Progress* progress) const {
@@ -81,6 +77,7 @@ struct PictureDrawer::State {
     }
 
     const RbfVolume& volume_of(Progress* progress, DrawnPicture& picture) {
+        if (body->points.volume) return *body->points.volume;
         if (volume) return *volume;
         const Stopwatch watch;
         SampleOptions options = settings.sample;
@@ -90,6 +87,9 @@ struct PictureDrawer::State {
             options.scheme.kind = Scheme::Linear;
             options.boundary_levels = 0;
             volume = sample_rbf_points(std::move(fine), options).volume;
+        } else if (body->moved && SampleTables::are_for(options)) {
+            if (!kernel_tables) kernel_tables.emplace(body->mesh, options);
+            volume = kernel_tables->apply(body->mesh).volume;
         } else {
             volume = sample_rbf_points(body->mesh, options).volume;
         }
@@ -104,6 +104,7 @@ struct PictureDrawer::State {
         }
         SplatOptions options = settings.splat;
         options.samples = samples;
+        options.channel = body->channel;
         if (sheets) options.method = SplatMethod::Sheets;
         if (lit) options.shading = Shading{};
         options.progress = nullptr;
@@ -112,7 +113,7 @@ struct PictureDrawer::State {
 
     [[nodiscard]] bool paints(const ViewState& state) const {
         return settings.painted && state.look.look == Look::Solid && state.look.opacity.empty() &&
-               !state.look.opacity_unit_world && !settings.levels;
+               !state.look.opacity_unit_world && !settings.levels && !body->points.volume;
     }
 
     void draw_splats(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
@@ -123,15 +124,15 @@ struct PictureDrawer::State {
         Splatter& drawer = splatter(samples, lit, state.method == "sheets", progress, picture);
         picture.seconds_build = watch.seconds();
         drawer.set_clip(state.clip);
+        if (painted)
+            drawer.set_boundary_colors(skin->surface, skin->values.back());
+        else
+            drawer.set_boundary_colors({}, {});
         SplatResult drawn = drawer.draw(view, optics, progress);
-        if (painted) {
-            report_progress(progress, "colors", 0);
-            color_boundary(drawn.image, skin->surface, skin->values.back(), view, optics, Shading{}, samples, state.clip);
-        }
         picture.image = std::move(drawn.image);
         picture.depth = std::move(drawn.depth);
         picture.backend = drawn.report.backend;
-        picture.points = volume->size();
+        picture.points = drawn.report.points;
         picture.seconds_draw = watch.seconds() - picture.seconds_build;
     }
 
@@ -152,6 +153,18 @@ struct PictureDrawer::State {
         if (is_lit(state.look.look)) light_boundary(picture.image, skin->surface, view, Shading{}, samples, state.clip);
     }
 
+    void draw_voxels(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
+                     Progress* progress) {
+        const Stopwatch watch;
+        if (!body->points.voxels) throw Error(ErrorCode::InvalidInput, "a mesh has no voxels", "method grid", "another method");
+        GridResult drawn =
+            render_grid(*body->points.voxels, view, optics, {.samples = samples, .clip = state.clip, .progress = progress});
+        picture.image = std::move(drawn.image);
+        picture.points = drawn.report.cells;
+        picture.backend = "cpu";
+        picture.seconds_draw = watch.seconds();
+    }
+
     void draw_reference(const ViewState& state, const View& view, const Optics& optics, int samples, DrawnPicture& picture,
                         Progress* progress) {
         Stopwatch watch;
@@ -160,7 +173,12 @@ struct PictureDrawer::State {
             throw Error(ErrorCode::InvalidInput, "method " + state.method + " lights the boundary only", "look isosurface",
                         "method splat, or the colour map isosurface for surfaces without light");
         }
+        if (body->points.volume) {
+            throw Error(ErrorCode::InvalidInput, "points and voxels have no cells", "method " + state.method, "method splat");
+        }
         if (lit) (void)skin_of(progress, picture);
+        if (state.method == "pt" && !projected)
+            projected.emplace(refined(settings.levels.value_or(1), progress), "", settings.splat.device, progress);
         if (state.method == "tets" && !tets) tets.emplace(refined(settings.levels.value_or(1), progress), "", progress);
         picture.seconds_build = watch.seconds();
         picture.backend = "cpu";
@@ -168,6 +186,12 @@ struct PictureDrawer::State {
             TetsResult drawn = tets->draw(view, optics, {.samples = samples, .clip = state.clip, .progress = progress});
             picture.image = std::move(drawn.image);
             picture.points = drawn.report.tets;
+        } else if (state.method == "pt") {
+            ProjectedResult drawn =
+                projected->draw(view, optics, {.samples = samples, .clip = state.clip, .progress = progress});
+            picture.image = std::move(drawn.image);
+            picture.points = drawn.report.tets;
+            picture.backend = "gl";
         } else {
             DenseResult drawn = render_dense(body->mesh, {}, view, optics,
                                              {.refine = {.scheme = settings.sample.scheme},
@@ -204,6 +228,8 @@ DrawnPicture PictureDrawer::draw(const ViewState& state, const std::shared_ptr<c
         state_->draw_preview(view, optics, state.clip, picture, progress);
     } else if (state.method == "splat" || state.method == "sheets") {
         state_->draw_splats(state, view, optics, samples, picture, progress);
+    } else if (state.method == "grid") {
+        state_->draw_voxels(state, view, optics, samples, picture, progress);
     } else {
         state_->draw_reference(state, view, optics, samples, picture, progress);
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "seen_view.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
 
@@ -37,6 +38,12 @@ Vec3 ink_on(const Vec3& background) {
 LegendOptions legend_of(const ViewState& state, const ViewBody& body) {
     const ValueRange range = state.look.range.value_or(body.range);
     return {.title = body.field(), .min = range.min, .max = range.max};
+}
+
+View seen_view(const ViewState& state, const ViewBody& body) {
+    int width = state.width;
+    if (state.legend) width -= legend_width_px(optics_of(state, body).function(), legend_of(state, body), state.height);
+    return {state.camera, std::max(1, width), state.height};
 }
 
 int legend_columns(const ViewState& state, const ViewBody& body, const Optics& optics) {

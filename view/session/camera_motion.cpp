@@ -15,11 +15,6 @@ double radians(double degrees) {
     return degrees * std::numbers::pi / 180;
 }
 
-/// Turns v about a unit axis.
-Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {
-    return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) + axis * glm::dot(axis, v) * (1 - std::cos(angle));
-}
-
 double height_at_target(const Camera& camera) {
     if (camera.ortho_height > 0) return camera.ortho_height;
     return 2 * std::tan(radians(camera.fovy_deg) / 2) * glm::distance(camera.eye, camera.target);
@@ -27,14 +22,19 @@ double height_at_target(const Camera& camera) {
 
 }  // namespace
 
+Vec3 turned(const Vec3& v, const Vec3& axis, double angle_deg) {
+    const double angle = radians(angle_deg);
+    return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) + axis * glm::dot(axis, v) * (1 - std::cos(angle));
+}
+
 Camera orbited(Camera camera, double right_deg, double up_deg) {
     const Vec3 axis = glm::normalize(camera.up);
-    Vec3 arm = turned(camera.eye - camera.target, axis, radians(right_deg));
+    Vec3 arm = turned(camera.eye - camera.target, axis, right_deg);
     const double height = std::clamp(glm::dot(arm, axis) / glm::length(arm), -1.0, 1.0);
     const double elevation_deg = std::asin(height) * 180 / std::numbers::pi;
     const double wanted_deg = std::clamp(elevation_deg + up_deg, -kSteepest_deg, kSteepest_deg);
     const Vec3 right = glm::normalize(glm::cross(axis, arm));
-    arm = turned(arm, right, radians(elevation_deg - wanted_deg));
+    arm = turned(arm, right, elevation_deg - wanted_deg);
     camera.eye = camera.target + arm;
     return camera;
 }

@@ -5,6 +5,9 @@
 
 namespace subvol::detail {
 
+/// Turns v about a unit axis.
+[[nodiscard]] Vec3 turned(const Vec3& v, const Vec3& axis, double angle_deg);
+
 /// Turns a camera about its target: to the right about its up axis, and upwards, at most to 89.9° from the plane across it.
 [[nodiscard]] Camera orbited(Camera camera, double right_deg, double up_deg);
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "action_values.h"
+#include "seen_view.h"
 #include "subvol/edit_mesh.h"
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
@@ -42,7 +43,7 @@ void edit(Session& session, const Edit& change) {
 /// The points around the place that the picture shows at a pixel.
 Selection under_brush(const Session& session, const Vec2& pixel, double radius_px) {
     const auto picture = session.worker.latest();
-    const View view(session.state.camera, session.state.width, session.state.height);
+    const View view = seen_view(session.state, *session.body);
     if (!(radius_px > 0)) throw Error(ErrorCode::InvalidInput, "the radius is not positive", {}, "[column, row, radius]");
     if (!picture || picture->depth.empty())
         throw Error(ErrorCode::InvalidInput, "this picture has no depths", {}, "method splat");
@@ -77,6 +78,7 @@ double angle_of(const Json& value) {
 
 void select(Session& session, const Json& value) {
     const HexMesh& mesh = session.body->mesh;
+    if (session.body->points.volume) throw Error(ErrorCode::InvalidInput, "points have no control mesh to edit");
     if (value.is_null()) {
         session.selection.clear();
         return;
@@ -100,7 +102,7 @@ void select(Session& session, const Json& value) {
         next = under_brush(session, {n[0], n[1]}, n[2]);
     } else {
         const auto n = numbers(value["pixels"], 4);
-        const View view(session.state.camera, session.state.width, session.state.height);
+        const View view = seen_view(session.state, *session.body);
         next = select_pixels(mesh, view, {n[0], n[1]}, {n[2], n[3]});
     }
     (void)middle_of(mesh, next);  // refuses an empty one
@@ -123,7 +125,7 @@ void move(Session& session, const Json& value) {
 /// Along the picture, in heights of it at the depth of the selection.
 void drag(Session& session, const Json& value) {
     const auto n = numbers(value, 2);
-    const View view(session.state.camera, session.state.width, session.state.height);
+    const View view = seen_view(session.state, *session.body);
     const double depth = view.to_eye(middle_of(session.body->mesh, chosen(session))).z;
     const double height = view.height() * view.pixel() * (view.perspective() ? depth : 1);
     const Vec3 by = height * (n[0] * view.axes()[0] + n[1] * view.axes()[1]);
@@ -206,7 +208,7 @@ void ViewSession::State::replace(HexMesh next) {
     edited->shape = shape;
     edited->moved = grabbed;
     body = std::move(edited);
-    probe.reset();
+    picked_field.reset();
     show();
 }
 

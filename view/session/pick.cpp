@@ -35,18 +35,55 @@ std::pair<double, double> depths_in(const Box& box, const Ray& ray) {
 
 }  // namespace
 
-std::optional<Picked> pick(const LimitProbe& probe, const Optics& optics, const Ray& ray) {
-    const auto [from, to] = depths_in(probe.box(), ray);
+void PickedField::make() const {
+    std::call_once(made_, [&] {
+        if (body_->points.volume) {
+            kernels_.emplace(*body_->points.volume, RbfFieldOptions{.channel = body_->channel});
+        } else {
+            limit_.emplace(body_->mesh, ProbeOptions{.limit = {.scheme = scheme_}});
+        }
+    });
+}
+
+Box PickedField::box() const {
+    make();
+    return limit_ ? limit_->box() : body_->box;
+}
+
+std::vector<std::optional<Picked>> PickedField::at(std::span<const Vec3> places) const {
+    make();
+    std::vector<std::optional<Picked>> found(places.size());
+    if (kernels_) {
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            if (const auto jet = kernels_->value_and_gradient(places[k]))
+                found[k] = {places[k], jet->value, jet->gradient, kNone};
+        }
+        return found;
+    }
+    const ProbeResult probed = limit_->at(places);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (probed.inside(k))
+            found[k] = {places[k], probed.fields[0].values[k], probed.fields[0].gradients[k], probed.cells[k]};
+    }
+    return found;
+}
+
+std::optional<Picked> pick(const PickedField& field, const Optics& optics, const Ray& ray) {
+    const auto [from, to] = depths_in(field.box(), ray);
     if (!(from < to)) return std::nullopt;
     const auto place = [&](double depth) { return ray.origin + depth * ray.direction; };
+    const auto found_at = [&](double depth) {
+        const Vec3 one = place(depth);
+        return field.at(std::span(&one, 1)).front();
+    };
     const std::vector<Vec3> places = places_on_line(place(from), place(to), kPlaces);
-    const ProbeResult found = probe.at(places);
+    const auto found = field.at(places);
     const double step = glm::distance(places[0], places[1]);
     double passing = 1, most = 0;
     std::size_t brightest = 0;
     for (std::size_t k = 0; k < kPlaces; ++k) {
-        if (!found.inside(k)) continue;
-        const double stops = passing * (1 - std::exp(-optics.extinction(found.fields[0].values[k]) * step));
+        if (!found[k]) continue;
+        const double stops = passing * (1 - std::exp(-optics.extinction(found[k]->value) * step));
         passing -= stops;
         if (stops <= most) continue;
         most = stops;
@@ -55,18 +92,14 @@ std::optional<Picked> pick(const LimitProbe& probe, const Optics& optics, const 
     if (!(most > 0)) return std::nullopt;
     const double width = (to - from) / (kPlaces - 1);
     double at = from + width * static_cast<double>(brightest);
-    if (most > kOpaque && brightest > 0 && !found.inside(brightest - 1)) {  // opaque from its boundary on
+    if (most > kOpaque && brightest > 0 && !found[brightest - 1]) {  // opaque from its boundary on
         double outside = at - width;
         for (int k = 0; k < kHalvings; ++k) {
             const double middle = 0.5 * (outside + at);
-            const Vec3 one = place(middle);
-            (probe.at(std::span(&one, 1)).inside(0) ? at : outside) = middle;
+            (found_at(middle) ? at : outside) = middle;
         }
     }
-    const Vec3 chosen = place(at);
-    const ProbeResult there = probe.at(std::span(&chosen, 1));
-    if (!there.inside(0)) return std::nullopt;
-    return Picked{chosen, there.fields[0].values[0], there.fields[0].gradients[0], there.cells[0]};
+    return found_at(at);
 }
 
 }  // namespace subvol::detail

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <exception>
 #include <utility>
 
 #include "compare_pictures.h"
+#include "cut_handles.h"
 #include "picture_overlays.h"
 #include "session_state.h"
 #include "subvol/detail/printable.h"
@@ -10,6 +13,27 @@
 namespace subvol {
 
 using namespace detail;
+
+namespace {
+
+/// The picture beside that of another method, or their difference.
+Image composed_of(const DrawnPicture& picture, const DrawnPicture& other, const ViewState& state) {
+    if (other.image.width != picture.image.width || other.image.height != picture.image.height) return picture.image;
+    const Vec3 behind = background_of(state);
+    return state.difference ? difference_of(picture.image, other.image, behind)
+                            : side_by_side(picture.image, other.image, state.slider, ink_on(behind));
+}
+
+/// The one key and value of an action.
+std::pair<std::string, Json> split_action(std::string_view action) {
+    const Json json = parsed(action, "action");
+    if (!json.is_object() || json.size() != 1) {
+        throw Error(ErrorCode::InvalidInput, "is not an object with one key", "action", R"(such as {"orbit": [30, 0]})");
+    }
+    return {json.begin().key(), json.begin().value()};
+}
+
+}  // namespace
 
 detail::Json detail::parsed(std::string_view text, const std::string& where) {
     try {
@@ -32,11 +56,12 @@ ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start,
 }
 
 void ViewSession::State::choose_body() {
+    const auto field = state.field.empty() ? std::nullopt : std::optional(state.field);
     auto chosen =
-        std::make_shared<const ViewBody>(view_body(mesh, state.field.empty() ? std::nullopt : std::optional(state.field)));
+        std::make_shared<const ViewBody>(source.points.volume ? view_body(mesh, source.points, field) : view_body(mesh, field));
     state.field = chosen->field();
     body = std::move(chosen);
-    probe.reset();
+    picked_field.reset();
     selection.clear();  // points, and what was done to them, are those of the mesh before
     before.clear();
     after.clear();
@@ -44,9 +69,49 @@ void ViewSession::State::choose_body() {
     grabbed = false;
 }
 
-const LimitProbe& ViewSession::State::limit() {
-    if (!probe) probe.emplace(body->mesh, ProbeOptions{.limit = {.scheme = settings.sample.scheme}});
-    return *probe;
+std::shared_ptr<const PickedField> ViewSession::State::field() {
+    if (!picked_field) picked_field = std::make_shared<const PickedField>(body, settings.sample.scheme);
+    return picked_field;
+}
+
+void ViewSession::State::take_step(std::size_t number, HexMesh read) {
+    mesh = std::move(read);
+    state.step = number;
+    choose_body();
+    show();
+}
+
+void ViewSession::State::read_later(std::size_t number) {
+    if (reading) {
+        wanted = number;
+        return;
+    }
+    reading = number;
+    later.push_back(std::async(std::launch::async, [number, read = source.read]() -> Done {
+        std::shared_ptr<HexMesh> found;
+        std::exception_ptr wrong;
+        try {
+            found = std::make_shared<HexMesh>(read(number));
+        } catch (...) {
+            wrong = std::current_exception();
+        }
+        return [number, found, wrong](State& session) {
+            session.reading.reset();
+            const auto next = std::exchange(session.wanted, std::nullopt);
+            if (next && *next != number) session.read_later(*next);
+            if (wrong) std::rethrow_exception(wrong);
+            session.take_step(number, std::move(*found));
+        };
+    }));
+}
+
+std::function<void()> ViewSession::State::writer(const std::string& path) const {
+    const DrawWorker* other = state.compare.empty() ? nullptr : reference.get();
+    return [path, other, &drawn = worker, shown = state, &write = source.write_picture] {
+        const auto picture = drawn.wait();
+        const Image image = other != nullptr ? composed_of(*picture, *other->wait(), shown) : picture->image;
+        write(path, image, background_of(shown));
+    };
 }
 
 void ViewSession::State::show() {
@@ -61,11 +126,7 @@ void ViewSession::State::show() {
 Image ViewSession::State::composed(const DrawnPicture& picture) const {
     if (state.compare.empty() || !reference) return picture.image;
     const auto other = reference->latest();
-    if (!other || other->image.width != picture.image.width || other->image.height != picture.image.height)
-        return picture.image;
-    const Vec3 behind = background_of(state);
-    return state.difference ? difference_of(picture.image, other->image, behind)
-                            : side_by_side(picture.image, other->image, state.slider, ink_on(behind));
+    return other ? composed_of(picture, *other, state) : picture.image;
 }
 
 std::shared_ptr<const DrawnPicture> ViewSession::State::wait() {
@@ -112,11 +173,26 @@ std::vector<std::string> ViewSession::fields() const {
 }
 
 void ViewSession::run(std::string_view action) {
-    const Json json = parsed(action, "action");
-    if (!json.is_object() || json.size() != 1) {
-        throw Error(ErrorCode::InvalidInput, "is not an object with one key", "action", R"(such as {"orbit": [30, 0]})");
+    const auto [name, argument] = split_action(action);
+    run_action(*state_, name, argument);
+}
+
+void ViewSession::start(std::string_view action) {
+    const auto [name, argument] = split_action(action);
+    start_action(*state_, name, argument);
+}
+
+void ViewSession::settle() {
+    auto& later = state_->later;
+    for (std::size_t k = 0; k < later.size();) {
+        if (later[k].wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+            ++k;
+            continue;
+        }
+        auto ready = std::move(later[k]);
+        later.erase(later.begin() + static_cast<std::ptrdiff_t>(k));
+        ready.get()(*state_);
     }
-    run_action(*state_, json.begin().key(), json.begin().value());
 }
 
 std::vector<std::string> ViewSession::split_script(std::string_view script, const std::string& file) {
@@ -165,7 +241,8 @@ const Selection& ViewSession::selection() const {
 }
 
 bool ViewSession::busy() const {
-    return state_->worker.busy() || (state_->reference && !state_->state.compare.empty() && state_->reference->busy());
+    return !state_->later.empty() || state_->worker.busy() ||
+           (state_->reference && !state_->state.compare.empty() && state_->reference->busy());
 }
 
 std::uint64_t ViewSession::pictures() const {
@@ -174,6 +251,10 @@ std::uint64_t ViewSession::pictures() const {
 
 detail::WindowLook& ViewSession::look() {
     return state_->look;
+}
+
+std::vector<detail::CutHandle> ViewSession::cut_handles() const {
+    return detail::cut_handles(state_->state, *state_->body);
 }
 
 std::string ViewSession::state_json() const {

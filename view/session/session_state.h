@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
 #include "subvol/detail/window_look.h"
 #include "subvol/edit_mesh.h"
 #include "subvol/probe.h"
+#include "subvol/rbf_field.h"
 #include "subvol/view_session.h"
 
 namespace subvol::detail {
 
 using Json = nlohmann::ordered_json;
+
+/// Runs an action on a session; what is slow goes on by itself: see ViewSession::start.
+void start_action(ViewSession::State& session, const std::string& name, const Json& argument);
 
 /// Runs an action on a session.
 ///
@@ -24,8 +33,28 @@ void run_action(ViewSession::State& session, const std::string& name, const Json
 /// The word-by-word command that draws the state.
 [[nodiscard]] std::string render_command(const ViewState& state, const ViewBody& body, const ViewSource& source);
 
+/// The field of a body that can be picked: the limit of its mesh, or the sum of its kernels. It is made ready by the first
+/// call; several threads may call it.
+class PickedField {
+public:
+    PickedField(std::shared_ptr<const ViewBody> body, const SchemeOptions& scheme) : body_(std::move(body)), scheme_(scheme) {}
+
+    [[nodiscard]] Box box() const;
+    /// For each place what is there; nothing outside.
+    [[nodiscard]] std::vector<std::optional<Picked>> at(std::span<const Vec3> places) const;
+
+private:
+    void make() const;
+
+    std::shared_ptr<const ViewBody> body_;
+    SchemeOptions scheme_;
+    mutable std::once_flag made_{};
+    mutable std::optional<LimitProbe> limit_{};
+    mutable std::optional<RbfField> kernels_{};
+};
+
 /// Where most of the light of a pixel comes from.
-[[nodiscard]] std::optional<Picked> pick(const LimitProbe& probe, const Optics& optics, const Ray& ray);
+[[nodiscard]] std::optional<Picked> pick(const PickedField& field, const Optics& optics, const Ray& ray);
 
 /// Parses JSON. throws: Error(InvalidInput), in one sentence
 [[nodiscard]] Json parsed(std::string_view text, const std::string& where);
@@ -41,7 +70,13 @@ struct ViewSession::State {
     void choose_body();
     /// Lets the worker draw the state.
     void show();
-    [[nodiscard]] const LimitProbe& limit();
+    [[nodiscard]] std::shared_ptr<const detail::PickedField> field();
+    /// Shows another step.
+    void take_step(std::size_t number, HexMesh read);
+    /// Reads a step on another thread, then shows it.
+    void read_later(std::size_t number);
+    /// Writes the picture of the state once it is done. Another thread may call the result.
+    [[nodiscard]] std::function<void()> writer(const std::string& path) const;
     [[nodiscard]] std::shared_ptr<const DrawnPicture> wait();
     void note_wait();
     /// Keeps the mesh for `undo`.
@@ -56,18 +91,23 @@ struct ViewSession::State {
     HexMesh mesh;  // all fields of the step
     ViewState state;
     std::shared_ptr<const ViewBody> body;
-    std::optional<LimitProbe> probe;     // of `body`
-    Selection selection;                 // empty: nothing
-    std::vector<HexMesh> before, after;  // for undo and redo
-    std::uint64_t shape = 0;             // of the cells that are edited; 0: none yet
-    bool grabbed = false;                // a motion in many small edits, which are undone as one
+    std::shared_ptr<const detail::PickedField> picked_field;  // of `body`
+    Selection selection;                                      // empty: nothing
+    std::vector<HexMesh> before, after;                       // for undo and redo
+    std::uint64_t shape = 0;                                  // of the cells that are edited; 0: none yet
+    bool grabbed = false;                                     // a motion in many small edits, which are undone as one
     std::optional<Picked> picked;
     std::size_t action = 0;
     std::vector<WaitReport> waits;
     detail::WindowLook look;
     std::function<void()> on_picture;
     DrawWorker worker;
-    std::unique_ptr<DrawWorker> reference;  // once two pictures have been compared
+    std::unique_ptr<DrawWorker> reference;       // once two pictures have been compared
+    std::optional<std::size_t> reading, wanted;  // steps: that is being read, and that was asked for meanwhile
+
+    /// What other threads are at. Each ends in what is to be done here then.
+    using Done = std::function<void(State&)>;
+    std::vector<std::future<Done>> later;  // the last member: it ends first
 };
 
 }  // namespace subvol

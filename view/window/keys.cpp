@@ -26,7 +26,7 @@ constexpr std::array kLines{Line{"drag", "turn"},
                             Line{"1 ... 6  7", "views +x -x +y -y +z -z iso"},
                             Line{"o", "parallel rays"},
                             Line{"k", "next look"},
-                            Line{"s  t  d", "method: splat, tets, dense"},
+                            Line{"s  t  p  d  v", "method: splat, tets, pt, dense, grid"},
                             Line{"n", "next field"},
                             Line{",  .  space", "step before, step after, play"},
                             Line{"a  m  l", "axes, control mesh, legend"},
@@ -114,6 +114,12 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
         case 'd':
             run(host, memory, "method", "\"dense\"");
             break;
+        case 'p':
+            run(host, memory, "method", "\"pt\"");
+            break;
+        case 'v':
+            run(host, memory, "method", "\"grid\"");
+            break;
         case 'n':
             next_field(host, memory);
             break;
@@ -136,7 +142,7 @@ void take_letter(WindowHost& host, WindowMemory& memory, unsigned letter) {
             run(host, memory, "legend", toggled(state.legend));
             break;
         case 'r':
-            run(host, memory, "compare", state.compare.empty() ? "\"tets\"" : "null");
+            run(host, memory, "compare", state.compare.empty() ? json_text(host.methods()[2 % host.methods().size()]) : "null");
             break;
         case '[':
             run(host, memory, "slider", json_text(std::max(0.0, state.slider - 0.05)));

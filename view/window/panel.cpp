@@ -46,7 +46,7 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
     if (const auto look = choose("look", kLookNames[look_number(state.look.look)], {kLookNames.begin(), kLookNames.end()});
         !look.empty())
         run(host, memory, "look", json_text(look));
-    if (const auto method = choose("method", state.method, {"splat", "sheets", "tets", "dense"}); !method.empty())
+    if (const auto method = choose("method", state.method, host.methods()); !method.empty())
         run(host, memory, "method", json_text(method));
     const std::vector<double>& times = host.times();
     if (times.size() < 2) return;
@@ -83,8 +83,11 @@ void draw_colours(WindowHost& host, WindowMemory& memory) {
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
     ImGui::InputTextWithHint("##map_file", "ParaView's map.json", memory.map_file, sizeof memory.map_file);
     ImGui::SameLine();
-    if (ImGui::Button("load", {ImGui::GetContentRegionAvail().x, 0}))
-        run(host, memory, "tf", json_text(std::string(memory.map_file)));
+    const std::string file = memory.map_file;
+    if (ImGui::Button("load##map", {part_width(2), 0})) run(host, memory, "tf", json_text(file));
+    ImGui::SameLine();
+    if (ImGui::Button("save##map", {ImGui::GetContentRegionAvail().x, 0}))
+        run_and_tell(host, memory, "save_tf", json_text(file), "wrote " + file);
 }
 
 void draw_camera(WindowHost& host, WindowMemory& memory) {
@@ -115,7 +118,9 @@ void draw_camera(WindowHost& host, WindowMemory& memory) {
 void draw_compare(WindowHost& host, WindowMemory& memory) {
     const ViewState& state = host.state();
     const std::string now = state.compare.empty() ? "nothing" : state.compare;
-    const auto with = choose("beside it", now, {"nothing", "splat", "tets", "dense"});
+    std::vector<std::string> others = host.methods();
+    others.insert(others.begin(), "nothing");
+    const auto with = choose("beside it", now, others);
     if (!with.empty()) run(host, memory, "compare", with == "nothing" ? "null" : json_text(with));
     float slider = static_cast<float>(state.slider);
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
@@ -188,6 +193,7 @@ void draw_panel(WindowHost& host, WindowMemory& memory, float left, float width,
     draw_what(host, memory);
     if (section(host, "Colours and opacity", "colours")) draw_colours(host, memory);
     if (section(host, "Camera and overlays", "camera")) draw_camera(host, memory);
+    if (section(host, "Cuts and slices", "cuts")) draw_cuts(host, memory);
     if (section(host, "Against a reference", "compare")) draw_compare(host, memory);
     if (section(host, "Hands on the mesh", "sculpt")) draw_sculpt(host, memory);
     if (section(host, "Picture, state, command", "files")) draw_files(host, memory);

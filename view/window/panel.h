@@ -29,11 +29,13 @@ struct WindowMemory {
     double next_step_at = 0;
     char picture_file[256] = "picture.png";
     char state_file[256] = "state.json";
-    char map_file[256] = "", mesh_file[256] = "edited.vtu";
+    char map_file[256] = "map.json", mesh_file[256] = "edited.vtu";
     float paint_value = 0;
     bool works = false, rectangle = false;  // what a drag with a tool is
     std::array<float, 2> corner{};          // where it began
     bool quit = false;
+    bool holds_cut = false, turns_cut = false;  // a handle of a plane is dragged, at its foot or at its tip
+    CutHandle held_cut{};
 };
 
 /// Runs an action and keeps its error.
@@ -57,6 +59,13 @@ void draw_opacity_editor(WindowHost& host, WindowMemory& memory);
 [[nodiscard]] bool take_tool(WindowHost& host, WindowMemory& memory, float height);
 /// The selected control points, and the brush.
 void draw_selection(WindowHost& host, const WindowMemory& memory);
+/// The mouse on the handle of a plane that cuts. returns: whether the handle took it
+[[nodiscard]] bool take_cut(WindowHost& host, WindowMemory& memory);
+/// The handles of the planes that cut; only while their part of the panel is open.
+void draw_cut_handles(WindowHost& host, const WindowMemory& memory);
+/// The planes, in the panel.
+void draw_cuts(WindowHost& host, WindowMemory& memory);
+
 /// The tools, in the panel.
 void draw_sculpt(WindowHost& host, WindowMemory& memory);
 

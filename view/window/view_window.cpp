@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "screen_pixels.h"
+#include "seen_view.h"
 #include "subvol/detail/module.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/error.h"
@@ -27,7 +28,16 @@ public:
 
     [[nodiscard]] std::string run(const std::string& action) override {
         try {
-            session_.run(action);
+            session_.start(action);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return {};
+    }
+
+    [[nodiscard]] std::string settle() override {
+        try {
+            session_.settle();
         } catch (const Error& error) {
             return error.what();
         }
@@ -57,9 +67,10 @@ public:
     [[nodiscard]] std::string figures() const override {
         const auto latest = session_.worker().latest();
         if (!latest) return "drawing ...";
-        const std::string things = latest->state.method == "tets"    ? " tetrahedra"
-                                   : latest->state.method == "dense" ? " small cells"
-                                                                     : " kernels";
+        const std::string& method = latest->state.method;
+        const std::string things = method == "tets" || method == "pt"      ? " tetrahedra"
+                                   : method == "dense" || method == "grid" ? " small cells"
+                                                                           : " kernels";
         std::string text = std::to_string(latest->points) + things + "   " + fixed_text(1e3 * latest->seconds_draw, 0) +
                            " ms   " + latest->state.method + ", " + latest->backend + "   " +
                            std::to_string(latest->image.width) + " x " + std::to_string(latest->image.height);
@@ -68,6 +79,7 @@ public:
     }
 
     [[nodiscard]] std::vector<std::string> fields() const override { return session_.fields(); }
+    [[nodiscard]] std::vector<std::string> methods() const override { return session_.methods(); }
     [[nodiscard]] const std::vector<double>& times() const override { return session_.source().times; }
     [[nodiscard]] ValueRange field_range() const override { return session_.body().range; }
     [[nodiscard]] ValueRange shown_range() const override {
@@ -106,7 +118,7 @@ public:
         constexpr std::size_t kMost = 3000;  // more would hide the body
         const Selection& selection = session_.selection();
         const ViewState& state = session_.state();
-        const View view(state.camera, state.width, state.height);
+        const View view = seen_view(state, session_.body());
         const auto count = static_cast<std::size_t>(std::ranges::count_if(selection, [](double share) { return share > 0; }));
         const std::size_t step = count / kMost + 1;
         std::vector<Vec3> pixels;
@@ -120,6 +132,8 @@ public:
         return pixels;
     }
 
+    [[nodiscard]] std::vector<CutHandle> cut_handles() const override { return session_.cut_handles(); }
+
     [[nodiscard]] std::vector<std::string> picked() const override {
         const auto& picked = session_.picked();
         if (!picked) return {};
@@ -127,7 +141,8 @@ public:
             return number_text(v.x, 4) + ", " + number_text(v.y, 4) + ", " + number_text(v.z, 4);
         };
         return {session_.body().field() + " " + number_text(picked->value), "at " + three(picked->place),
-                "gradient " + three(picked->gradient), "cell " + std::to_string(picked->cell)};
+                "gradient " + three(picked->gradient),
+                picked->cell == kNone ? "of the kernels" : "cell " + std::to_string(picked->cell)};
     }
 
     [[nodiscard]] std::string render_command() const override { return session_.render_command(); }

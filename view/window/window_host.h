@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "subvol/detail/cut_handle.h"
 #include "subvol/detail/window_look.h"
 #include "subvol/view_state.h"
 
@@ -36,6 +37,8 @@ public:
     [[nodiscard]] virtual const ViewState& state() const = 0;
     /// Runs an action. returns: what is wrong with it, in one sentence; empty: nothing
     [[nodiscard]] virtual std::string run(const std::string& action) = 0;
+    /// Takes the results of actions that went on by themselves. returns: what is wrong with one of them; empty: nothing
+    [[nodiscard]] virtual std::string settle() = 0;
     [[nodiscard]] virtual WindowLook& look() = 0;
 
     /// Replaces the picture if there is a newer one. returns: whether there was
@@ -47,6 +50,7 @@ public:
     [[nodiscard]] virtual std::string figures() const = 0;
 
     [[nodiscard]] virtual std::vector<std::string> fields() const = 0;
+    [[nodiscard]] virtual std::vector<std::string> methods() const = 0;
     [[nodiscard]] virtual const std::vector<double>& times() const = 0;
     [[nodiscard]] virtual ValueRange field_range() const = 0;
     [[nodiscard]] virtual ValueRange shown_range() const = 0;
@@ -57,6 +61,7 @@ public:
     [[nodiscard]] virtual std::vector<TransferFunction::OpacityKnot> opacity() const = 0;
     /// Where selected control points are in the picture (column, row) and their shares.
     [[nodiscard]] virtual std::vector<Vec3> selected_pixels() const = 0;
+    [[nodiscard]] virtual std::vector<CutHandle> cut_handles() const = 0;
     [[nodiscard]] virtual std::vector<std::string> picked() const = 0;
     [[nodiscard]] virtual std::string render_command() const = 0;
 

@@ -72,6 +72,7 @@ void take_mouse(Window& self, float height) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemHovered() && io.MouseWheel != 0)
         run(self.host, self.memory, "zoom", json_text(std::pow(1.1, double{io.MouseWheel})));
+    if (take_cut(self.host, self.memory)) return;
     if (take_tool(self.host, self.memory, height)) return;
     if (ImGui::IsItemActivated()) self.dragged = false;
     if (ImGui::IsItemActive()) {
@@ -139,6 +140,7 @@ void draw_picture(Window& self, float width, float height) {
         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
     take_mouse(self, shown);
     draw_selection(self.host, self.memory);
+    draw_cut_handles(self.host, self.memory);
     draw_line(self, width, height);
     ImGui::End();
 }
@@ -155,6 +157,7 @@ void draw_frame(Window& self) {
         self.dark = self.host.look().dark;
         set_style(self.dark, self.memory.scale);
     }
+    if (const std::string wrong = self.host.settle(); !wrong.empty()) self.memory.problem = wrong;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();

@@ -6,6 +6,7 @@
 #include "subvol/boundary_shading.h"
 #include "subvol/gl_device.h"
 #include "subvol/progressive.h"
+#include "subvol/render_bricks.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_field.h"
 #include "subvol/render_grid.h"
@@ -13,3 +14,4 @@
 #include "subvol/render_tets.h"
 #include "subvol/splat.h"
 #include "subvol/splat_options.h"
+#include "subvol/splat_shares.h"

@@ -4,8 +4,10 @@
 /// All of subvol::vdb: OpenVDB grids and files.
 
 #include "subvol/grid_error.h"
+#include "subvol/join_grids.h"
 #include "subvol/nanovdb.h"
 #include "subvol/rasterize.h"
+#include "subvol/rasterize_block.h"
 #include "subvol/spread_vectors.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_grid.h"

@@ -18,9 +18,11 @@ using ReportFacts = std::vector<std::pair<std::string, std::string>>;
 /// host, versions: the machine and the programs that the studies ran with, by names such as "processor", "subvol", "commit",
 ///                 "date"
 /// command:        runs them again
+/// pages:          of inputs, their names and pages that draw them (`make_page`), as paths from the report's folder; linked to
 struct ReportOptions {
     ReportFacts host, versions;
     std::string command;
+    ReportFacts pages{};
 };
 
 /// A demand of a study, and whether it is met.
@@ -44,8 +46,8 @@ struct StudyPlot {
 /// The plots of a study, each with the cases that its specification selects; as many as it has panels.
 [[nodiscard]] std::vector<StudyPlot> make_plots(const StudyResults& results);
 
-/// The report on studies as one HTML page that needs no other file and no network: summary, tables, plots, pictures beside
-/// their references with a slider, hardware and versions. Only the slider needs scripts.
+/// The report on studies as one HTML page that needs no other file (but those that `pages` names) and no network: summary,
+/// tables, plots, pictures beside their references with a slider, hardware and versions. Only the slider needs scripts.
 ///
 /// folder: the studies' pictures are in folder/NAME, references in folder/references; the page names pictures that are missing
 [[nodiscard]] std::string report_html(std::span<const StudyResults> studies, const std::filesystem::path& folder,

@@ -49,6 +49,14 @@ struct LookOptions {
 /// The colour behind pictures of this look, in linear light.
 [[nodiscard]] Vec3 background_of(Look look);
 
+/// The world distance that opacities of pictures of this look are for, unless another one is given.
+[[nodiscard]] double opacity_unit_of(Look look, const Box& box);
+
+/// Makes a colour map that of a solid: opaque everywhere.
+///
+/// plain: all values are the same, so that a colour of the map would mean nothing: the colour of a body without a field
+void make_solid(TransferFunction& function, bool plain);
+
 /// Reads a colour map's file, or makes a preset over the range.
 ///
 /// stretch: spreads a file's map over the range, too

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "subvol/rbf_volume.h"
 
@@ -13,10 +15,12 @@ enum class UpAxis { X, Y, Z };
 /// ascii:  for `.ply`: text instead of binary numbers
 /// splats: for `.ply`: adds properties for viewers of 3-D Gaussian splats, see `write_points`
 /// up:     of splats: what these viewers are to show at the top
+/// note:   a line of text that the file has in a comment, for `read_points_note`; empty: none. It has no control characters
 struct PointsWriteOptions {
     bool ascii = false;
     bool splats = false;
     UpAxis up = UpAxis::Z;
+    std::string note{};
 };
 
 /// Writes points with all channels as `.ply` or `.vtp`. Numbers are exact: reading gives the same bits. The kernel is JSON
@@ -44,6 +48,12 @@ void write_points(const std::filesystem::path& path, const RbfVolume& volume, co
 ///
 /// throws: Error(Io); Error(InvalidInput) if the file is malformed, or if its points have no frames
 [[nodiscard]] RbfVolume read_points(const std::filesystem::path& path);
+
+/// The note of a file that `write_points` has written; nothing if there is none, or if it is not such a file. Only the start of
+/// the file is read.
+///
+/// throws: Error(Io)
+[[nodiscard]] std::optional<std::string> read_points_note(const std::filesystem::path& path);
 
 /// Whether `read_points` reads files with the extension of this name.
 [[nodiscard]] bool is_points_file(const std::filesystem::path& path);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "subvol/optics.h"
 #include "subvol/rbf_volume.h"
 #include "subvol/splat_options.h"
+#include "subvol/surface.h"
 
 namespace subvol {
 
@@ -24,6 +26,7 @@ struct SplatReport {
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     double seconds_light = 0;       // of the light volume, for shadows and ambient occlusion; a part of seconds_prepare
     double seconds_prepare = 0, seconds_draw = 0;
+    double seconds_colors = 0;        // of the boundary's own colours
     std::vector<StageTime> stages{};  // of the GPU
 };
 
@@ -55,6 +58,13 @@ public:
     ///
     /// throws: Error(InvalidInput) as `validate`
     void set_clip(const Clip& clip);
+
+    /// Gives the next pictures of a body that is opaque from its boundary on the colours of values there instead of those of
+    /// the kernels, as `color_boundary` does. Not with shadows or ambient occlusion, which are those of the kernels: then it
+    /// has no effect.
+    ///
+    /// boundary, values: referred to, not copied; no values: the colours of the kernels again
+    void set_boundary_colors(const Surface& boundary, std::span<const double> values);
 
     /// progress: listener for this picture; null: that of the options
     [[nodiscard]] SplatResult draw(const View& view, const Optics& optics, Progress* progress = nullptr);

@@ -97,6 +97,14 @@ struct GridPart {
 void rasterize_parts(const HexMesh& mesh, std::span<const std::string> fields, const RasterizeOptions& options,
                      std::size_t memory_bytes, const std::function<void(GridPart)>& take);
 
+/// Rasterizes one of several shares: a slab across x, for processes that share the work. The slabs are chosen so that their
+/// grids take about as much memory each. Together the leaves of all shares are those of `rasterize`; see `join_grids`.
+///
+/// part:    from 1 to `of`; a share may have no voxels, its grids are empty then
+/// throws:  Error(InvalidInput) as `rasterize`, or for another part
+[[nodiscard]] std::vector<VdbGrid> rasterize_share(const HexMesh& mesh, std::span<const std::string> fields,
+                                                   const RasterizeOptions& options, int part, int of);
+
 /// Sums kernels at voxel centres: a grid of floats per channel, the first a fog volume.
 ///
 /// Active are the centres inside the boundary; without a boundary, those where the weights exceed the least weight of

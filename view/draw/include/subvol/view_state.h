@@ -3,13 +3,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "subvol/camera.h"
 #include "subvol/clip.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/picture_look.h"
+#include "subvol/rbf_volume.h"
+#include "subvol/voxels.h"
 
 namespace subvol {
 
@@ -18,7 +22,7 @@ namespace subvol {
 /// width, height: of the picture in pixels, with its legend
 /// field:         the field that is shown, as for `select_field`; empty: the most sensible one
 /// step:          of a series, from 0
-/// method:        splat, sheets, tets or dense, as of `subvol render --method`
+/// method:        splat, sheets, tets, pt, dense or grid, as of `subvol render --method`
 /// background:    in linear light; none: that of the look
 /// axes, edges, legend: what is drawn over the picture
 /// clip:          how the volume is cut open
@@ -43,22 +47,47 @@ struct ViewState {
     return state.background.value_or(background_of(state.look.look));
 }
 
+/// What is shown instead of a mesh: kernels, or voxels and the kernels that were made of them.
+///
+/// box:   what named views frame
+/// range: of the values; none: that of the kernels' values
+struct ViewPoints {
+    std::shared_ptr<const RbfVolume> volume{};
+    std::shared_ptr<const Voxels> voxels{};
+    Box box{};
+    std::optional<ValueRange> range{};
+};
+
 /// A mesh with one field, which is its only attribute, and what the picture needs to know about both.
 ///
-/// shape: bodies with the same number have the same cells; 0: of its own
-/// moved: it is being moved, so that tables for its cells pay
+/// mesh:    of points, their centres without cells (`mesh_of_points`)
+/// shape:   bodies with the same number have the same cells; 0: of its own
+/// moved:   it is being moved, so that tables for its cells pay
+/// points:  shown instead of cells; without a volume: there are cells
+/// channel: of the points
 struct ViewBody {
     HexMesh mesh;
     Box box;
     ValueRange range;
     std::uint64_t shape = 0;
     bool moved = false;
+    ViewPoints points{};
+    std::size_t channel = 0;
 
     [[nodiscard]] const std::string& field() const { return mesh.attributes.front().name; }
 };
 
 /// throws: Error(InvalidInput) as `select_field`
 [[nodiscard]] ViewBody view_body(HexMesh mesh, const std::optional<std::string>& field);
+
+/// The same of one channel of points; mesh: of `mesh_of_points`.
+[[nodiscard]] ViewBody view_body(HexMesh mesh, const ViewPoints& points, const std::optional<std::string>& field);
+
+/// The centres of kernels as points without cells, with the values of all channels.
+[[nodiscard]] HexMesh mesh_of_points(const RbfVolume& volume);
+
+/// The methods that can draw a body.
+[[nodiscard]] std::vector<std::string> methods_of(const ViewBody& body);
 
 /// The optics of a state.
 [[nodiscard]] Optics optics_of(const ViewState& state, const ViewBody& body);

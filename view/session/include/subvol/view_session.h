@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "subvol/detail/cut_handle.h"
 #include "subvol/detail/window_look.h"
 #include "subvol/draw_worker.h"
 #include "subvol/edit_mesh.h"
@@ -23,15 +24,20 @@ namespace subvol {
 /// times:         one for each step; at least one
 /// write_picture: writes a picture over a background; empty: the action `screenshot` is refused
 /// more_words:    further words of the render command: options that no action changes
+/// points:        shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a mesh
+/// is
 struct ViewSource {
     std::string input{};
     std::function<HexMesh(std::size_t step)> read{};
     std::vector<double> times{0.0};
     std::function<void(const std::filesystem::path& path, const Image& image, const Vec3& background)> write_picture{};
     std::vector<std::string> more_words{};
+    ViewPoints points{};
 };
 
-/// What is under a pixel: where most of its light comes from, with the limit's value there.
+/// What is under a pixel: where most of its light comes from, with the value of the limit, or of the kernels, there.
+///
+/// cell: kNone of points
 struct Picked {
     Vec3 place{0.0};
     double value = 0;
@@ -58,7 +64,7 @@ public:
     struct State;  // private: defined in a private header
 
     /// start:      its field may be empty; its camera is taken as it is
-    /// mesh:       of the state's step, with all fields
+    /// mesh:       of the state's step, with all fields; of points as of `mesh_of_points`
     /// on_picture: as of DrawWorker
     ViewSession(ViewSource source, HexMesh mesh, const ViewState& start, const DrawSettings& settings,
                 std::function<void()> on_picture = {});
@@ -71,6 +77,8 @@ public:
     [[nodiscard]] const ViewSource& source() const;
     /// The names of the fields of the mesh.
     [[nodiscard]] std::vector<std::string> fields() const;
+    /// The methods that can draw it.
+    [[nodiscard]] std::vector<std::string> methods() const { return methods_of(body()); }
     [[nodiscard]] const DrawWorker& worker() const;
     /// The control points that edits move; empty: none.
     [[nodiscard]] const Selection& selection() const;
@@ -83,6 +91,15 @@ public:
     /// action: its JSON
     /// throws: Error(InvalidInput) if it is not an action, or its argument is out of range; Error(Io)
     void run(std::string_view action);
+
+    /// The same for a window, which must not wait: picking, reading a step and writing a picture go on by themselves.
+    ///
+    /// throws: as `run`, for what is known at once
+    void start(std::string_view action);
+    /// Takes what has been finished of these.
+    ///
+    /// throws: the error of one of them
+    void settle();
 
     /// Runs a script, a JSON array of actions, from its first action on, and waits for the last full picture.
     ///
@@ -99,11 +116,13 @@ public:
 
     /// What is to be seen of a picture of the worker: if two methods are compared, both.
     [[nodiscard]] Image composed(const DrawnPicture& picture) const;
-    /// Whether a picture is still being drawn.
+    /// Whether a picture is still being drawn, or something goes on that was started.
     [[nodiscard]] bool busy() const;
     /// How many pictures were drawn, coarse and full ones.
     [[nodiscard]] std::uint64_t pictures() const;
     [[nodiscard]] detail::WindowLook& look();
+    /// Where the planes that cut can be taken hold of.
+    [[nodiscard]] std::vector<detail::CutHandle> cut_handles() const;
 
     /// The state as JSON, which the action `load_state` reads.
     [[nodiscard]] std::string state_json() const;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/rasterize.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace subvol::cli {
+
+/// The options of `subvol vdb`: how large voxels are, which grids are written, how, and for which frames.
+struct VdbArguments {
+    double voxel_size = 0;
+    int resolution = 200;
+    std::uint64_t budget_bytes = 0;
+    std::string like;
+
+    std::vector<std::string> fields, remaps;
+    bool clamp = false;
+    std::string up = "z";
+    double scale = 1;
+    bool half = false, cell_numbers = false, mask = false, coverage = false, error = false;
+    LevelSetOptions level_set_asked{.name = {}};
+    CLI::Option* level_set_option = nullptr;
+    std::string from = "mesh";
+    int per_edge = 1;
+
+    std::string compression = "blosc";
+    std::size_t memory_bytes = 0;
+    bool nano = false;
+
+    std::string frames, to;
+    bool velocity = false;
+    double frames_per_second = 1;
+
+    void add_sizes_to(CLI::App& app);
+    void add_grids_to(CLI::App& app);
+    void add_files_to(CLI::App& app);
+    void add_frames_to(CLI::App& app);
+
+    /// Nothing if no level set is asked for.
+    [[nodiscard]] std::optional<LevelSetOptions> level_set() const;
+};
+
+}  // namespace subvol::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common_options.h"
+#include "report.h"
+#include "subvol/brick_points.h"
+#include "subvol/bricks.h"
+
+namespace CLI {
+class App;
+}
+
+namespace subvol::cli {
+
+/// Whether an input is a folder of bricks.
+[[nodiscard]] bool is_bricks_input(const std::string& input);
+
+/// throws: Error(InvalidInput) if the input is a folder of bricks. verb: "surface"; instead: what can be done
+void refuse_bricks(const std::string& input, const std::string& verb, const std::string& instead);
+
+/// Opens bricks; puts input, cells and bricks into the report. Refuses the common options that bricks cannot have.
+[[nodiscard]] Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& report);
+
+/// A field that is taken from each brick, with its range in the whole mesh.
+///
+/// name:   as the user says it: a field, the length of a vector, a component "V.1"; empty: density 1 everywhere
+/// vector: all three channels are taken
+struct StreamedField {
+    std::string name;
+    bool vector = false;
+    double min = 0, max = 1;
+};
+
+/// Chooses the field as `with_selected_field` does for a mesh.
+[[nodiscard]] StreamedField select_brick_field(const Bricks& bricks, const CommonOptions& options, Report& report);
+
+/// A field that the user names. throws: Error(InvalidInput) if there is none; names those that exist
+[[nodiscard]] StreamedField named_brick_field(const Bricks& bricks, const std::string& name, bool vector_allowed);
+
+/// The brick with these fields alone, the attributes in their order.
+[[nodiscard]] HexMesh with_brick_fields(HexMesh brick, const std::vector<StreamedField>& fields);
+
+}  // namespace subvol::cli

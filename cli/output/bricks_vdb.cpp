@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bricks_vdb.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <limits>
+
+#include "subvol/detail/atomic_file.h"
+#include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/vdb_file.h"
+#include "subvol/rasterize_block.h"
+#include "subvol/version.h"
+#include "text.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr std::uint64_t kDefaultMemory = std::uint64_t{1} << 30;
+// Of a cell that is gathered: itself twice, its topology, and the pieces of its limit, which are sorted once.
+constexpr double kBytesOfCell = 1600;
+constexpr double kBytesOfChannel = 10;  // of a voxel: leaves that are not full, and the grid that is made of them
+
+using Place = std::array<int, 3>;
+
+/// Cuts the space of voxels into blocks whose cells and voxels fit into the memory.
+class BlockPlan {
+public:
+    BlockPlan(const BricksToVoxels& what, double memory) : bricks_(what.bricks), memory_(memory) {
+        voxel_ = what.options.voxel_size_world;
+        for (const StreamedField& field : what.fields) channels_ += field.vector ? 3 : 1;
+        Box reach;
+        for (const Brick& brick : bricks_.bricks) reach.add(brick.reach);
+        VoxelCubes all;
+        for (int d = 0; d < 3; ++d) {
+            const auto cube = [&](double x) { return static_cast<int>(std::floor(x / voxel_ / VoxelCubes::kSide)); };
+            all.lower[static_cast<std::size_t>(d)] = cube(reach.lower[d] - voxel_);
+            all.upper[static_cast<std::size_t>(d)] = cube(reach.upper[d] + voxel_) + 1;
+        }
+        cut(all);
+    }
+
+    [[nodiscard]] const std::vector<VoxelCubes>& blocks() const { return blocks_; }
+
+    /// The box of a block and a voxel more. whole_columns: all that is above and below it too
+    [[nodiscard]] Box box_of(const VoxelCubes& block, bool whole_columns = false) const {
+        Box box;
+        for (int d = 0; d < 3; ++d) {
+            const auto axis = static_cast<std::size_t>(d);
+            box.lower[d] = (VoxelCubes::kSide * static_cast<double>(block.lower[axis]) - 1) * voxel_;
+            box.upper[d] = VoxelCubes::kSide * static_cast<double>(block.upper[axis]) * voxel_;
+        }
+        if (whole_columns) {
+            box.lower.z = -std::numeric_limits<double>::infinity();
+            box.upper.z = std::numeric_limits<double>::infinity();
+        }
+        return box;
+    }
+
+private:
+    /// Cells in a block, if each brick's are spread evenly over its box.
+    [[nodiscard]] double bytes_of(const VoxelCubes& block) const {
+        const Box box = box_of(block);
+        double bytes = 0;
+        for (const Brick& brick : bricks_.bricks) {
+            double share = 1, voxels = 1;
+            for (int d = 0; d < 3; ++d) {
+                // The halo and the cells that reach into the block, in cells of the brick's mean width.
+                const double size = brick.reach.upper[d] - brick.reach.lower[d];
+                const double cell = size / std::cbrt(static_cast<double>(std::max<std::uint64_t>(brick.cells, 1)));
+                const double more = (bricks_.halo_layers + 1) * cell;
+                const double low = std::max(box.lower[d] - more, brick.reach.lower[d]);
+                const double high = std::min(box.upper[d] + more, brick.reach.upper[d]);
+                if (!(low <= high)) share = 0;
+                if (size > 0) share *= std::max(0.0, high - low) / size;
+                voxels *= std::max(0.0, std::min(box.upper[d], brick.bounds.upper[d]) -
+                                            std::max(box.lower[d], brick.bounds.lower[d])) /
+                          voxel_;
+            }
+            bytes += share * static_cast<double>(brick.cells) * kBytesOfCell + voxels * kBytesOfChannel * channels_;
+        }
+        return bytes;
+    }
+
+    void cut(const VoxelCubes& block) {
+        const double bytes = bytes_of(block);
+        if (bytes == 0) return;
+        std::size_t longest = 0;
+        const auto side = [&](std::size_t d) { return block.upper[d] - block.lower[d]; };
+        for (std::size_t d = 1; d < 3; ++d) longest = side(d) > side(longest) ? d : longest;
+        if (bytes <= memory_ || side(longest) == 1) {
+            blocks_.push_back(block);
+            return;
+        }
+        VoxelCubes low = block, high = block;
+        low.upper[longest] = high.lower[longest] = block.lower[longest] + side(longest) / 2;
+        cut(low);
+        cut(high);
+    }
+
+    const Bricks& bricks_;
+    double memory_, voxel_ = 1, channels_ = 0;
+    std::vector<VoxelCubes> blocks_;
+};
+
+/// What a block of voxels is made of.
+class BlockMaker {
+public:
+    explicit BlockMaker(const BricksToVoxels& what) : what_(what) {
+        for (const StreamedField& field : what.fields) ranges_.push_back({field.min, field.max});
+    }
+
+    [[nodiscard]] BlockGrids make(const VoxelCubes& block, const Box& box) {
+        const BrickMesh part = gather(what_.bricks, box);
+        if (part.mesh.cells.empty()) return {};
+        const HexMesh mesh = with_brick_fields(part.mesh, what_.fields);
+        std::vector<std::string> names;
+        for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+        RasterizeOptions options = what_.options;
+        LimitCells limit;
+        if (what_.limit) {
+            limit = detail::find_limit_cells(mesh, options.refine,
+                                             {.position_world = kLimitTolerance_voxels * options.voxel_size_world,
+                                              .max_bytes = std::numeric_limits<std::size_t>::max()},
+                                             ranges_);
+            options.limit = &limit;
+            converged_ = converged_ && limit.converged;
+        }
+        return rasterize_block(mesh, names, options, block);
+    }
+
+    [[nodiscard]] bool converged() const { return converged_; }
+
+private:
+    const BricksToVoxels& what_;
+    std::vector<std::array<double, 2>> ranges_;
+    bool converged_ = true;
+};
+
+/// Sums up the grids of all blocks.
+void add(Json& sums, const std::vector<VdbGrid>& grids) {
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+        const GridReport& grid = grids[g].report();
+        if (sums.size() <= g) {
+            sums.push_back({{"name", grid.name},
+                            {"kind", grid.kind},
+                            {"active_voxels", 0},
+                            {"min", grid.min},
+                            {"max", grid.max},
+                            {"bytes", 0}});
+        }
+        Json& sum = sums[g];
+        sum["active_voxels"] = sum["active_voxels"].get<std::uint64_t>() + grid.active_voxels;
+        sum["bytes"] = sum["bytes"].get<std::uint64_t>() + grid.bytes;
+        sum["min"] = std::min(sum["min"].get<double>(), static_cast<double>(grid.min));
+        sum["max"] = std::max(sum["max"].get<double>(), static_cast<double>(grid.max));
+    }
+}
+
+/// Shows the blocks that are done, not the stages within each.
+class BlockProgress : public Progress {
+public:
+    explicit BlockProgress(Progress* shown) : shown_(shown) {}
+    void report(std::string_view, double) override {}
+    [[nodiscard]] bool cancelled() const override { return shown_ && shown_->cancelled(); }
+
+private:
+    Progress* shown_;
+};
+
+}  // namespace
+
+void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report) {
+    const double memory = static_cast<double>(output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory);
+    const BlockPlan plan(what, memory);
+    const std::filesystem::path path(output.path);
+    std::deque<detail::AtomicFile> files;  // all of them appear, or none
+    std::uint64_t active = 0;
+    Json parts = Json::array(), grids = Json::array();
+    BlockProgress quiet(what.options.progress);
+    BricksToVoxels blockwise = what;
+    blockwise.options.progress = blockwise.options.refine.progress = &quiet;
+    BlockMaker maker(blockwise);
+    std::size_t folded = 0;
+    for (std::size_t b = 0; b < plan.blocks().size(); ++b) {
+        report_progress(what.options.progress, "rasterize", static_cast<double>(b) / static_cast<double>(plan.blocks().size()));
+        const VoxelCubes& block = plan.blocks()[b];
+        BlockGrids made = report.timed("rasterize", [&] { return maker.make(block, plan.box_of(block)); });
+        if (made.folded) {
+            ++folded;
+            made = report.timed("rasterize", [&] { return maker.make(block, plan.box_of(block, true)); });
+        }
+        if (made.grids.empty() || !has_voxels(made.grids)) continue;
+        add(grids, made.grids);
+        const GridReport& first = made.grids.front().report();
+        const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), parts.size(), ".vdb");
+        report.timed("write", [&] {
+            detail::write_vdb(files.emplace_back(path.parent_path() / name), name, made.grids, output.compression);
+        });
+        active += first.active_voxels;
+        Json entry{{"file", name}, {"active_voxels", first.active_voxels}};
+        const auto corner = [](const Vec3& p) { return Json::array({p.x, p.y, p.z}); };
+        entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
+        parts.push_back(std::move(entry));
+    }
+    if (active == 0) throw no_voxels(report.json().at("input"), "try a smaller --voxel-size");
+    if (!maker.converged()) report.warn("the limit is coarser than its tolerance in some cells");
+    if (folded > 0) report.note(text("cells fold over in ", folded, " of ", plan.blocks().size(), " blocks of voxels"));
+    const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
+    const Json json{{"input", report.json().at("input")},
+                    {"version", SUBVOL_VERSION},
+                    {"voxel_size", what.options.voxel_size_world},
+                    {"active_voxels", active},
+                    {"parts", parts}};
+    const detail::AtomicFile& list = files.emplace_back(manifest);
+    std::ofstream out(list.path(), std::ios::binary);
+    out << json.dump(2) << "\n";
+    out.close();
+    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", manifest.string());
+    for (detail::AtomicFile& file : files) file.commit();
+    report["output"] = manifest.string();
+    report["voxel_size"] = what.options.voxel_size_world;
+    report["active_voxels"] = active;
+    report["grids"] = grids;
+    report["parts"] = parts.size();
+}
+
+}  // namespace subvol::cli

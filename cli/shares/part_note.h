@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "share.h"
+
+namespace CLI {
+class App;
+}
+
+namespace subvol::cli {
+
+/// The name of the note in metadata.
+inline constexpr const char* kPartNote = "subvol_part";
+
+/// What a file with one share of some work says of itself, so that `join` takes only parts that belong together.
+///
+/// task: a hash of the verb, its options, the input and the version: the same for all shares
+/// how:  what `join` must know to write the whole
+struct PartNote {
+    Share share;
+    std::string verb, input, task;
+    nlohmann::ordered_json how = nlohmann::ordered_json::object();
+};
+
+/// The note of a share. app: the verb, whose options have been parsed; those that do not change the result do not count
+[[nodiscard]] PartNote make_note(const CLI::App& app, const std::string& input, const Share& share,
+                                 nlohmann::ordered_json how = nlohmann::ordered_json::object());
+
+/// One line of JSON.
+[[nodiscard]] std::string text_of(const PartNote& note);
+
+/// file:   named in the error
+/// throws: Error(InvalidInput) if the text is no note
+[[nodiscard]] PartNote note_from(const std::string& text, const std::string& file);
+
+/// A part that a file says to be.
+struct FoundPart {
+    std::string file;
+    PartNote note;
+};
+
+/// The order of parts: the indices of 1/N, 2/N and so on.
+///
+/// throws: Error(InvalidInput) if one belongs to other work, occurs twice or is missing
+[[nodiscard]] std::vector<std::size_t> order_of(std::span<const FoundPart> parts);
+
+/// The error of a file that is not a part.
+[[noreturn]] void refuse_whole(const std::string& file);
+
+}  // namespace subvol::cli

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_figures.h"
+
+#include <array>
+
+#include "subvol/error.h"
+
+namespace subvol::cli {
+namespace {
+
+Json corner(const Vec3& v) {
+    return Json::array({v.x, v.y, v.z});
+}
+
+Json to_json(const Box& box) {
+    return Json::array({corner(box.lower), corner(box.upper)});
+}
+
+Vec3 corner_from(const Json& json) {
+    return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+/// The counts of a share that are added up, under the names of `info`.
+struct Count {
+    const char* name;
+    std::size_t MeshReport::*count;
+};
+constexpr std::array<Count, 11> kCounts{Count{"points", &MeshReport::points},
+                                        Count{"points_used", &MeshReport::points_used},
+                                        Count{"cells", &MeshReport::cells},
+                                        Count{"edges", &MeshReport::edges},
+                                        Count{"faces", &MeshReport::faces},
+                                        Count{"boundary_faces", &MeshReport::boundary_faces},
+                                        Count{"interior_edges", &MeshReport::interior_edges},
+                                        Count{"singular_nodes", &MeshReport::singular_nodes},
+                                        Count{"inverted_cells", &MeshReport::inverted_cells},
+                                        Count{"degenerate_cells", &MeshReport::degenerate_cells},
+                                        Count{"nonmanifold_edges", &MeshReport::nonmanifold_edges}};
+
+}  // namespace
+
+void put_mesh_report(Report& report, const MeshReport& mesh) {
+    Json valences = Json::object();
+    for (const auto& [valence, count] : mesh.interior_edge_valence) valences[std::to_string(valence)] = count;
+    report["points"] = mesh.points;
+    report["points_used"] = mesh.points_used;
+    report["cells"] = mesh.cells;
+    report["edges"] = mesh.edges;
+    report["faces"] = mesh.faces;
+    report["boundary_faces"] = mesh.boundary_faces;
+    report["interior_edges"] = mesh.interior_edges;
+    report["interior_edge_valence"] = valences;
+    report["singular_nodes"] = mesh.singular_nodes;
+    report["inverted_cells"] = mesh.inverted_cells;
+    report["degenerate_cells"] = mesh.degenerate_cells;
+    report["min_scaled_jacobian"] = mesh.min_scaled_jacobian;
+    report["nonmanifold_edges"] = mesh.nonmanifold_edges;
+    report["nonmanifold_faces"] = mesh.nonmanifold_faces;
+    report["volume"] = mesh.volume;
+    report["bounds"] = to_json(mesh.bounds);
+}
+
+Json json_of(const detail::MeshShare& share) {
+    Json json;
+    for (const auto& [name, count] : kCounts) json[name] = share.counts.*count;
+    json["interior_edge_valence"] = Json::array();
+    for (const auto& [valence, count] : share.counts.interior_edge_valence) {
+        json["interior_edge_valence"].push_back({valence, count});
+    }
+    json["min_scaled_jacobian"] = share.counts.min_scaled_jacobian;
+    json["bounds"] = to_json(share.counts.bounds);
+    json["volumes"] = share.volumes;
+    json["inverted"] = share.inverted;
+    return json;
+}
+
+detail::MeshShare mesh_share_from(const Json& json, const std::string& file) {
+    try {
+        detail::MeshShare share;
+        for (const auto& [name, count] : kCounts) share.counts.*count = json.at(name).get<std::size_t>();
+        for (const Json& pair : json.at("interior_edge_valence")) {
+            share.counts.interior_edge_valence[pair.at(0).get<int>()] = pair.at(1).get<std::size_t>();
+        }
+        share.counts.min_scaled_jacobian = json.at("min_scaled_jacobian").get<double>();
+        share.counts.bounds = {corner_from(json.at("bounds").at(0)), corner_from(json.at("bounds").at(1))};
+        share.volumes = json.at("volumes").get<std::vector<double>>();
+        share.inverted = json.at("inverted").get<std::vector<std::size_t>>();
+        return share;
+    } catch (const Json::exception&) {
+        throw Error(ErrorCode::InvalidInput, "its figures of a share cannot be read", file);
+    }
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "mesh_figures.h"
+#include "mesh_lines.h"
+#include "outputs.h"
+#include "part_note.h"
+#include "subvol/detail/atomic_file.h"
+#include "subvol/detail/picture_part.h"
+#include "subvol/detail/points_range.h"
+#include "subvol/detail/surface_io.h"
+#include "subvol/error.h"
+#include "subvol/image_io.h"
+#include "subvol/join_grids.h"
+#include "subvol/points_io.h"
+#include "subvol/vdb_contents.h"
+#include "subvol/vdb_points.h"
+#include "text.h"
+#include "vdb_output.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+class JoinVerb : public Verb {
+public:
+    explicit JoinVerb(CLI::App& program)
+        : Verb(program, "join", "Put the parts together that --part made.",
+               "  subvol join part1.vdb part2.vdb part3.vdb -o big.vdb\n"
+               "  subvol join part*.ply -o big.ply\n"
+               "\n"
+               "The result is that of one process without --part: the same points, the same leaves.",
+               Reads::NoMesh) {
+        app()
+            .add_option("PART", parts_,
+                        "the parts, in any order: .vdb of `vdb`, .ply or .vtp of `points`, .exr of `render`, JSON of `info`")
+            ->required()
+            ->expected(1, -1);
+        app().add_option("-o,--output", output_, "the file to write")->type_name("FILE")->required();
+    }
+
+    int run(Report& report) override {
+        report["parts"] = parts_.size();
+        const std::string extension = std::filesystem::path(parts_.front()).extension().string();
+        for (const std::string& part : parts_) {
+            if (!std::filesystem::exists(part)) throw Error(ErrorCode::Io, "cannot be read: no such file", part);
+        }
+        if (extension == ".vdb") {
+            join_grids_of_parts(report);
+        } else if (is_points_file(parts_.front())) {
+            join_points(report);
+        } else if (extension == ".exr") {
+            join_pictures(report);
+        } else if (extension == ".json") {
+            join_figures(report);
+        } else {
+            throw Error(ErrorCode::InvalidInput, "is not a part that can be joined", parts_.front(),
+                        ".vdb, .ply, .vtp, .exr or .json");
+        }
+        return 0;
+    }
+
+private:
+    /// note: of a file, nothing if it has none
+    template <class Note>
+    [[nodiscard]] std::vector<std::size_t> ordered(const Note& note) {
+        std::vector<FoundPart> found;
+        for (const std::string& part : parts_) {
+            const std::optional<std::string> text = note(part);
+            if (!text) refuse_whole(part);
+            found.push_back({part, note_from(*text, part)});
+        }
+        how_ = found.front().note.how;
+        return order_of(found);
+    }
+
+    void join_grids_of_parts(Report& report) {
+        check_output(output_, {".vdb"});
+        std::vector<std::vector<VdbGrid>> read;
+        report.timed("read", [&] {
+            for (const std::string& part : parts_) {
+                VdbContents contents = read_vdb_contents(part);
+                if (contents.grids.empty()) refuse_whole(part);
+                read.push_back(std::move(contents.grids));
+            }
+        });
+        std::size_t at = 0;
+        const std::vector<std::size_t> order =
+            ordered([&](const std::string&) { return text_of_grid(read[at++].front(), kPartNote); });
+        std::vector<VdbGrid> grids;
+        report.timed("join", [&] {
+            const std::size_t count = read.front().size();
+            for (std::size_t g = 0; g < count; ++g) {
+                std::vector<VdbGrid> of_parts;
+                for (const std::size_t p : order) {
+                    if (read[p].size() != count)
+                        throw Error(ErrorCode::InvalidInput, "has other grids than other parts", parts_[p]);
+                    of_parts.push_back(std::move(read[p][g]));
+                }
+                grids.push_back(join_grids(std::move(of_parts)));
+                set_text_of_grid(grids.back(), kPartNote, {});
+                store_in_half(grids.back(), how_.value("half", false));
+            }
+        });
+        write_reported(grids, {.path = output_, .compression = compression_named(how_.value("compression", "blosc"))}, report);
+    }
+
+    void join_points(Report& report) {
+        check_output(output_, {".ply", ".vtp", ".vdb"});
+        const std::vector<std::size_t> order =
+            ordered([](const std::string& part) { return is_points_file(part) ? read_points_note(part) : std::nullopt; });
+        RbfVolume volume;
+        report.timed("read", [&] {
+            for (const std::size_t p : order) {
+                RbfVolume part = read_points(parts_[p]);
+                if (p == order.front()) {
+                    volume = std::move(part);
+                } else {
+                    detail::append_kernels(volume, part);
+                }
+            }
+        });
+        const std::string up = how_.value("up", "z");
+        const PointsWriteOptions options{.ascii = how_.value("ascii", false),
+                                         .splats = how_.value("splats", false),
+                                         .up = up == "x"   ? UpAxis::X
+                                               : up == "y" ? UpAxis::Y
+                                                           : UpAxis::Z};
+        report.timed("write", [&] {
+            if (output_.ends_with(".vdb")) {
+                write_vdb_points(output_, volume);
+            } else {
+                write_points(output_, volume, options);
+            }
+        });
+        report["output"] = output_;
+        report["points"] = volume.size();
+        const bool inside = output_.ends_with(".ply") && !options.splats;
+        if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = detail::boundary_path(output_).string();
+    }
+
+    void join_pictures(Report& report) {
+        check_output(output_, {".exr", ".png"});
+        std::vector<detail::PicturePart> read;
+        std::vector<Json> how;
+        report.timed("read", [&] {
+            for (const std::string& part : parts_) read.push_back(detail::read_picture_part(part));
+        });
+        std::size_t at = 0;
+        const std::vector<std::size_t> order = ordered([&](const std::string& part) -> std::optional<std::string> {
+            const std::string& note = read[at++].note;
+            if (note.empty()) return std::nullopt;
+            how.push_back(note_from(note, part).how);
+            return note;
+        });
+        const detail::PicturePart& first = read[order.front()];
+        Image image(first.rows.width, first.whole_height);
+        std::vector<float> depth(first.depth.empty() ? 0 : image.rgba.size() / 4);
+        int next = 0;
+        for (const std::size_t p : order) {
+            const detail::PicturePart& part = read[p];
+            const int begin = how[p].value("first_row", -1), end = how[p].value("end_row", -1);
+            const bool fits = begin == next && end >= begin && end <= image.height && part.rows.width == image.width &&
+                              part.depth.empty() == depth.empty() &&
+                              (begin == end || (part.first_row == begin && part.rows.height == end - begin));
+            if (!fits) throw Error(ErrorCode::InvalidInput, "its rows do not fit to those of the other parts", parts_[p]);
+            next = end;
+            if (begin == end) continue;
+            const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(begin) * image.width;
+            std::ranges::copy(part.rows.rgba, image.rgba.begin() + 4 * offset);
+            if (!depth.empty()) std::ranges::copy(part.depth, depth.begin() + offset);
+        }
+        if (next != image.height) throw Error(ErrorCode::InvalidInput, "the parts do not fill the picture", "join");
+        const std::vector<double> background = how[order.front()].value("background", std::vector<double>(3));
+        if (background.size() != 3) throw Error(ErrorCode::InvalidInput, "its note has no background", parts_[order.front()]);
+        report.timed("write", [&] { write_image(output_, image, {background[0], background[1], background[2]}, depth); });
+        report["output"] = output_;
+    }
+
+    /// The figures that `info` finds in one process, in a file and as the report.
+    void join_figures(Report& report) {
+        check_output(output_, {".json"});
+        std::vector<Json> read;
+        for (const std::string& part : parts_) {
+            std::ifstream file(part, std::ios::binary);
+            read.push_back(Json::parse(file, nullptr, false));
+            if (!read.back().is_object()) throw Error(ErrorCode::InvalidInput, "is not one object of JSON", part);
+        }
+        std::size_t at = 0;
+        const std::vector<std::size_t> order = ordered([&](const std::string&) -> std::optional<std::string> {
+            const Json& json = read[at++];
+            if (!json.contains("part_note") || !json["part_note"].is_string()) return std::nullopt;
+            return json["part_note"].get<std::string>();
+        });
+        std::vector<detail::MeshShare> shares;
+        for (const std::size_t p : order) {
+            shares.push_back(mesh_share_from(read[p].value("part_figures", Json::object()), parts_[p]));
+        }
+        const detail::MeshShare whole = detail::join_shares(shares, kCellsNamed);
+        Json json = read[order.front()];  // what does not depend on the share
+        for (const char* key : {"part", "part_note", "part_figures", "peak_bytes", "seconds"}) json.erase(key);
+        report.take(std::move(json));
+        put_mesh_report(report, whole.counts);
+        report["verdict"] = verdict(whole.counts, whole.inverted);
+        detail::write_text_file(output_, report.json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+        report["parts"] = parts_.size();
+        report["output"] = output_;
+    }
+
+    std::vector<std::string> parts_;
+    std::string output_;
+    Json how_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_join_verb(CLI::App& program) {
+    return std::make_unique<JoinVerb>(program);
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "bricks_input.h"
+#include "choices.h"
+#include "input.h"
+#include "quantities.h"
+#include "subvol/error.h"
+#include "subvol/split.h"
+#include "text.h"
+#include "verb.h"
+
+namespace subvol::cli {
+namespace {
+
+const std::string kTwist = "model:twist:";
+
+class SplitVerb : public Verb {
+public:
+    explicit SplitVerb(CLI::App& program)
+        : Verb(program, "split", "Cut a mesh into a folder of bricks, for meshes that do not fit into memory.",
+               "  subvol split big.vtu -o big.bricks --memory 2G\n"
+               "  subvol split model:twist:464 -o twist.bricks    10^8 cells, never in memory\n"
+               "  subvol points big.bricks -o big.ply\n"
+               "  subvol vdb big.bricks -o big.vdb --resolution 4000 --memory 4G\n"
+               "\n"
+               "Each brick is a .vtu with a halo of cells about its own; ParaView and subvol open it alone. A split that was "
+               "interrupted goes on where it ended when the same command runs again.") {
+        app().add_option("FILE", input_, input_help())->required();
+        app().add_option("-o,--output", output_, "the folder to write, for example big.bricks")->type_name("DIR")->required();
+        auto* bricks = app().add_option("--bricks", options_.bricks, "how many bricks");
+        bricks->type_name("N")->check(CLI::Range(1, 1000000));
+        app()
+            .add_option("--memory", options_.memory_bytes,
+                        "instead: bricks so small that a command takes about this much for one (default 1G)")
+            ->type_name("BYTES")
+            ->transform(CLI::AsSizeValue(false))
+            ->excludes(bricks);
+        app()
+            .add_option("--halo", options_.halo_layers,
+                        "layers of cells about each brick (default 3; --correction full needs 4)")
+            ->type_name("N")
+            ->check(CLI::Range(1, 16));
+        app()
+            .add_option("--by", by_, "blocks (compact, the default), slabs (slices of the longest side), random (for tests)")
+            ->type_name("SHAPE")
+            ->check(offered({"blocks", "slabs", "random"}));
+    }
+
+    int run(Report& report) override {
+        check_choice("--by", by_, {"blocks", "slabs", "random"});
+        refuse_bricks(input_, "split", "they can be used as they are");
+        options_.shape = by_ == "slabs" ? BrickShape::Slabs : by_ == "random" ? BrickShape::Random : BrickShape::Blocks;
+        options_.seed = common().seed;
+        options_.progress = report.progress();
+        const SplitResult result = cut(report);
+        std::uint64_t stored = 0;
+        for (const Brick& brick : result.bricks.bricks) stored += brick.stored_cells;
+        report["input"] = input_;
+        report["output"] = output_;
+        report["points"] = result.bricks.points;
+        report["cells"] = result.bricks.cells;
+        report["bricks"] = result.bricks.bricks.size();
+        report["kept"] = result.kept;
+        report["halo_layers"] = result.bricks.halo_layers;
+        report["halo_share"] = static_cast<double>(stored) / static_cast<double>(result.bricks.cells) - 1;
+        report["bytes"] = result.bytes;
+        if (result.kept > 0) report.note(text(counted(result.kept, "brick"), " kept of a split that was interrupted"));
+        return 0;
+    }
+
+private:
+    SplitResult cut(Report& report) {
+        if (input_.starts_with(kTwist) && options_.shape != BrickShape::Random && !common().density) {
+            int resolution = 0;
+            const char *begin = input_.data() + kTwist.size(), *end = input_.data() + input_.size();
+            const auto [stop, error] = std::from_chars(begin, end, resolution);
+            if (error != std::errc() || stop != end) resolution = 0;
+            return report.timed("split", [&] { return split_twist(output_, resolution, options_); });
+        }
+        HexMesh mesh = load_mesh(input_, common(), report);
+        return report.timed("split", [&] { return split_mesh(output_, std::move(mesh), options_); });
+    }
+
+    std::string input_, output_, by_ = "blocks";
+    SplitOptions options_;
+};
+
+}  // namespace
+
+std::unique_ptr<Verb> make_split_verb(CLI::App& program) {
+    return std::make_unique<SplitVerb>(program);
+}
+
+}  // namespace subvol::cli

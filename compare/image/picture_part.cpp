@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/detail/picture_part.h"
+
+#include "openimageio.h"
+#include "subvol/detail/atomic_file.h"
+
+namespace subvol::detail {
+
+void write_picture_part(const std::filesystem::path& path, const PicturePart& part) {
+    const Image& rows = part.rows;
+    const std::size_t pixels = rows.rgba.size() / 4;
+    const bool within = part.first_row >= 0 && rows.height > 0 && part.first_row + rows.height <= part.whole_height;
+    if (!within || (!part.depth.empty() && part.depth.size() != pixels)) {
+        throw Error(ErrorCode::InvalidInput, "the rows are not within the picture", path.string());
+    }
+    const std::size_t channels = part.depth.empty() ? 4 : 5;
+    std::vector<float> values;
+    values.reserve(channels * pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        for (std::size_t c = 0; c < 4; ++c) values.push_back(rows.rgba[4 * i + c]);
+        if (channels == 5) values.push_back(part.depth[i]);
+    }
+    AtomicFile file(path);
+    const PictureValues picture{.width = rows.width,
+                                .height = rows.height,
+                                .channels = static_cast<int>(channels),
+                                .values = values.data(),
+                                .first_row = part.first_row,
+                                .whole_height = part.whole_height,
+                                .note = part.note.c_str()};
+    if (const auto fault = openimageio().write(file.path().string(), picture)) {
+        throw Error(fault->code, fault->why, path.string());
+    }
+    file.commit();
+}
+
+PicturePart read_picture_part(const std::filesystem::path& path) {
+    DecodedPicture picture;
+    picture.wants_depth = true;
+    if (const auto fault = openimageio().read(path.string(), picture)) throw Error(fault->code, fault->why, path.string());
+    PicturePart part{.rows = {},
+                     .depth = std::move(picture.depth),
+                     .first_row = picture.first_row,
+                     .whole_height = picture.whole_height,
+                     .note = std::move(picture.note)};
+    if (part.note.empty() || picture.channels != 4 || picture.integers) return {};
+    part.rows = Image(picture.width, picture.height);
+    part.rows.rgba = std::move(picture.values);
+    return part;
+}
+
+}  // namespace subvol::detail

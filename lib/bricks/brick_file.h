@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "subvol/bricks.h"
+
+namespace subvol::detail {
+
+/// A hash of bytes that come in pieces of any lengths. Not against attackers: it finds damage and mistakes.
+class ByteHash {
+public:
+    void add(std::string_view bytes);
+    [[nodiscard]] std::uint64_t value() const;
+
+private:
+    void mix(std::uint64_t word);
+    std::uint64_t hash_ = 0x243f6a8885a308d3ULL, length_ = 0;
+    std::string rest_;  // fewer than 8 bytes
+};
+
+/// Bytes and hash of a file that was written.
+struct WrittenBrick {
+    std::uint64_t bytes = 0, hash = 0;
+};
+
+/// Writes a brick as .vtu with raw appended data. GlobalNodeId and GlobalCellId are its numbers in the whole mesh; vtkGhostType
+/// is 1 in the halo; tags are field data.
+///
+/// id: of the folder
+WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh& brick, std::uint64_t id);
+
+/// throws: Error(InvalidInput) unless the file has this hash and was written by `write_brick_file` for this folder
+[[nodiscard]] BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id);
+
+/// The hash of a file; throws: Error(Io)
+[[nodiscard]] std::uint64_t hash_of_file(const std::filesystem::path& path);
+
+}  // namespace subvol::detail

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/brick_probe.h"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+
+#include "brick_layers.h"
+#include "subvol/detail/parallel_each.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+bool contains(const Box& box, const Vec3& x) {
+    return touch(box, {x, x});
+}
+
+/// The owned cells of a brick that a place may lie in, with the halo that their limit needs.
+BrickMesh about_places(const BrickMesh& brick, const std::vector<Vec3>& places, int layers) {
+    const CellReaches reaches(brick.mesh);
+    Box all;
+    for (const Vec3& x : places) all.add(x);
+    BrickMesh marked = brick;
+    parallel_each(marked.owned_cells.size(), [&](std::size_t c) {
+        auto& wanted = marked.owned_cells[c];
+        const Box box = wanted ? reaches(c) : Box{};
+        wanted = wanted && touch(box, all) && std::ranges::any_of(places, [&](const Vec3& x) { return contains(box, x); });
+    });
+    std::vector<std::uint8_t> kept = marked.owned_cells;
+    grow(marked.mesh, kept, layers);
+    return subset(marked, kept);
+}
+
+/// Takes one place of a result.
+void take(const ProbeResult& from, std::size_t i, ProbeResult& to, std::size_t place) {
+    to.parameters[place] = from.parameters[i];
+    for (std::size_t f = 0; f < to.fields.size(); ++f) {
+        const std::size_t channels = to.fields[f].channels;
+        for (std::size_t c = 0; c < channels; ++c) {
+            to.fields[f].values[place * channels + c] = from.fields[f].values[i * channels + c];
+            to.fields[f].gradients[place * channels + c] = from.fields[f].gradients[i * channels + c];
+        }
+    }
+}
+
+}  // namespace
+
+ProbeResult probe_bricks(const Bricks& bricks, std::span<const Vec3> places, const ProbeOptions& options,
+                         const BrickFields& fields, Progress* progress) {
+    if (options.reach_world > 0) throw Error(ErrorCode::InvalidInput, "distances to bricks are not found");
+    ProbeResult result;
+    result.cells.assign(places.size(), kNone);
+    result.parameters.resize(places.size());
+    result.distances.assign(places.size(), 0);
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        report_progress(progress, "probe", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
+        std::vector<std::size_t> numbers;
+        std::vector<Vec3> here;
+        for (std::size_t p = 0; p < places.size(); ++p) {
+            if (!contains(bricks.bricks[b].reach, places[p])) continue;
+            numbers.push_back(p);
+            here.push_back(places[p]);
+        }
+        if (here.empty() && !(b == 0 && result.fields.empty())) continue;
+        BrickMesh part = about_places(read_brick(bricks, b), here, bricks.halo_layers);
+        if (fields) part.mesh = fields(std::move(part.mesh));
+        if (result.fields.empty()) {
+            for (const Attribute& field : part.mesh.attributes) {
+                const auto channels = static_cast<std::size_t>(field.channels);
+                result.fields.push_back({field.name, channels, std::vector<double>(places.size() * channels),
+                                         std::vector<Vec3>(places.size() * channels, Vec3(0.0))});
+            }
+        }
+        if (part.mesh.cells.empty()) continue;
+        const ProbeResult found = LimitProbe(part.mesh, options).at(here);
+        result.rounds = std::max(result.rounds, found.rounds);
+        for (std::size_t i = 0; i < here.size(); ++i) {
+            if (!found.inside(i) || !part.owned_cells[found.cells[i]]) continue;
+            const std::uint64_t cell = part.cell_numbers[found.cells[i]];
+            if (cell >= kNone || (result.cells[numbers[i]] != kNone && result.cells[numbers[i]] < cell)) continue;
+            result.cells[numbers[i]] = static_cast<Index>(cell);
+            take(found, i, result, numbers[i]);
+        }
+    }
+    return result;
+}
+
+}  // namespace subvol

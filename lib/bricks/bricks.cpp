@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/bricks.h"
+
+#include <algorithm>
+
+#include "boundary_level.h"
+#include "brick_file.h"
+#include "brick_index.h"
+#include "brick_layers.h"
+#include "subvol/detail/inspect_part.h"
+#include "subvol/error.h"
+#include "text_scanner.h"
+
+namespace subvol {
+
+using namespace detail;
+
+bool is_bricks(const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path / kBricksIndex, error);
+}
+
+Bricks open_bricks(const std::filesystem::path& path) {
+    const std::filesystem::path index = path / kBricksIndex;
+    Bricks bricks = bricks_from_json(read_text(index), index.string());
+    bricks.path = path;
+    check_files(bricks);
+    return bricks;
+}
+
+BrickMesh read_brick(const Bricks& bricks, std::size_t brick) {
+    const Brick& about = bricks.bricks.at(brick);
+    const std::filesystem::path file = bricks.path / about.file;
+    BrickMesh read = read_brick_file(file, about.hash, bricks.id);
+    const bool fits = read.mesh.cells.size() == about.stored_cells && read.mesh.points.size() == about.stored_points &&
+                      read.mesh.attributes.size() == bricks.fields.size();
+    if (!fits) throw Error(ErrorCode::InvalidInput, "has not the counts that the index gives", file.string());
+    for (std::size_t f = 0; f < bricks.fields.size(); ++f) {
+        const Attribute& field = read.mesh.attributes[f];
+        if (field.name == bricks.fields[f].name && field.channels == bricks.fields[f].channels) continue;
+        throw Error(ErrorCode::InvalidInput, "has not the fields that the index gives", file.string());
+    }
+    return read;
+}
+
+BrickMesh gather(const Bricks& bricks, const Box& box) {
+    std::vector<BrickMesh> parts;
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        if (!touch(bricks.bricks[b].reach, box)) continue;
+        BrickMesh brick = read_brick(bricks, b);
+        const CellReaches reaches(brick.mesh);
+        bool any = false;
+        for (std::size_t c = 0; c < brick.owned_cells.size(); ++c) {
+            brick.owned_cells[c] = brick.owned_cells[c] && touch(reaches(c), box);
+            any = any || brick.owned_cells[c];
+        }
+        if (!any) continue;
+        std::vector<std::uint8_t> kept = brick.owned_cells;
+        grow(brick.mesh, kept, bricks.halo_layers);
+        parts.push_back(subset(brick, kept));
+    }
+    return merged(std::move(parts));
+}
+
+MeshReport inspect(const Bricks& bricks, Progress* progress) {
+    MeshReport report;
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        report_progress(progress, "inspect", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
+        const BrickMesh brick = read_brick(bricks, b);
+        add_part(brick.mesh, brick.owned_points, brick.owned_cells, report);
+    }
+    return report;
+}
+
+BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields) {
+    std::vector<BrickMesh> parts;
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        BrickMesh brick = read_brick(bricks, b);
+        const std::vector<std::uint8_t> on_hull = hull_points_of_owned(brick);
+        if (fields) {
+            brick.mesh = fields(std::move(brick.mesh));
+        } else {
+            brick.mesh.attributes.clear();
+        }
+        brick.owned_points = on_hull;  // so that merging puts the flags together
+        std::vector<std::uint8_t> kept(brick.owned_cells.size());
+        for (std::size_t c = 0; c < kept.size(); ++c) {
+            kept[c] =
+                brick.owned_cells[c] && std::ranges::any_of(brick.mesh.cells[c], [&](Index p) { return on_hull[p] != 0; });
+        }
+        if (std::ranges::find(kept, 1) == kept.end()) continue;
+        parts.push_back(subset(brick, kept));
+    }
+    BrickMesh all = merged(std::move(parts));
+    const auto at_hull = [&](const auto& tag) {
+        return std::ranges::any_of(tag, [&](Index p) { return all.owned_points[p] != 0; });
+    };
+    std::erase_if(all.mesh.creases, [&](const auto& crease) { return !at_hull(crease); });
+    std::erase_if(all.mesh.sharp_faces, [&](const auto& face) { return !at_hull(face); });
+    return {std::move(all.mesh), std::move(all.owned_points)};
+}
+
+BoundaryValues boundary_values(const Bricks& bricks, const BrickFields& fields, const SchemeOptions& scheme,
+                               std::optional<int> levels) {
+    const BrickHull hull = gather_hull(bricks, fields);
+    const std::size_t triangles = boundary_at_level(hull.mesh, hull.on_hull, {.scheme = scheme, .levels = 0}).triangles.size();
+    return boundary_values_of_hull(hull.mesh, hull.on_hull, {.scheme = scheme, .levels = picture_levels(triangles, levels)});
+}
+
+}  // namespace subvol

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/boundary_values.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/mesh_report.h"
+#include "subvol/progress.h"
+
+namespace subvol {
+
+/// A field of a mesh in bricks, over the points that cells use.
+///
+/// min, max:       of each channel
+/// shortest, longest: of vectors, their lengths; of one channel, as min and max
+struct BrickField {
+    std::string name;
+    int channels = 1;
+    std::vector<double> min, max;
+    double shortest = 0, longest = 0;
+};
+
+/// A brick, as the index has it.
+///
+/// file:          its name in the folder
+/// cells, points: that it owns: every cell and every point of the mesh is owned by one brick
+/// stored_cells, stored_points: with the halo
+/// bounds:        of the owned cells; reach: of their limit and more: no value of the limit in an owned cell lies outside
+/// bytes, hash:   of the file
+struct Brick {
+    std::string file;
+    std::uint64_t cells = 0, points = 0;
+    std::uint64_t stored_cells = 0, stored_points = 0;
+    Box bounds, reach;
+    std::uint64_t bytes = 0, hash = 0;
+    std::vector<BrickField> fields;
+};
+
+/// A mesh in a folder of bricks, of which only the index is in memory.
+///
+/// id:            of the mesh and of how it was cut: each brick has it too
+/// cells, points: of the whole mesh; no point is unused
+/// halo_layers:   about the owned cells: cells that share a point with a cell of the layer before
+struct Bricks {
+    std::filesystem::path path;
+    std::uint64_t id = 0;
+    std::uint64_t cells = 0, points = 0;
+    Box bounds;
+    int halo_layers = 0;
+    std::vector<BrickField> fields;
+    std::vector<Brick> bricks;
+};
+
+/// A part of a mesh. Points and cells have the order that they have in the whole mesh, so that sums have their terms in the
+/// same order, and results the same bits.
+///
+/// point_numbers, cell_numbers: in the whole mesh, ascending
+/// owned_points, owned_cells:   a flag for each; the others are the halo
+struct BrickMesh {
+    HexMesh mesh;
+    std::vector<std::uint64_t> point_numbers, cell_numbers;
+    std::vector<std::uint8_t> owned_points, owned_cells;
+};
+
+/// What is done with the attributes of a brick before it is used: the field that is wanted is left, for example.
+using BrickFields = std::function<HexMesh(HexMesh)>;
+
+/// Whether this is a folder of bricks: it has an index.
+[[nodiscard]] bool is_bricks(const std::filesystem::path& path);
+
+/// Reads the index of a folder of bricks, and looks for the files that it names.
+///
+/// throws: Error(Io); Error(InvalidInput) if the index is malformed or of a later version, or a brick is missing or truncated
+[[nodiscard]] Bricks open_bricks(const std::filesystem::path& path);
+
+/// Reads a brick with its halo.
+///
+/// throws: Error(Io); Error(InvalidInput) if the file is not the one that the index describes: changed, or of another mesh
+/// cost:   memory: about twice the file while it is read
+[[nodiscard]] BrickMesh read_brick(const Bricks& bricks, std::size_t brick);
+
+/// All cells whose limit may touch a box, as owned cells, with their halo. Bricks that are far from the box are not read.
+///
+/// throws: as `read_brick`
+/// cost:   memory: the result twice, and one brick at a time
+[[nodiscard]] BrickMesh gather(const Bricks& bricks, const Box& box);
+
+/// Counts and measures the mesh brick by brick, as `inspect` does in one piece: counts, extremes and bounds are the same, the
+/// volume is the sum of the bricks' volumes in their order.
+///
+/// throws: as `read_brick`; Error(Cancelled)
+[[nodiscard]] MeshReport inspect(const Bricks& bricks, Progress* progress = nullptr);
+
+/// The cells with a point on the hull of the whole mesh: all that the boundary of the limit depends on.
+///
+/// on_hull: a flag for each point
+struct BrickHull {
+    HexMesh mesh;
+    std::vector<std::uint8_t> on_hull;
+};
+
+/// fields: changes the attributes of each brick; none: there are no attributes
+/// throws: as `read_brick`
+[[nodiscard]] BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields = {});
+
+/// Values on the boundary of the limit, as `boundary_values` of the whole mesh.
+///
+/// levels: of the boundary's refinement; none: as many as `picture_levels` says
+/// throws: as `boundary_values`
+[[nodiscard]] BoundaryValues boundary_values(const Bricks& bricks, const BrickFields& fields, const SchemeOptions& scheme,
+                                             std::optional<int> levels = {});
+
+}  // namespace subvol

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "subvol/bricks.h"
+#include "subvol/progress.h"
+
+namespace subvol {
+
+/// Which cells make a brick.
+///
+/// Blocks: compact ones: the longest side of the box of the cells' centres is halved, and the halves likewise
+/// Slabs:  slices of the longest side
+/// Random: any: for tests
+enum class BrickShape { Blocks, Slabs, Random };
+
+/// bricks:      how many; 0: as many as `memory_bytes` asks for
+/// memory_bytes: about the most that a command takes for one brick; some 1,000 bytes a cell
+/// halo_layers: 1 to 16. Values, gradients and kernels of the schemes MCQ and linear need 3, all others 4
+/// seed:        of random bricks
+struct SplitOptions {
+    std::size_t bricks = 0;
+    std::uint64_t memory_bytes = std::uint64_t{1} << 30;
+    BrickShape shape = BrickShape::Blocks;
+    int halo_layers = 3;
+    std::uint64_t seed = 0;
+    Progress* progress = nullptr;
+};
+
+/// bricks:  the folder as `open_bricks` returns it; written, kept: how many were written, and kept of an interrupted run
+/// bytes:   written
+struct SplitResult {
+    Bricks bricks;
+    std::size_t written = 0, kept = 0;
+    std::uint64_t bytes = 0;
+};
+
+/// The brick of each cell.
+///
+/// throws: Error(InvalidInput) if there are no bricks, or more than cells
+[[nodiscard]] std::vector<std::uint32_t> bricks_of_cells(const HexMesh& mesh, const SplitOptions& options);
+
+/// Cuts a mesh into bricks and writes them into a folder: an index, and a file for each brick that opens alone, in this program
+/// and in ParaView, where vtkGhostType marks the halo.
+///
+/// The bricks are written beside the folder, which appears when all are there. A run that was interrupted is continued by the
+/// same call: finished bricks with the right hash are kept. A folder of bricks is replaced; anything else is not.
+///
+/// mesh:   valid; points that no cell uses are left out
+/// throws: Error(InvalidInput) for options out of range, or if `folder` exists and is no folder of bricks; Error(Io)
+SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, const SplitOptions& options = {});
+
+/// The same for given bricks. brick_of_cell: one number for each cell; numbers without cells make no brick
+SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, std::span<const std::uint32_t> brick_of_cell,
+                       const SplitOptions& options = {});
+
+/// Writes the model `twist` with resolution³ cells as bricks, brick by brick: the bits are those of `make_model`.
+///
+/// resolution: 2 to 4096. options.shape: Blocks or Slabs
+/// cost:       memory: that of one brick
+SplitResult split_twist(const std::filesystem::path& folder, int resolution, const SplitOptions& options = {});
+
+}  // namespace subvol

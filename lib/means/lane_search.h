@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "subvol/index.h"
+
+namespace subvol::detail {
+
+/// Numbers of several channels, which are fitted together: the matrices are read once for all of them.
+constexpr std::size_t kLanes = 4;
+using Lanes = std::array<double, kLanes>;
+
+/// A sparse matrix, row by row, that is applied to lanes. Parallel; bitwise the same for any number of threads.
+struct LaneMatrix {
+    std::vector<std::size_t> offsets{0};
+    std::vector<Index> columns;
+    std::vector<float> weights;
+
+    [[nodiscard]] std::size_t rows() const { return offsets.size() - 1; }
+    void apply(const std::vector<Lanes>& in, std::vector<Lanes>& out) const;
+    [[nodiscard]] LaneMatrix transposed(std::size_t count) const;
+};
+
+[[nodiscard]] Lanes dot(const std::vector<Lanes>& a, const std::vector<Lanes>& b);
+[[nodiscard]] Lanes largest(const std::vector<Lanes>& values);
+
+/// tie:            how much a change counts beside what is off
+/// enough:         the search of a lane ends when nothing is off by more than this
+/// max_iterations: of each search
+struct LaneSearch {
+    double tie = 0;
+    Lanes enough{};
+    int max_iterations = 0;
+};
+
+/// Changes the values by conjugate gradients of the least squares |rows · values − wanted|² + tie |change|².
+///
+/// columns: the transposed rows
+/// off:     wanted − rows · values, before and after
+/// free:    1 where a value may change, 0 where it stays
+/// returns: the steps of the longest search
+int search(const LaneMatrix& rows, const LaneMatrix& columns, const std::vector<Lanes>& free, std::vector<Lanes>& values,
+           std::vector<Lanes>& off, const LaneSearch& options);
+
+}  // namespace subvol::detail

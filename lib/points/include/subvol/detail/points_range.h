@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "subvol/rbf_volume.h"
+
+namespace subvol::detail {
+
+/// The kernels from `begin` to before `end`, in their order. A share of a volume: the first one, which begins at 0, has the
+/// boundary of the whole, because its triangles share points; the others have none. The bounds are those of the whole.
+[[nodiscard]] RbfVolume kernels_between(const RbfVolume& volume, std::size_t begin, std::size_t end);
+
+/// The kernels with these numbers, in that order; no boundary. The bounds are those of the whole.
+[[nodiscard]] RbfVolume chosen_kernels(const RbfVolume& volume, std::span<const std::size_t> numbers);
+
+/// Appends the kernels of another share, and takes its boundary if there was none.
+///
+/// throws: Error(InvalidInput) if the channels or the kernel differ
+void append_kernels(RbfVolume& volume, const RbfVolume& next);
+
+}  // namespace subvol::detail

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/detail/points_range.h"
+
+#include "subvol/error.h"
+#include "subvol/kernel.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// The same channels and kernel, without kernels.
+RbfVolume emptied(const RbfVolume& volume) {
+    RbfVolume result;
+    for (const RbfChannel& channel : volume.channels) result.channels.push_back({.name = channel.name});
+    result.kernel = volume.kernel;
+    result.bounds = volume.bounds;
+    return result;
+}
+
+template <class T>
+std::vector<T> between(const std::vector<T>& list, std::size_t begin, std::size_t end) {
+    if (list.empty()) return {};  // Hessians that there are not
+    return {list.begin() + static_cast<std::ptrdiff_t>(begin), list.begin() + static_cast<std::ptrdiff_t>(end)};
+}
+
+template <class T>
+std::vector<T> chosen(const std::vector<T>& list, std::span<const std::size_t> numbers) {
+    std::vector<T> result;
+    if (list.empty()) return result;
+    result.reserve(numbers.size());
+    for (const std::size_t i : numbers) result.push_back(list[i]);
+    return result;
+}
+
+template <class T>
+void append(std::vector<T>& list, const std::vector<T>& next) {
+    list.insert(list.end(), next.begin(), next.end());
+}
+
+}  // namespace
+
+RbfVolume kernels_between(const RbfVolume& volume, std::size_t begin, std::size_t end) {
+    RbfVolume result = emptied(volume);
+    result.centers = between(volume.centers, begin, end);
+    result.frames = between(volume.frames, begin, end);
+    for (std::size_t c = 0; c < volume.channels.size(); ++c) {
+        const RbfChannel& from = volume.channels[c];
+        RbfChannel& to = result.channels[c];
+        to.values = between(from.values, begin, end);
+        to.gradients = between(from.gradients, begin, end);
+        to.moments = between(from.moments, begin, end);
+        to.hessians = between(from.hessians, begin, end);
+    }
+    if (begin == 0) result.boundary = volume.boundary;
+    return result;
+}
+
+RbfVolume chosen_kernels(const RbfVolume& volume, std::span<const std::size_t> numbers) {
+    RbfVolume result = emptied(volume);
+    result.centers = chosen(volume.centers, numbers);
+    result.frames = chosen(volume.frames, numbers);
+    for (std::size_t c = 0; c < volume.channels.size(); ++c) {
+        const RbfChannel& from = volume.channels[c];
+        RbfChannel& to = result.channels[c];
+        to.values = chosen(from.values, numbers);
+        to.gradients = chosen(from.gradients, numbers);
+        to.moments = chosen(from.moments, numbers);
+        to.hessians = chosen(from.hessians, numbers);
+    }
+    return result;
+}
+
+void append_kernels(RbfVolume& volume, const RbfVolume& next) {
+    if (volume.channels.size() != next.channels.size() || to_json(volume.kernel) != to_json(next.kernel)) {
+        throw Error(ErrorCode::InvalidInput, "shares of points have other channels or another kernel");
+    }
+    append(volume.centers, next.centers);
+    append(volume.frames, next.frames);
+    for (std::size_t c = 0; c < volume.channels.size(); ++c) {
+        RbfChannel& to = volume.channels[c];
+        const RbfChannel& from = next.channels[c];
+        if (to.name != from.name) {
+            throw Error(ErrorCode::InvalidInput,
+                        "shares of points have channels of other names: \"" + to.name + "\" and \"" + from.name + "\"");
+        }
+        append(to.values, from.values);
+        append(to.gradients, from.gradients);
+        append(to.moments, from.moments);
+        append(to.hessians, from.hessians);
+    }
+    if (volume.boundary.triangles.empty()) volume.boundary = next.boundary;
+    volume.bounds.add(next.bounds);
+}
+
+}  // namespace subvol::detail

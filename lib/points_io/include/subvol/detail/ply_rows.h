@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "subvol/rbf_volume.h"
+
+namespace subvol::detail {
+
+/// A binary `.ply` of points that come in any order: the bytes are those that `write_points` writes for all together.
+class PlyRows {
+public:
+    /// like:   points of the same kernel and channels
+    /// points: how many there will be
+    PlyRows(const std::filesystem::path& path, const RbfVolume& like, std::uint64_t points, const Surface& boundary);
+    ~PlyRows();
+    PlyRows(const PlyRows&) = delete;
+    PlyRows& operator=(const PlyRows&) = delete;
+
+    /// numbers: the places of the points in the file, ascending
+    void write(std::span<const std::uint64_t> numbers, const RbfVolume& points);
+
+    /// Writes the boundary; then the file has its name.
+    ///
+    /// throws: Error(Io); Error(InvalidInput) if a point has not been written
+    void finish(const Surface& boundary);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace subvol::detail

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "subvol/mesh_report.h"
+
+namespace subvol::detail {
+
+/// The figures of a share of a mesh, for several processes.
+///
+/// counts:   of the share's points, of the edges and faces whose smallest point is one of them, and of the share's cells;
+///           points, cells and bounds are those of the whole mesh, volume is not used
+/// volumes:  of the share's cells, 4096 at a time: adding these up in the order of the shares gives the bits of `inspect`
+/// inverted: the numbers of the first inverted cells, at most as many as were asked for
+struct MeshShare {
+    MeshReport counts;
+    std::vector<double> volumes{};
+    std::vector<std::size_t> inverted{};
+};
+
+/// part:   from 1 to `of`
+/// throws: Error(InvalidInput) as `inspect`
+[[nodiscard]] MeshShare inspect_share(const HexMesh& mesh, int part, int of, std::size_t inverted_at_most);
+
+/// The report of the whole mesh, as `inspect` makes it, and the first inverted cells.
+///
+/// shares: all, in their order
+[[nodiscard]] MeshShare join_shares(std::span<const MeshShare> shares, std::size_t inverted_at_most);
+
+}  // namespace subvol::detail

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/render_bricks.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <map>
+
+#include "kernel_regions.h"
+#include "sheet_count.h"
+#include "splat_scene.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+// Of a kernel while it is drawn: its record, itself, in eye space, and its place in the lists of some tiles.
+constexpr std::uint64_t kBytesOfKernel = 320;
+
+void check(const BrickSplatOptions& options) {
+    const SplatOptions& splat = options.splat;
+    if (splat.shadows || splat.ambient_occlusion > 0 || splat.color_channel) {
+        throw Error(ErrorCode::InvalidInput, "bricks are drawn without shadows, ambient occlusion and a second field");
+    }
+    if (splat.method != SplatMethod::Cpu && splat.method != SplatMethod::Auto) {
+        throw Error(ErrorCode::InvalidInput, "bricks are drawn by the CPU", {}, "--backend cpu");
+    }
+}
+
+/// Finds the k-th smallest of many positive floats without keeping them: their bits have the order of their values.
+class Selection {
+public:
+    void add(float value) {
+        const auto bits = std::bit_cast<std::uint32_t>(value);
+        auto& counts = counts_[bits >> 16];
+        if (counts.empty()) counts.resize(std::size_t{1} << 16);
+        ++counts[bits & 0xffff];
+        ++size_;
+    }
+    [[nodiscard]] std::uint64_t size() const { return size_; }
+    [[nodiscard]] float at(std::uint64_t place) const {
+        for (const auto& [high, counts] : counts_) {
+            for (std::uint32_t low = 0; low < counts.size(); ++low) {
+                if (place < counts[low]) return std::bit_cast<float>(high << 16 | low);
+                place -= counts[low];
+            }
+        }
+        return 0;
+    }
+
+private:
+    std::map<std::uint32_t, std::vector<std::uint32_t>> counts_;
+    std::uint64_t size_ = 0;
+};
+
+void copy(const SplatResult& from, const KernelRegions::Region& region, SplatResult& to) {
+    for (int y = region.y0; y < region.y1; ++y) {
+        for (int x = region.x0; x < region.x1; ++x) {
+            const auto pixel = from.image.pixel(x, y);
+            std::copy(pixel.begin(), pixel.end(), to.image.pixel(x, y).begin());
+            const auto at =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(from.image.width) + static_cast<std::size_t>(x);
+            to.depth[at] = from.depth[at];
+        }
+    }
+}
+
+}  // namespace
+
+SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
+                          const Optics& optics, const BrickSplatOptions& options) {
+    check(options);
+    if (boundary.triangles.empty()) throw Error(ErrorCode::InvalidInput, "there is no boundary");
+    RbfVolume drawn;
+    drawn.kernel = options.sample.kernel;
+    drawn.channels.emplace_back();
+    drawn.boundary = std::move(boundary);
+    drawn.bounds = box_of(drawn);
+    SplatOptions splat = options.splat;
+    splat.method = SplatMethod::Cpu;
+    SplatScene empty = make_scene(drawn, [&] {
+        SplatOptions bare = splat;
+        bare.shading.reset();
+        return bare;
+    }());
+
+    KernelRegions regions(view, 2e-4 * empty.diagonal, empty.form == KernelForm::Separable ? 3 : 1, options.scratch);
+    Selection reaches;
+    std::uint64_t points = 0;
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        report_progress(splat.progress, "sample", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
+        BrickMesh brick = read_brick(bricks, b);
+        brick.mesh = fields(std::move(brick.mesh));
+        SampleOptions quiet = options.sample;
+        quiet.progress = nullptr;
+        const BrickPoints sampled = sample_brick(bricks, std::move(brick), quiet);
+        if (sampled.volume.channels.size() != 1) throw Error(ErrorCode::InvalidInput, "bricks are drawn by one field");
+        drawn.channels.front().name = sampled.volume.channels.front().name;
+        regions.add(sampled.volume, sampled.numbers);
+        points += sampled.numbers.size();
+        if (splat.sheets == 0) {
+            for (const Symmetric3& frame : sampled.volume.frames) reaches.add(depth_reach(empty, view, frame));
+        }
+    }
+    if (splat.sheets == 0) {
+        const DepthRange depths = depth_range_of(empty, view);
+        splat.sheets = sheets_for_reach(reaches.at(place_of_finest(reaches.size())), depths.max - depths.min);
+    }
+
+    SplatResult result{Image(view.width(), view.height()), {}, {}};
+    result.depth.resize(result.image.rgba.size() / 4);
+    const auto most = std::max<std::uint64_t>(options.memory_bytes / kBytesOfKernel, 1);
+    std::vector<std::size_t> group;
+    bool first = true;
+    for (std::size_t k = 0; k < regions.size(); ++k) {
+        group.push_back(k);
+        std::uint64_t kernels = 0;
+        for (const std::size_t g : group) kernels += regions.kernels_in(g);
+        const bool last = k + 1 == regions.size();
+        if (!last && kernels + regions.kernels_in(k + 1) <= most) continue;
+        report_progress(splat.progress, "splat", static_cast<double>(k) / static_cast<double>(regions.size()));
+        if (kernels > 0 || first) {
+            regions.take(group, drawn);
+            SplatOptions quiet = splat;
+            quiet.progress = nullptr;
+            SplatResult part = Splatter(drawn, quiet).draw(view, optics);
+            result.report.seconds_prepare += part.report.seconds_prepare;
+            result.report.seconds_draw += part.report.seconds_draw;
+            result.report.bin_entries += part.report.bin_entries;
+            if (first) {  // where no kernel is, all parts have the same
+                result.image = part.image;
+                result.depth = part.depth;
+                result.report.backend = part.report.backend;
+                result.report.device = part.report.device;
+                result.report.sheets = part.report.sheets;
+                result.report.boundary_hits = part.report.boundary_hits;
+            }
+            first = false;
+            for (const std::size_t g : group) copy(part, regions.region(g), result);
+        }
+        group.clear();
+    }
+    report_progress(splat.progress, "splat", 1);
+    result.report.points = points;
+    return result;
+}
+
+}  // namespace subvol

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "splat_frame.h"
+
+namespace subvol::detail {
+
+struct TileRect {
+    int x0, x1, y0, y1;  // inclusive; empty if x1 < x0
+};
+
+/// The tiles that a kernel may touch on the sheets of a frame: those of a box around its ellipsoid.
+class TileFinder {
+public:
+    /// The frame needs its view, its sheets and its numbers of tiles; it is kept by reference.
+    explicit TileFinder(const SplatFrame& frame)
+        : frame_(frame),
+          perspective_(frame.view->perspective()),
+          per_pixel_(static_cast<float>(1 / frame.view->pixel())),
+          mid_x_(0.5f * static_cast<float>(frame.view->width())),
+          mid_y_(0.5f * static_cast<float>(frame.view->height())) {}
+
+    [[nodiscard]] TileRect find(const EyeSplat& s) const {
+        constexpr TileRect kNone{0, -1, 0, -1};
+        const SheetStack& sheets = frame_.sheets;
+        const float reach = 1.0f / std::sqrt(s.inv_szz);
+        const float front = std::max(s.depth - reach, sheets.first);
+        const float back = std::min(s.depth + reach, sheets.depth(sheets.count - 1));
+        // A little room, so that rounding does not lose a sheet.
+        if (front > back + 1e-3f * sheets.distance) return kNone;
+        const auto half = [&](float extent, float shear) { return std::sqrt(extent * extent + shear * reach * shear * reach); };
+        const float hx = half(s.extent_x, s.shear_x), hy = half(s.extent_y, s.shear_y);
+        const auto [left, right] = pixels(s.center_x - hx, s.center_x + hx, front, back);
+        const auto [low, high] = pixels(s.center_y - hy, s.center_y + hy, front, back);
+        const auto [x0, x1] = tiles(mid_x_ + left, mid_x_ + right, frame_.tiles_x, frame_.view->width());
+        const auto [y0, y1] = tiles(mid_y_ - high, mid_y_ - low, frame_.tiles_y, frame_.view->height());
+        return x1 < x0 || y1 < y0 ? kNone : TileRect{x0, x1, y0, y1};
+    }
+
+private:
+    /// Pixels from the middle that an interval of eye space spans between two depths.
+    [[nodiscard]] std::pair<float, float> pixels(float low, float high, float front, float back) const {
+        if (!perspective_) return {low * per_pixel_, high * per_pixel_};
+        const float a = per_pixel_ / (frame_.sheets.middle + front), b = per_pixel_ / (frame_.sheets.middle + back);
+        return {std::min(low * a, low * b), std::max(high * a, high * b)};
+    }
+    [[nodiscard]] static std::pair<int, int> tiles(float low, float high, int count, int size) {
+        if (!(high > -1) || !(low < static_cast<float>(size) + 1)) return {0, -1};
+        // One pixel more on each side, so that rounding does not lose a kernel's rim.
+        const auto tile = [&](float px) {
+            return static_cast<int>(std::clamp(px / SplatFrame::kTile_px, 0.0f, static_cast<float>(count - 1)));
+        };
+        return {tile(low - 1), tile(high + 1)};
+    }
+
+    const SplatFrame& frame_;
+    bool perspective_;
+    float per_pixel_, mid_x_, mid_y_;
+};
+
+}  // namespace subvol::detail

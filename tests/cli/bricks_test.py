@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A mesh in bricks gives what the mesh gives in one piece: the same bytes. What is damaged is said in one sentence."""
+
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import unittest
+
+from command import COMMAND, InFolder, subvol
+
+BALL = "model:ball:6"
+CUTS = [(1, "blocks"), (2, "blocks"), (3, "slabs"), (4, "random"), (7, "blocks"), (7, "random")]
+
+
+def without(found, *keys):
+    return {key: value for key, value in found.items() if key not in keys}
+
+
+class SameAsTheWhole(InFolder):
+    def cuts(self, cuts=None):
+        for count, shape in cuts or CUTS:
+            self.run_ok("split", BALL, "-o", "b.bricks", "--bricks", count, "--by", shape, "--quiet")
+            yield f"{count} {shape}"
+
+    def bytes_of(self, name):
+        return (self.folder / name).read_bytes()
+
+    def test_points(self):
+        self.run_ok("points", BALL, "-o", "whole.ply", "--quiet")
+        for cut in self.cuts():
+            self.run_ok("points", "b.bricks", "-o", "parts.ply", "--quiet")
+            self.assertEqual(self.bytes_of("parts.ply"), self.bytes_of("whole.ply"), cut)
+
+    def test_pictures(self):
+        looks = [["--look", "volume"], ["--look", "solid", "--view", "iso"]]
+        for look in looks:
+            options = [*look, "--size", "192x160", "--backend", "cpu", "--quiet"]
+            self.run_ok("render", BALL, "-o", "whole.exr", *options)
+            for cut in self.cuts():
+                self.run_ok("render", "b.bricks", "-o", "parts.exr", *options)
+                self.assertEqual(self.bytes_of("parts.exr"), self.bytes_of("whole.exr"), f"{cut} {look}")
+                # So little memory that each part of the picture is drawn alone.
+                self.run_ok("render", "b.bricks", "-o", "parts.exr", "--memory", "100K", *options)
+                self.assertEqual(self.bytes_of("parts.exr"), self.bytes_of("whole.exr"), f"{cut} {look} in parts")
+
+    def test_grids(self):
+        for options, cuts in ((["--resolution", 70], [(2, "blocks"), (7, "random")]),
+                              (["--resolution", 50, "--levels", 1], [(3, "slabs")]),
+                              (["--resolution", 50, "--scheme", "cc"], [(4, "blocks")])):
+            whole = self.run_ok("vdb", BALL, "-o", "whole.vdb", *options, "--json").json()
+            for cut in self.cuts(cuts):
+                parts = self.run_ok("vdb", "b.bricks", "-o", "parts.vdb", "--memory", "4M", *options, "--json").json()
+                self.assertEqual(parts["active_voxels"], whole["active_voxels"], cut)
+                self.assertEqual(parts["voxel_size"], whole["voxel_size"])
+                listed = json.loads((self.folder / "parts.json").read_text())["parts"]
+                self.assertEqual(sum(part["active_voxels"] for part in listed), whole["active_voxels"], cut)
+                for key in ("min", "max"):
+                    self.assertEqual(parts["grids"][0][key], whole["grids"][0][key], cut)
+                for part in listed:
+                    self.assertEqual(self.values_in(part["file"]), self.values_in("whole.vdb", part["file"]), cut)
+                for part in listed:
+                    os.remove(self.folder / part["file"])
+
+    def values_in(self, grid, where=None):
+        """The values of a grid at voxels' centres on the diagonals of the box of another grid's voxels, where that has some."""
+        def at(name, places):
+            words = [f"--at={x},{y},{z}" for x, y, z in places]
+            return [one["value"] for one in self.run_ok("info", name, *words, "--json").json()["at"]]
+
+        about = self.run_ok("info", where or grid, "--json").json()["grids"][0]
+        size, (low, high) = about["voxel_size"], about["bounds"]
+        centre = [[round((low[d] + t / 30 * (high[d] - low[d])) / size) * size for t in range(31)] for d in range(3)]
+        places = [(x, y, z) for flip in (1, -1) for x, y, z in zip(centre[0], centre[1][::flip], centre[2])]
+        here = at(where or grid, places)
+        return [value for value, known in zip(at(grid, places), here) if known is not None]
+
+    def test_figures(self):
+        whole = self.run_ok("info", BALL, "--json").json()
+        for cut in self.cuts():
+            parts = self.run_ok("info", "b.bricks", "--json").json()
+            for key in ("points", "points_used", "cells", "edges", "faces", "boundary_faces", "interior_edges",
+                        "interior_edge_valence", "singular_nodes", "inverted_cells", "degenerate_cells",
+                        "min_scaled_jacobian", "bounds", "fields"):
+                self.assertEqual(parts[key], whole[key], f"{cut} {key}")
+            self.assertAlmostEqual(parts["volume"], whole["volume"], delta=1e-12 * whole["volume"])
+            self.assertEqual(parts["bricks"], int(cut.split()[0]))
+
+    def test_places(self):
+        places = ["--at", "0,0,0", "--at=-0.3,0.2,0.55", "--at", "5,0,0"]
+        whole = self.run_ok("probe", BALL, *places, "--json").json()["values"]
+        for cut in self.cuts():
+            parts = self.run_ok("probe", "b.bricks", *places, "--json").json()["values"]
+            for a, b in zip(parts, whole):
+                self.assertEqual(a["inside"], b["inside"], cut)
+                if b["inside"]:
+                    self.assertAlmostEqual(a["value"], b["value"], delta=1e-9)
+
+    def test_the_twist_is_written_brick_by_brick(self):
+        self.run_ok("points", "model:twist:10", "-o", "whole.ply", "--quiet")
+        split = self.run_ok("split", "model:twist:10", "-o", "t.bricks", "--bricks", 8, "--json").json()
+        self.assertEqual((split["cells"], split["bricks"]), (1000, 8))
+        self.run_ok("points", "t.bricks", "-o", "parts.ply", "--quiet")
+        self.assertEqual(self.bytes_of("parts.ply"), self.bytes_of("whole.ply"))
+
+
+class WhatGoesWrong(InFolder):
+    def setUp(self):
+        super().setUp()
+        self.run_ok("split", "model:twist:6", "-o", "t.bricks", "--bricks", 3, "--quiet")
+
+    def assert_said(self, naming, *arguments):
+        before = self.files()
+        done = subvol(*arguments, folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertIn(naming, done.err)
+        self.assertEqual(len(done.err.strip().splitlines()), 1, done.err)
+        self.assertEqual(self.files(), before)
+
+    def each_verb(self, naming):
+        self.assert_said(naming, "points", "t.bricks", "-o", "a.ply")
+        self.assert_said(naming, "vdb", "t.bricks", "-o", "a.vdb", "--resolution", 20)
+        self.assert_said(naming, "render", "t.bricks", "-o", "a.png", "--size", "64x64")
+        self.assert_said(naming, "info", "t.bricks")
+
+    def test_missing_changed_and_foreign_bricks(self):
+        first = self.folder / "t.bricks" / "brick_00001.vtu"
+        sound = first.read_bytes()
+        first.unlink()
+        self.each_verb("a brick is missing: brick_00001.vtu")
+        first.write_bytes(sound[:-100])
+        self.each_verb("in the index it has")
+        changed = bytearray(sound)
+        changed[len(sound) // 2] ^= 1
+        first.write_bytes(changed)
+        self.each_verb("has changed since the index was written")
+        self.run_ok("split", "model:twist:6", "-o", "u.bricks", "--density", "x+y", "--bricks", 3, "--by", "slabs", "--quiet")
+        shutil.copy(self.folder / "u.bricks" / "brick_00001.vtu", first)
+        self.each_verb("is a brick of another mesh")
+
+    def test_the_index(self):
+        index = self.folder / "t.bricks" / "index.json"
+        text = index.read_text()
+        index.write_text(text.replace('"version": 1', '"version": 2'))
+        self.each_verb("version 2 of the format of bricks")
+        index.write_text(text[:200])
+        self.each_verb("not well-formed JSON")
+        index.write_text('{"format": "OpenSubVol bricks", "version": 1}')
+        self.each_verb("not an index of bricks")
+
+    def test_what_cannot_be_done_by_bricks(self):
+        said = "is a folder of bricks, which this command does not take yet"
+        self.assert_said(said, "surface", "t.bricks", "-o", "a.ply", "--boundary")
+        self.assert_said(said, "slice", "t.bricks", "-o", "a.png", "--plane", "0,0,0,0,0,1")
+        self.assert_said(said, "subdivide", "t.bricks", "-o", "a.vtu")
+        self.assert_said("whole mesh in memory", "vdb", "t.bricks", "-o", "a.vdb", "--sdf")
+        self.assert_said("whole mesh in memory", "points", "t.bricks", "-o", "a.ply", "--levels", 1)
+        self.assert_said("--per-edge 1", "points", "t.bricks", "-o", "a.ply", "--per-edge", 2)
+        self.assert_said("binary .ply only", "points", "t.bricks", "-o", "a.vtp")
+        self.assert_said("can only be splatted", "render", "t.bricks", "-o", "a.png", "--method", "tets")
+        self.assert_said("split with --halo 4", "points", "t.bricks", "-o", "a.ply", "--correction", "full")
+        self.assert_said("settled when a mesh is split", "points", "t.bricks", "-o", "a.ply", "--weld")
+        self.assert_said("does not take", "split", "t.bricks", "-o", "u.bricks")
+
+    def test_splitting(self):
+        (self.folder / "mine").mkdir()
+        (self.folder / "mine" / "letter").write_text("dear")
+        self.assert_said("is no folder of bricks", "split", "model:twist:4", "-o", "mine", "--bricks", 2)
+        self.assert_said("is not a resolution", "split", "model:twist:1", "-o", "a.bricks")
+        self.assert_said("bricks along a side", "split", "model:twist:4", "-o", "a.bricks", "--bricks", 101)
+        self.assert_said("too few for a brick", "split", "model:twist:4", "-o", "a.bricks", "--memory", "10K")
+
+    def test_a_full_disk(self):
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+
+        for verb in (["split", "model:twist:20", "-o", "f.bricks", "--bricks", "2"], ["points", "t.bricks", "-o", "a.ply"],
+                     ["vdb", "t.bricks", "-o", "a.vdb", "--resolution", "60"]):
+            done = subprocess.run([COMMAND, *verb], cwd=self.folder, capture_output=True, text=True, preexec_fn=small_files)
+            self.assertIn(done.returncode, (2, 3), done.stderr)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn("cannot be written", done.stderr)
+        # What split has finished stays for the next run; nothing else stays.
+        self.assertEqual([name for name in self.files() if name != "f.bricks.unfinished"], ["t.bricks"])
+        self.assertEqual(self.run_ok("split", "model:twist:20", "-o", "f.bricks", "--bricks", 2, "--json").json()["cells"], 8000)
+
+    def test_a_killed_split_goes_on(self):
+        running = subprocess.Popen([COMMAND, "split", "model:twist:40", "-o", "k.bricks", "--bricks", "64", "--quiet"],
+                                   cwd=self.folder)
+        unfinished = self.folder / "k.bricks.unfinished"
+        while running.poll() is None and not (unfinished / "brick_00004.vtu").exists():
+            pass
+        running.kill()
+        running.wait()
+        self.assertFalse((self.folder / "k.bricks").exists() and unfinished.exists())
+        again = self.run_ok("split", "model:twist:40", "-o", "k.bricks", "--bricks", 64, "--json").json()
+        self.assertGreaterEqual(again["kept"], 4)
+        self.assertFalse(unfinished.exists())
+        self.assertEqual(self.run_ok("info", "k.bricks", "--json").json()["cells"], 64000)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shares of work: --part, join, and processes of MPI. The result is that of one process, bit by bit."""
+
+import json
+import os
+import shutil
+import subprocess
+import unittest
+
+from command import COMMAND, InFolder, subvol
+
+COUNTS = (1, 2, 3, 4, 7)
+MPIRUN = shutil.which("mpirun")
+AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+PICTURE = ["--size", "160x128", "--backend", "cpu", "--quiet"]
+
+
+def without_times(report):
+    for key in ("seconds", "peak_bytes", "input", "output", "ranks", "bytes_sent", "peak_bytes_of_ranks", "parts"):
+        report.pop(key, None)
+    return report
+
+
+class Shared(InFolder):
+    def parts(self, verb, source, extension, count, *options):
+        """The names of the parts of a share each."""
+        names = []
+        for part in range(1, count + 1):
+            name = f"p{part}of{count}{extension}"
+            self.run_ok(verb, source, "-o", name, "--part", f"{part}/{count}", *options)
+            names.append(name)
+        return names
+
+    def bytes_of(self, name):
+        return (self.folder / name).read_bytes()
+
+    def grids(self, name):
+        return [(g["name"], g["active_voxels"], g["hash"]) for g in self.run_ok("info", name, "--json").json()["grids"]]
+
+    def refused(self, *arguments):
+        run = subvol(*arguments, folder=self.folder)
+        self.assertEqual(run.code, 2, run.err)
+        self.assertEqual(len(run.err.strip().splitlines()), 1, run.err)
+        return run.err
+
+
+class Parts(Shared):
+    def test_points_of_shares_are_the_file_of_one_process(self):
+        for extension, options in ((".ply", []), (".vtp", []), (".ply", ["--splats", "--up", "y"]), (".ply", ["--ascii"])):
+            self.run_ok("points", "model:ball:4", "-o", "one" + extension, *options)
+            for count in COUNTS if not options else (3,):
+                names = self.parts("points", "model:ball:4", extension, count, *options)
+                self.run_ok("join", *reversed(names), "-o", "joined" + extension)
+                self.assertEqual(self.bytes_of("joined" + extension), self.bytes_of("one" + extension), (extension, count))
+            if extension == ".vtp" or options[:1] == ["--splats"]:
+                self.assertEqual(self.bytes_of("joined.boundary.vtp"), self.bytes_of("one.boundary.vtp"))
+
+    def test_grids_of_shares_have_the_leaves_of_one_process(self):
+        options = ["--resolution", "80", "--cell-ids", "--mask", "--coverage", "--sdf", "--half", "--quiet"]
+        self.run_ok("vdb", "model:ball:4", "-o", "one.vdb", *options)
+        for count in COUNTS:
+            names = self.parts("vdb", "model:ball:4", ".vdb", count, *options)
+            self.run_ok("join", *names, "-o", "joined.vdb", "--quiet")
+            self.assertEqual(self.grids("joined.vdb"), self.grids("one.vdb"), count)
+
+    def test_creases_go_through_shares(self):
+        crease = ["--crease-angle", "30"]
+        grids, picture = ["--resolution", "64", "--quiet", *crease], [*PICTURE, *crease]
+        self.run_ok("points", "model:pawn", "-o", "one.ply", "--per-edge", "2", *crease)
+        self.run_ok("vdb", "model:pawn", "-o", "one.vdb", *grids)
+        self.run_ok("render", "model:pawn", "-o", "one.exr", *picture)
+        for verb, extension, options in (("points", ".ply", ["--per-edge", "2", *crease]), ("vdb", ".vdb", grids),
+                                         ("render", ".exr", picture)):
+            names = self.parts(verb, "model:pawn", extension, 3, *options)
+            self.run_ok("join", *names, "-o", "joined" + extension)
+        self.assertEqual(self.bytes_of("joined.ply"), self.bytes_of("one.ply"))
+        self.assertEqual(self.grids("joined.vdb"), self.grids("one.vdb"))
+        self.assertEqual(self.bytes_of("joined.exr"), self.bytes_of("one.exr"))
+
+    def test_rows_of_shares_are_the_picture_of_one_process(self):
+        for options in ([], ["--look", "volume"], ["--samples", "2", "--edges"], ["--legend"]):
+            self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
+            self.run_ok("render", "model:ball:4", "-o", "one.png", *PICTURE, *options)
+            for count in COUNTS if not options else (3,):
+                names = self.parts("render", "model:ball:4", ".exr", count, *PICTURE, *options)
+                for extension in (".exr", ".png"):
+                    self.run_ok("join", *names, "-o", "joined" + extension)
+                    self.assertEqual(self.bytes_of("joined" + extension), self.bytes_of("one" + extension), (options, count))
+
+    def test_figures_of_shares_are_those_of_one_process(self):
+        for source in ("model:ball:4", "model:twist:20"):
+            one = without_times(self.run_ok("info", source, "--json").json())
+            for count in COUNTS:
+                names = []
+                for part in range(1, count + 1):
+                    names.append(f"p{part}.json")
+                    figures = self.run_ok("info", source, "--json", "--part", f"{part}/{count}").out
+                    (self.folder / names[-1]).write_text(figures)
+                self.run_ok("join", *names, "-o", "joined.json")
+                joined = without_times(json.loads((self.folder / "joined.json").read_text()))
+                self.assertEqual(joined, one, (source, count))
+
+    def test_frames_are_divided(self):
+        self.run_ok("render", "model:ball:2", "-o", "all_##.png", "--turntable", "5", *PICTURE)
+        for part in (1, 2, 3):
+            self.run_ok("render", "model:ball:2", "-o", "some_##.png", "--turntable", "5", "--part", f"{part}/3", *PICTURE)
+        for frame in range(5):
+            self.assertEqual(self.bytes_of(f"some_{frame:02}.png"), self.bytes_of(f"all_{frame:02}.png"))
+
+    def test_a_share_is_a_file_of_its_own(self):
+        names = self.parts("points", "model:ball:4", ".ply", 2)
+        counts = [self.run_ok("info", name, "--json").json()["points"] for name in names]
+        self.assertEqual(sum(counts), self.run_ok("points", "model:ball:4", "-o", "one.ply", "--json").json()["points"])
+
+    def test_wrong_shares_are_refused(self):
+        for share in ("0/2", "3/2", "2", "1/0", "a/b", "1/-1", "/2", "1/2/3", "1/99999999"):
+            self.refused("points", "model:ball:4", "-o", "p.ply", "--part", share)
+        self.assertIn(".exr", self.refused("render", "model:ball:4", "-o", "p.png", "--part", "1/2"))
+        self.assertIn("join", self.refused("points", "model:ball:4", "-o", "p.vdb", "--part", "1/2"))
+        self.assertIn("tets", self.refused("render", "model:ball:4", "-o", "p.exr", "--method", "tets", "--part", "1/2"))
+        self.assertIn("--json", self.refused("info", "model:ball:4", "--part", "1/2"))
+
+    def test_wrong_parts_are_refused(self):
+        one, two, three = self.parts("points", "model:ball:4", ".ply", 3)
+        self.run_ok("points", "model:ball:4", "-o", "whole.ply")
+        self.run_ok("points", "model:ball:5", "-o", "foreign.ply", "--part", "3/3")
+        self.run_ok("points", "model:ball:4", "-o", "other.ply", "--part", "3/3", "--per-edge", "2")
+        self.run_ok("points", "model:ball:4", "-o", "four.ply", "--part", "3/4")
+        self.assertIn("part 2/3 of this work is missing", self.refused("join", one, three, "-o", "j.ply"))
+        self.assertIn("and so is", self.refused("join", one, two, two, three, "-o", "j.ply"))
+        self.assertIn("belongs to other work", self.refused("join", one, two, "foreign.ply", "-o", "j.ply"))
+        self.assertIn("belongs to other work", self.refused("join", one, two, "other.ply", "-o", "j.ply"))
+        self.assertIn("one of 4 parts", self.refused("join", one, two, "four.ply", "-o", "j.ply"))
+        self.assertIn("not a part", self.refused("join", "whole.ply", "-o", "j.ply"))
+        self.assertIn("no such file", self.refused("join", "nothing.ply", "-o", "j.ply"))
+        (self.folder / "broken.ply").write_bytes(self.bytes_of(two)[:2000])
+        self.refused("join", one, "broken.ply", three, "-o", "j.ply")
+        self.assertFalse((self.folder / "j.ply").exists())
+
+
+@unittest.skipUnless(MPIRUN, "mpirun is not installed")
+class Ranks(Shared):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        probe = cls.mpirun(2, "info", "model:ball:2", "--json")
+        if probe.returncode == 3:
+            raise unittest.SkipTest("this build is without MPI: " + probe.stderr.strip())
+
+    @staticmethod
+    def mpirun(count, *arguments, folder=None):
+        return subprocess.run([MPIRUN, "--oversubscribe", "-n", str(count), COMMAND, *map(str, arguments)], cwd=folder,
+                              capture_output=True, text=True, timeout=600, env={**os.environ, **AS_ROOT})
+
+    def ranks(self, count, *arguments):
+        done = self.mpirun(count, *arguments, folder=self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def test_points_and_grids(self):
+        grids = ["--resolution", "80", "--cell-ids", "--mask", "--sdf", "--half", "--quiet"]
+        self.run_ok("points", "model:ball:4", "-o", "one.ply")
+        self.run_ok("vdb", "model:ball:4", "-o", "one.vdb", *grids)
+        for count in COUNTS[1:]:
+            self.ranks(count, "points", "model:ball:4", "-o", "ranks.ply")
+            self.assertEqual(self.bytes_of("ranks.ply"), self.bytes_of("one.ply"), count)
+            self.ranks(count, "vdb", "model:ball:4", "-o", "ranks.vdb", *grids)
+            self.assertEqual(self.grids("ranks.vdb"), self.grids("one.vdb"), count)
+
+    def test_pictures(self):
+        for options in ([], ["--look", "volume", "--samples", "2"]):
+            self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
+            for count in COUNTS[1:] if not options else (3,):
+                self.ranks(count, "render", "model:ball:4", "-o", "ranks.exr", *PICTURE, *options)
+                self.assertEqual(self.bytes_of("ranks.exr"), self.bytes_of("one.exr"), (options, count))
+
+    def test_figures(self):
+        one = without_times(self.run_ok("info", "model:ball:4", "--json").json())
+        for count in COUNTS[1:]:
+            report = json.loads(self.ranks(count, "info", "model:ball:4", "--json").stdout)
+            self.assertEqual(report["ranks"], count)
+            self.assertEqual(without_times(report), one, count)
+
+    def test_bytes_sent_are_those_of_the_model(self):
+        """Points: 68 bytes a kernel of a rank other than 0; pictures: 72 bytes a kernel and band, 20 a pixel."""
+        report = json.loads(self.ranks(4, "points", "model:twist:20", "-o", "r.ply", "--json").stdout)
+        sent = 68 * report["points"] * 3 / 4
+        self.assertLess(abs(report["bytes_sent"] / sent - 1), 0.1)
+        report = json.loads(self.ranks(4, "render", "model:twist:20", "-o", "r.exr", *PICTURE[:-1], "--json").stdout)
+        self.assertLess(abs(report["kernel_bytes_sent"] / (72 * report["kernels_shipped"]) - 1), 0.1)
+        pixels = 20 * 160 * 128 * 3 / 4
+        self.assertLess(abs(report["bytes_sent"] / (72 * report["kernels_shipped"] + pixels) - 1), 0.15)
+
+    def test_one_sentence_for_all(self):
+        for arguments in (["points", "nothing.vtk", "-o", "a.ply"], ["points", "model:ball:4", "-o", "nowhere/a.ply"],
+                          ["vdb", "model:ball:4", "-o", "a.vdb", "--error"], ["subdivide", "model:ball:4", "-o", "a.vtk"],
+                          ["points", "model:ball:4", "-o", "a.ply", "--part", "1/2"]):
+            done = self.mpirun(3, *arguments, folder=self.folder)
+            self.assertEqual(done.returncode, 2, (arguments, done.stderr))
+            said = [line for line in done.stderr.splitlines() if line.startswith("subvol:")]
+            self.assertEqual(len(said), 1, done.stderr)
+            self.assertEqual([p.name for p in self.folder.iterdir() if p.name.startswith("a.")], [])
+
+    def test_only_one_speaks(self):
+        done = self.ranks(3, "points", "model:ball:4", "-o", "r.ply")
+        self.assertEqual(done.stdout.count("points"), self.run_ok("points", "model:ball:4", "-o", "one.ply").out.count("points"))
+        self.assertEqual(self.mpirun(3, "--version").stdout.count("\n"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

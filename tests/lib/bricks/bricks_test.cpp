@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh in bricks is the mesh: whatever is computed brick by brick has the bits that it has in one piece.
+#include "subvol/bricks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+
+#include "../temp_folder.h"
+#include "../test_meshes.h"
+#include "subvol/brick_points.h"
+#include "subvol/mesh_io.h"
+#include "subvol/model.h"
+#include "subvol/points_io.h"
+#include "subvol/split.h"
+
+namespace subvol {
+namespace {
+
+using test::error_of;
+using test::read_bytes;
+
+class BricksTest : public test::TempFolder {};
+
+constexpr std::array<std::size_t, 5> kCounts{1, 2, 3, 4, 7};
+constexpr std::array kShapes{BrickShape::Blocks, BrickShape::Slabs, BrickShape::Random};
+
+HexMesh irregular_ball() {
+    HexMesh mesh = make_model("ball", 8);
+    test::jitter(mesh, 0.1 / 8, 3);
+    return mesh;
+}
+
+/// Creases on the boundary and a sharp face inside, in bricks of every kind.
+HexMesh tagged() {
+    HexMesh mesh = test::make_box(9, 5, 4);
+    test::jitter(mesh, 0.1, 5);
+    test::add_field(mesh, "heat", [](const Vec3& x) { return std::sin(x.x) + x.y * x.z; });
+    for (Index x = 0; x < 9; ++x) mesh.creases.push_back({x + 2 * 10, x + 1 + 2 * 10});  // along the bottom's middle
+    for (Index y = 0; y < 5; ++y) {
+        for (Index z = 0; z < 4; ++z) {
+            const Index p = 4 + 10 * y + 60 * z;
+            mesh.sharp_faces.push_back({p, p + 10, p + 70, p + 60});
+        }
+    }
+    return mesh;
+}
+
+TEST_F(BricksTest, TogetherTheyAreTheMesh) {
+    const HexMesh mesh = irregular_ball();
+    for (const BrickShape shape : kShapes) {
+        const SplitResult split = split_mesh(path("ball.bricks"), mesh, {.bricks = 5, .shape = shape});
+        EXPECT_EQ(split.bricks.cells, mesh.cells.size());
+        EXPECT_EQ(split.bricks.points, mesh.points.size());
+        std::set<std::uint64_t> cells, points;
+        for (std::size_t b = 0; b < split.bricks.bricks.size(); ++b) {
+            const BrickMesh brick = read_brick(split.bricks, b);
+            for (std::size_t c = 0; c < brick.cell_numbers.size(); ++c) {
+                const auto& corners = mesh.cells[brick.cell_numbers[c]];
+                for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(brick.point_numbers[brick.mesh.cells[c][k]], corners[k]);
+                if (brick.owned_cells[c]) {
+                    EXPECT_TRUE(cells.insert(brick.cell_numbers[c]).second) << "owned twice";
+                }
+            }
+            for (std::size_t p = 0; p < brick.point_numbers.size(); ++p) {
+                EXPECT_EQ(brick.mesh.points[p], mesh.points[brick.point_numbers[p]]);
+                EXPECT_EQ(brick.mesh.attributes[0].values[p], mesh.attributes[0].values[brick.point_numbers[p]]);
+                if (brick.owned_points[p]) {
+                    EXPECT_TRUE(points.insert(brick.point_numbers[p]).second) << "owned twice";
+                }
+            }
+        }
+        EXPECT_EQ(cells.size(), mesh.cells.size());
+        EXPECT_EQ(points.size(), mesh.points.size());
+        const auto [min, max] = std::ranges::minmax(mesh.attributes[0].values);
+        EXPECT_EQ(split.bricks.fields[0].min[0], min);
+        EXPECT_EQ(split.bricks.fields[0].max[0], max);
+        EXPECT_EQ(split.bricks.bounds.lower, bounds(mesh).lower);
+        EXPECT_EQ(split.bricks.bounds.upper, bounds(mesh).upper);
+    }
+}
+
+TEST_F(BricksTest, PointsHaveTheSameBytes) {
+    for (const HexMesh& mesh : {irregular_ball(), tagged()}) {
+        for (const Correction correction : {Correction::Second, Correction::Full}) {
+            const SampleOptions options{.correction = correction};
+            write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
+            const std::string whole = read_bytes(path("whole.ply"));
+            for (const BrickShape shape : kShapes) {
+                for (const std::size_t count : kCounts) {
+                    const SplitOptions split{
+                        .bricks = count, .shape = shape, .halo_layers = correction == Correction::Full ? 4 : 3};
+                    const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
+                    const auto report =
+                        write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
+                    EXPECT_EQ(report.points, mesh.points.size());
+                    EXPECT_TRUE(read_bytes(path("bricks.ply")) == whole) << count << " bricks of shape " << int(shape);
+                }
+            }
+        }
+    }
+}
+
+TEST_F(BricksTest, CreasesByAngleAndRefinedBoundariesToo) {
+    const HexMesh mesh = irregular_ball();
+    const SampleOptions options{.scheme = {.crease_angle_deg = 20}, .boundary_levels = 2};
+    write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
+    const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 6}).bricks;
+    (void)write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
+    EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply")));
+}
+
+TEST_F(BricksTest, RealMeshes) {
+    const auto folder = test::data_folder();
+    if (!folder) GTEST_SKIP() << "SUBVOL_DATA names no folder";
+    const HexMesh mesh = read_mesh(*folder / "hexdom_igea_improve.vtk").mesh;
+    HexMesh with_field = without_unused_points(mesh);
+    with_field.attributes.clear();
+    test::add_field(with_field, "f", [](const Vec3& x) { return x.x * x.y + x.z; });
+    write_points(path("whole.ply"), sample_rbf_points(with_field).volume);
+    for (const BrickShape shape : kShapes) {
+        const Bricks bricks = split_mesh(path("m.bricks"), with_field, {.bricks = 7, .shape = shape}).bricks;
+        (void)write_points_of_bricks(path("bricks.ply"), bricks, {}, [](HexMesh same) { return same; });
+        EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply")));
+    }
+}
+
+TEST_F(BricksTest, GatherHasAllThatTouchesTheBox) {
+    const HexMesh mesh = irregular_ball();
+    const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 7}).bricks;
+    const Box box{{-0.2, -0.3, 0.1}, {0.1, 0.2, 0.4}};
+    const BrickMesh part = gather(bricks, box);
+    EXPECT_TRUE(std::ranges::is_sorted(part.cell_numbers));
+    EXPECT_LT(part.mesh.cells.size(), mesh.cells.size());
+    std::set<std::uint64_t> owned, all(part.cell_numbers.begin(), part.cell_numbers.end());
+    for (std::size_t c = 0; c < part.owned_cells.size(); ++c) {
+        if (part.owned_cells[c]) owned.insert(part.cell_numbers[c]);
+    }
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        Box cell;
+        for (const Index p : mesh.cells[c]) cell.add(mesh.points[p]);
+        bool touches = true;
+        for (int d = 0; d < 3; ++d) touches = touches && cell.lower[d] <= box.upper[d] && cell.upper[d] >= box.lower[d];
+        EXPECT_TRUE(!touches || owned.contains(c)) << "cell " << c;
+    }
+    // The halo: every cell that shares a point with an owned one is there.
+    std::set<Index> points;
+    for (const auto c : owned) points.insert(mesh.cells[c].begin(), mesh.cells[c].end());
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c) {
+        const bool next = std::ranges::any_of(mesh.cells[c], [&](Index p) { return points.contains(p); });
+        EXPECT_TRUE(!next || all.contains(c)) << "cell " << c;
+    }
+}
+
+TEST_F(BricksTest, CountsAreThoseOfTheWhole) {
+    const HexMesh mesh = irregular_ball();
+    const MeshReport whole = inspect(mesh);
+    for (const BrickShape shape : kShapes) {
+        const MeshReport report = inspect(split_mesh(path("m.bricks"), mesh, {.bricks = 7, .shape = shape}).bricks);
+        EXPECT_EQ(report.points, whole.points);
+        EXPECT_EQ(report.points_used, whole.points_used);
+        EXPECT_EQ(report.cells, whole.cells);
+        EXPECT_EQ(report.edges, whole.edges);
+        EXPECT_EQ(report.faces, whole.faces);
+        EXPECT_EQ(report.boundary_faces, whole.boundary_faces);
+        EXPECT_EQ(report.interior_edge_valence, whole.interior_edge_valence);
+        EXPECT_EQ(report.singular_nodes, whole.singular_nodes);
+        EXPECT_EQ(report.min_scaled_jacobian, whole.min_scaled_jacobian);
+        EXPECT_EQ(report.bounds.lower, whole.bounds.lower);
+        EXPECT_NEAR(report.volume, whole.volume, 1e-13 * whole.volume) << "summed in another order";
+    }
+}
+
+TEST_F(BricksTest, TheTwistIsWrittenWithoutTheWhole) {
+    const HexMesh mesh = make_model("twist", 12);
+    write_points(path("whole.ply"), sample_rbf_points(mesh).volume);
+    for (const std::size_t count : kCounts) {
+        const Bricks bricks = split_twist(path("t.bricks"), 12, {.bricks = count}).bricks;
+        EXPECT_EQ(bricks.bricks.size(), count);
+        EXPECT_EQ(bricks.cells, mesh.cells.size());
+        (void)write_points_of_bricks(path("bricks.ply"), bricks, {}, [](HexMesh same) { return same; });
+        EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply"))) << count;
+    }
+}
+
+TEST_F(BricksTest, ABrickOpensAlone) {
+    const HexMesh mesh = make_model("twist", 8);
+    const Bricks bricks = split_mesh(path("t.bricks"), mesh, {.bricks = 3}).bricks;
+    std::size_t cells = 0;
+    for (const Brick& brick : bricks.bricks) cells += read_mesh(bricks.path / brick.file).mesh.cells.size();
+    EXPECT_EQ(cells, mesh.cells.size()) << "the halo is left out";
+}
+
+TEST_F(BricksTest, AnInterruptedSplitIsContinued) {
+    const HexMesh mesh = make_model("twist", 8);
+    (void)split_mesh(path("t.bricks"), mesh, {.bricks = 4});
+    // As after an interruption: two bricks are there, one is damaged.
+    std::filesystem::rename(path("t.bricks"), path("t.bricks.unfinished"));
+    std::filesystem::rename(path("t.bricks.unfinished/index.json"), path("t.bricks.unfinished/progress.json"));
+    std::filesystem::remove(path("t.bricks.unfinished/brick_00002.vtu"));
+    std::string bytes = read_bytes(path("t.bricks.unfinished/brick_00001.vtu"));
+    bytes[bytes.size() / 2] ^= 1;
+    (void)write("t.bricks.unfinished/brick_00001.vtu", bytes);
+    const SplitResult split = split_mesh(path("t.bricks"), mesh, {.bricks = 4});
+    EXPECT_EQ(split.kept, 2U);
+    EXPECT_EQ(split.written, 2U);
+    EXPECT_FALSE(std::filesystem::exists(path("t.bricks.unfinished")));
+    for (std::size_t b = 0; b < 4; ++b) EXPECT_GT(read_brick(split.bricks, b).mesh.cells.size(), 0U);
+}
+
+TEST_F(BricksTest, DamageIsSaidInOneSentence) {
+    const HexMesh mesh = make_model("twist", 6);
+    const std::filesystem::path folder = path("t.bricks"), first = folder / "brick_00000.vtu", index = folder / "index.json";
+    const Bricks sound = split_mesh(folder, mesh, {.bricks = 2}).bricks;
+    const std::string brick = read_bytes(first), list = read_bytes(index);
+    const auto open_all = [&] {
+        const Bricks bricks = open_bricks(folder);
+        for (std::size_t b = 0; b < bricks.bricks.size(); ++b) (void)read_brick(bricks, b);
+    };
+    const auto put = [](const std::filesystem::path& file, const std::string& bytes) {
+        std::ofstream(file, std::ios::binary) << bytes;
+    };
+    std::filesystem::remove(first);
+    EXPECT_NE(error_of(open_all).find("a brick is missing: brick_00000.vtu"), std::string::npos);
+    put(first, brick.substr(0, brick.size() / 2));
+    EXPECT_NE(error_of(open_all).find("in the index it has"), std::string::npos);
+    std::string changed = brick;
+    changed[brick.size() - 200] ^= 4;
+    put(first, changed);
+    EXPECT_NE(error_of(open_all).find("has changed since the index was written"), std::string::npos);
+    HexMesh moved = mesh;
+    moved.points[0].x += 1e-9;
+    (void)split_mesh(path("other.bricks"), moved, {.bricks = 2});
+    put(first, read_bytes(path("other.bricks") / "brick_00000.vtu"));
+    EXPECT_NE(error_of(open_all).find("is a brick of another mesh"), std::string::npos);
+    put(first, brick);
+    EXPECT_EQ(error_of(open_all), "no error");
+    put(index, list.substr(0, list.size() / 2));
+    EXPECT_NE(error_of(open_all).find("not well-formed JSON"), std::string::npos);
+    std::string newer = list;
+    newer.replace(newer.find("\"version\": 1"), 12, "\"version\": 9");
+    put(index, newer);
+    EXPECT_NE(error_of(open_all).find("has version 9 of the format of bricks"), std::string::npos);
+    put(index, "{}");
+    EXPECT_NE(error_of(open_all).find("is not an index of bricks"), std::string::npos);
+}
+
+TEST_F(BricksTest, NothingElseIsOverwritten) {
+    std::filesystem::create_directories(path("mine"));
+    (void)write("mine/letter.txt", "dear");
+    const HexMesh mesh = make_model("twist", 4);
+    EXPECT_NE(error_of([&] { (void)split_mesh(path("mine"), mesh, {.bricks = 2}); }).find("is no folder of bricks"),
+              std::string::npos);
+    EXPECT_EQ(read_bytes(path("mine/letter.txt")), "dear");
+    EXPECT_NE(error_of([&] { (void)split_mesh(path("m"), mesh, {.bricks = 1000}); }).find("1000 bricks"), std::string::npos);
+    EXPECT_NE(error_of([&] { (void)split_mesh(path("m"), mesh, {.bricks = 2, .halo_layers = 0}); }).find("layers of halo"),
+              std::string::npos);
+    const Bricks thin = split_mesh(path("thin"), mesh, {.bricks = 2, .halo_layers = 1}).bricks;
+    EXPECT_NE(error_of([&] { (void)sample_brick(thin, read_brick(thin, 0)); }).find("split with --halo 3"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace subvol

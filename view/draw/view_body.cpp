@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "subvol/view_state.h"
+
+namespace subvol {
+
+ViewBody view_body(HexMesh mesh, const std::optional<std::string>& field) {
+    SelectedField selected = select_field(mesh, field);
+    mesh.attributes.assign(1, std::move(selected.scalar));
+    const auto [min, max] = std::ranges::minmax(mesh.attributes.front().values);
+    const Box box = bounds(mesh);
+    return {.mesh = std::move(mesh), .box = box, .range = {min, max}};
+}
+
+ViewBody view_body(HexMesh mesh, const ViewPoints& points, const std::optional<std::string>& field) {
+    ViewBody body = view_body(std::move(mesh), field);
+    const auto& channels = points.volume->channels;
+    const auto found = std::ranges::find(channels, body.field(), &RbfChannel::name);
+    if (found != channels.end()) body.channel = static_cast<std::size_t>(found - channels.begin());
+    body.points = points;
+    body.box = points.box;
+    if (points.range) body.range = *points.range;
+    return body;
+}
+
+HexMesh mesh_of_points(const RbfVolume& volume) {
+    HexMesh mesh;
+    mesh.points = volume.centers;
+    for (const RbfChannel& channel : volume.channels)
+        mesh.attributes.push_back({channel.name, 1, {channel.values.begin(), channel.values.end()}});
+    return mesh;
+}
+
+std::vector<std::string> methods_of(const ViewBody& body) {
+    if (body.points.voxels) return {"splat", "sheets", "grid"};
+    if (body.points.volume) return {"splat", "sheets"};
+    return {"splat", "sheets", "tets", "pt", "dense"};
+}
+
+Optics optics_of(const ViewState& state, const ViewBody& body) {
+    return picture_optics(state.look, body.box, body.range, body.range);
+}
+
+}  // namespace subvol

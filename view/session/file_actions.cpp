@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Actions that wait, pick, and write or read files.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "seen_view.h"
+#include "subvol/color_map_file.h"
+#include "subvol/detail/atomic_file.h"
+#include "subvol/detail/printable.h"
+#include "subvol/error.h"
+#include "view_actions.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Session = ViewSession::State;
+
+void restore(Session& session, const Json& json, const Json& known, const std::string& path) {
+    for (const auto& [key, value] : json.items()) {
+        if (!known.contains(key)) throw Error(ErrorCode::InvalidInput, "the key " + in_quotes(key) + " is not known", path);
+        run_action(session, key, value);
+    }
+}
+
+}  // namespace
+
+namespace {
+
+/// The ray through a pixel of the picture, and the field that it is picked from.
+auto picker(Session& session, const Json& value) {
+    const auto place = numbers(value, 2);
+    const View seen = seen_view(session.state, *session.body);
+    return [field = session.field(), optics = optics_of(session.state, *session.body), ray = seen.ray(place[0], place[1])] {
+        return pick(*field, optics, ray);
+    };
+}
+
+}  // namespace
+
+void pick_place(Session& session, const Json& value) {
+    session.picked = picker(session, value)();
+}
+
+void wait(Session& session, const Json& wanted) {
+    if (wanted == "first") {
+        session.worker.wait_first();
+        session.note_wait();
+    } else if (flag(wanted)) {
+        (void)session.wait();
+    }
+}
+
+namespace {
+
+std::string writable(const Session& session, const Json& file) {
+    std::string path = word(file);
+    if (!session.source.write_picture) throw Error(ErrorCode::InvalidInput, "pictures cannot be written here");
+    return path;
+}
+
+}  // namespace
+
+void screenshot(Session& session, const Json& file) {
+    const std::string path = writable(session, file);
+    (void)session.wait();
+    session.writer(path)();
+}
+
+/// The colours and opacities that are shown, for ParaView and for `--tf`.
+void save_tf(Session& session, const Json& file) {
+    const std::filesystem::path path = word(file);
+    if (path.extension() != ".json") throw Error(ErrorCode::InvalidInput, "a colour map is a .json file", path.string());
+    const Optics optics = optics_of(session.state, *session.body);
+    write_text_file(path, color_map_json(optics.function(), path.stem().string()));
+}
+
+void save_state(Session& session, const Json& file) {
+    write_text_file(word(file), json_of(session.state).dump(2) + "\n");
+}
+
+void load_state(Session& session, const Json& file) {
+    const std::string path = word(file);
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) throw Error(ErrorCode::Io, "cannot be opened", path);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const Json json = parsed(text, path);
+    if (!json.is_object()) throw Error(ErrorCode::InvalidInput, "is not the state of a session", path);
+    const Json known = json_of(session.state);
+    const ViewState before = session.state;
+    const auto body = session.body;
+    HexMesh mesh = session.mesh;
+    try {
+        restore(session, json, known, path);
+    } catch (...) {
+        session.state = before;
+        session.body = body;
+        session.mesh = std::move(mesh);
+        session.picked_field.reset();
+        session.show();
+        throw;
+    }
+}
+
+/// Of the window; without one it has no effect.
+void window(Session& session, const Json& value) {
+    check_keys(value, {"dark", "help", "log_counts", "log_opacity", "play", "section", "tool", "brush"});
+    WindowLook next = session.look;
+    if (value.contains("dark")) next.dark = flag(value["dark"]);
+    if (value.contains("help")) next.help = flag(value["help"]);
+    if (value.contains("log_counts")) next.log_counts = flag(value["log_counts"]);
+    if (value.contains("log_opacity")) next.log_opacity = flag(value["log_opacity"]);
+    if (value.contains("play")) next.play = flag(value["play"]);
+    if (value.contains("section")) next.section = word(value["section"]);
+    if (value.contains("tool"))
+        next.tool = word_of(value["tool"], {"turn", "brush", "move", "rotate", "scale", "twist", "bend", "paint"});
+    if (value.contains("brush")) next.brush_px = number(value["brush"], 1, 1000);
+    session.look = next;
+}
+
+void start_action(ViewSession::State& session, const std::string& name, const Json& argument) {
+    using Done = Session::Done;
+    if (name == "pick") {
+        session.later.push_back(std::async(std::launch::async, [find = picker(session, argument)]() -> Done {
+            return [picked = find()](Session& now) { now.picked = picked; };
+        }));
+    } else if (name == "step") {
+        const auto steps = static_cast<int>(session.source.times.size());
+        const auto wanted = static_cast<std::size_t>(whole_number(argument, 0, steps - 1));
+        if (wanted != session.state.step || session.reading) session.read_later(wanted);
+    } else if (name == "screenshot") {
+        session.later.push_back(std::async(std::launch::async, [write = session.writer(writable(session, argument))]() -> Done {
+            write();
+            return [](Session&) {};
+        }));
+    } else {
+        run_action(session, name, argument);
+    }
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Actions that choose what is shown, by which method, in which colours.
+#include <utility>
+
+#include "subvol/error.h"
+#include "view_actions.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Session = ViewSession::State;
+
+constexpr int kLargestSide_px = 8192;
+
+}  // namespace
+
+void field(Session& session, const Json& name) {
+    const std::string before = std::exchange(session.state.field, word(name));
+    try {
+        session.choose_body();
+    } catch (...) {
+        session.state.field = before;
+        throw;
+    }
+    session.show();
+}
+
+void step(Session& session, const Json& value) {
+    const auto steps = static_cast<int>(session.source.times.size());
+    const auto wanted = static_cast<std::size_t>(whole_number(value, 0, steps - 1));
+    if (wanted == session.state.step) return;
+    session.take_step(wanted, session.source.read(wanted));
+}
+
+void size(Session& session, const Json& value) {
+    const auto n = numbers(value, 2);
+    edit_state(session, [&](ViewState& next) {
+        next.width = whole_number(value[0], 1, kLargestSide_px);
+        next.height = whole_number(value[1], 1, kLargestSide_px);
+    });
+}
+
+void method(Session& session, const Json& name) {
+    edit_state(session, [&](ViewState& next) { next.method = word_of(name, methods_of(*session.body)); });
+}
+
+void look(Session& session, const Json& name) {
+    edit_state(session, [&](ViewState& next) {
+        next.look.look = *look_named(word_of(name, {"solid", "volume", "xray", "isosurface"}));
+    });
+}
+
+void tf(Session& session, const Json& name) {
+    edit_state(session, [&](ViewState& next) { next.look.colors = word(name); });
+}
+
+void range(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) {
+        next.look.range.reset();
+        next.look.stretch = !value.is_null();
+        if (value.is_null() || value == "field") return;
+        const auto ends = numbers(value, 2);
+        if (!(ends[0] < ends[1])) throw Error(ErrorCode::InvalidInput, "is not ascending", {}, "[MIN, MAX]");
+        next.look.range = ValueRange{ends[0], ends[1]};
+    });
+}
+
+void opacity(Session& session, const Json& value) {
+    if (!value.is_array()) throw Error(ErrorCode::InvalidInput, "is not an array", {}, "[[VALUE, OPACITY], ...]");
+    edit_state(session, [&](ViewState& next) {
+        next.look.opacity.clear();
+        for (const Json& knot : value) {
+            const auto pair = numbers(knot, 2);
+            next.look.opacity.push_back({pair[0], number(knot[1], 0, 1)});
+        }
+    });
+}
+
+void opacity_unit(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) {
+        next.look.opacity_unit_world.reset();
+        if (!value.is_null()) next.look.opacity_unit_world = number(value, 1e-18, kMostWorld);
+    });
+}
+
+void clamp(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) { next.look.clamp = flag(value); });
+}
+
+void background(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) {
+        next.background.reset();
+        if (value.is_null()) return;
+        for (const Json& part : value) (void)number(part, 0, 1);
+        next.background = vector(value);
+    });
+}
+
+void axes(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) { next.axes = flag(value); });
+}
+
+void edges(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) {
+        next.edges = flag(value);
+        if (next.edges && session.body->points.volume) throw Error(ErrorCode::InvalidInput, "points have no control mesh");
+    });
+}
+
+void legend(Session& session, const Json& value) {
+    edit_state(session, [&](ViewState& next) { next.legend = flag(value); });
+}
+
+void compare(Session& session, const Json& name) {
+    session.state.compare = name.is_null() ? "" : word_of(name, methods_of(*session.body));
+    session.show();
+}
+
+void slider(Session& session, const Json& value) {
+    session.state.slider = number(value, 0, 1);
+}
+
+void difference(Session& session, const Json& value) {
+    session.state.difference = flag(value);
+}
+
+}  // namespace subvol::detail
