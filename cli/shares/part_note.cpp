@@ -6,7 +6,10 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <numeric>
 
+#include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -22,56 +25,43 @@ constexpr std::array<const char*, 8> kNotOfTheTask{"--part",  "--output",   "--t
                                                    "--quiet", "--progress", "--memory",  "--help"};
 constexpr std::size_t kLooked = 1 << 16;  // bytes at a file's start and end that its identity depends on
 
-/// FNV-1a
-class Hash {
-public:
-    void add(std::string_view text) {
-        for (const char c : text) value_ = (value_ ^ static_cast<unsigned char>(c)) * 1099511628211U;
-        value_ = (value_ ^ 0xffU) * 1099511628211U;  // so that "ab", "c" differs from "a", "bc"
-    }
-    [[nodiscard]] std::string digits() const { return text(std::hex, std::setw(16), std::setfill('0'), value_); }
-
-private:
-    std::uint64_t value_ = 14695981039346656037U;
-};
-
 /// Adds the size and the two ends of a file: the whole of it may be larger than what a share reads.
-void add_file(const fs::path& path, Hash& hash) {
+void add_file(const fs::path& path, detail::ByteHash& hash) {
     std::error_code none;
     const auto size = fs::file_size(path, none);
     if (none) return;
-    hash.add(std::to_string(size));
+    hash.add_text(std::to_string(size));
     std::ifstream file(path, std::ios::binary);
     std::string bytes(std::min<std::uintmax_t>(size, kLooked), '\0');
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    hash.add(bytes);
+    hash.add_text(bytes);
     if (size <= kLooked) return;
     file.seekg(static_cast<std::streamoff>(size - bytes.size()));
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    hash.add(bytes);
+    hash.add_text(bytes);
 }
 
-void add_input(const std::string& input, Hash& hash) {
+void add_input(const std::string& input, detail::ByteHash& hash) {
     std::error_code none;
-    hash.add(fs::path(input).filename().string());
+    hash.add_text(fs::path(input).filename().string());
     if (fs::is_regular_file(input, none)) add_file(input, hash);
     const fs::path index = fs::path(input) / "index.json";  // of bricks
     if (fs::is_regular_file(index, none)) add_file(index, hash);
 }
 
 std::string task_of(const CLI::App& app, const std::string& input) {
-    Hash hash;
-    hash.add(app.get_name());
-    hash.add(SUBVOL_VERSION);
+    detail::ByteHash hash;
+    hash.add_text(app.get_name());
+    hash.add_text(SUBVOL_VERSION);
     add_input(input, hash);
     for (const CLI::Option* option : app.get_options()) {
         const std::string name = option->get_name();
         const auto same = [&](const char* other) { return name == other; };
         if (option->count() == 0 || option->get_positional() || std::ranges::any_of(kNotOfTheTask, same)) continue;
-        hash.add(name);
-        for (const std::string& value : option->results()) hash.add(value);
+        hash.add_text(name);
+        for (const std::string& value : option->results()) hash.add_text(value);
     }
-    return hash.digits();
+    return detail::hex_digits(hash.value());
 }
 
 }  // namespace
@@ -93,55 +83,74 @@ PartNote note_from(const std::string& text, const std::string& file) {
     const auto is_number = [&](const char* key) { return json.contains(key) && json[key].is_number_integer(); };
     const bool proper = json.is_object() && is_number("part") && is_number("of") && is_text("verb") && is_text("input") &&
                         is_text("task") && json.contains("how") && json["how"].is_object();
-    if (!proper) throw Error(ErrorCode::InvalidInput, "its note of the part that it is cannot be read", file);
-    PartNote note{.share = {json["part"].get<int>(), json["of"].get<int>()},
-                  .verb = json["verb"].get<std::string>(),
-                  .input = json["input"].get<std::string>(),
-                  .task = json["task"].get<std::string>(),
-                  .how = json["how"]};
-    const Share& share = note.share;
-    if (share.of < 1 || share.part < 1 || share.part > share.of) {
-        throw Error(ErrorCode::InvalidInput, "says to be part " + share.name() + ", which cannot be", file);
+    if (!proper) fail_note(file);
+    const auto part = json["part"].get<std::int64_t>(), of = json["of"].get<std::int64_t>();
+    if (of < 1 || part < 1 || part > of || of > std::numeric_limits<int>::max()) {
+        throw Error(ErrorCode::InvalidInput, text("says to be part ", part, "/", of, ", which cannot be"), file);
     }
-    return note;
+    return {.share = {static_cast<int>(part), static_cast<int>(of)},
+            .verb = json["verb"].get<std::string>(),
+            .input = json["input"].get<std::string>(),
+            .task = json["task"].get<std::string>(),
+            .how = json["how"]};
 }
 
-std::vector<std::size_t> order_of(std::span<const FoundPart> parts) {
-    const FoundPart& first = parts.front();
-    std::vector<std::size_t> order(static_cast<std::size_t>(first.note.share.of), parts.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        const auto& [file, note] = parts[i];
-        if (note.verb != first.note.verb || note.task != first.note.task) {
-            throw Error(ErrorCode::InvalidInput,
-                        "belongs to other work than " + first.file + ": the verb, the input, an option or the version differs",
-                        file);
-        }
-        if (note.share.of != first.note.share.of) {
-            throw Error(ErrorCode::InvalidInput,
-                        text("is one of ", note.share.of, " parts, but ", first.file, " is one of ", first.note.share.of),
-                        file);
-        }
-        std::size_t& place = order[static_cast<std::size_t>(note.share.part - 1)];
-        if (place != parts.size()) {
-            throw Error(ErrorCode::InvalidInput,
-                        text("is part ", note.share.name(), ", and so is ", parts[place].file, ": each is needed once"), file);
-        }
-        place = i;
+namespace {
+
+void check_same_work(const FoundPart& part, const FoundPart& first) {
+    if (part.note.verb != first.note.verb || part.note.task != first.note.task) {
+        throw Error(ErrorCode::InvalidInput,
+                    "belongs to other work than " + first.file + ": the verb, the input, an option or the version differs",
+                    part.file);
     }
-    std::vector<std::string> missing;
-    for (std::size_t p = 0; p < order.size(); ++p) {
-        if (order[p] == parts.size()) missing.push_back(text(p + 1, "/", order.size()));
+    if (part.note.share.of != first.note.share.of) {
+        throw Error(ErrorCode::InvalidInput,
+                    text("is one of ", part.note.share.of, " parts, but ", first.file, " is one of ", first.note.share.of),
+                    part.file);
     }
-    if (missing.empty()) return order;
+}
+
+/// numbers: of the parts that are there, ascending
+[[noreturn]] void fail_missing(const std::vector<int>& numbers, int of) {
     constexpr std::size_t kNamed = 8;
-    const std::size_t count = missing.size();
-    if (count > kNamed) {
-        missing.resize(kNamed);
-        missing.push_back(text("and ", count - kNamed, " more"));
+    const std::size_t count = static_cast<std::size_t>(of) - numbers.size();
+    std::vector<std::string> missing;
+    auto next = numbers.begin();
+    for (int p = 1; missing.size() < std::min(kNamed, count); ++p) {
+        if (next != numbers.end() && *next == p) {
+            ++next;
+        } else {
+            missing.push_back(text(p, "/", of));
+        }
     }
+    if (count > kNamed) missing.push_back(text("and ", count - kNamed, " more"));
     throw Error(ErrorCode::InvalidInput,
                 text(count == 1 ? "part " : "parts ", join(missing), " of this work ", count == 1 ? "is" : "are", " missing"),
                 "join", "all parts, as --part made them");
+}
+
+}  // namespace
+
+std::vector<std::size_t> order_of(std::span<const FoundPart> parts) {
+    for (const FoundPart& part : parts) check_same_work(part, parts.front());
+    std::vector<std::size_t> order(parts.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    const auto number = [&](std::size_t i) { return parts[i].note.share.part; };
+    std::ranges::stable_sort(order, {}, number);
+    if (const auto twice = std::ranges::adjacent_find(order, {}, number); twice != order.end()) {
+        const FoundPart &one = parts[twice[0]], &other = parts[twice[1]];
+        throw Error(ErrorCode::InvalidInput,
+                    text("is part ", other.note.share.name(), ", and so is ", one.file, ": each is needed once"), other.file);
+    }
+    const int of = parts.front().note.share.of;
+    if (order.size() == static_cast<std::size_t>(of)) return order;
+    std::vector<int> numbers;
+    for (const std::size_t i : order) numbers.push_back(number(i));
+    fail_missing(numbers, of);
+}
+
+void fail_note(const std::string& file) {
+    throw Error(ErrorCode::InvalidInput, "its note of the part that it is cannot be read", file);
 }
 
 void refuse_whole(const std::string& file) {

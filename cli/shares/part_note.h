@@ -38,6 +38,22 @@ struct PartNote {
 /// throws: Error(InvalidInput) if the text is no note
 [[nodiscard]] PartNote note_from(const std::string& text, const std::string& file);
 
+/// The error of a note that says nothing that `join` could use.
+[[noreturn]] void fail_note(const std::string& file);
+
+/// What a note says of how the whole is written, or `otherwise` if it says nothing of it.
+///
+/// throws: Error(InvalidInput) naming the file if it is of another type
+template <class Value>
+[[nodiscard]] Value how_of(const nlohmann::ordered_json& how, const char* key, Value otherwise, const std::string& file) {
+    if (!how.contains(key)) return otherwise;
+    try {
+        return how[key].get<Value>();
+    } catch (const nlohmann::json::exception&) {
+        fail_note(file);
+    }
+}
+
 /// A part that a file says to be.
 struct FoundPart {
     std::string file;

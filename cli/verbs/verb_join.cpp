@@ -102,10 +102,11 @@ private:
                 }
                 grids.push_back(join_grids(std::move(of_parts)));
                 set_text_of_grid(grids.back(), kPartNote, {});
-                store_in_half(grids.back(), how_.value("half", false));
+                store_in_half(grids.back(), how("half", false));
             }
         });
-        write_reported(grids, {.path = output_, .compression = compression_named(how_.value("compression", "blosc"))}, report);
+        write_reported(grids, {.path = output_, .compression = compression_named(how("compression", std::string("blosc")))},
+                       report);
     }
 
     void join_points(Report& report) {
@@ -123,9 +124,9 @@ private:
                 }
             }
         });
-        const std::string up = how_.value("up", "z");
-        const PointsWriteOptions options{.ascii = how_.value("ascii", false),
-                                         .splats = how_.value("splats", false),
+        const std::string up = how("up", std::string("z"));
+        const PointsWriteOptions options{.ascii = how("ascii", false),
+                                         .splats = how("splats", false),
                                          .up = up == "x"   ? UpAxis::X
                                                : up == "y" ? UpAxis::Y
                                                            : UpAxis::Z};
@@ -162,7 +163,7 @@ private:
         int next = 0;
         for (const std::size_t p : order) {
             const detail::PicturePart& part = read[p];
-            const int begin = how[p].value("first_row", -1), end = how[p].value("end_row", -1);
+            const int begin = how_of(how[p], "first_row", -1, parts_[p]), end = how_of(how[p], "end_row", -1, parts_[p]);
             const bool fits = begin == next && end >= begin && end <= image.height && part.rows.width == image.width &&
                               part.depth.empty() == depth.empty() &&
                               (begin == end || (part.first_row == begin && part.rows.height == end - begin));
@@ -174,7 +175,8 @@ private:
             if (!depth.empty()) std::ranges::copy(part.depth, depth.begin() + offset);
         }
         if (next != image.height) throw Error(ErrorCode::InvalidInput, "the parts do not fill the picture", "join");
-        const std::vector<double> background = how[order.front()].value("background", std::vector<double>(3));
+        const std::vector<double> background =
+            how_of(how[order.front()], "background", std::vector<double>(3), parts_[order.front()]);
         if (background.size() != 3) throw Error(ErrorCode::InvalidInput, "its note has no background", parts_[order.front()]);
         report.timed("write", [&] { write_image(output_, image, {background[0], background[1], background[2]}, depth); });
         report["output"] = output_;
@@ -210,9 +212,15 @@ private:
         report["output"] = output_;
     }
 
+    /// What the first part says of how the whole is written.
+    template <class Value>
+    [[nodiscard]] Value how(const char* key, Value otherwise) const {
+        return how_of(how_, key, std::move(otherwise), parts_.front());
+    }
+
     std::vector<std::string> parts_;
     std::string output_;
-    Json how_;
+    Json how_;  // of the first part
 };
 
 }  // namespace

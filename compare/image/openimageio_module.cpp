@@ -89,6 +89,8 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
     const bool proper = spec.width > 0 && spec.height > 0 && spec.depth <= 1 && spec.nchannels > 0 && !spec.deep &&
                         static_cast<std::int64_t>(spec.width) * spec.height <= kMaxPixels;
     if (!proper) return PictureFault{ErrorCode::InvalidInput, "is not a flat picture of at most 2^28 pixels"};
+    const bool small = static_cast<std::int64_t>(std::max(spec.width, spec.full_width)) * spec.full_height <= kMaxPixels;
+    if (!small) return PictureFault{ErrorCode::InvalidInput, "is part of a picture of more than 2^28 pixels"};
     picture.width = spec.width;
     picture.height = spec.height;
     picture.channels = std::min(spec.nchannels, 4);

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "output_file.h"
+#include "subvol/detail/byte_hash.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -185,39 +186,6 @@ BrickMesh parse(std::string_view text, const std::string& file) {
 }
 
 }  // namespace
-
-void ByteHash::mix(std::uint64_t word) {
-    hash_ = (hash_ ^ word) * 0x9e3779b97f4a7c15ULL;
-    hash_ ^= hash_ >> 29;
-}
-
-void ByteHash::add(std::string_view bytes) {
-    length_ += bytes.size();
-    std::uint64_t word = 0;
-    if (!rest_.empty()) {
-        const std::size_t more = std::min(sizeof word - rest_.size(), bytes.size());
-        rest_ += bytes.substr(0, more);
-        bytes.remove_prefix(more);
-        if (rest_.size() < sizeof word) return;
-        std::memcpy(&word, rest_.data(), sizeof word);
-        mix(word);
-        rest_.clear();
-    }
-    for (; bytes.size() >= sizeof word; bytes.remove_prefix(sizeof word)) {
-        std::memcpy(&word, bytes.data(), sizeof word);
-        mix(word);
-    }
-    rest_ = bytes;
-}
-
-std::uint64_t ByteHash::value() const {
-    ByteHash last = *this;
-    std::uint64_t word = 0;
-    std::memcpy(&word, rest_.data(), rest_.size());
-    last.mix(word);
-    last.mix(length_);
-    return last.hash_;
-}
 
 WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh& brick, std::uint64_t id) {
     const HexMesh& mesh = brick.mesh;

@@ -10,18 +10,6 @@
 
 namespace subvol::detail {
 
-/// A hash of bytes that come in pieces of any lengths. Not against attackers: it finds damage and mistakes.
-class ByteHash {
-public:
-    void add(std::string_view bytes);
-    [[nodiscard]] std::uint64_t value() const;
-
-private:
-    void mix(std::uint64_t word);
-    std::uint64_t hash_ = 0x243f6a8885a308d3ULL, length_ = 0;
-    std::string rest_;  // fewer than 8 bytes
-};
-
 /// Bytes and hash of a file that was written.
 struct WrittenBrick {
     std::uint64_t bytes = 0, hash = 0;

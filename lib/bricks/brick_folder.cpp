@@ -17,7 +17,6 @@ namespace {
 
 constexpr const char* kProgress = "progress.json";
 constexpr std::uint64_t kBytesOfCell = 1000;  // topology, kernels and the halo of a brick while it is worked on
-constexpr int kMostLayers = 16;
 constexpr std::size_t kMostBricks = 1'000'000;
 
 [[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
@@ -28,6 +27,24 @@ fs::path with_suffix(const fs::path& folder, const char* suffix) {
     fs::path name = folder;
     if (!name.has_filename()) name = name.parent_path();  // "a.bricks/"
     return name += suffix;
+}
+
+/// Gives a folder the name of another, which is removed only when that has been done.
+void replace_folder(const fs::path& made, const fs::path& folder) {
+    std::error_code error, ignored;
+    fs::path old;
+    if (fs::exists(folder, ignored)) {
+        for (int k = 0; old.empty() || fs::exists(old, ignored); ++k)
+            old = with_suffix(folder, (".old" + std::to_string(k)).c_str());
+        fs::rename(folder, old, error);
+        if (error) fail(folder, error);
+    }
+    fs::rename(made, folder, error);
+    if (error) {
+        if (!old.empty()) fs::rename(old, folder, ignored);
+        fail(folder, error);
+    }
+    if (!old.empty()) fs::remove_all(old, ignored);
 }
 
 }  // namespace
@@ -109,21 +126,13 @@ SplitResult BricksWriter::finish() {
         std::error_code ignored;
         if (!ours) fs::remove(entry.path(), ignored);
     }
-    const fs::path old = with_suffix(folder_, ".old");
-    if (fs::exists(folder_, error)) {
-        fs::remove_all(old, error);
-        fs::rename(folder_, old, error);
-        if (error) fail(folder_, error);
-    }
-    fs::rename(work_, folder_, error);
-    if (error) fail(folder_, error);
-    fs::remove_all(old, error);
+    replace_folder(work_, folder_);
     result_.bricks = open_bricks(folder_);
     return std::move(result_);
 }
 
 void check_options(const SplitOptions& options) {
-    if (options.halo_layers < 1 || options.halo_layers > kMostLayers) {
+    if (options.halo_layers < 1 || options.halo_layers > kMostHaloLayers) {
         throw Error(ErrorCode::InvalidInput, "layers of halo: " + std::to_string(options.halo_layers), {}, "1 to 16");
     }
     if (options.bricks > kMostBricks) {

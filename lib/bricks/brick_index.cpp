@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "brick_layers.h"
+#include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 #include "subvol/version.h"
 
@@ -16,18 +17,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string hex(std::uint64_t number) {
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(number));
-    return text;
-}
-
 std::uint64_t from_hex(const Json& text) {
     const auto digits = text.get<std::string>();
     if (digits.size() != 16 || digits.find_first_not_of("0123456789abcdef") != std::string::npos) {
         throw std::invalid_argument("hash");
     }
     return std::stoull(digits, nullptr, 16);
+}
+
+std::uint64_t count_from(const Json& number) {
+    if (!number.is_number_unsigned()) throw std::invalid_argument("count");
+    return number.get<std::uint64_t>();
 }
 
 Json to_json(const Box& box) {
@@ -157,13 +157,13 @@ std::string bricks_to_json(const Bricks& bricks) {
                         {"bounds", to_json(brick.bounds)},
                         {"reach", to_json(brick.reach)},
                         {"bytes", brick.bytes},
-                        {"hash", hex(brick.hash)},
+                        {"hash", hex_digits(brick.hash)},
                         {"fields", to_json(brick.fields)}});
     }
     const Json json{{"format", "OpenSubVol bricks"},
                     {"version", kBricksFormat},
                     {"program", SUBVOL_VERSION},
-                    {"id", hex(bricks.id)},
+                    {"id", hex_digits(bricks.id)},
                     {"cells", bricks.cells},
                     {"points", bricks.points},
                     {"bounds", to_json(bricks.bounds)},
@@ -184,26 +184,28 @@ Bricks bricks_from_json(const std::string& text, const std::string& file) {
         }
         Bricks bricks;
         bricks.id = from_hex(json.at("id"));
-        bricks.cells = json.at("cells");
-        bricks.points = json.at("points");
+        bricks.cells = count_from(json.at("cells"));
+        bricks.points = count_from(json.at("points"));
         bricks.bounds = box_from(json.at("bounds"));
-        bricks.halo_layers = json.at("halo_layers");
+        const std::uint64_t layers = count_from(json.at("halo_layers"));
+        if (layers < 1 || layers > kMostHaloLayers) throw std::invalid_argument("halo_layers");
+        bricks.halo_layers = static_cast<int>(layers);
         bricks.fields = fields_from(json.at("fields"));
         for (const Json& entry : json.at("bricks")) {
             Brick brick{.file = entry.at("file"),
-                        .cells = entry.at("cells"),
-                        .points = entry.at("points"),
-                        .stored_cells = entry.at("stored_cells"),
-                        .stored_points = entry.at("stored_points"),
+                        .cells = count_from(entry.at("cells")),
+                        .points = count_from(entry.at("points")),
+                        .stored_cells = count_from(entry.at("stored_cells")),
+                        .stored_points = count_from(entry.at("stored_points")),
                         .bounds = box_from(entry.at("bounds")),
                         .reach = box_from(entry.at("reach")),
-                        .bytes = entry.at("bytes"),
+                        .bytes = count_from(entry.at("bytes")),
                         .hash = from_hex(entry.at("hash")),
                         .fields = fields_from(entry.at("fields"))};
             if (brick.file.empty() || brick.file.find('/') != std::string::npos) throw std::invalid_argument("file");
             bricks.bricks.push_back(std::move(brick));
         }
-        if (bricks.bricks.empty() || bricks.halo_layers < 1) throw std::invalid_argument("bricks");
+        if (bricks.bricks.empty()) throw std::invalid_argument("bricks");
         return bricks;
     } catch (const std::exception& error) {
         if (const auto* ours = dynamic_cast<const Error*>(&error)) throw *ours;

@@ -9,6 +9,7 @@
 namespace subvol::detail {
 
 inline constexpr int kBricksFormat = 1;
+inline constexpr int kMostHaloLayers = 16;
 inline constexpr const char* kBricksIndex = "index.json";
 
 /// The index as a text, and back.

@@ -20,19 +20,18 @@ bool contains(const Box& box, const Vec3& x) {
 }
 
 /// The owned cells of a brick that a place may lie in, with the halo that their limit needs.
-BrickMesh about_places(const BrickMesh& brick, const std::vector<Vec3>& places, int layers) {
+BrickMesh about_places(BrickMesh brick, const std::vector<Vec3>& places, int layers) {
     const CellReaches reaches(brick.mesh);
     Box all;
     for (const Vec3& x : places) all.add(x);
-    BrickMesh marked = brick;
-    parallel_each(marked.owned_cells.size(), [&](std::size_t c) {
-        auto& wanted = marked.owned_cells[c];
+    parallel_each(brick.owned_cells.size(), [&](std::size_t c) {
+        auto& wanted = brick.owned_cells[c];
         const Box box = wanted ? reaches(c) : Box{};
         wanted = wanted && touch(box, all) && std::ranges::any_of(places, [&](const Vec3& x) { return contains(box, x); });
     });
-    std::vector<std::uint8_t> kept = marked.owned_cells;
-    grow(marked.mesh, kept, layers);
-    return subset(marked, kept);
+    std::vector<std::uint8_t> kept = brick.owned_cells;
+    grow(brick.mesh, kept, layers);
+    return subset(brick, kept);
 }
 
 /// Takes one place of a result.

@@ -5,6 +5,7 @@
 #include "brick_folder.h"
 #include "brick_layers.h"
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 
 namespace subvol {

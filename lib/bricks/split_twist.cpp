@@ -5,6 +5,7 @@
 
 #include "brick_file.h"
 #include "brick_folder.h"
+#include "subvol/detail/byte_hash.h"
 #include "subvol/detail/twist_block.h"
 #include "subvol/error.h"
 

@@ -13,7 +13,11 @@ namespace subvol::detail {
 /// Writes numbers as they are in memory, or as text, each with the fewest digits that reproduce it exactly.
 class NumberWriter {
 public:
-    explicit NumberWriter(OutputFile& out, bool ascii = false) : out_(out), ascii_(ascii) {}
+    explicit NumberWriter(OutputFile& out, bool ascii = false) : out_(&out), ascii_(ascii) {}
+
+    /// Collects the bytes instead.
+    NumberWriter() = default;
+    [[nodiscard]] const std::string& bytes() const { return buffer_; }
 
     template <class Number>
     void put(Number number) {
@@ -45,14 +49,15 @@ public:
 
     /// Writes what is left: to be called at the end.
     void flush() {
-        out_.write(buffer_);
+        if (!out_) return;
+        out_->write(buffer_);
         buffer_.clear();
     }
 
 private:
     static constexpr std::size_t kFlush = 1 << 16;
-    OutputFile& out_;
-    bool ascii_;
+    OutputFile* out_ = nullptr;
+    bool ascii_ = false;
     std::string buffer_;
 };
 

@@ -47,15 +47,13 @@ public:
         return text;
     }
 
-    /// out: a NumberWriter, or RowBytes
-    template <class Numbers>
-    void write(Numbers& out) const {
+    void write(NumberWriter& out) const {
         for (std::size_t i = 0; i < volume_.size(); ++i) {
             if (with_splats_) {
-                out.template put_point<float>(turn_ * volume_.centers[i]);
+                out.put_point<float>(turn_ * volume_.centers[i]);
                 out.put_all(splats_[i]);
             }
-            out.template put_point<double>(volume_.centers[i]);
+            out.put_point<double>(volume_.centers[i]);
             for (const RbfChannel& channel : volume_.channels) {
                 out.put(channel.values[i]);
                 out.put_all(channel.gradients[i]);
@@ -123,29 +121,6 @@ void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const
     out.commit();
 }
 
-namespace {
-
-/// Rows as bytes.
-struct RowBytes {
-    std::string bytes;
-
-    template <class Number>
-    void put(Number number) {
-        bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
-    }
-    template <class Numbers>
-    void put_all(const Numbers& numbers) {
-        for (const auto number : numbers) put(number);
-    }
-    template <class Number>
-    void put_point(const Vec3& p) {
-        for (int k = 0; k < 3; ++k) put(static_cast<Number>(p[k]));
-    }
-    void end_row() {}
-};
-
-}  // namespace
-
 struct PlyRows::State {
     std::filesystem::path path;
     OutputFile out;
@@ -164,15 +139,20 @@ PlyRows::~PlyRows() = default;
 
 void PlyRows::write(std::span<const std::uint64_t> numbers, const RbfVolume& points) {
     if (numbers.empty()) return;
-    RowBytes rows;
+    if (numbers.back() >= state_->points) {
+        throw Error(ErrorCode::InvalidInput,
+                    "point " + std::to_string(numbers.back()) + " was found, there are " + std::to_string(state_->points),
+                    state_->path.string());
+    }
+    NumberWriter rows;
     VertexElement(points, {}).write(rows);
-    const std::uint64_t row = rows.bytes.size() / numbers.size();
+    const std::uint64_t row = rows.bytes().size() / numbers.size();
     assert(state_->row == 0 || state_->row == row);
     state_->row = row;
     for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
         for (end = begin + 1; end < numbers.size() && numbers[end] == numbers[begin] + (end - begin);) ++end;
         state_->out.write_at(state_->first + row * numbers[begin],
-                             std::string_view(rows.bytes).substr(row * begin, row * (end - begin)));
+                             std::string_view(rows.bytes()).substr(row * begin, row * (end - begin)));
     }
     state_->written += numbers.size();
 }

@@ -135,6 +135,18 @@ class Parts(Shared):
         self.assertIn("no such file", self.refused("join", "nothing.ply", "-o", "j.ply"))
         (self.folder / "broken.ply").write_bytes(self.bytes_of(two)[:2000])
         self.refused("join", one, "broken.ply", three, "-o", "j.ply")
+        for said, wrong, message in ((b'"of":3', b'"of":2000000000', "parts 2/2000000000, 3/2000000000"),
+                                     (b'"of":3', b'"of":99999999999999999999999', "its note of the part"),
+                                     (b'"of":3', b'"of":9999999999999999999', "cannot be"),
+                                     (b'"part":1', b'"part":-1', "cannot be"),
+                                     (b'"part":1', b'"part":"1"', "its note of the part"),
+                                     (b'"how":{', b'"how":{"up":7,"was":{', "its note of the part")):
+            bytes_of_one = self.bytes_of(one)
+            self.assertIn(said, bytes_of_one)
+            changed = bytes_of_one.replace(said, wrong, 1)
+            (self.folder / "changed.ply").write_bytes(changed.replace(b"}}", b"}}}", 1) if b"was" in wrong else changed)
+            others = (two, three) if b"was" in wrong else ()
+            self.assertIn(message, self.refused("join", "changed.ply", *others, "-o", "j.ply"))
         self.assertFalse((self.folder / "j.ply").exists())
 
 

@@ -9,10 +9,11 @@
 #include <openvdb/tools/SignedFloodFill.h>
 #include "openvdb_grids.h"
 
-#include <cstring>
 #include <sstream>
+#include <string_view>
 #include <type_traits>
 
+#include "subvol/detail/byte_hash.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "vdb_data.h"
@@ -83,25 +84,14 @@ bool join_as(std::vector<VdbGrid>& parts, openvdb::GridBase::Ptr& result) {
     return true;
 }
 
-class Hash {
-public:
-    void add(const void* bytes, std::size_t count) {
-        const auto* p = static_cast<const unsigned char*>(bytes);
-        for (std::size_t i = 0; i < count; ++i) value_ = (value_ ^ p[i]) * 1099511628211U;  // FNV-1a
-    }
-    void add(const std::string& text) {
-        add(text.data(), text.size());
-        add("", 1);
-    }
-    [[nodiscard]] std::uint64_t value() const { return value_; }
-
-private:
-    std::uint64_t value_ = 14695981039346656037U;
-};
+template <class Value>
+std::string_view bytes_of(const Value& value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
 
 /// Tiles and leaves come in the order of their places, as OpenVDB's nodes are sorted.
 template <class Grid>
-void add_tree(const Grid& grid, Hash& hash) {
+void add_tree(const Grid& grid, ByteHash& hash) {
     using Tree = typename Grid::TreeType;
     auto tile = grid.tree().cbeginValueOn();
     tile.setMaxDepth(Tree::ValueOnCIter::LEAF_DEPTH - 1);
@@ -110,20 +100,20 @@ void add_tree(const Grid& grid, Hash& hash) {
         tile.getBoundingBox(box);
         const auto value = tile.getValue();
         const auto level = tile.getLevel();
-        hash.add(&level, sizeof level);
-        hash.add(&box, sizeof box);
-        hash.add(&value, sizeof value);
+        hash.add(bytes_of(level));
+        hash.add(bytes_of(box));
+        hash.add(bytes_of(value));
     }
     for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
         const openvdb::Coord origin = leaf->origin();
-        hash.add(&origin, sizeof origin);
+        hash.add(bytes_of(origin));
         const auto& mask = leaf->getValueMask();
         for (openvdb::Index w = 0; w < 8; ++w) {
             const auto word = mask.template getWord<std::uint64_t>(w);
-            hash.add(&word, sizeof word);
+            hash.add(bytes_of(word));
         }
         if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
-            hash.add(leaf->buffer().data(), 512 * sizeof(typename Grid::ValueType));
+            hash.add({reinterpret_cast<const char*>(leaf->buffer().data()), 512 * sizeof(typename Grid::ValueType)});
         }
     }
 }
@@ -156,12 +146,12 @@ void store_in_half(VdbGrid& grid, bool half) {
 
 std::uint64_t hash_of_grid(const VdbGrid& grid) {
     const openvdb::GridBase& base = *VdbData::of(grid).grid;
-    Hash hash;
-    hash.add(base.type());
-    hash.add(base.getName());
+    ByteHash hash;
+    hash.add_text(base.type());
+    hash.add_text(base.getName());
     std::ostringstream transform(std::ios::binary);
     base.transform().write(transform);
-    hash.add(transform.str());
+    hash.add_text(transform.str());
     if (const auto* floats = dynamic_cast<const openvdb::FloatGrid*>(&base)) add_tree(*floats, hash);
     if (const auto* vectors = dynamic_cast<const openvdb::Vec3SGrid*>(&base)) add_tree(*vectors, hash);
     if (const auto* integers = dynamic_cast<const openvdb::Int32Grid*>(&base)) add_tree(*integers, hash);

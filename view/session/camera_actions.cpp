@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Actions that move the camera.
 #include "camera_motion.h"
+#include "seen_view.h"
 #include "subvol/camera_fit.h"
 #include "view_actions.h"
 
@@ -12,8 +13,10 @@ using Session = ViewSession::State;
 
 const std::vector<std::string> kSides{"+x", "-x", "+y", "-y", "+z", "-z", "iso"};
 
-double aspect_of(const ViewState& state) {
-    return static_cast<double>(state.width) / state.height;
+/// Of the part of the picture beside its legend.
+double aspect_of(const Session& session) {
+    const View seen = seen_view(session.state, *session.body);
+    return static_cast<double>(seen.width()) / seen.height();
 }
 
 /// What a camera is fitted to; empty: the box of the body.
@@ -26,7 +29,7 @@ std::vector<Vec3> points_in_view(const Session& session, const Optics& optics) {
 Camera framed(const Camera& camera, const Session& session) {
     const Optics optics = optics_of(session.state, *session.body);
     const std::vector<Vec3> points = points_in_view(session, optics);
-    const double aspect = aspect_of(session.state);
+    const double aspect = aspect_of(session);
     return points.empty() ? fit_camera(camera, session.body->box, aspect) : fit_camera_to_points(camera, points, aspect);
 }
 
@@ -59,10 +62,10 @@ void fit(Session& session, const Json& wanted) {
 void view(Session& session, const Json& side) {
     const std::string name = word_of(side, kSides);
     const bool parallel = session.state.camera.ortho_height > 0;
-    const Camera named = parse_camera(name, session.body->box, aspect_of(session.state));
+    const Camera named = parse_camera(name, session.body->box, aspect_of(session));
     const Optics optics = optics_of(session.state, *session.body);
     const auto points = points_in_view(session, optics);
-    Camera next = points.empty() ? named : fit_camera_to_points(named, points, aspect_of(session.state));
+    Camera next = points.empty() ? named : fit_camera_to_points(named, points, aspect_of(session));
     set_camera(session, with_parallel_rays(next, parallel));
 }
 

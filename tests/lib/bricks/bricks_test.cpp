@@ -245,6 +245,16 @@ TEST_F(BricksTest, DamageIsSaidInOneSentence) {
     EXPECT_NE(error_of(open_all).find("has version 9 of the format of bricks"), std::string::npos);
     put(index, "{}");
     EXPECT_NE(error_of(open_all).find("is not an index of bricks"), std::string::npos);
+    for (const auto& [said, wrong] : {std::pair{"\"halo_layers\": 3", "\"halo_layers\": 2000000000"},
+                                      {"\"halo_layers\": 3", "\"halo_layers\": 0"},
+                                      {"\"cells\": 216", "\"cells\": -216"},
+                                      {"\"points\": 343", "\"points\": 343.5"}}) {
+        std::string other = list;
+        ASSERT_NE(other.find(said), std::string::npos) << said;
+        other.replace(other.find(said), std::string_view(said).size(), wrong);
+        put(index, other);
+        EXPECT_NE(error_of(open_all).find("is not an index of bricks"), std::string::npos) << wrong;
+    }
 }
 
 TEST_F(BricksTest, NothingElseIsOverwritten) {
@@ -254,6 +264,12 @@ TEST_F(BricksTest, NothingElseIsOverwritten) {
     EXPECT_NE(error_of([&] { (void)split_mesh(path("mine"), mesh, {.bricks = 2}); }).find("is no folder of bricks"),
               std::string::npos);
     EXPECT_EQ(read_bytes(path("mine/letter.txt")), "dear");
+    std::filesystem::create_directories(path("t.bricks.old0"));
+    (void)write("t.bricks.old0/letter.txt", "dear");
+    (void)split_mesh(path("t.bricks"), mesh, {.bricks = 2});
+    EXPECT_EQ(split_mesh(path("t.bricks"), mesh, {.bricks = 3}).bricks.bricks.size(), 3U);
+    EXPECT_EQ(read_bytes(path("t.bricks.old0/letter.txt")), "dear");
+    EXPECT_FALSE(std::filesystem::exists(path("t.bricks.old1")));
     EXPECT_NE(error_of([&] { (void)split_mesh(path("m"), mesh, {.bricks = 1000}); }).find("1000 bricks"), std::string::npos);
     EXPECT_NE(error_of([&] { (void)split_mesh(path("m"), mesh, {.bricks = 2, .halo_layers = 0}); }).find("layers of halo"),
               std::string::npos);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "seen_view.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
 #include "subvol/error.h"
@@ -236,6 +237,32 @@ TEST(SolidSession, ShowsTheColoursOfTheBoundary) {
     const BoundaryValues skin = boundary_values(session.body().mesh, {.levels = picture_levels(session.body().mesh)});
     color_boundary(image, skin.surface, skin.values.back(), view, optics, Shading{}, 2);
     EXPECT_EQ(shown->image.rgba, image.rgba);
+}
+
+TEST(FitSession, TheBodyIsBesideTheLegend) {
+    const HexMesh mesh = make_model("ball", 3);
+    ViewState state = small_state(mesh, Look::Solid);
+    state.width = 260;
+    state.height = 240;
+    state.legend = true;
+    ViewSession session({.input = "ball", .read = [&](std::size_t) { return mesh; }}, mesh, state, kByCpu);
+    session.run(R"({"fit": true})");
+    const View seen = detail::seen_view(session.state(), session.body());
+    ASSERT_LT(seen.width(), seen.height()) << "the legend decides how far the camera is";
+    const auto shown = session.wait();
+    int first = seen.width(), last = -1;
+    for (int x = 0; x < seen.width(); ++x) {
+        for (int y = 0; y < seen.height(); ++y) {
+            const auto pixel =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(shown->image.width) + static_cast<std::size_t>(x);
+            if (shown->image.rgba[4 * pixel + 3] < .5F) continue;
+            first = std::min(first, x);
+            last = std::max(last, x);
+        }
+    }
+    EXPECT_GT(first, 0);
+    EXPECT_LT(last, seen.width() - 1);
+    EXPECT_GT(last - first, seen.width() * 3 / 4);
 }
 
 TEST(WrongLook, BecomesTheErrorOfThePicture) {
