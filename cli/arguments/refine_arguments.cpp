@@ -52,7 +52,8 @@ void RefineArguments::add_scheme_to(CLI::App& app) {
     app.add_option("--tension", tension, "of mcq: 0 is linear; the default, 1/16, reproduces cubics")
         ->type_name("W")
         ->check(CLI::Range(0.0, 0.125));
-    app.add_option("--crease-angle", crease_angle_deg, "keep boundary edges sharp that bend by more than this, in degrees")
+    app.add_option("--crease-angle", crease_angle_deg,
+                   "keep boundary edges sharp that bend by more than this, in degrees (tetoct, boxspline: 60)")
         ->type_name("DEG")
         ->check(CLI::Range(0.0, 180.0));
 }

@@ -9,13 +9,17 @@ namespace {
 constexpr double kInterpolationTol = 1e-4;  // of the range of a field: far below the error of the mesh
 constexpr int kMostSteps = 100;
 
+// An edge of a box may have two tetrahedra or more, so the rule of hexahedra, sharp where one cell is, does not find it. A
+// ball of some hundred points bends by 20 degrees at its edges.
+constexpr double kCreaseAngleDeg = 60;
+
 }  // namespace
 
 TetRefinement::TetRefinement(RefineArguments& arguments) {
     if (arguments.scheme != "tetoct" && arguments.scheme != "boxspline") return;
     scheme_ = arguments.scheme == "tetoct" ? TetScheme::Tetoct : TetScheme::Boxspline;
     levels_ = arguments.levels;
-    crease_angle_deg_ = arguments.crease_angle_deg;
+    crease_angle_deg_ = arguments.crease_angle_deg.value_or(kCreaseAngleDeg);
     arguments.scheme = "linear";
     arguments.levels.reset();
     arguments.crease_angle_deg.reset();
@@ -40,6 +44,7 @@ MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertic
     });
     report["scheme"] = name();
     report["levels"] = options.levels;
+    report["crease_angle"] = *crease_angle_deg_;
     report["tets"] = fine.tets.size();
     report["octahedra"] = fine.octahedra.size();
     const MixedShape shape = measure_cells(fine);
