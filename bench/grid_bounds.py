@@ -4,7 +4,8 @@
 
     PYTHONPATH=build/release/python /usr/bin/python3 bench/grid_bounds.py build/release/bin/subvol MESH RESOLUTION [FIELD] ...
 
-A mesh is a file or model:NAME:N, and "-" for FIELD is the one that `vdb` takes. Needs python3-openvdb.
+A mesh is a file or model:NAME:N. "-" for FIELD is the one that `vdb` takes, "=x*y" a field with these values at the control points.
+Needs python3-openvdb.
 """
 import json
 import pathlib
@@ -17,6 +18,11 @@ import pyopenvdb
 import subvol
 
 MOST_PLACES = 100_000
+
+
+def model(name):
+    _, model, resolution = name.split(":")
+    return subvol.model(model, int(resolution))
 
 
 def voxels(path):
@@ -32,14 +38,17 @@ def voxels(path):
 
 def check(command, name, resolution, field, folder):
     path = pathlib.Path(folder) / "grid.vdb"
-    chosen = [] if field == "-" else ["--field", field]
+    chosen = [] if field == "-" else ["--density", field[1:]] if field[0] == "=" else ["--field", field]
     done = subprocess.run([command, "vdb", name, "-o", path, "--resolution", resolution, "--error", "--json", *chosen],
                           stdout=subprocess.PIPE, text=True, check=True)
     report = json.loads(done.stdout)
     grid, world, values, bounds = voxels(path)
     chosen = np.sort(np.random.default_rng(1).choice(len(values), min(MOST_PLACES, len(values)), replace=False))
     world, values, bounds = world[chosen], values[chosen], bounds[chosen]
-    mesh = subvol.model(name.removeprefix("model:")) if name.startswith("model:") else subvol.read_mesh(name)
+    mesh = model(name) if name.startswith("model:") else subvol.read_mesh(name)
+    if field[0] == "=":
+        x, y, z = mesh.points.T
+        mesh = subvol.HexMesh(mesh.points, mesh.cells, {grid: eval(field[1:], {"x": x, "y": y, "z": z, "sin": np.sin, "cos": np.cos})})
     found = subvol.probe(mesh, world)
     inside = found.inside
     exact = subvol.evaluate_limit(mesh, found.cells[inside], found.parameters[inside], tolerance=1e-9, max_levels=16)

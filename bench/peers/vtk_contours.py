@@ -20,9 +20,14 @@ PART_OF_RANGE = .6
 MOST_LEVELS = 3
 
 
+def model(name):
+    _, model, resolution = name.split(":")
+    return subvol.model(model, int(resolution))
+
+
 def read(name):
     name, _, field = name.partition(":") if not name.startswith("model:") else (name, "", "")
-    mesh = subvol.model(name.removeprefix("model:")) if name.startswith("model:") else subvol.read_mesh(name)
+    mesh = model(name) if name.startswith("model:") else subvol.read_mesh(name)
     return mesh, field or next(name for name, values in mesh.fields.items() if values.ndim == 1)
 
 

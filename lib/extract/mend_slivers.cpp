@@ -9,15 +9,13 @@
 
 namespace subvol::detail {
 
+/// The least angle is opposite the shortest side.
 double least_angle_deg(const Vec3& a, const Vec3& b, const Vec3& c) {
-    double least = 180;
-    const std::array<Vec3, 3> p{a, b, c};
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 u = p[(k + 1) % 3] - p[k], v = p[(k + 2) % 3] - p[k];
-        const double angle = std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
-        least = std::min(least, angle * 180 / std::numbers::pi);
-    }
-    return least;
+    const std::array<Vec3, 3> sides{c - b, a - c, b - a};  // opposite a, b, c
+    const auto least = static_cast<std::size_t>(
+        std::ranges::min_element(sides, {}, [](const Vec3& side) { return glm::dot(side, side); }) - sides.begin());
+    const Vec3 u = sides[(least + 2) % 3], v = -sides[(least + 1) % 3];
+    return std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v)) * 180 / std::numbers::pi;
 }
 
 namespace {
@@ -37,7 +35,8 @@ public:
           slack_(slack),
           triangles_(triangles),
           around_(points.size()),
-          alive_(triangles.size(), 1) {
+          alive_(triangles.size(), 1),
+          changed_(triangles.size(), 1) {
         for (Index t = 0; t < triangles.size(); ++t) {
             for (const Index p : triangles[t]) around_[p].push_back(t);
         }
@@ -47,7 +46,7 @@ public:
         std::size_t mended = 0;
         for (int pass = 0; pass < kMostPasses; ++pass) {
             const std::size_t before = mended;
-            for (Index t = 0; t < triangles_.size(); ++t) mended += alive_[t] != 0 && mend(t) ? 1 : 0;
+            for (Index t = 0; t < triangles_.size(); ++t) mended += alive_[t] != 0 && changed_[t] != 0 && mend(t) ? 1 : 0;
             if (mended == before) break;
         }
         std::size_t kept = 0;
@@ -65,6 +64,7 @@ private:
 
     /// Of a triangle with a small angle, collapses the shortest edge that may be, else flips the longest that may be.
     bool mend(Index t) {
+        changed_[t] = 0;
         const auto corners = triangles_[t];
         const double angle = angle_of(corners);
         if (angle > kSmallAngle_deg) return false;
@@ -134,7 +134,18 @@ private:
         std::erase(around_[b], t);
         insert(around_[c], other);
         insert(around_[d], t);
+        for (const Index p : {a, b, c, d}) mark_about(p);
         return true;
+    }
+
+    /// What may be done to a triangle depends on the triangles about its corners: those with a corner that a changed one has
+    /// are looked at again.
+    void mark_about(Index p) {
+        for (const Index t : around_[p]) {
+            for (const Index q : triangles_[t]) {
+                for (const Index u : around_[q]) changed_[u] = 1;
+            }
+        }
     }
 
     static void insert(std::vector<Index>& sorted, Index t) { sorted.insert(std::ranges::upper_bound(sorted, t), t); }
@@ -239,6 +250,7 @@ private:
         }
         std::ranges::sort(around_[to]);
         around_[from].clear();
+        mark_about(to);
     }
 
     const std::vector<Vec3>& points_;
@@ -248,6 +260,7 @@ private:
     std::vector<std::array<Index, 3>>& triangles_;
     std::vector<std::vector<Index>> around_;  // the triangles of each point, ascending
     std::vector<std::uint8_t> alive_;
+    std::vector<std::uint8_t> changed_;  // about them, since they were looked at
     std::vector<Index> first_, second_, common_;
 };
 
