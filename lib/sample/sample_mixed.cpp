@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <atomic>
 
-#include "mixed/mixed_boundary.h"
-#include "mixed/mixed_shapes.h"
+#include "mixed_boundary.h"
+#include "mixed_shapes.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 

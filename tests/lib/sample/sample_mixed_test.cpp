@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "lib/expect_error.h"
-#include "lib/refine/mixed_meshes.h"
+#include "lib/mixed/mixed_meshes.h"
 #include "subvol/rbf_field.h"
 
 namespace subvol {
