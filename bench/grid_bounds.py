@@ -7,7 +7,6 @@
 A mesh is a file or model:NAME:N. "-" for FIELD is the one that `vdb` takes, "=x*y" a field with these values at the control points.
 Needs python3-openvdb.
 """
-import json
 import pathlib
 import subprocess
 import sys
@@ -39,9 +38,7 @@ def voxels(path):
 def check(command, name, resolution, field, folder):
     path = pathlib.Path(folder) / "grid.vdb"
     chosen = [] if field == "-" else ["--density", field[1:]] if field[0] == "=" else ["--field", field]
-    done = subprocess.run([command, "vdb", name, "-o", path, "--resolution", resolution, "--error", "--json", *chosen],
-                          stdout=subprocess.PIPE, text=True, check=True)
-    report = json.loads(done.stdout)
+    subprocess.run([command, "vdb", name, "-o", path, "--resolution", resolution, "--error", "--quiet", *chosen], check=True)
     grid, world, values, bounds = voxels(path)
     chosen = np.sort(np.random.default_rng(1).choice(len(values), min(MOST_PLACES, len(values)), replace=False))
     world, values, bounds = world[chosen], values[chosen], bounds[chosen]
@@ -57,14 +54,15 @@ def check(command, name, resolution, field, folder):
     error, bound = np.abs(values[inside] - limit), bounds[inside]
     size = np.ptp(mesh.fields[grid])
     beyond = error > bound
+    wrong = error > 1e-12 * size  # where it is not, the ratio says nothing
     most = (error - bound).max() / size
     print(f"| {name} {grid} | {resolution} | {error.max() / size:.2e} | {np.sqrt(np.mean(error ** 2)) / size:.2e} | {bound.max() / size:.2e} |"
-          f" {np.median(bound / np.maximum(error, 1e-300)):.1f} | {np.count_nonzero(beyond)} of {len(error):,}"
-          f"{f', by at most {most:.1e}' if beyond.any() else ''} | {report['seconds'].get('total', 0)} |", flush=True)
+          f" {np.median(bound[wrong] / error[wrong]):.1f} | {np.count_nonzero(beyond)} of {len(error):,}"
+          f"{f', by at most {most:.1e}' if beyond.any() else ''} |", flush=True)
 
 
 def main(command, *rest):
-    print("| | resolution | largest error | RMS | largest bound | bound / error, median | beyond the bound | s |\n" + "|---" * 8 + "|")
+    print("| | resolution | largest error | RMS | largest bound | bound / error, median | beyond the bound |\n" + "|---" * 7 + "|")
     with tempfile.TemporaryDirectory() as folder:
         for k in range(0, len(rest), 3):
             check(command, rest[k], rest[k + 1], rest[k + 2], folder)
