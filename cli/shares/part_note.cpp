@@ -86,7 +86,7 @@ PartNote note_from(const std::string& text, const std::string& file) {
     if (!proper) fail_note(file);
     const auto part = json["part"].get<std::int64_t>(), of = json["of"].get<std::int64_t>();
     if (of < 1 || part < 1 || part > of || of > std::numeric_limits<int>::max()) {
-        throw Error(ErrorCode::InvalidInput, text("says to be part ", part, "/", of, ", which cannot be"), file);
+        throw Error(ErrorCode::InvalidInput, cli::text("says to be part ", part, "/", of, ", which cannot be"), file);
     }
     return {.share = {static_cast<int>(part), static_cast<int>(of)},
             .verb = json["verb"].get<std::string>(),

@@ -148,13 +148,11 @@ private:
     /// One part at a time: the whole may not fit into memory.
     void join_points_of_bricks(const std::vector<std::size_t>& order, Report& report) {
         check_output(output_, {".ply"});
-        if (!how_["points"].is_number_unsigned()) {
-            throw Error(ErrorCode::InvalidInput, "its note has no number of points", parts_[order.front()]);
-        }
+        const auto points = how("points", std::uint64_t{0});
         std::vector<std::filesystem::path> files;
         for (const std::size_t p : order) files.emplace_back(parts_[p]);
-        const BrickPointsReport written = report.timed(
-            "write", [&] { return subvol::join_points_of_bricks(output_, files, how_["points"].get<std::uint64_t>()); });
+        const BrickPointsReport written =
+            report.timed("write", [&] { return subvol::join_points_of_bricks(output_, files, points); });
         report["output"] = output_;
         report["points"] = written.points;
     }

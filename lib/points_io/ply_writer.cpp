@@ -47,7 +47,8 @@ public:
         return text;
     }
 
-    void write(NumberWriter& out) const {
+    /// numbers: none, or one that ends each row
+    void write(NumberWriter& out, std::span<const std::uint64_t> numbers = {}) const {
         for (std::size_t i = 0; i < volume_.size(); ++i) {
             if (with_splats_) {
                 out.put_point<float>(turn_ * volume_.centers[i]);
