@@ -5,8 +5,8 @@
     bench/equality.py [build/release/bin/subvol] [--counts 1,2,3,4,7] [--resolution 4]
 
 The mesh is `ball` in pieces (.pvtu) by slabs, by blocks or at random, a cell at a time: with a layer of ghost cells, with the
-points between pieces in each of them, with a piece that is empty. It is read as it is, and as bricks by slabs, by blocks and at
-random. Each row is computed by one process, by as many shares as --counts says (`--part`, `join`), and by as many ranks
+points between pieces in each of them, with a piece that is empty. It is read as it is, and as bricks that are cut in the same
+way. Each row is computed by one process, by as many shares as --counts says (`--part`, `join`), and by as many ranks
 (`mpirun`, where it is installed). Prints the table of docs/shares.md; ends with 1 if a hash differs.
 """
 import argparse
@@ -144,16 +144,14 @@ def main():
         runner = Runner(asked.program, folder)
         runner.run("model", "ball", "--resolution", asked.resolution, "-o", "ball.mesh", "--quiet")
         points, cells, values = read_medit(runner.folder / "ball.mesh")
-        print("| pieces (`.pvtu`) | read as | " + " | ".join(f"`{verb}`" for verb in VERBS) + " |")
+        print("| cut | read as | " + " | ".join(f"`{verb}`" for verb in VERBS) + " |")
         print("|---|---|" + "---|" * len(VERBS))
         for shape in SHAPES:
             pieces = write_pieces(runner.folder, points, cells, values, shape)
             first = {}
-            for form in ("pieces", *SHAPES):
-                source = pieces
-                if form != "pieces":
-                    source = f"{shape}_{form}.bricks"
-                    runner.run("split", pieces, "-o", source, "--bricks", 5, "--by", form, "--quiet")
+            bricks = f"{shape}.bricks"
+            runner.run("split", pieces, "-o", bricks, "--bricks", 5, "--by", shape, "--quiet")
+            for source, form in ((pieces, "pieces"), (bricks, "bricks")):
                 row = []
                 for verb in VERBS:
                     found = hashes(runner, source, verb, counts, with_ranks)
@@ -161,8 +159,7 @@ def main():
                     wrong = [way for way, value in found.items() if value != expected]
                     different += len(wrong)
                     row.append(f"{expected}" + (f" **but not {', '.join(wrong)}**" if wrong else ""))
-                print(f"| {shape} | {'as it is' if form == 'pieces' else f'bricks by {form}' if form != 'random' else 'bricks at random'} | "
-                      + " | ".join(row) + " |", flush=True)
+                print(f"| {shape} | {form} | " + " | ".join(row) + " |", flush=True)
         print(f"\n{runner.runs} runs; ways: 1 process, {asked.counts} shares" +
               (f", {','.join(str(c) for c in counts if c > 1)} ranks" if with_ranks else "") +
               f"; {different} hashes differ")

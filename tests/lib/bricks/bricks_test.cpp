@@ -156,7 +156,8 @@ TEST_F(BricksTest, PartsThatAreNotAllOfAMeshAreRefused) {
     write_points(parts[1], read_points(parts[0]));
     EXPECT_NE(said().find("no property \"number\""), std::string::npos);
     parts[1] = path("nothing.ply");
-    EXPECT_NE(said().find("nothing.ply"), std::string::npos);
+    const auto join_all = [&] { (void)join_points_of_bricks(path("joined.ply"), parts, 216); };
+    EXPECT_NE(error_of(join_all, ErrorCode::Io).find("nothing.ply"), std::string::npos);
     EXPECT_FALSE(std::filesystem::exists(path("joined.ply")));
 }
 
@@ -259,6 +260,15 @@ TEST_F(BricksTest, TheTwistIsWrittenWithoutTheWhole) {
         (void)write_points_of_bricks(path("bricks.ply"), bricks, {}, [](HexMesh same) { return same; });
         EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply"))) << count;
     }
+}
+
+TEST_F(BricksTest, NumbersThatAMeshHasAreNoField) {
+    HexMesh mesh = make_model("twist", 6);  // as it comes from pieces
+    test::add_field(mesh, "GlobalNodeId", [](const Vec3& x) { return x.x; });
+    const Bricks bricks = split_mesh(path("t.bricks"), mesh, {.bricks = 3}).bricks;
+    ASSERT_EQ(bricks.fields.size(), 1U);
+    EXPECT_EQ(bricks.fields[0].name, "density");
+    for (std::size_t b = 0; b < 3; ++b) EXPECT_EQ(read_brick(bricks, b).mesh.attributes.size(), 1U);
 }
 
 TEST_F(BricksTest, ABrickOpensAlone) {
