@@ -59,7 +59,7 @@ public:
         app().add_flag("--error", error_,
                        "also write a channel NAME_error: about how far the sum of kernels is from the limit near each");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
-        share_.add_to(app(), "a range of the points in their order, or of the steps");
+        share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
                         "--reduce", "--levels", "--scheme"});
         group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",

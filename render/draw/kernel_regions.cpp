@@ -47,6 +47,10 @@ KernelRegions::KernelRegions(const View& view, const PixelRows& rows, double nea
     : view_(view), rows_(rows), nearest_(nearest), widening_(widening), scratch_(std::move(scratch)) {
     std::error_code error;
     if (scratch_.empty()) scratch_ = std::filesystem::temp_directory_path(error);
+    if (error) {
+        errno = error.value();
+        fail();
+    }
     const int longest = std::max(view.width(), view.height());
     side_ = std::max(1, (longest + kMostAcross * kTile_px - 1) / (kMostAcross * kTile_px)) * kTile_px;
     across_ = (view.width() + side_ - 1) / side_;

@@ -4,11 +4,14 @@
 import json
 import os
 import shutil
+import signal
 import struct
 import subprocess
+import time
 import unittest
+from pathlib import Path
 
-from command import COMMAND, InFolder, subvol
+from command import COMMAND, InFolder, children, subvol, wait_for_end
 
 COUNTS = (1, 2, 3, 4, 7)
 BALL = "model:ball:4"
@@ -21,6 +24,17 @@ def without_times(report):
     for key in ("seconds", "peak_bytes", "input", "output", "ranks", "bytes_sent", "peak_bytes_of_ranks", "parts"):
         report.pop(key, None)
     return report
+
+
+def rank_of(pid):
+    """Nothing if mpirun has not made it a rank yet."""
+    try:
+        for setting in Path(f"/proc/{pid}/environ").read_bytes().split(b"\0"):
+            if setting.startswith(b"OMPI_COMM_WORLD_RANK="):
+                return int(setting.split(b"=")[1])
+    except OSError:
+        pass
+    return None
 
 
 class Shared(InFolder):
@@ -388,6 +402,46 @@ class RanksOfBricks(WithRanks):
             self.assertEqual(len(said), 1, done.stderr)
             self.assertIn("brick_00003.vtu", said[0])
             self.assertEqual(self.files(), ["b.bricks"])
+
+    def test_a_killed_rank_leaves_no_file(self):
+        self.run_ok("split", "model:twist:40", "-o", "t.bricks", "--bricks", 30, "--quiet")
+        for verb, name, *options in (["points", "a.ply"], ["vdb", "a.vdb", "--resolution", "300"],
+                                     ["render", "a.exr", "--size", "512x512", "--backend", "cpu"]):
+            run = subprocess.Popen([MPIRUN, "--oversubscribe", "-n", "3", COMMAND, verb, "t.bricks", "-o", name, *options],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                   env={**os.environ, **AS_ROOT})
+            ranks = []
+            while run.poll() is None and len(ranks) < 3:
+                ranks = [pid for pid in children(run.pid) if rank_of(pid) is not None]
+            self.assertIsNone(run.poll(), "ended before it could be killed")
+            time.sleep(0.1)  # anywhere in its work
+            os.kill(next(pid for pid in ranks if rank_of(pid) == 1), signal.SIGKILL)
+            self.assertNotEqual(run.wait(timeout=600), 0, verb)
+            wait_for_end(ranks)
+            self.assertEqual(self.files(), ["b.bricks", "t.bricks"], verb)
+            # The same command again is not disturbed by what was killed.
+            self.ranks(3, verb, "t.bricks", "-o", name, *options)
+            (self.folder / name).unlink()
+
+    def test_what_cannot_be_written_is_one_sentence(self):
+        """By rank 0, which writes; and by any rank, whose kernels wait in files until they are drawn."""
+        for verb, name, *options in (["points", "a.ply"], ["vdb", "a.vdb", "--resolution", 40], ["render", "a.exr", *PICTURE]):
+            (self.folder / name).symlink_to("/dev/full")
+            done = self.mpirun(3, verb, "b.bricks", "-o", name, *options, folder=self.folder)
+            self.assert_said("a." if verb != "vdb" else "vdb", done)
+        line = 'if [ $OMPI_COMM_WORLD_RANK = 1 ]; then export TMPDIR=/nowhere; fi; exec "$@"'
+        done = subprocess.run([MPIRUN, "--oversubscribe", "-n", "3", "sh", "-c", line, "sh", COMMAND, "render", "b.bricks", "-o",
+                               "b.exr", *PICTURE], cwd=self.folder, capture_output=True, text=True, timeout=600,
+                              env={**os.environ, **AS_ROOT})
+        self.assert_said("TMPDIR names the folder", done)
+        self.assertEqual(self.files(), ["a.exr", "a.ply", "a.vdb", "b.bricks"])
+
+    def assert_said(self, words, done):
+        self.assertIn(done.returncode, (2, 3), done.stderr)
+        said = [line for line in done.stderr.splitlines() if line.startswith("subvol:")]
+        self.assertEqual(len(said), 1, done.stderr)
+        self.assertIn("cannot be written", said[0])
+        self.assertIn(words, said[0])
 
 
 if __name__ == "__main__":
