@@ -14,21 +14,6 @@ namespace {
 constexpr std::initializer_list<const char*> kOfFiles{"--density", "--other-cells", "--curved", "--cell-values",   "--step",
                                                       "--time",    "--blocks",      "--weld",   "--weld-distance", "--sharp"};
 
-/// A mesh of one cell whose fields have the ranges of the whole: what chooses a field by names and values sees no difference.
-HexMesh stand_in(const Bricks& bricks) {
-    HexMesh mesh;
-    for (int k = 0; k < 8; ++k) mesh.points.emplace_back(k & 1, k >> 1 & 1, k >> 2 & 1);
-    mesh.cells.push_back({0, 1, 3, 2, 4, 5, 7, 6});
-    for (const BrickField& field : bricks.fields) {
-        Attribute& attribute = mesh.attributes.emplace_back(Attribute{field.name, field.channels, {}});
-        for (int k = 0; k < 8; ++k) {
-            const auto& values = k % 2 == 0 ? field.min : field.max;
-            attribute.values.insert(attribute.values.end(), values.begin(), values.end());
-        }
-    }
-    return mesh;
-}
-
 const BrickField* find(const Bricks& bricks, const std::string& name) {
     const auto found = std::ranges::find(bricks.fields, name, &BrickField::name);
     return found == bricks.fields.end() ? nullptr : &*found;
@@ -52,6 +37,20 @@ Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& 
     report["cells"] = bricks.cells;
     report["bricks"] = bricks.bricks.size();
     return bricks;
+}
+
+HexMesh stand_in(const Bricks& bricks) {
+    HexMesh mesh;
+    for (int k = 0; k < 8; ++k) mesh.points.emplace_back(k & 1, k >> 1 & 1, k >> 2 & 1);
+    mesh.cells.push_back({0, 1, 3, 2, 4, 5, 7, 6});
+    for (const BrickField& field : bricks.fields) {
+        Attribute& attribute = mesh.attributes.emplace_back(Attribute{field.name, field.channels, {}});
+        for (int k = 0; k < 8; ++k) {
+            const auto& values = k % 2 == 0 ? field.min : field.max;
+            attribute.values.insert(attribute.values.end(), values.begin(), values.end());
+        }
+    }
+    return mesh;
 }
 
 StreamedField named_brick_field(const Bricks& bricks, const std::string& name, bool vector_allowed) {

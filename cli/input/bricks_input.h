@@ -40,6 +40,9 @@ struct StreamedField {
 /// A field that the user names. throws: Error(InvalidInput) if there is none; names those that exist
 [[nodiscard]] StreamedField named_brick_field(const Bricks& bricks, const std::string& name, bool vector_allowed);
 
+/// A mesh of one cell whose fields have the ranges of the whole: what chooses a field by names and values sees no difference.
+[[nodiscard]] HexMesh stand_in(const Bricks& bricks);
+
 /// The brick with these fields alone, the attributes in their order.
 [[nodiscard]] HexMesh with_brick_fields(HexMesh brick, const std::vector<StreamedField>& fields);
 

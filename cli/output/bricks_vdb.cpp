@@ -6,12 +6,14 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iomanip>
 #include <limits>
 
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/vdb_file.h"
+#include "subvol/join_grids.h"
 #include "subvol/rasterize_block.h"
 #include "subvol/version.h"
 #include "text.h"
@@ -26,10 +28,10 @@ constexpr double kBytesOfChannel = 10;  // of a voxel: leaves that are not full,
 
 using Place = std::array<int, 3>;
 
-/// Cuts the space of voxels into blocks whose cells and voxels fit into the memory.
+/// Cuts a share of the space of voxels into blocks whose cells and voxels fit into the memory.
 class BlockPlan {
 public:
-    BlockPlan(const BricksToVoxels& what, double memory) : bricks_(what.bricks), memory_(memory) {
+    BlockPlan(const BricksToVoxels& what, double memory, const Share& share) : bricks_(what.bricks), memory_(memory) {
         voxel_ = what.options.voxel_size_world;
         for (const StreamedField& field : what.fields) channels_ += field.vector ? 3 : 1;
         Box reach;
@@ -40,7 +42,8 @@ public:
             all.lower[static_cast<std::size_t>(d)] = cube(reach.lower[d] - voxel_);
             all.upper[static_cast<std::size_t>(d)] = cube(reach.upper[d] + voxel_) + 1;
         }
-        cut(all);
+        if (!share.whole()) all = slab_of(all, share);
+        if (all.lower[0] < all.upper[0]) cut(all);
     }
 
     [[nodiscard]] const std::vector<VoxelCubes>& blocks() const { return blocks_; }
@@ -61,6 +64,29 @@ public:
     }
 
 private:
+    /// The layers of a share; none if there are more shares than layers. A layer belongs to the share in which its middle lies.
+    [[nodiscard]] VoxelCubes slab_of(const VoxelCubes& all, const Share& share) const {
+        std::vector<double> bytes;
+        double sum = 0, held = 0;
+        for (int layer = all.lower[0]; layer < all.upper[0]; ++layer) {
+            VoxelCubes one = all;
+            one.lower[0] = layer;
+            one.upper[0] = layer + 1;
+            sum += bytes.emplace_back(bytes_of(one));
+        }
+        VoxelCubes slab = all;
+        slab.upper[0] = all.lower[0];
+        for (std::size_t l = 0; l < bytes.size(); ++l) {
+            const double middle = held + bytes[l] / 2;
+            held += bytes[l];
+            const int part = std::min(share.of, 1 + static_cast<int>(share.of * (sum > 0 ? middle / sum : 0)));
+            const int layer = all.lower[0] + static_cast<int>(l);
+            if (part < share.part) slab.lower[0] = layer + 1;
+            if (part <= share.part) slab.upper[0] = layer + 1;
+        }
+        return slab;
+    }
+
     /// Cells in a block, if each brick's are spread evenly over its box.
     [[nodiscard]] double bytes_of(const VoxelCubes& block) const {
         const Box box = box_of(block);
@@ -171,15 +197,11 @@ private:
     Progress* shown_;
 };
 
-}  // namespace
-
-void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report) {
-    const double memory = static_cast<double>(output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory);
-    const BlockPlan plan(what, memory);
-    const std::filesystem::path path(output.path);
-    std::deque<detail::AtomicFile> files;  // all of them appear, or none
-    std::uint64_t active = 0;
-    Json parts = Json::array(), grids = Json::array();
+/// Makes the blocks of a plan one after the other.
+///
+/// take: gets the grids of each that has some
+void make_blocks(const BricksToVoxels& what, const BlockPlan& plan, Report& report,
+                 const std::function<void(std::vector<VdbGrid>)>& take) {
     BlockProgress quiet(what.options.progress);
     BricksToVoxels blockwise = what;
     blockwise.options.progress = blockwise.options.refine.progress = &quiet;
@@ -193,22 +215,58 @@ void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Repor
             ++folded;
             made = report.timed("rasterize", [&] { return maker.make(block, plan.box_of(block, true)); });
         }
-        if (made.grids.empty() || !has_voxels(made.grids)) continue;
-        add(grids, made.grids);
-        const GridReport& first = made.grids.front().report();
+        if (!made.grids.empty()) take(std::move(made.grids));
+    }
+    if (!maker.converged()) report.warn("the limit is coarser than its tolerance in some cells");
+    if (folded > 0) report.note(text("cells fold over in ", folded, " of ", plan.blocks().size(), " blocks of voxels"));
+}
+
+/// The grids of no voxels.
+std::vector<VdbGrid> empty_grids(const BricksToVoxels& what) {
+    const HexMesh mesh = with_brick_fields(stand_in(what.bricks), what.fields);
+    std::vector<std::string> names;
+    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+    RasterizeOptions options = what.options;
+    options.refine = {.levels = 0};
+    options.on_limit = false;
+    return rasterize_block(mesh, names, options, {{1, 1, 1}, {1, 1, 1}}).grids;
+}
+
+}  // namespace
+
+std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t memory_bytes, const Share& share, Report& report) {
+    const BlockPlan plan(what, static_cast<double>(memory_bytes > 0 ? memory_bytes : kDefaultMemory), share);
+    std::vector<std::vector<VdbGrid>> of_grids;  // of each grid its blocks
+    for (VdbGrid& grid : empty_grids(what)) of_grids.emplace_back().push_back(std::move(grid));
+    make_blocks(what, plan, report, [&](std::vector<VdbGrid> made) {
+        for (std::size_t g = 0; g < made.size(); ++g) of_grids.at(g).push_back(std::move(made[g]));
+    });
+    std::vector<VdbGrid> joined;
+    for (std::vector<VdbGrid>& blocks : of_grids) joined.push_back(join_grids(std::move(blocks)));
+    return joined;
+}
+
+void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report) {
+    const double memory = static_cast<double>(output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory);
+    const BlockPlan plan(what, memory, {});
+    const std::filesystem::path path(output.path);
+    std::deque<detail::AtomicFile> files;  // all of them appear, or none
+    std::uint64_t active = 0;
+    Json parts = Json::array(), grids = Json::array();
+    make_blocks(what, plan, report, [&](const std::vector<VdbGrid>& made) {
+        if (!has_voxels(made)) return;
+        add(grids, made);
+        const GridReport& first = made.front().report();
         const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), parts.size(), ".vdb");
-        report.timed("write", [&] {
-            detail::write_vdb(files.emplace_back(path.parent_path() / name), name, made.grids, output.compression);
-        });
+        report.timed("write",
+                     [&] { detail::write_vdb(files.emplace_back(path.parent_path() / name), name, made, output.compression); });
         active += first.active_voxels;
         Json entry{{"file", name}, {"active_voxels", first.active_voxels}};
         const auto corner = [](const Vec3& p) { return Json::array({p.x, p.y, p.z}); };
         entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
         parts.push_back(std::move(entry));
-    }
+    });
     if (active == 0) throw no_voxels(report.json().at("input"), "try a smaller --voxel-size");
-    if (!maker.converged()) report.warn("the limit is coarser than its tolerance in some cells");
-    if (folded > 0) report.note(text("cells fold over in ", folded, " of ", plan.blocks().size(), " blocks of voxels"));
     const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
     const Json json{{"input", report.json().at("input")},
                     {"version", SUBVOL_VERSION},

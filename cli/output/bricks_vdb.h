@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bricks_input.h"
+#include "share.h"
 #include "subvol/rasterize.h"
 #include "vdb_output.h"
 
@@ -18,6 +19,13 @@ struct BricksToVoxels {
     RasterizeOptions options;
     bool limit = true;
 };
+
+/// The grids of a slab of whole leaves across x, which is one share; slabs take about equal memory. Only the bricks that touch
+/// it are read. The grids of a slab without voxels are empty.
+///
+/// memory_bytes: about the most that a block of voxels and the cells about it take; 0: 1 GB
+[[nodiscard]] std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t memory_bytes, const Share& share,
+                                                   Report& report);
 
 /// Writes NAME_0000.vdb and so on, each with the voxels of a block, and NAME.json that lists them. Together their leaves are
 /// those of the whole mesh.

@@ -207,7 +207,7 @@ void PictureOutput::write_frame(std::size_t frame, const Picture& picture) {
 /// A share without rows, as there may be more shares than bands, has one transparent row that does not count.
 void PictureOutput::write_rows(const Picture& picture) {
     const Image& image = picture.image;
-    const PictureRows rows = rows_of(*share_, image.height);
+    const PixelRows rows = rows_of(*share_, image.height);
     const int first = std::min(rows.first, image.height - 1), count = std::max(rows.end - rows.first, 1);
     detail::PicturePart part{.rows = Image(image.width, count), .first_row = first, .whole_height = image.height};
     const auto begin = static_cast<std::ptrdiff_t>(first) * image.width;

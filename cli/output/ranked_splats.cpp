@@ -37,7 +37,7 @@ void append(std::string& bytes, std::span<const T> items) {
 
 /// The rows of a share in the lists of a picture: pixels of `each` floats.
 template <class Floats>
-auto rows_in(Floats& floats, const PictureRows& rows, int width, std::size_t each) {
+auto rows_in(Floats& floats, const PixelRows& rows, int width, std::size_t each) {
     const auto columns = static_cast<std::size_t>(width) * each;
     return std::span(floats).subspan(static_cast<std::size_t>(rows.first) * columns,
                                      static_cast<std::size_t>(rows.end - rows.first) * columns);
@@ -45,7 +45,7 @@ auto rows_in(Floats& floats, const PictureRows& rows, int width, std::size_t eac
 
 }  // namespace
 
-PictureRows rows_of(const Share& share, int height) {
+PixelRows rows_of(const Share& share, int height) {
     const auto [begin, end] = share.range(static_cast<std::size_t>(bands_in(height)));
     return {std::min(kBandRows * static_cast<int>(begin), height), std::min(kBandRows * static_cast<int>(end), height)};
 }
@@ -99,7 +99,7 @@ RbfVolume ship_kernels(const RbfVolume& own, const View& view, const Optics& opt
 
 void gather_rows(Picture& picture, Ranks& ranks) {
     const int width = picture.image.width, height = picture.image.height;
-    const PictureRows mine = rows_of(ranks.share(), height);
+    const PixelRows mine = rows_of(ranks.share(), height);
     std::string bytes;
     if (!ranks.first()) {
         append<float>(bytes, rows_in(picture.image.rgba, mine, width, 4));
@@ -107,7 +107,7 @@ void gather_rows(Picture& picture, Ranks& ranks) {
     }
     const std::vector<std::string> got = ranks.gather(std::move(bytes));
     for (std::size_t rank = 1; rank < got.size(); ++rank) {
-        const PictureRows rows = rows_of(ranks.share_of(static_cast<int>(rank)), height);
+        const PixelRows rows = rows_of(ranks.share_of(static_cast<int>(rank)), height);
         const auto rgba = rows_in(picture.image.rgba, rows, width, 4);
         if (!rgba.empty()) std::memcpy(rgba.data(), got[rank].data(), rgba.size_bytes());
         if (picture.depth.empty()) continue;

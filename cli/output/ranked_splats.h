@@ -4,15 +4,13 @@
 #include "picture_notes.h"
 #include "ranks.h"
 #include "share.h"
+#include "subvol/render_bricks.h"
 #include "subvol/splat.h"
 
 namespace subvol::cli {
 
-/// The rows of a share of a picture, from `first` to before `end`: whole bands of `kBandRows`.
-struct PictureRows {
-    int first = 0, end = 0;
-};
-[[nodiscard]] PictureRows rows_of(const Share& share, int height);
+/// The rows of a share of a picture: whole bands of `kBandRows`.
+[[nodiscard]] PixelRows rows_of(const Share& share, int height);
 
 /// The kernels of a volume without those that touch no row of a share; all of them if a pixel may depend on any kernel: without
 /// a boundary, and with shadows or ambient occlusion. The picture of these has the bits of the whole one in the share's rows.

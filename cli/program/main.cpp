@@ -72,7 +72,7 @@ bool speaks() {
 int complain(const Error& error, int code, bool json) {
     if (!speaks()) return code;
     subvol::cli::say_at_last([&] {
-        std::cerr << "subvol: " << printable(error.what()) << '\n';
+        std::cerr << "subvol: " + printable(error.what()) + "\n";  // in one go: mpirun may write between two
         if (json) std::cout << subvol::cli::error_json(error, code) << std::endl;
     });
     return code;

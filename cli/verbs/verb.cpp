@@ -17,12 +17,6 @@ void Verb::group(const std::string& heading, std::initializer_list<const char*> 
     for (const char* option : options) app_.get_option(option)->group(heading);
 }
 
-void Verb::refuse_shares_of_bricks(const ShareArgument& part, const std::string& bricks) const {
-    if (!shares(part)) return;
-    throw Error(ErrorCode::InvalidInput, "is a folder of bricks, whose work is not done in shares", bricks,
-                ranks_ != nullptr ? "one process, or a mesh in one file" : "no --part, or a mesh in one file");
-}
-
 Share Verb::share_of(const ShareArgument& part) const {
     if (ranks_ == nullptr) return part.share();
     if (part.given()) {

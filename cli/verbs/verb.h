@@ -59,9 +59,6 @@ protected:
     /// throws: Error(InvalidInput) if both do
     [[nodiscard]] Share share_of(const ShareArgument& part) const;
 
-    /// throws: Error(InvalidInput) if a share is asked for of a folder of bricks, which are not divided yet
-    void refuse_shares_of_bricks(const ShareArgument& part, const std::string& bricks) const;
-
     void set_essentials(std::vector<std::string> options) { essentials_ = std::move(options); }
 
     /// Puts options under a heading of --help-all and of the manual page.

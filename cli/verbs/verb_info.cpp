@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iomanip>
+#include <span>
 
 #include "bricks_input.h"
 #include "grid_input.h"
@@ -12,6 +13,7 @@
 #include "points_input.h"
 #include "share.h"
 #include "steps.h"
+#include "subvol/detail/bricks_share.h"
 #include "subvol/error.h"
 #include "subvol/join_grids.h"
 #include "subvol/mesh_report.h"
@@ -71,7 +73,6 @@ public:
         if (input_.empty()) {
             if (!gl_) throw Error(ErrorCode::InvalidInput, "a FILE is needed, or --gl", "info");
         } else if (is_bricks_input(input_)) {
-            refuse_shares_of_bricks(share_, input_);
             describe_bricks(report);
         } else if (holds_points(input_)) {
             describe_points(report);
@@ -123,7 +124,8 @@ private:
         if (!is_model(input_)) put_steps(read, report);
         detail::MeshShare about;
         if (shares(share_)) {
-            about = share_of_mesh(read.mesh, report);
+            const Share share = share_of(share_);
+            about = joined(share, report, [&] { return detail::inspect_share(read.mesh, share.part, share.of, kCellsNamed); });
             if (!speaks()) return;
         } else {
             about.counts = report.timed("inspect", [&] { return inspect(read.mesh); });
@@ -149,8 +151,13 @@ private:
     void describe_bricks(Report& report) {
         refuse_at("bricks");
         const Bricks bricks = open_bricks_input(input_, app(), report);
-        const MeshReport about = report.timed("inspect", [&] { return inspect(bricks, report.progress()); });
-        put_mesh_report(report, about);
+        const Share share = share_of(share_);
+        const detail::MeshShare about = joined(share, report, [&] {
+            const auto [begin, end] = share.range(bricks.bricks.size());
+            return detail::inspect_share(bricks, begin, end, kCellsNamed, report.progress());
+        });
+        if (!speaks()) return;
+        put_mesh_report(report, about.counts);
         report["halo_layers"] = bricks.halo_layers;
         std::uint64_t bytes = 0;
         for (const Brick& brick : bricks.bricks) bytes += brick.bytes;
@@ -163,23 +170,26 @@ private:
                                         {"min", field.shortest},
                                         {"max", field.longest}});
         }
+        if (!share_.given()) report["verdict"] = verdict(about.counts, about.inverted);
     }
 
-    /// The figures of this process's share; those of all ranks, joined, at rank 0.
-    [[nodiscard]] detail::MeshShare share_of_mesh(const HexMesh& mesh, Report& report) {
-        const Share share = share_of(share_);
+    /// The figures of the whole mesh; with --part those of this share, which go into the report.
+    ///
+    /// inspect: finds the figures of this process's share
+    template <class Inspect>
+    [[nodiscard]] detail::MeshShare joined(const Share& share, Report& report, const Inspect& inspect) {
         if (share_.given() && !common().json) {
             throw Error(ErrorCode::InvalidInput, "the figures of a share are for `subvol join`, which reads JSON", "--part",
                         "--json, and the output in a file");
         }
-        detail::MeshShare own =
-            report.timed("inspect", [&] { return detail::inspect_share(mesh, share.part, share.of, kCellsNamed); });
-        if (ranks() == nullptr) {
+        detail::MeshShare own = report.timed("inspect", inspect);
+        if (share_.given()) {
             report["part"] = share.name();
             report["part_note"] = text_of(make_note(app(), input_, share));
             report["part_figures"] = json_of(own);
             return own;
         }
+        if (ranks() == nullptr) return detail::join_shares(std::span(&own, 1), kCellsNamed);
         std::vector<detail::MeshShare> all;
         for (const std::string& bytes : ranks()->gather(json_of(own).dump())) {
             all.push_back(mesh_share_from(Json::parse(bytes), "rank"));

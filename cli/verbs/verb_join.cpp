@@ -8,6 +8,7 @@
 #include "mesh_lines.h"
 #include "outputs.h"
 #include "part_note.h"
+#include "subvol/brick_points.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/picture_part.h"
 #include "subvol/detail/points_range.h"
@@ -113,6 +114,7 @@ private:
         check_output(output_, {".ply", ".vtp", ".vdb"});
         const std::vector<std::size_t> order =
             ordered([](const std::string& part) { return is_points_file(part) ? read_points_note(part) : std::nullopt; });
+        if (how_.contains("points")) return join_points_of_bricks(order, report);
         RbfVolume volume;
         report.timed("read", [&] {
             for (const std::size_t p : order) {
@@ -141,6 +143,18 @@ private:
         report["points"] = volume.size();
         const bool inside = output_.ends_with(".ply") && !options.splats;
         if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = detail::boundary_path(output_).string();
+    }
+
+    /// One part at a time: the whole may not fit into memory.
+    void join_points_of_bricks(const std::vector<std::size_t>& order, Report& report) {
+        check_output(output_, {".ply"});
+        const auto points = how("points", std::uint64_t{0});
+        std::vector<std::filesystem::path> files;
+        for (const std::size_t p : order) files.emplace_back(parts_[p]);
+        const BrickPointsReport written =
+            report.timed("write", [&] { return subvol::join_points_of_bricks(output_, files, points); });
+        report["output"] = output_;
+        report["points"] = written.points;
     }
 
     void join_pictures(Report& report) {

@@ -12,6 +12,7 @@
 #include "points_input.h"
 #include "quantities.h"
 #include "rank_report.h"
+#include "ranked_bricks.h"
 #include "sampled_points.h"
 #include "share.h"
 #include "steps.h"
@@ -58,7 +59,7 @@ public:
         app().add_flag("--error", error_,
                        "also write a channel NAME_error: about how far the sum of kernels is from the limit near each");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
-        share_.add_to(app(), "a range of the points in their order, or of the steps");
+        share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
                         "--reduce", "--levels", "--scheme"});
         group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
@@ -84,8 +85,7 @@ public:
         tets_ = TetRefinement(refine_);
         report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
         if (is_bricks_input(input_)) {
-            refuse_shares_of_bricks(share_, input_);
-            write_bricks(report);
+            write_bricks(share, report);
             return 0;
         }
         if (asks_for_steps(common())) {
@@ -124,7 +124,7 @@ private:
     }
 
     /// Brick by brick into one file; the memory is that of a brick.
-    void write_bricks(Report& report) {
+    void write_bricks(const Share& share, Report& report) {
         if (!output_.ends_with(".ply") || ascii_ || splats_) {
             throw Error(ErrorCode::InvalidInput, "points of bricks are written as binary .ply only", output_,
                         "-o NAME.ply without --ascii and --splats");
@@ -134,11 +134,21 @@ private:
         const Bricks bricks = open_bricks_input(input_, app(), report);
         const StreamedField field = select_brick_field(bricks, common(), report);
         const SampleOptions options = sample_.options(bricks.bounds, refine_.options(0, report));
+        const BrickFields fields = [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); };
+        const auto [begin, end] = share.range(bricks.bricks.size());
+        BrickShare own{begin, end, {}};
+        if (share_.given()) {
+            report["part"] = share.name();
+            own.note = text_of(make_note(app(), input_, share, {{"points", bricks.points}}));
+        }
         const BrickPointsReport written = report.timed("sample", [&] {
-            return write_points_of_bricks(output_, bricks, options,
-                                          [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); });
+            return ranks() != nullptr
+                       ? write_points_ranked(output_, bricks, options, fields, *ranks())
+                       : write_points_of_bricks(output_, bricks, options, fields, share_.given() ? &own : nullptr);
         });
-        note_beyond(report.json().at("field"), {field.min, field.max}, {written.min, written.max}, report);
+        if (!speaks()) return;
+        if (written.points > 0)
+            note_beyond(report.json().at("field"), {field.min, field.max}, {written.min, written.max}, report);
         report["points"] = written.points;
         report["boundary_triangles"] = written.triangles;
         report["output"] = output_;

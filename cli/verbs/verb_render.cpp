@@ -14,6 +14,7 @@
 #include "picture_output.h"
 #include "points_input.h"
 #include "rank_report.h"
+#include "ranked_bricks.h"
 #include "ranked_splats.h"
 #include "reference_arguments.h"
 #include "reference_pictures.h"
@@ -115,7 +116,6 @@ public:
         PictureOutput output(output_, picture_.turntable_frames, picture_);
         set_share(output, picture_.turntable_frames.has_value());
         if (is_bricks_input(input_)) {
-            refuse_shares_of_bricks(share_, input_);
             draw_bricks(output, report);
         } else if (method_ == "grid") {
             draw_voxels(output, report);
@@ -307,18 +307,30 @@ private:
             .sample = sample_.options(bricks.bounds, refine), .splat = options_, .memory_bytes = memory_bytes_};
         options.splat.color_channel.reset();
         options.splat.progress = report.progress();
+        if (by_rows_) options.rows = rows_of(share_of(share_), views.front().height());
         BoundaryValues skin;
-        if (picture_.paints_boundary(app(), refine_)) {
+        if ((!by_rows_ || speaks()) && picture_.paints_boundary(app(), refine_)) {
             skin = report.timed("boundary", [&] { return boundary_values(bricks, fields, refine.scheme); });
         }
         Surface boundary = report.timed("boundary", [&] { return sample_bricks_boundary(bricks, options.sample); });
         const auto draw = [&](const View& view, Progress*) {
+            Surface own = views.size() > 1 ? boundary : std::move(boundary);
+            const bool ranked = by_rows_ && ranks() != nullptr;
+            ShippedKernels shipped;
             SplatResult drawn = report.timed("draw", [&] {
-                return render_bricks(bricks, fields, views.size() > 1 ? boundary : std::move(boundary), view, optics, options);
+                return ranked ? render_bricks_ranked(bricks, fields, std::move(own), view, optics, options, *ranks(), shipped)
+                              : render_bricks(bricks, fields, std::move(own), view, optics, options);
             });
             report["method"] = method_;
             report["points"] = drawn.report.points;
             report_splats(drawn.report, report);
+            if (ranked) {
+                report_shipped(shipped, report);
+                Picture rows{std::move(drawn.image), std::move(drawn.depth)};
+                gather_rows(rows, *ranks());
+                drawn.image = std::move(rows.image);
+                drawn.depth = std::move(rows.depth);
+            }
             if (!skin.values.empty()) {
                 color_boundary(drawn.image, skin.surface, skin.values.back(), view, optics, Shading{}, reference_.samples,
                                options_.clip);
@@ -326,7 +338,7 @@ private:
             return Picture{std::move(drawn.image), std::move(drawn.depth)};
         };
         output.write(views, draw, report);
-        picture_.write_legend(optics, legend, report);
+        if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
     using Draw = std::function<Picture(const View&, Progress*)>;
@@ -417,6 +429,14 @@ private:
         if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
+    /// What all ranks have sent.
+    void report_shipped(const ShippedKernels& shipped, Report& report) const {
+        std::vector<std::int64_t> counts{static_cast<std::int64_t>(shipped.kernels), static_cast<std::int64_t>(shipped.bytes)};
+        ranks()->sum(counts);
+        report["kernels_shipped"] = counts[0];
+        report["kernel_bytes_sent"] = counts[1];
+    }
+
     /// One picture, of which this process draws its rows; the whole at rank 0.
     [[nodiscard]] SplatResult draw_rows(const RbfVolume& volume, const BoundaryValues& skin, const View& view,
                                         const Optics& optics, Progress* progress, Report& report) const {
@@ -435,10 +455,7 @@ private:
         own.boundary = volume.boundary;
         ShippedKernels shipped;
         const RbfVolume band = ship_kernels(own, view, optics, options, *ranks(), shipped);
-        std::vector<std::int64_t> counts{static_cast<std::int64_t>(shipped.kernels), static_cast<std::int64_t>(shipped.bytes)};
-        ranks()->sum(counts);
-        report["kernels_shipped"] = counts[0];
-        report["kernel_bytes_sent"] = counts[1];
+        report_shipped(shipped, report);
         SplatResult drawn = drawn_of(band);
         drawn.report.points = volume.size();
         return drawn;

@@ -109,8 +109,7 @@ public:
         const Share share = share_of(share_);
         if (!asked_.like.empty()) like_grids_ = read_vdb(asked_.like);
         if (is_bricks_input(input_)) {
-            refuse_shares_of_bricks(share_, input_);
-            run_bricks(report);
+            run_bricks(share, report);
         } else if (asks_for_steps(common())) {
             run_steps(share, report);
         } else if (!asked_.frames.empty() || !asked_.to.empty() || has_number(input_)) {
@@ -161,7 +160,7 @@ private:
     }
 
     /// Block by block of voxels, each from the cells about it.
-    void run_bricks(Report& report) {
+    void run_bricks(const Share& share, Report& report) {
         refuse_options(app(),
                        {"--budget", "--remap", "--clamp", "--up", "--scale", "--cell-ids", "--error", "--coverage", "--sdf",
                         "--from", "--nano", "--frames", "--to", "--velocity"},
@@ -182,7 +181,16 @@ private:
             fields.push_back(named_brick_field(bricks, name, true));
         }
         if (fields.empty()) fields.push_back(select_brick_field(bricks, common(), report));
-        write_bricks_vdb({bricks, fields, options, !refine_.levels.has_value()}, output_, report);
+        const BricksToVoxels what{bricks, fields, options, !refine_.levels.has_value()};
+        if (!shares(share_)) {
+            write_bricks_vdb(what, output_, report);
+            return;
+        }
+        const std::vector<VdbGrid> all =
+            of_all_shares(grids_of_bricks(what, output_.memory_bytes, share, report), share, report);
+        if (all.empty()) return;
+        if (!has_voxels(all)) throw no_voxels(input_, "try a smaller --voxel-size");
+        write_reported(all, output_, report);
     }
 
     /// One slab of the voxels, as a file of its own.
@@ -195,29 +203,35 @@ private:
         std::vector<VdbGrid> grids =
             report.timed("rasterize", [&] { return rasterize_share(mesh, names_of(mesh), options, share.part, share.of); });
         clamp_grids(mesh, grids);
-        for (VdbGrid& grid : grids) store_in_half(grid, false);  // whoever has all voxels rounds them
-        if (ranks() != nullptr) {
-            grids = gathered(std::move(grids), report);
-            if (!ranks()->first()) return;
-            if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
-            note_overshoot(mesh, grids, report);
-            write_reported(grids, output_, report);
-            return;
-        }
+        grids = of_all_shares(std::move(grids), share, report);
+        if (grids.empty()) return;
+        if (!has_voxels(grids)) throw no_voxels(input_, finer_voxels(mesh));
+        note_overshoot(mesh, grids, report);
+        write_reported(grids, output_, report);
+    }
+
+    /// The grids of all ranks at rank 0, to be written. With --part those of the share are written here. Nothing elsewhere.
+    std::vector<VdbGrid> of_all_shares(std::vector<VdbGrid> own, const Share& share, Report& report) {
+        for (VdbGrid& grid : own) store_in_half(grid, false);  // whoever has all voxels rounds them
+        if (ranks() != nullptr) return gathered(std::move(own), report);
         const std::string note =
             text_of(make_note(app(), input_, share, {{"half", asked_.half}, {"compression", asked_.compression}}));
-        for (VdbGrid& grid : grids) set_text_of_grid(grid, kPartNote, note);
+        for (VdbGrid& grid : own) set_text_of_grid(grid, kPartNote, note);
         report["part"] = share.name();
-        write_share(grids, output_, report);
+        write_share(own, output_, report);
+        return {};
     }
 
     /// The grids of all ranks, joined, at rank 0; nothing elsewhere.
     std::vector<VdbGrid> gathered(std::vector<VdbGrid> own, Report& report) const {
         return report.timed("gather", [&] {
-            const std::string bytes = detail::bytes_of_grids(own);
+            std::string bytes = detail::bytes_of_grids(own);
             own.clear();
             std::vector<std::vector<VdbGrid>> of_ranks;
-            for (const std::string& one : ranks()->gather(bytes)) of_ranks.push_back(detail::grids_from_bytes(one));
+            for (std::string& one : ranks()->gather(std::move(bytes))) {
+                of_ranks.push_back(detail::grids_from_bytes(one));
+                one = {};
+            }
             std::vector<VdbGrid> joined;
             for (std::size_t g = 0; !of_ranks.empty() && g < of_ranks.front().size(); ++g) {
                 std::vector<VdbGrid> parts;

@@ -27,9 +27,7 @@ constexpr std::uint8_t kGhost = 1;  // VTK's duplicate cell, and duplicate point
 constexpr const char* kId = "subvol_bricks";
 constexpr const char* kCreases = "subvol_creases";
 constexpr const char* kSharpFaces = "subvol_sharp_faces";
-constexpr const char* kNodeNumbers = "GlobalNodeId";
 constexpr const char* kCellNumbers = "GlobalCellId";
-constexpr const char* kGhosts = "vtkGhostType";
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
 

@@ -10,6 +10,10 @@
 
 namespace subvol::detail {
 
+/// The arrays at points with their numbers in the whole mesh, and with 1 for those of the halo; no field has these names.
+inline constexpr const char* kNodeNumbers = "GlobalNodeId";
+inline constexpr const char* kGhosts = "vtkGhostType";
+
 /// Bytes and hash of a file that was written.
 struct WrittenBrick {
     std::uint64_t bytes = 0, hash = 0;

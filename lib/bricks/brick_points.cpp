@@ -76,13 +76,20 @@ Surface sample_bricks_boundary(const Bricks& bricks, const SampleOptions& option
 }
 
 BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, const Bricks& bricks, const SampleOptions& options,
-                                         const BrickFields& fields) {
+                                         const BrickFields& fields, const BrickShare* share) {
     check_halo(bricks, options);
-    const Surface boundary = sample_bricks_boundary(bricks, options);
+    const std::size_t begin = share ? share->begin : 0, end = share ? share->end : bricks.bricks.size();
+    Surface boundary;
+    if (begin == 0) boundary = sample_bricks_boundary(bricks, options);
+    std::uint64_t points_of_share = 0;
+    for (std::size_t b = begin; b < end; ++b) points_of_share += bricks.bricks[b].points;
     BrickPointsReport report{.min = HUGE_VAL, .max = -HUGE_VAL, .triangles = boundary.triangles.size()};
     std::optional<detail::PlyRows> rows;
-    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        PartOfProgress progress(options.progress, "sample", b, bricks.bricks.size());
+    const auto start = [&](const RbfVolume& like) {
+        rows.emplace(path, like, points_of_share, boundary, share ? share->note : std::string());
+    };
+    for (std::size_t b = begin; b < end; ++b) {
+        PartOfProgress progress(options.progress, "sample", b - begin, end - begin);
         progress.report({}, 0);
         if (progress.cancelled()) throw Error(ErrorCode::Cancelled, "cancelled");
         SampleOptions of_brick = options;
@@ -90,7 +97,8 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
         BrickMesh brick = read_brick(bricks, b);
         brick.mesh = fields(std::move(brick.mesh));
         const BrickPoints points = sample_brick(bricks, std::move(brick), of_brick);
-        if (!rows) rows.emplace(path, points.volume, bricks.points, boundary);
+        if (points.numbers.empty()) continue;  // other bricks own all its points
+        if (!rows) start(points.volume);
         rows->write(points.numbers, points.volume);
         report.points += points.numbers.size();
         report.flat_frames += points.flat_frames;
@@ -99,7 +107,52 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
             report.max = std::max(report.max, static_cast<double>(value));
         }
     }
+    if (!rows) {  // more shares than bricks
+        RbfVolume none;
+        none.kernel = options.kernel;
+        none.channels.push_back({.name = "value"});
+        start(none);
+    }
     rows->finish(boundary);
+    return report;
+}
+
+BrickPointsReport join_points_of_bricks(const std::filesystem::path& path, std::span<const std::filesystem::path> parts,
+                                        std::uint64_t points) {
+    std::uint64_t bytes = 0;
+    for (const std::filesystem::path& part : parts) {
+        std::error_code error;
+        const auto size = std::filesystem::file_size(part, error);
+        bytes += error ? 0 : size;
+    }
+    if (points > bytes) {
+        throw Error(ErrorCode::InvalidInput, "cannot be one of parts with " + std::to_string(points) + " points",
+                    parts.front().string());
+    }
+    std::vector<bool> found(points);
+    Surface boundary;
+    std::optional<detail::PlyRows> rows;
+    BrickPointsReport report;
+    for (const std::filesystem::path& part : parts) {
+        detail::NumberedPoints read = detail::read_numbered_points(part);
+        if (&part == &parts.front()) boundary = std::move(read.volume.boundary);
+        for (const std::uint64_t number : read.numbers) {
+            if (number < points && !found[number]) {
+                found[number] = true;
+                continue;
+            }
+            throw Error(ErrorCode::InvalidInput,
+                        "point " + std::to_string(number) + (number < points ? " is in another part, too" : " does not exist"),
+                        part.string(), "all parts of one mesh, each once");
+        }
+        if (read.numbers.empty()) continue;
+        if (!rows) rows.emplace(path, read.volume, points, boundary);
+        rows->write(read.numbers, read.volume);
+        report.points += read.numbers.size();
+    }
+    if (!rows) throw Error(ErrorCode::InvalidInput, "has no points, and neither have the other parts", parts.front().string());
+    rows->finish(boundary);
+    report.triangles = boundary.triangles.size();
     return report;
 }
 

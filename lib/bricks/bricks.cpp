@@ -2,11 +2,13 @@
 #include "subvol/bricks.h"
 
 #include <algorithm>
+#include <span>
 
 #include "boundary_level.h"
 #include "brick_file.h"
 #include "brick_index.h"
 #include "brick_layers.h"
+#include "subvol/detail/bricks_share.h"
 #include "subvol/detail/inspect_part.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -62,14 +64,35 @@ BrickMesh gather(const Bricks& bricks, const Box& box) {
     return merged(std::move(parts));
 }
 
-MeshReport inspect(const Bricks& bricks, Progress* progress) {
-    MeshReport report;
-    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        report_progress(progress, "inspect", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
+MeshShare detail::inspect_share(const Bricks& bricks, std::size_t begin, std::size_t end, std::size_t inverted_at_most,
+                                Progress* progress) {
+    MeshShare share;
+    MeshReport& counts = share.counts;
+    for (std::size_t b = begin; b < end; ++b) {
+        report_progress(progress, "inspect", static_cast<double>(b - begin) / static_cast<double>(end - begin));
         const BrickMesh brick = read_brick(bricks, b);
-        add_part(brick.mesh, brick.owned_points, brick.owned_cells, report);
+        counts.volume = 0;
+        const std::size_t inverted_before = counts.inverted_cells;
+        add_part(brick.mesh, brick.owned_points, brick.owned_cells, counts);
+        share.volumes.push_back(counts.volume);
+        if (counts.inverted_cells == inverted_before) continue;
+        for (const std::size_t cell : inverted_cells(brick.mesh, brick.mesh.cells.size())) {
+            if (brick.owned_cells[cell]) share.inverted.push_back(static_cast<std::size_t>(brick.cell_numbers[cell]));
+        }
+        std::ranges::sort(share.inverted);
+        share.inverted.resize(std::min(share.inverted.size(), inverted_at_most));
     }
-    return report;
+    if (begin == end) counts.min_scaled_jacobian = 1;
+    counts.volume = 0;
+    counts.points = bricks.points;
+    counts.cells = bricks.cells;
+    counts.bounds = bricks.bounds;
+    return share;
+}
+
+MeshReport inspect(const Bricks& bricks, Progress* progress) {
+    const MeshShare all = inspect_share(bricks, 0, bricks.bricks.size(), 0, progress);
+    return join_shares(std::span(&all, 1), 0).counts;
 }
 
 BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields) {

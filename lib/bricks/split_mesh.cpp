@@ -145,6 +145,7 @@ SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, std::s
     check_options(options);
     validate(mesh);
     mesh = without_unused_points(std::move(mesh));
+    std::erase_if(mesh.attributes, [](const Attribute& field) { return field.name == kNodeNumbers || field.name == kGhosts; });
     if (brick_of_cell.size() != mesh.cells.size()) {
         throw Error(ErrorCode::InvalidInput, "there are bricks for " + std::to_string(brick_of_cell.size()) + " cells", {},
                     "the mesh has " + std::to_string(mesh.cells.size()));

@@ -23,8 +23,8 @@ std::string suffix_of(std::size_t channel) {
 
 class PlyReader {
 public:
-    PlyReader(std::string_view text, const std::filesystem::path& path)
-        : path_(path), name_(path.string()), in_(text, name_, TextScanner::Comments::None) {}
+    PlyReader(std::string_view text, const std::filesystem::path& path, std::vector<double>* numbers)
+        : path_(path), name_(path.string()), in_(text, name_, TextScanner::Comments::None), numbers_(numbers) {}
 
     RbfVolume read() {
         header_ = read_ply_header(in_);
@@ -71,6 +71,7 @@ private:
     [[nodiscard]] Names wanted() const {
         Names names{"x", "y", "z", "cx", "cy", "cz"};
         names.insert(kFrame.begin(), kFrame.end());
+        if (numbers_ != nullptr) names.insert(kNumber);
         for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
             names.insert("value" + suffix_of(c));
             for (const char* name : kGradient) names.insert(name + suffix_of(c));
@@ -124,6 +125,7 @@ private:
         for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
             take_channel(table, element, suffix_of(c), volume_.channels[c]);
         }
+        if (numbers_ != nullptr) *numbers_ = column(table, element, kNumber);
     }
 
     // Missing gradients and moments are 0: a kernel then represents a constant.
@@ -158,6 +160,7 @@ private:
     const std::filesystem::path& path_;
     std::string name_;
     TextScanner in_;
+    std::vector<double>* numbers_;
     PlyHeader header_;
     RbfVolume volume_;
     std::size_t triangles_beside_ = 0;
@@ -165,8 +168,8 @@ private:
 
 }  // namespace
 
-RbfVolume read_ply(std::string_view text, const std::filesystem::path& path) {
-    return PlyReader(text, path).read();
+RbfVolume read_ply(std::string_view text, const std::filesystem::path& path, std::vector<double>* numbers) {
+    return PlyReader(text, path, numbers).read();
 }
 
 }  // namespace subvol::detail

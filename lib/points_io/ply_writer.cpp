@@ -47,7 +47,8 @@ public:
         return text;
     }
 
-    void write(NumberWriter& out) const {
+    /// numbers: none, or one that ends each row
+    void write(NumberWriter& out, std::span<const std::uint64_t> numbers = {}) const {
         for (std::size_t i = 0; i < volume_.size(); ++i) {
             if (with_splats_) {
                 out.put_point<float>(turn_ * volume_.centers[i]);
@@ -61,6 +62,7 @@ public:
                 if (!channel.hessians.empty()) out.put_all(channel.hessians[i]);
             }
             out.put_all(volume_.frames[i]);
+            if (!numbers.empty()) out.put(static_cast<double>(numbers[i]));
             out.end_row();
         }
     }
@@ -124,14 +126,18 @@ void write_ply(const std::filesystem::path& path, const RbfVolume& volume, const
 struct PlyRows::State {
     std::filesystem::path path;
     OutputFile out;
-    std::uint64_t points, first = 0, row = 0, written = 0;
+    std::uint64_t points;
+    bool numbered;
+    std::uint64_t first = 0, row = 0, written = 0;
 };
 
-PlyRows::PlyRows(const std::filesystem::path& path, const RbfVolume& like, std::uint64_t points, const Surface& boundary)
-    : state_(new State{path, OutputFile(path), points}) {
+PlyRows::PlyRows(const std::filesystem::path& path, const RbfVolume& like, std::uint64_t points, const Surface& boundary,
+                 const std::string& note)
+    : state_(new State{path, OutputFile(path), points, !note.empty()}) {
     const PointsWriteOptions options;
-    state_->out.write(std::string("ply\nformat ") + kBinary + " 1.0\n" + comments(like, boundary, {}) +
-                      VertexElement(like, options).header(points) + boundary_header(boundary) + "end_header\n");
+    const std::string number = state_->numbered ? std::string("property double ") + kNumber + "\n" : "";
+    state_->out.write(std::string("ply\nformat ") + kBinary + " 1.0\n" + comments(like, boundary, note) +
+                      VertexElement(like, options).header(points) + number + boundary_header(boundary) + "end_header\n");
     state_->first = state_->out.position();
 }
 
@@ -139,16 +145,22 @@ PlyRows::~PlyRows() = default;
 
 void PlyRows::write(std::span<const std::uint64_t> numbers, const RbfVolume& points) {
     if (numbers.empty()) return;
-    if (numbers.back() >= state_->points) {
+    if (!state_->numbered && numbers.back() >= state_->points) {
         throw Error(ErrorCode::InvalidInput,
                     "point " + std::to_string(numbers.back()) + " was found, there are " + std::to_string(state_->points),
                     state_->path.string());
     }
     NumberWriter rows;
-    VertexElement(points, {}).write(rows);
+    const VertexElement vertices(points, {});
+    state_->numbered ? vertices.write(rows, numbers) : vertices.write(rows);
     const std::uint64_t row = rows.bytes().size() / numbers.size();
     assert(state_->row == 0 || state_->row == row);
     state_->row = row;
+    if (state_->numbered) {
+        state_->out.write(rows.bytes());
+        state_->written += numbers.size();
+        return;
+    }
     for (std::size_t begin = 0, end = 0; begin < numbers.size(); begin = end) {
         for (end = begin + 1; end < numbers.size() && numbers[end] == numbers[begin] + (end - begin);) ++end;
         state_->out.write_at(state_->first + row * numbers[begin],
@@ -163,7 +175,7 @@ void PlyRows::finish(const Surface& boundary) {
                     std::to_string(state_->written) + " of " + std::to_string(state_->points) + " points were found",
                     state_->path.string());
     }
-    state_->out.seek(state_->first + state_->row * state_->points);
+    if (!state_->numbered) state_->out.seek(state_->first + state_->row * state_->points);
     NumberWriter numbers(state_->out);
     write_boundary(numbers, boundary);
     numbers.flush();

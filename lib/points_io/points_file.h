@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string_view>
+#include <vector>
 
 #include "subvol/points_io.h"
 
@@ -15,7 +16,13 @@ void write_vtp(const std::filesystem::path& path, const RbfVolume& volume, const
 /// What comes before a note in a comment of either format, and behind it in .vtp.
 inline constexpr const char* kNoteMark = " subvol_note ";
 inline constexpr const char* kNoteEnd = " -->";
-[[nodiscard]] RbfVolume read_ply(std::string_view text, const std::filesystem::path& path);
+
+/// The property of a part's points with their places in the whole.
+inline constexpr const char* kNumber = "number";
+
+/// numbers: null, or gets them
+[[nodiscard]] RbfVolume read_ply(std::string_view text, const std::filesystem::path& path,
+                                 std::vector<double>* numbers = nullptr);
 [[nodiscard]] RbfVolume read_vtp(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace subvol::detail

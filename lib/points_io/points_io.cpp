@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/points_io.h"
 
+#include <cmath>
 #include <fstream>
 
 #include "points_file.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/ply_rows.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -18,6 +21,22 @@ constexpr const char* kFormats = ".ply or .vtp";
 
 std::string format_of(const std::filesystem::path& path) {
     return upper_case(path.extension().string());
+}
+
+/// numbers: null, or gets those of the points; only .ply has them
+RbfVolume read(const std::filesystem::path& path, std::vector<double>* numbers) {
+    const std::string text = read_text(path);
+    try {
+        RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path, numbers) : read_vtp(text, path);
+        for (RbfChannel& channel : volume.channels) channel.name = printable(channel.name);
+        validate(volume);
+        volume.bounds = box_of(volume);
+        return volume;
+    } catch (const Error& error) {
+        const std::string_view said(error.what());
+        if (said.starts_with(path.string()) || said.starts_with(boundary_path(path).string())) throw;
+        throw Error(error.code(), error.what(), path.string());
+    }
 }
 
 }  // namespace
@@ -40,18 +59,23 @@ void write_points(const std::filesystem::path& path, const RbfVolume& volume, co
 RbfVolume read_points(const std::filesystem::path& path) {
     if (!is_points_file(path))
         throw Error(ErrorCode::InvalidInput, "points cannot be read from this format", path.string(), kFormats);
-    const std::string text = read_text(path);
-    try {
-        RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path) : read_vtp(text, path);
-        for (RbfChannel& channel : volume.channels) channel.name = printable(channel.name);
-        validate(volume);
-        volume.bounds = box_of(volume);
-        return volume;
-    } catch (const Error& error) {
-        const std::string_view said(error.what());
-        if (said.starts_with(path.string()) || said.starts_with(boundary_path(path).string())) throw;
-        throw Error(error.code(), error.what(), path.string());
+    return read(path, nullptr);
+}
+
+NumberedPoints detail::read_numbered_points(const std::filesystem::path& path) {
+    constexpr double kMost = 9007199254740992;  // 2^53: from there on doubles are not all whole numbers
+    std::vector<double> numbers;
+    NumberedPoints result{read(path, &numbers), {}};
+    if (numbers.size() != result.volume.size())
+        throw Error(ErrorCode::InvalidInput, "its points have no numbers", path.string());
+    for (const double number : numbers) {
+        if (!(number >= 0 && number < kMost && number == std::floor(number))) {
+            throw Error(ErrorCode::InvalidInput, "a point has the number " + number_text(number), path.string(),
+                        "a whole number below 2^53");
+        }
+        result.numbers.push_back(static_cast<std::uint64_t>(number));
     }
+    return result;
 }
 
 std::optional<std::string> read_points_note(const std::filesystem::path& path) {

@@ -239,10 +239,10 @@ detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::si
         all.nonmanifold_edges += counts.nonmanifold_edges;
         all.nonmanifold_faces += counts.nonmanifold_faces;
         for (const double volume : volumes) all.volume += volume;
-        for (const std::size_t cell : inverted) {
-            if (whole.inverted.size() < inverted_at_most) whole.inverted.push_back(cell);
-        }
+        whole.inverted.insert(whole.inverted.end(), inverted.begin(), inverted.end());
     }
+    std::ranges::sort(whole.inverted);  // the cells of bricks are in no order
+    whole.inverted.resize(std::min(whole.inverted.size(), inverted_at_most));
     return whole;
 }
 

@@ -42,10 +42,15 @@ struct BentRecord {
 
 }  // namespace
 
-KernelRegions::KernelRegions(const View& view, double nearest, double widening, std::filesystem::path scratch)
-    : view_(view), nearest_(nearest), widening_(widening), scratch_(std::move(scratch)) {
+KernelRegions::KernelRegions(const View& view, const PixelRows& rows, double nearest, double widening,
+                             std::filesystem::path scratch)
+    : view_(view), rows_(rows), nearest_(nearest), widening_(widening), scratch_(std::move(scratch)) {
     std::error_code error;
     if (scratch_.empty()) scratch_ = std::filesystem::temp_directory_path(error);
+    if (error) {
+        errno = error.value();
+        fail();
+    }
     const int longest = std::max(view.width(), view.height());
     side_ = std::max(1, (longest + kMostAcross * kTile_px - 1) / (kMostAcross * kTile_px)) * kTile_px;
     across_ = (view.width() + side_ - 1) / side_;
@@ -68,8 +73,13 @@ KernelRegions::Region KernelRegions::region(std::size_t k) const {
     return {x, y, std::min(x + side_, view_.width()), std::min(y + side_, view_.height())};
 }
 
-/// The regions that the box around a kernel touches, in eye space: from x0, y0 to before x1, y1.
-KernelRegions::Region KernelRegions::rows_of(const RbfVolume& kernels, std::size_t i) const {
+bool KernelRegions::is_drawn(std::size_t k) const {
+    const Region of = region(k);
+    return of.y0 < rows_.end && of.y1 > rows_.first;
+}
+
+/// The box around a kernel on the picture, with a margin.
+KernelRegions::PixelBox KernelRegions::pixels_of(const RbfVolume& kernels, std::size_t i) const {
     const Mat3 s = widening_ * matrix(kernels.frames[i]);
     const Vec3 center = view_.to_eye(kernels.centers[i]);
     Vec3 half;
@@ -77,29 +87,44 @@ KernelRegions::Region KernelRegions::rows_of(const RbfVolume& kernels, std::size
         const Vec3& axis = view_.axes()[static_cast<std::size_t>(d)];
         half[d] = 1.001 * std::sqrt(std::max(0.0, glm::dot(axis, s * axis)));
     }
-    if (view_.perspective() && center.z - half.z <= nearest_) return {0, 0, across_, down_};
-    double left = HUGE_VAL, right = -HUGE_VAL, top = HUGE_VAL, bottom = -HUGE_VAL;
+    if (view_.perspective() && center.z - half.z <= nearest_) return {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    PixelBox box{HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     for (int k = 0; k < 8; ++k) {
         const Vec3 corner = center + Vec3(k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z);
         const Vec2 px = view_.to_pixels(corner);
-        left = std::min(left, px.x);
-        right = std::max(right, px.x);
-        top = std::min(top, px.y);
-        bottom = std::max(bottom, px.y);
+        box = {std::min(box.left, px.x), std::min(box.top, px.y), std::max(box.right, px.x), std::max(box.bottom, px.y)};
     }
+    return {box.left - kMargin_px, box.top - kMargin_px, box.right + kMargin_px, box.bottom + kMargin_px};
+}
+
+/// The regions that are drawn and that the box touches: from x0, y0 to before x1, y1.
+KernelRegions::Region KernelRegions::regions_of(const RbfVolume& kernels, std::size_t i) const {
+    const PixelBox box = pixels_of(kernels, i);
     const auto region = [&](double px, int most) {
         return static_cast<int>(std::clamp(std::floor(px / side_), -1.0, static_cast<double>(most)));
     };
-    return {std::max(0, region(left - kMargin_px, across_)), std::max(0, region(top - kMargin_px, down_)),
-            std::min(across_, region(right + kMargin_px, across_) + 1),
-            std::min(down_, region(bottom + kMargin_px, down_) + 1)};
+    const int first = std::max(0, rows_.first / side_), end = std::min(down_, (rows_.end + side_ - 1) / side_);
+    return {std::max(0, region(box.left, across_)), std::max(first, region(box.top, down_)),
+            std::min(across_, region(box.right, across_) + 1), std::min(end, region(box.bottom, down_) + 1)};
+}
+
+std::vector<PixelRows> KernelRegions::rows_of(const RbfVolume& kernels) const {
+    std::vector<PixelRows> rows(kernels.size());
+    const auto row = [&](double px) {
+        return static_cast<int>(std::clamp(std::floor(px), -1.0, static_cast<double>(view_.height())));
+    };
+    parallel_each(rows.size(), [&](std::size_t i) {
+        const PixelBox box = pixels_of(kernels, i);
+        rows[i] = {std::max(0, row(box.top)), std::min(view_.height(), row(box.bottom) + 1)};
+    });
+    return rows;
 }
 
 void KernelRegions::add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers) {
     const RbfChannel& channel = kernels.channels.front();
     bent_ = !channel.hessians.empty();
     std::vector<Region> rows(kernels.size());
-    parallel_each(rows.size(), [&](std::size_t i) { rows[i] = rows_of(kernels, i); });
+    parallel_each(rows.size(), [&](std::size_t i) { rows[i] = regions_of(kernels, i); });
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Vec3& c = kernels.centers[i];
         BentRecord kernel{

@@ -10,6 +10,7 @@
 
 #include "subvol/camera.h"
 #include "subvol/rbf_volume.h"
+#include "subvol/render_bricks.h"
 
 namespace subvol::detail {
 
@@ -17,9 +18,10 @@ namespace subvol::detail {
 /// with the program.
 class KernelRegions {
 public:
+    /// rows:     of pixels that are drawn: what touches no region with one of them is not kept
     /// nearest:  the least eye depth that a perspective camera sees; kernels that come nearer are in all regions
     /// widening: of the frames: the part of space where a kernel is not 0
-    KernelRegions(const View& view, double nearest, double widening, std::filesystem::path scratch);
+    KernelRegions(const View& view, const PixelRows& rows, double nearest, double widening, std::filesystem::path scratch);
 
     /// Adds kernels of one channel. numbers: in the whole mesh, ascending within a call
     void add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers);
@@ -30,6 +32,12 @@ public:
     [[nodiscard]] std::size_t size() const { return files_.size(); }
     [[nodiscard]] Region region(std::size_t k) const;
     [[nodiscard]] std::uint64_t kernels_in(std::size_t k) const { return counts_[k]; }
+
+    /// Whether a region has rows that are drawn.
+    [[nodiscard]] bool is_drawn(std::size_t k) const;
+
+    /// The rows of pixels that each kernel may touch.
+    [[nodiscard]] std::vector<PixelRows> rows_of(const RbfVolume& kernels) const;
 
     /// Takes the kernels of some regions out of their files: each once, in the order of the whole mesh.
     ///
@@ -42,11 +50,16 @@ private:
     };
     using File = std::unique_ptr<std::FILE, Close>;
 
-    [[nodiscard]] Region rows_of(const RbfVolume& kernels, std::size_t i) const;
+    struct PixelBox {
+        double left, top, right, bottom;
+    };
+    [[nodiscard]] PixelBox pixels_of(const RbfVolume& kernels, std::size_t i) const;
+    [[nodiscard]] Region regions_of(const RbfVolume& kernels, std::size_t i) const;
     void flush(std::size_t k);
     [[noreturn]] void fail() const;
 
     View view_;
+    PixelRows rows_;
     double nearest_, widening_;
     std::filesystem::path scratch_;
     int side_ = 64, across_ = 1, down_ = 1;

@@ -71,8 +71,34 @@ void copy(const SplatResult& from, const KernelRegions::Region& region, SplatRes
 
 }  // namespace
 
-SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
-                          const Optics& optics, const BrickSplatOptions& options) {
+struct BrickPicture::State {
+    State(RbfVolume of_boundary, const View& seen, const Optics& lit, const BrickSplatOptions& options)
+        : drawn(std::move(of_boundary)),
+          view(seen),
+          optics(lit),
+          splat(options.splat),
+          memory_bytes(options.memory_bytes),
+          empty(make_scene(drawn,
+                           [&] {
+                               SplatOptions bare = options.splat;
+                               bare.method = SplatMethod::Cpu;
+                               bare.shading.reset();
+                               return bare;
+                           }())),
+          regions(view, options.rows, 2e-4 * empty.diagonal, empty.form == KernelForm::Separable ? 3 : 1, options.scratch) {
+        splat.method = SplatMethod::Cpu;
+    }
+
+    RbfVolume drawn;  // the boundary, and the kernels of some regions
+    View view;
+    Optics optics;
+    SplatOptions splat;
+    std::uint64_t memory_bytes;
+    SplatScene empty;  // without kernels
+    KernelRegions regions;
+};
+
+BrickPicture::BrickPicture(Surface boundary, const View& view, const Optics& optics, const BrickSplatOptions& options) {
     check(options);
     if (boundary.triangles.empty()) throw Error(ErrorCode::InvalidInput, "there is no boundary");
     RbfVolume drawn;
@@ -80,49 +106,50 @@ SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surfa
     drawn.channels.emplace_back();
     drawn.boundary = std::move(boundary);
     drawn.bounds = box_of(drawn);
-    SplatOptions splat = options.splat;
-    splat.method = SplatMethod::Cpu;
-    SplatScene empty = make_scene(drawn, [&] {
-        SplatOptions bare = splat;
-        bare.shading.reset();
-        return bare;
-    }());
+    state_ = std::make_unique<State>(std::move(drawn), view, optics, options);
+}
 
-    KernelRegions regions(view, 2e-4 * empty.diagonal, empty.form == KernelForm::Separable ? 3 : 1, options.scratch);
-    Selection reaches;
-    std::uint64_t points = 0;
-    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        report_progress(splat.progress, "sample", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
-        BrickMesh brick = read_brick(bricks, b);
-        brick.mesh = fields(std::move(brick.mesh));
-        SampleOptions quiet = options.sample;
-        quiet.progress = nullptr;
-        const BrickPoints sampled = sample_brick(bricks, std::move(brick), quiet);
-        if (sampled.volume.channels.size() != 1) throw Error(ErrorCode::InvalidInput, "bricks are drawn by one field");
-        drawn.channels.front().name = sampled.volume.channels.front().name;
-        regions.add(sampled.volume, sampled.numbers);
-        points += sampled.numbers.size();
-        if (splat.sheets == 0) {
-            for (const Symmetric3& frame : sampled.volume.frames) reaches.add(depth_reach(empty, view, frame));
-        }
-    }
+BrickPicture::~BrickPicture() = default;
+
+std::vector<PixelRows> BrickPicture::rows_of(const RbfVolume& kernels) const {
+    return state_->regions.rows_of(kernels);
+}
+
+std::vector<float> BrickPicture::reaches(const RbfVolume& kernels) const {
+    std::vector<float> reaches;
+    for (const Symmetric3& frame : kernels.frames) reaches.push_back(depth_reach(state_->empty, state_->view, frame));
+    return reaches;
+}
+
+void BrickPicture::add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers) {
+    if (numbers.empty()) return;
+    if (kernels.channels.size() != 1) throw Error(ErrorCode::InvalidInput, "bricks are drawn by one field");
+    state_->drawn.channels.front().name = kernels.channels.front().name;
+    state_->regions.add(kernels, numbers);
+}
+
+SplatResult BrickPicture::draw(float finest_reach) {
+    auto& [drawn, view, optics, splat, memory_bytes, empty, regions] = *state_;
     if (splat.sheets == 0) {
         const DepthRange depths = depth_range_of(empty, view);
-        splat.sheets = sheets_for_reach(reaches.at(place_of_finest(reaches.size())), depths.max - depths.min);
+        splat.sheets = sheets_for_reach(finest_reach, depths.max - depths.min);
     }
-
     SplatResult result{Image(view.width(), view.height()), {}, {}};
     result.depth.resize(result.image.rgba.size() / 4);
-    const auto most = std::max<std::uint64_t>(options.memory_bytes / kBytesOfKernel, 1);
+    const auto most = std::max<std::uint64_t>(memory_bytes / kBytesOfKernel, 1);
+    std::vector<std::size_t> own;
+    for (std::size_t k = 0; k < regions.size(); ++k) {
+        if (regions.is_drawn(k)) own.push_back(k);
+    }
     std::vector<std::size_t> group;
     bool first = true;
-    for (std::size_t k = 0; k < regions.size(); ++k) {
-        group.push_back(k);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+        group.push_back(own[i]);
         std::uint64_t kernels = 0;
         for (const std::size_t g : group) kernels += regions.kernels_in(g);
-        const bool last = k + 1 == regions.size();
-        if (!last && kernels + regions.kernels_in(k + 1) <= most) continue;
-        report_progress(splat.progress, "splat", static_cast<double>(k) / static_cast<double>(regions.size()));
+        const bool last = i + 1 == own.size();
+        if (!last && kernels + regions.kernels_in(own[i + 1]) <= most) continue;
+        report_progress(splat.progress, "splat", static_cast<double>(i) / static_cast<double>(own.size()));
         if (kernels > 0 || first) {
             regions.take(group, drawn);
             SplatOptions quiet = splat;
@@ -145,6 +172,28 @@ SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surfa
         group.clear();
     }
     report_progress(splat.progress, "splat", 1);
+    return result;
+}
+
+SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
+                          const Optics& optics, const BrickSplatOptions& options) {
+    BrickPicture picture(std::move(boundary), view, optics, options);
+    Selection reaches;
+    std::uint64_t points = 0;
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        report_progress(options.splat.progress, "sample", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
+        BrickMesh brick = read_brick(bricks, b);
+        brick.mesh = fields(std::move(brick.mesh));
+        SampleOptions quiet = options.sample;
+        quiet.progress = nullptr;
+        const BrickPoints sampled = sample_brick(bricks, std::move(brick), quiet);
+        picture.add(sampled.volume, sampled.numbers);
+        points += sampled.numbers.size();
+        if (options.splat.sheets != 0) continue;
+        for (const float reach : picture.reaches(sampled.volume)) reaches.add(reach);
+    }
+    const bool any = reaches.size() > 0;
+    SplatResult result = picture.draw(any ? reaches.at(place_of_finest(reaches.size())) : 0);
     result.report.points = points;
     return result;
 }

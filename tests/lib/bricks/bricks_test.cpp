@@ -11,6 +11,7 @@
 #include "../temp_folder.h"
 #include "../test_meshes.h"
 #include "subvol/brick_points.h"
+#include "subvol/detail/bricks_share.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
 #include "subvol/points_io.h"
@@ -103,6 +104,82 @@ TEST_F(BricksTest, PointsHaveTheSameBytes) {
     }
 }
 
+/// Writes the parts of some shares; returns their names.
+std::vector<std::filesystem::path> write_shares(const std::filesystem::path& folder, const Bricks& bricks, std::size_t count,
+                                                const SampleOptions& options) {
+    std::vector<std::filesystem::path> parts;
+    const std::size_t all = bricks.bricks.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const BrickShare share{all * k / count, all * (k + 1) / count, "part " + std::to_string(k)};
+        parts.push_back(folder / ("part" + std::to_string(k) + ".ply"));
+        (void)write_points_of_bricks(
+            parts.back(), bricks, options, [](HexMesh same) { return same; }, &share);
+        EXPECT_EQ(read_points_note(parts.back()), share.note);
+    }
+    return parts;
+}
+
+TEST_F(BricksTest, PartsOfThePointsMakeTheSameBytes) {
+    const HexMesh mesh = tagged();
+    for (const Correction correction : {Correction::Second, Correction::Full}) {
+        const SampleOptions options{.correction = correction};
+        write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
+        const Bricks bricks =
+            split_mesh(path("m.bricks"), mesh, {.bricks = 5, .shape = BrickShape::Random, .halo_layers = 4}).bricks;
+        for (const std::size_t count : kCounts) {  // seven shares of five bricks: some are empty
+            const auto parts = write_shares(path("."), bricks, count, options);
+            std::size_t points = 0;
+            for (const auto& part : parts) points += read_points(part).size();
+            EXPECT_EQ(points, mesh.points.size());
+            EXPECT_EQ(join_points_of_bricks(path("joined.ply"), parts, bricks.points).points, mesh.points.size());
+            EXPECT_TRUE(read_bytes(path("joined.ply")) == read_bytes(path("whole.ply"))) << count << " shares";
+        }
+    }
+}
+
+TEST_F(BricksTest, PartsThatAreNotAllOfAMeshAreRefused) {
+    const Bricks bricks = split_mesh(path("m.bricks"), make_model("twist", 5), {.bricks = 3}).bricks;
+    auto parts = write_shares(path("."), bricks, 3, {});
+    const auto said = [&](std::uint64_t points = 216) {
+        return error_of([&] { (void)join_points_of_bricks(path("joined.ply"), parts, points); });
+    };
+    EXPECT_EQ(said(), "no error");
+    std::filesystem::remove(path("joined.ply"));
+    EXPECT_NE(said(std::uint64_t{1} << 50).find("cannot be one of parts"), std::string::npos);
+    EXPECT_NE(said(100).find("does not exist"), std::string::npos);
+    EXPECT_NE(said(300).find("216 of 300 points were found"), std::string::npos);
+    std::swap(parts[1], parts[2]);
+    EXPECT_EQ(said(), "no error") << "all but the first may have any order";
+    parts[1] = parts[2];
+    std::filesystem::remove(path("joined.ply"));
+    EXPECT_NE(said().find("is in another part, too"), std::string::npos);
+    write_points(parts[1], read_points(parts[0]));
+    EXPECT_NE(said().find("no property \"number\""), std::string::npos);
+    parts[1] = path("nothing.ply");
+    const auto join_all = [&] { (void)join_points_of_bricks(path("joined.ply"), parts, 216); };
+    EXPECT_NE(error_of(join_all, ErrorCode::Io).find("nothing.ply"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(path("joined.ply")));
+}
+
+TEST_F(BricksTest, FiguresOfSharesAreThoseOfAll) {
+    HexMesh mesh = irregular_ball();
+    for (const std::size_t c : {5U, 77U, 300U}) std::swap_ranges(&mesh.cells[c][0], &mesh.cells[c][4], &mesh.cells[c][4]);
+    const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 5, .shape = BrickShape::Random}).bricks;
+    const MeshReport whole = inspect(bricks);
+    for (const std::size_t count : kCounts) {
+        std::vector<detail::MeshShare> shares;
+        for (std::size_t k = 0; k < count; ++k) {
+            shares.push_back(detail::inspect_share(bricks, 5 * k / count, 5 * (k + 1) / count, 2, nullptr));
+        }
+        const detail::MeshShare joined = detail::join_shares(shares, 2);
+        EXPECT_EQ(joined.counts.volume, whole.volume);
+        EXPECT_EQ(joined.counts.edges, whole.edges);
+        EXPECT_EQ(joined.counts.min_scaled_jacobian, whole.min_scaled_jacobian);
+        EXPECT_EQ(joined.counts.inverted_cells, 3U);
+        EXPECT_EQ(joined.inverted, (std::vector<std::size_t>{5, 77})) << "the first two";
+    }
+}
+
 TEST_F(BricksTest, CreasesByAngleAndRefinedBoundariesToo) {
     const HexMesh mesh = irregular_ball();
     const SampleOptions options{.scheme = {.crease_angle_deg = 20}, .boundary_levels = 2};
@@ -183,6 +260,15 @@ TEST_F(BricksTest, TheTwistIsWrittenWithoutTheWhole) {
         (void)write_points_of_bricks(path("bricks.ply"), bricks, {}, [](HexMesh same) { return same; });
         EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply"))) << count;
     }
+}
+
+TEST_F(BricksTest, NumbersThatAMeshHasAreNoField) {
+    HexMesh mesh = make_model("twist", 6);  // as it comes from pieces
+    test::add_field(mesh, "GlobalNodeId", [](const Vec3& x) { return x.x; });
+    const Bricks bricks = split_mesh(path("t.bricks"), mesh, {.bricks = 3}).bricks;
+    ASSERT_EQ(bricks.fields.size(), 1U);
+    EXPECT_EQ(bricks.fields[0].name, "density");
+    for (std::size_t b = 0; b < 3; ++b) EXPECT_EQ(read_brick(bricks, b).mesh.attributes.size(), 1U);
 }
 
 TEST_F(BricksTest, ABrickOpensAlone) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "subvol/bricks.h"
@@ -41,11 +43,30 @@ struct BrickPointsReport {
     std::size_t triangles = 0;
 };
 
+/// Some of the bricks, as one share of the work.
+///
+/// begin, end: their numbers, from `begin` to before `end`; the share that begins at 0 has the boundary
+/// note:       of the share's file, for `read_points_note`
+struct BrickShare {
+    std::size_t begin = 0, end = 0;
+    std::string note;
+};
+
 /// Samples brick after brick and writes one binary `.ply`: the bytes are those that `write_points` writes for the whole mesh.
 ///
+/// share:  null, or what is written: a part, whose points have their numbers in the whole
 /// throws: as `sample_brick` and `write_points`
 /// cost:   memory: that of one brick, and of the boundary
 BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, const Bricks& bricks, const SampleOptions& options,
-                                         const BrickFields& fields);
+                                         const BrickFields& fields, const BrickShare* share = nullptr);
+
+/// Writes the file that `write_points_of_bricks` writes without shares, from the parts of all shares. One part at a time is in
+/// memory.
+///
+/// parts:   in the order of the shares
+/// returns: points and triangles
+/// throws:  Error(InvalidInput) if a part is malformed, or a point occurs twice or is missing; Error(Io)
+BrickPointsReport join_points_of_bricks(const std::filesystem::path& path, std::span<const std::filesystem::path> parts,
+                                        std::uint64_t points);
 
 }  // namespace subvol

@@ -50,7 +50,7 @@ struct SplitResult {
 /// The bricks are written beside the folder, which appears when all are there. A run that was interrupted is continued by the
 /// same call: finished bricks with the right hash are kept. A folder of bricks is replaced; anything else is not.
 ///
-/// mesh:   valid; points that no cell uses are left out
+/// mesh:   valid; points that no cell uses are left out, and fields with the names GlobalNodeId and vtkGhostType
 /// throws: Error(InvalidInput) for options out of range, or if `folder` exists and is no folder of bricks; Error(Io)
 SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, const SplitOptions& options = {});
 

@@ -3,12 +3,22 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include "subvol/brick_points.h"
 #include "subvol/splat.h"
 
 namespace subvol {
 
+/// Rows of pixels, from `first` to before `end`.
+struct PixelRows {
+    int first = 0, end = std::numeric_limits<int>::max() / 2;
+};
+
+/// rows:         of the picture that are drawn, whole bands of `kBandRows`; the others stay empty, or have some kernels only
 /// memory_bytes: about the most that kernels take while a part of the picture is drawn; besides there are the boundary and a
 ///               brick
 /// scratch:      a folder for kernels that wait for their part of the picture, some 90 bytes each; empty: the folder for
@@ -16,6 +26,7 @@ namespace subvol {
 struct BrickSplatOptions {
     SampleOptions sample{};
     SplatOptions splat{};
+    PixelRows rows{};
     std::uint64_t memory_bytes = std::uint64_t{1} << 30;
     std::filesystem::path scratch{};
 };
@@ -26,10 +37,38 @@ struct BrickSplatOptions {
 ///
 /// fields:   leaves one field of one channel in a brick
 /// boundary: as `sample_bricks_boundary` makes it
-/// throws:   as `sample_brick` and `render_splats`; Error(InvalidInput) for shadows, ambient occlusion, a colour channel and
-/// other
-///           methods than the CPU's; Error(Io) if `scratch` is full
+/// throws:   as `sample_brick` and `BrickPicture`
 [[nodiscard]] SplatResult render_bricks(const Bricks& bricks, const BrickFields& fields, Surface boundary, const View& view,
                                         const Optics& optics, const BrickSplatOptions& options = {});
+
+/// The picture that `render_bricks` draws, while its kernels come from elsewhere: from other processes, for example. They wait
+/// in files until they are drawn.
+class BrickPicture {
+public:
+    /// throws: as `render_splats`; Error(InvalidInput) without a boundary, for shadows, ambient occlusion, a colour channel and
+    ///         other methods than the CPU's; Error(Io) if `scratch` is full
+    BrickPicture(Surface boundary, const View& view, const Optics& optics, const BrickSplatOptions& options);
+    ~BrickPicture();
+    BrickPicture(const BrickPicture&) = delete;
+    BrickPicture& operator=(const BrickPicture&) = delete;
+
+    /// The rows that each kernel may touch.
+    [[nodiscard]] std::vector<PixelRows> rows_of(const RbfVolume& kernels) const;
+
+    /// What decides the number of sheets, as `kernel_reaches` of these kernels.
+    [[nodiscard]] std::vector<float> reaches(const RbfVolume& kernels) const;
+
+    /// Adds kernels of one channel, in any order of calls. numbers: in the whole mesh, ascending
+    void add(const RbfVolume& kernels, std::span<const std::uint64_t> numbers);
+
+    /// Draws all kernels that were added; to be called once.
+    ///
+    /// finest_reach: of all kernels of the picture, the reach in place `place_of_finest_reach`
+    [[nodiscard]] SplatResult draw(float finest_reach);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 }  // namespace subvol

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "subvol/rbf_volume.h"
 
@@ -15,12 +17,15 @@ class PlyRows {
 public:
     /// like:   points of the same kernel and channels
     /// points: how many there will be
-    PlyRows(const std::filesystem::path& path, const RbfVolume& like, std::uint64_t points, const Surface& boundary);
+    /// note:   not empty: the file is a part with this note, for `read_points_note`. Its points have the order in which they
+    ///         come, and each has its number in a property `number`
+    PlyRows(const std::filesystem::path& path, const RbfVolume& like, std::uint64_t points, const Surface& boundary,
+            const std::string& note = {});
     ~PlyRows();
     PlyRows(const PlyRows&) = delete;
     PlyRows& operator=(const PlyRows&) = delete;
 
-    /// numbers: the places of the points in the file, ascending
+    /// numbers: the places of the points in the whole, ascending
     void write(std::span<const std::uint64_t> numbers, const RbfVolume& points);
 
     /// Writes the boundary; then the file has its name.
@@ -32,5 +37,14 @@ private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// A part that `PlyRows` has written.
+struct NumberedPoints {
+    RbfVolume volume;
+    std::vector<std::uint64_t> numbers;
+};
+
+/// throws: as `read_points`; Error(InvalidInput) if a point has no number, or one from 2⁵³ on
+[[nodiscard]] NumberedPoints read_numbered_points(const std::filesystem::path& path);
 
 }  // namespace subvol::detail
