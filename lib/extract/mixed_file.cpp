@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/mixed_file.h"
 
-#include "mixed/mixed_shapes.h"
+#include "mixed_shapes.h"
 #include "output_file.h"
 #include "subvol/error.h"
 #include "vtk_xml_writer.h"
