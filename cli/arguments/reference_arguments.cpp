@@ -25,9 +25,11 @@ void ReferenceArguments::add_to(CLI::App& app) {
     app.add_option("--kbuffer", kbuffer, "havs: entries of the k-buffer (default 6)")
         ->type_name("K")
         ->check(CLI::Range(1, 65536));
-    app.add_option("--lod", lod, "havs: the fraction of the interior faces that is drawn (default 1)")
-        ->type_name("F")
-        ->check(CLI::Range(0.0, 1.0));
+    app.add_option("--lod", lod,
+                   "splat: merge kernels as long as they are narrower than so many pixels, such as 2 (default 0: never); "
+                   "havs: the fraction of the interior faces that is drawn (default 1)")
+        ->type_name("PIXELS|F")
+        ->check(CLI::NonNegativeNumber);
 }
 
 ProjectedOrder ReferenceArguments::projected_order() const {
@@ -39,9 +41,10 @@ ProjectedOrder ReferenceArguments::projected_order() const {
 
 ProjectedOptions ReferenceArguments::projected_options() const {
     const ProjectedOptions options{
-        .order = projected_order(), .kbuffer = kbuffer, .lod = lod, .samples = samples, .clip = clip};
-    if (lod < 1 && options.order != ProjectedOrder::Havs)
+        .order = projected_order(), .kbuffer = kbuffer, .lod = lod.value_or(1), .samples = samples, .clip = clip};
+    if (lod && *lod != 1 && options.order != ProjectedOrder::Havs)
         throw Error(ErrorCode::InvalidInput, "only --order havs leaves faces out", "--lod");
+    if (options.lod > 1) throw Error(ErrorCode::InvalidInput, text("the fraction of faces is ", *lod), "--lod", "0 to 1");
     return options;
 }
 

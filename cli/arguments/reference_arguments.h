@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "subvol/clip.h"
@@ -18,7 +19,7 @@ struct ReferenceArguments {
     double image_tolerance = 1e-3;
     std::string order = "topological";
     int kbuffer = 6;
-    double lod = 1;
+    std::optional<double> lod;
     Clip clip{};  // of all of them, as settled
 
     void add_to(CLI::App& app);
@@ -26,7 +27,9 @@ struct ReferenceArguments {
     /// throws: Error(InvalidInput) if the order is unknown
     [[nodiscard]] ProjectedOrder projected_order() const;
 
-    /// throws: Error(InvalidInput) if the order is unknown, or cannot leave faces out
+    /// Of pt.
+    ///
+    /// throws: Error(InvalidInput) if the order is unknown or cannot leave faces out, or --lod is not a fraction
     [[nodiscard]] ProjectedOptions projected_options() const;
 };
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <optional>
 
 #include "bricks_input.h"
 #include "choices.h"
@@ -21,6 +23,7 @@
 #include "subvol/detail/points_range.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
+#include "subvol/kernel_hierarchy.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_points.h"
@@ -58,12 +61,18 @@ public:
         app().add_flag("--clamp", clamp_, "keep the kernels' values within the field's range: interpolating schemes overshoot");
         app().add_flag("--error", error_,
                        "also write a channel NAME_error: about how far the sum of kernels is from the limit near each");
+        app()
+            .add_option("--merge", merge_error_,
+                        "merge neighbouring kernels as long as the values at their centres change by at most ERROR, in the "
+                        "field's unit: few kernels where the field is smooth")
+            ->type_name("ERROR")
+            ->check(CLI::PositiveNumber);
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
                         "--reduce", "--levels", "--scheme"});
         group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
-                                    "--footprint-size", "--threshold", "--tf", "--reduce", "--refine"});
+                                    "--footprint-size", "--threshold", "--tf", "--reduce", "--refine", "--merge"});
         group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction", "--error"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
@@ -77,6 +86,9 @@ public:
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
         }
         check_choice("--up", up_, {"x", "y", "z"});
+        if (merge_error_ && !std::isfinite(*merge_error_)) {
+            throw Error(ErrorCode::InvalidInput, "is not an error of the field", "--merge", "a number above 0");
+        }
         const Share share = share_of(share_);
         if (app().count("--up") > 0 && !splats_) {
             throw Error(ErrorCode::InvalidInput, "turns what viewers of splats read; all else keeps its place", "--up",
@@ -129,7 +141,7 @@ private:
             throw Error(ErrorCode::InvalidInput, "points of bricks are written as binary .ply only", output_,
                         "-o NAME.ply without --ascii and --splats");
         }
-        refuse_options(app(), {"--levels", "--threshold", "--tf", "--reduce", "--clamp", "--error"},
+        refuse_options(app(), {"--levels", "--threshold", "--tf", "--reduce", "--clamp", "--error", "--merge"},
                        "needs the whole mesh in memory; this is a folder of bricks");
         const Bricks bricks = open_bricks_input(input_, app(), report);
         const StreamedField field = select_brick_field(bricks, common(), report);
@@ -198,6 +210,7 @@ private:
         const HexMesh compared = error_ ? mesh : HexMesh{};
         RbfVolume volume = tets_.asked() ? sample_tets_reported(mesh, sample_, seen(given), report)
                                          : sample_reported(std::move(mesh), sample_, refine_, seen(given), report);
+        merge(volume, report);
         if (clamp_) {
             report["clamped"] = clamp_channel(volume.channels.front(), given.min, given.max);
         } else {
@@ -205,6 +218,18 @@ private:
         }
         if (error_) add_error(compared, volume, report);
         return volume;
+    }
+
+    void merge(RbfVolume& volume, Report& report) const {
+        if (!merge_error_) return;
+        report.timed("merge", [&] {
+            const KernelHierarchy hierarchy = build_kernel_hierarchy(volume, report.progress());
+            const KernelCut cut = choose_cut(hierarchy, *merge_error_);
+            report["points_before"] = volume.size();
+            report["merge_error"] = cut.error;
+            if (!cut.nodes.empty()) volume = kernels_of_cut(hierarchy, volume, cut);
+        });
+        report["points"] = volume.size();
     }
 
     void add_error(const HexMesh& mesh, RbfVolume& volume, Report& report) const {
@@ -225,7 +250,9 @@ private:
         refuse_options(app(), {"--clamp"}, "needs a mesh: the values of voxels are within their range");
         refuse_options(app(), {"--error"}, "needs a mesh; this is a grid of voxels");
         const VdbGrid grid = load_grid(input_, common(), report);
-        return sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
+        RbfVolume volume = sample_reported(grid, sample_, seen({grid.report().min, grid.report().max}), app(), report);
+        merge(volume, report);
+        return volume;
     }
 
     [[nodiscard]] UpAxis up_axis() const { return up_ == "x" ? UpAxis::X : up_ == "y" ? UpAxis::Y : UpAxis::Z; }
@@ -239,6 +266,7 @@ private:
     std::string output_;
     bool ascii_ = false;
     bool splats_ = false, clamp_ = false, error_ = false;
+    std::optional<double> merge_error_;
     std::string up_ = "z", transfer_function_;
     std::string note_;  // of a share
     ShareArgument share_;

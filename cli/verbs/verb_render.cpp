@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "clip_arguments.h"
 #include "grid_input.h"
 #include "input.h"
+#include "level_of_detail.h"
 #include "part_note.h"
 #include "picture_arguments.h"
 #include "picture_output.h"
@@ -168,8 +170,19 @@ private:
 
     /// Refuses options of splatting for the other methods.
     void check_reference() const {
-        (void)reference_.projected_options();
-        if (drawn_by_splats()) return;
+        if (reference_.lod && !std::isfinite(*reference_.lod))
+            throw Error(ErrorCode::InvalidInput, "is not a number of pixels", "--lod", "0 or more");
+        (void)reference_.projected_order();
+        if (method_ == "pt") (void)reference_.projected_options();
+        if (drawn_by_splats()) {
+            if (reference_.lod && splat_.seconds)
+                throw Error(ErrorCode::InvalidInput, "a time limit chooses its own kernels", "--lod", "leave out --seconds");
+            return;
+        }
+        if (reference_.lod && method_ != "pt") {
+            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws all there is", "--lod",
+                        "use --method splat, sheets or pt");
+        }
         if (splat_.shadows || splat_.ambient_occlusion > 0) {
             throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws without them", "--shadows, --ambient-occlusion",
                         "use --method splat");
@@ -289,7 +302,7 @@ private:
         if (method_ != "splat") {
             throw Error(ErrorCode::InvalidInput, "a folder of bricks can only be splatted", "--method " + method_, "splat");
         }
-        refuse_options(app(), {"--levels", "--threshold", "--reduce", "--seconds", "--edges", "--color-field"},
+        refuse_options(app(), {"--levels", "--threshold", "--reduce", "--seconds", "--edges", "--color-field", "--lod"},
                        "needs the whole mesh in memory; this is a folder of bricks");
         const Bricks bricks = open_bricks_input(input_, app(), report);
         const StreamedField field = select_brick_field(bricks, common(), report);
@@ -464,14 +477,17 @@ private:
     /// skin: if it is not empty, the boundary of a solid, which gets its colours from it
     void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
                Report& report, const BoundaryValues& skin = {}) const {
+        LevelOfDetail levels(volume, reference_.lod.value_or(0), options_.channel, report);
         std::optional<Splatter> splatter;
         if (!by_rows_) {
             splatter.emplace(volume, options_);
             if (!skin.values.empty()) splatter->set_boundary_colors(skin.surface, skin.values.back());
         }
         const auto draw = [&](const View& view, Progress* progress) {
+            const RbfVolume& shown = levels.of(view, report);
+            if (splatter && levels.has_changed()) splatter->set_kernels(shown);
             SplatResult drawn =
-                splatter ? splatter->draw(view, optics, progress) : draw_rows(volume, skin, view, optics, progress, report);
+                splatter ? splatter->draw(view, optics, progress) : draw_rows(shown, skin, view, optics, progress, report);
             report["method"] = method_;
             report_splats(drawn.report, report);
             Picture picture{std::move(drawn.image), std::move(drawn.depth)};

@@ -2,6 +2,7 @@
 #include "bind.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
+#include "subvol/kernel_hierarchy.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
@@ -80,19 +81,35 @@ void check_channel(const RbfVolume& volume, std::size_t channel) {
 
 Picture splat(const RbfVolume& volume, const Scene& scene, const std::string& backend, const std::optional<int>& device,
               int samples, int sheets, std::size_t channel, const std::optional<std::size_t>& color_channel, bool shade,
-              bool shadows, double ambient_occlusion, const BoundaryValues* skin, const py::object& progress) {
+              bool shadows, double ambient_occlusion, double lod, const BoundaryValues* skin, const py::object& progress) {
     check_channel(volume, channel);
     if (color_channel) check_channel(volume, *color_channel);
     SplatOptions options = splat_options(backend, device, samples, sheets, channel, color_channel, shade);
     options.clip = scene.clip;
     options.shadows = shadows;
     options.ambient_occlusion = ambient_occlusion;
-    return picture_of(result_of(progress, [&](Progress* listener) {
+    const bool merges = !(lod == 0);
+    KernelCut cut;
+    Picture picture = picture_of(result_of(progress, [&](Progress* listener) {
         options.progress = listener;
+        RbfVolume few;
         Splatter splatter(volume, options);
         if (skin != nullptr) splatter.set_boundary_colors(skin->surface, skin->values.back());
+        if (merges) {
+            const KernelHierarchy hierarchy = build_kernel_hierarchy(volume, listener);
+            cut = choose_cut(hierarchy, scene.view, {.pixels = lod, .channel = channel});
+            few = kernels_of_cut(hierarchy, volume, cut);
+            if (!cut.nodes.empty()) splatter.set_kernels(few);
+        }
         return splatter.draw(scene.view, scene.optics);
     }));
+    if (merges) {
+        picture.report["points"] = volume.size();
+        picture.report["kernels_drawn"] = cut.size();
+        picture.report["kernels_merged"] = volume.size() - cut.kernels.size();
+        picture.report["merge_error"] = cut.error;
+    }
+    return picture;
 }
 
 Picture splat_in_time(const HexMesh& mesh, const Scene& scene, double seconds, const std::string& scheme,
@@ -234,7 +251,7 @@ void bind_render(py::module_& module) {
     py::class_<BoundaryValues>(module, "BoundaryValues", "A boundary with the limit's values on it.");
     module.def("splat", &splat, py::arg("volume"), py::arg("scene"), py::arg("backend"), py::arg("device"), py::arg("samples"),
                py::arg("sheets"), py::arg("channel"), py::arg("color_channel"), py::arg("shade"), py::arg("shadows"),
-               py::arg("ambient_occlusion"), py::arg("skin").none(true), py::arg("progress"));
+               py::arg("ambient_occlusion"), py::arg("lod"), py::arg("skin").none(true), py::arg("progress"));
     module.def("splat_in_time", &splat_in_time, py::arg("mesh"), py::arg("scene"), py::arg("seconds"), py::arg("scheme"),
                py::arg("backend"), py::arg("device"), py::arg("samples"), py::arg("sheets"), py::arg("shade"),
                py::arg("progress"));

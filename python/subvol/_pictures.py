@@ -45,7 +45,8 @@ def _box_of(box: Optional[Sequence[float]]) -> Optional[list[float]]:
 def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: Union[None, str, Camera] = None, ortho: bool = False,
            size: tuple[int, int] = (512, 512), field: Optional[str] = None, color_field: Optional[str] = None,
            tf: Union[None, str, TransferFunction] = None, opacity_unit: Optional[float] = None, look: Optional[str] = None,
-           shade: bool = False, shadows: bool = False, ambient_occlusion: float = 0, samples: Optional[int] = None, sheets: int = 0, levels: Optional[int] = None, scheme: str = "mcq",
+           shade: bool = False, shadows: bool = False, ambient_occlusion: float = 0, lod: float = 0, samples: Optional[int] = None,
+           sheets: int = 0, levels: Optional[int] = None, scheme: str = "mcq",
            tension: float = 1 / 16, crease_angle: Optional[float] = None, per_edge: int = 1, seconds: Optional[float] = None,
            order: str = "topological", image_tolerance: float = 1e-3, backend: str = "auto", device: Optional[int] = None,
            clip: Planes = None, clip_box: Optional[Sequence[float]] = None, slice: Planes = None, around: bool = False,
@@ -63,6 +64,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     shade:        lit surfaces of equal value (splats only)
     shadows:      the volume shadows itself from the light at the upper left (splats only)
     ambient_occlusion: > 0: darkens hollows that are narrower than this part of the bounding box's diagonal, at most 1 (splats only)
+    lod:          > 0: kernels are merged as long as they are narrower than so many pixels (splats only)
     samples:      n x n rays or places for each pixel, 1 to 16; None: 2 for solids, else 1
     levels:       draw the trilinear cells of this level; None: 1 for tets and pt, the limit for the others
     seconds:      a time limit (splat and pt)
@@ -100,6 +102,10 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
         raise InvalidInput(f"shade: method {method} draws without light", "shade", "splat or sheets")
     if (shadows or ambient_occlusion) and method != "splat":
         raise InvalidInput(f"shadows, ambient_occlusion: method {method} draws without them (splat does)", "shadows", "splat")
+    if not 0 <= lod < float("inf"):
+        raise InvalidInput(f"lod: {lod} is not a number of pixels", "lod", "0 or more")
+    if lod and not (splats and seconds is None):
+        raise InvalidInput("lod: merged kernels are drawn by splat and sheets, without a time limit", "lod", "splat or sheets, without seconds")
     if seconds is not None and (shadows or ambient_occlusion):
         raise InvalidInput("seconds: pictures within a time have no shadows", "seconds", "without shadows and ambient_occlusion")
     if seconds is not None and method not in ("splat", "sheets", "pt"):
@@ -141,7 +147,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
 
     with listening(progress) as listener:
         if isinstance(what, RbfVolume):
-            image = _core.splat(what, scene, way, device, many, sheets, channel, color_channel, shade or lit, shadows, ambient_occlusion, None,
+            image = _core.splat(what, scene, way, device, many, sheets, channel, color_channel, shade or lit, shadows, ambient_occlusion, lod, None,
                                 listener)
         elif isinstance(what, Grid):
             image = _core.grid(what.voxels(), scene, many, listener)
@@ -152,7 +158,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
             own_opacity = isinstance(tf, TransferFunction) and tf.opacity is not None
             painted = solid and levels is None and opacity_unit is None and sheets == 0 and per_edge == 1 and not own_opacity
             skin = _core.skin(mesh, scheme, tension, crease_angle, None) if painted and not (shadows or ambient_occlusion) else None
-            image = _core.splat(volume, scene, way, device, many, sheets, 0, None, shade or lit, shadows, ambient_occlusion, skin,
+            image = _core.splat(volume, scene, way, device, many, sheets, 0, None, shade or lit, shadows, ambient_occlusion, lod, skin,
                                 listener)
         else:
             name = next(iter(mesh.fields))

@@ -198,6 +198,13 @@ void Splatter::set_boundary_colors(const Surface& boundary, std::span<const doub
     state_->values = values;
 }
 
+void Splatter::set_kernels(const RbfVolume& volume) {
+    State& state = *state_;
+    detail::set_kernels(state.scene, volume, state.options.clip);
+    state.light_key.clear();  // the light in the volume is made of kernels
+    if (state.gpu) state.gpu->upload_kernels();
+}
+
 SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* progress) {
     State& state = *state_;
     if (!progress) progress = state.options.progress;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -153,6 +154,12 @@ double weight_inside(const RbfVolume& volume) {
     return weights[places / 2];
 }
 
+std::string kind_of(const RbfVolume& volume) {
+    std::string kind = to_json(volume.kernel);
+    for (const RbfChannel& channel : volume.channels) kind += channel.name + (channel.hessians.empty() ? "\n" : " bent\n");
+    return kind + std::to_string(volume.boundary.points.size()) + " " + std::to_string(volume.boundary.triangles.size());
+}
+
 /// The row of a value in cells, and its place within.
 std::pair<std::size_t, float> row_of(float x) {
     const float cell = std::clamp(std::floor(x), -1.0f, static_cast<float>(PreintegratedTable::kCells));
@@ -213,6 +220,7 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
                      .kernel_table = kernel_table,
                      .normalized = options.normalized,
                      .shading = options.shading,
+                     .kind = kind_of(volume),
                      .middle = 0.5 * (box.lower + box.upper),
                      .diagonal = size};
     if (scene.color_channel == scene.channel) scene.color_channel.reset();
@@ -226,6 +234,18 @@ SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options) {
     scene.shadows = options.shadows;
     scene.occlusion_world = options.ambient_occlusion * size;
     return scene;
+}
+
+void set_kernels(SplatScene& scene, const RbfVolume& volume, const Clip& clip) {
+    if (kind_of(volume) != scene.kind) {
+        throw Error(ErrorCode::InvalidInput, "the kernels are those of another volume", {},
+                    "the same channels, kernel and boundary as before");
+    }
+    check_channel(volume, scene.channel);
+    if (scene.color_channel) check_channel(volume, *scene.color_channel);
+    scene.volume = &volume;
+    scene.reach = {};
+    set_clip(scene, clip);
 }
 
 void set_clip(SplatScene& scene, const Clip& clip) {

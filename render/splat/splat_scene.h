@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "corner_normals.h"
@@ -61,6 +62,7 @@ struct SplatScene {
     float half_weight = 0;  // > 0: there is no boundary; the volume ends where the sum of weights falls below it
     std::optional<Shading> shading{};
     std::vector<CornerNormals> boundary_normals{};  // of the boundary's triangles; empty without shading
+    std::string kind{};                             // of its volumes: what kernels that replace others must have in common
     Vec3 middle{0.0};                               // of the bounds; depths are relative to its depth
     double diagonal = 0;
     Box reach{};     // of the kernels and of the boundary
@@ -86,6 +88,12 @@ struct SplatScene {
 /// throws: Error(InvalidInput) for options out of range, no such channel, a kernel that cannot be splatted, a size or values
 ///         beyond 32-bit floats
 [[nodiscard]] SplatScene make_scene(const RbfVolume& volume, const SplatOptions& options);
+
+/// Puts other kernels of the same volume in place of those before.
+///
+/// clip:   as of the last `set_clip`
+/// throws: Error(InvalidInput) if the volume's channels, kernel or size of the boundary differ, or a value is beyond floats
+void set_kernels(SplatScene& scene, const RbfVolume& volume, const Clip& clip);
 
 /// Sets how the volume is cut open. Faces that do not cut it are left out: they change no bit of a picture.
 ///

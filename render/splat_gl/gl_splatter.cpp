@@ -126,8 +126,12 @@ public:
         most_entries_ = std::min({tuning.most_entries, bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems}});
         most_bins_ = std::min(bytes / sizeof(std::uint32_t) - 1, std::size_t{kMostGlItems});
         upload(kernel_table_, scene.kernel_table);
-        resident_ = scene.volume->size() <= most_kernels_;
-        if (resident_) bins_.upload(pack_kernels(scene));
+        upload_kernels();
+    }
+
+    void upload_kernels() {
+        resident_ = scene_.volume->size() <= most_kernels_;
+        if (resident_) bins_.upload(pack_kernels(scene_));
     }
 
     Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
@@ -331,6 +335,11 @@ GlSplatter::GlSplatter(GlSplatter&&) noexcept = default;
 GlSplatter& GlSplatter::operator=(GlSplatter&& other) noexcept {
     state_.swap(other.state_);
     return *this;
+}
+
+void GlSplatter::upload_kernels() {
+    const GlScope scope(state_->context);
+    state_->upload_kernels();
 }
 
 Drawn GlSplatter::draw(const View& view, const Classification& classification, int sheets, Progress* progress) {

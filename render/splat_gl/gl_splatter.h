@@ -48,6 +48,11 @@ public:
     GlSplatter(GlSplatter&&) noexcept;
     GlSplatter& operator=(GlSplatter&&) noexcept;
 
+    /// Uploads the kernels of the scene again: it has others.
+    ///
+    /// throws: Error(MissingCapability) if the device has no room or is lost
+    void upload_kernels();
+
     /// throws: Error(MissingCapability) if the device has no room or is lost
     [[nodiscard]] Drawn draw(const View& view, const Classification& classification, int sheets, Progress* progress);
 

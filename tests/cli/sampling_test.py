@@ -46,6 +46,18 @@ class Sampling(InFolder):
             self.run_ok("render", "model:pawn:32", "-o", name, "--tf", "surface", "--size", 96, "--sheets", 128, "--quiet", *options)
         self.assertEqual(self.run_ok("compare", "all.exr", "kept.exr", "--json").json()["max"], 0)
 
+    def test_kernels_are_merged_up_to_an_error(self):
+        last = self.points(model="model:pawn:32")["points"] + 1
+        for error in 0.01, 0.1, 1:
+            merged = self.points("--merge", error, "--error", model="model:pawn:32")
+            self.assertLessEqual(merged["merge_error"], error)
+            self.assertLess(merged["points"], last)
+            last = merged["points"]
+            self.assertEqual(self.run_ok("info", "p.ply", "--json").json()["points"], last)
+            self.assertGreater(merged["error_max"], 0)
+        self.assertEqual(self.points("--merge", 0.1, model="model:pawn:32")["points_before"],
+                         self.points(model="model:pawn:32")["points"])
+
     def test_mistakes_have_a_sentence(self):
         for options, says in (
             (["--values", "linear"], "scheme, cubic, paper"),
@@ -58,6 +70,8 @@ class Sampling(InFolder):
             (["--footprint", "up"], "up"),
             (["--footprint", "iso", "--footprint-size", "0"], "--footprint-size"),
             (["--tolerance", "-1"], "--tolerance"),
+            (["--merge", "0"], "--merge"),
+            (["--merge", "inf"], "--merge"),
         ):
             done = subvol("points", "model:pawn:8", "-o", "p.ply", *options, folder=self.folder)
             self.assertEqual(done.code, 2, options)

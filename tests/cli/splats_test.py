@@ -112,6 +112,49 @@ class Splats(InFolder):
             self.assertEqual(report["late_faces"], 0)
             last = rmse
 
+    def test_distant_views_draw_merged_kernels(self):
+        near, far = ["--camera", "0,-6,0,0,0,0,0,0,1,30"], ["--camera", "0,-90,0,0,0,0,0,0,1,30"]
+        self.run_ok("points", "model:ball:4", "-o", "ball.ply", "--per-edge", 2)
+        every = {}
+        for place, camera in ("near", near), ("far", far):
+            every[place] = self.render_json("all.exr", *camera)["points"]
+            self.render("none.exr", *camera, "--lod", 0, source="ball.ply")
+            self.assertEqual(self.difference("all.exr", "none.exr"), 0)
+            report = self.render_json("merged.exr", *camera, "--lod", 4)
+            self.assertEqual(report["points"], every[place])
+            if place == "near":
+                self.assertEqual((report["kernels_drawn"], report["kernels_merged"]), (every[place], 0))
+                self.assertEqual(self.difference("all.exr", "merged.exr"), 0)
+            else:
+                self.assertLess(report["kernels_drawn"], every[place] / 4)
+                self.assertGreater(report["kernels_merged"], every[place] / 2)
+                self.assertGreater(report["merge_error"], 0)
+                self.assertGreater(self.run_ok("compare", "all.exr", "merged.exr", "--json").json()["psnr"], 40)
+
+    def render_json(self, name, *options):
+        return self.run_ok("render", "ball.ply", "-o", name, *SMALL, *options, "--json").json()
+
+    def test_levels_of_detail_are_refused_where_there_are_none(self):
+        for options, says in (
+            (["--lod", "-1"], "--lod"),
+            (["--lod", "nan"], "--lod"),
+            (["--lod", "2", "--method", "tets"], "draws all there is"),
+            (["--lod", "2", "--seconds", "1"], "--seconds"),
+            (["--lod", "2", "--method", "pt", "--order", "havs"], "0 to 1"),
+        ):
+            done = subvol("render", "model:ball:4", "-o", "x.png", *options, folder=self.folder)
+            self.assertEqual((done.code, done.err.count("\n")), (2, 1), done.err)
+            self.assertIn(says, done.err)
+
+    def test_a_turntable_of_merged_kernels_has_the_bits_of_its_frames(self):
+        camera = ["--view", "-y", "--lod", "6", "--look", "volume"]
+        self.run_ok("render", "model:ball:4", "-o", "turn_##.exr", *SMALL, *camera, "--per-edge", 2, "--turntable", 3)
+        for part in "1/2", "2/2":
+            self.run_ok("render", "model:ball:4", "-o", "part_##.exr", *SMALL, *camera, "--per-edge", 2, "--turntable", 3,
+                        "--part", part)
+        for frame in "00", "01", "02":
+            self.assertEqual(self.difference(f"turn_{frame}.exr", f"part_{frame}.exr"), 0)
+
     def test_tetrahedra_keep_a_time_too(self):
         if not self.has_gl():
             self.skipTest("no OpenGL 4.5 through EGL")

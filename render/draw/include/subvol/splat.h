@@ -66,6 +66,14 @@ public:
     /// boundary, values: referred to, not copied; no values: the colours of the kernels again
     void set_boundary_colors(const Surface& boundary, std::span<const double> values);
 
+    /// Draws other kernels from the next picture on, such as those that `choose_level` finds for a view. What belongs to the
+    /// boundary or to the device is kept, and so is the sum of weights at which a volume without a boundary ends.
+    ///
+    /// volume: referred to, not copied; with the boundary of the one before
+    /// throws: Error(InvalidInput) if the channels, the kernel or the size of the boundary differ from those before, or a value
+    ///         is beyond 32-bit floats
+    void set_kernels(const RbfVolume& volume);
+
     /// progress: listener for this picture; null: that of the options
     [[nodiscard]] SplatResult draw(const View& view, const Optics& optics, Progress* progress = nullptr);
 
