@@ -25,8 +25,9 @@ constexpr std::size_t kBatch = std::size_t{1} << 19;  // places that are open at
 constexpr int kMostRounds = 24;                       // for all candidates of a place together
 // A step this small (in parameters) is the last: what it changes is linear to within 1e-7 of the field's change in a cell.
 constexpr double kLastStep = 3e-4;
-// The first rounds end at the piece's distance from the limit anyway: they need only so much of the diagonal.
-constexpr std::array kFirstTolerances{1e-4, 1e-5};
+// The first round ends at the piece's distance from the limit anyway: it needs only so much of the diagonal. The second one is
+// then near enough to be the last for most places.
+constexpr double kFirstTolerance = 1e-5;
 
 /// A place that has not been found yet.
 ///
@@ -135,8 +136,7 @@ void LimitProbe::State::run(std::span<const Vec3> places, std::size_t begin, Pro
         report_progress(progress, "probe", static_cast<double>(begin) / static_cast<double>(result.cells.size()));
         queries.clear();
         for (const Open& one : open) queries.push_back(one.at);
-        const bool coarse = round < static_cast<int>(kFirstTolerances.size());
-        const double tolerance = coarse ? kFirstTolerances[static_cast<std::size_t>(round)] : 0;
+        const double tolerance = round == 0 ? kFirstTolerance : 0;
         const bool last = tolerance <= options.limit.tolerance;
         const LimitSamples samples = limit->at(queries, last ? options.limit.tolerance : tolerance);
         detail::parallel_each(open.size(), [&](std::size_t i) {

@@ -198,9 +198,9 @@ MixedStep refine_level(const MixedLevel& parent, const SplitNumbers& numbers, Te
             smoothing.row(static_cast<Index>(v), terms);
             merge(terms);
             row.clear();
-            for (const auto& [point, weight] : terms) {
-                numbers.linear(parent.cells, point, scheme == TetScheme::Boxspline,
-                               [&](Index p, double w) { row.add(p, weight * w); });
+            for (const auto& term : terms) {
+                numbers.linear(parent.cells, term.first, scheme == TetScheme::Boxspline,
+                               [&](Index p, double w) { row.add(p, term.second * w); });
             }
             writer.push(row.finish());
         }
