@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/refine_mixed.h"
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 
