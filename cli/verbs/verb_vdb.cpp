@@ -129,8 +129,8 @@ public:
     }
 
 private:
-    [[nodiscard]] HexMesh load(const std::string& input, Report& report) const {
-        HexMesh mesh = with_written_fields(tets_.hexes(load_mesh(input, common(), report), 2, report), report);
+    [[nodiscard]] HexMesh load(const std::string& input, const CommonOptions& options, Report& report) const {
+        HexMesh mesh = with_written_fields(tets_.hexes(load_mesh(input, options, report), 2, report), report);
         for (const Remap& remap : parsed_remaps_) apply(remap, mesh);
         if (asked_.up == "y") turn_y_up(mesh);
         if (asked_.scale != 1) scale_points(mesh, asked_.scale);
@@ -139,7 +139,7 @@ private:
 
     void run_one(Report& report) {
         if (asked_.velocity) throw Error(ErrorCode::InvalidInput, "needs a sequence", "--velocity", "--frames A-B");
-        const HexMesh mesh = load(input_, report);
+        const HexMesh mesh = load(input_, common(), report);
         const RasterizeOptions options = set_up(mesh, report);
         if (output_.memory_bytes > 0) {
             if (asked_.error) throw Error(ErrorCode::InvalidInput, "works with one file only, not with parts", "--error");
@@ -198,7 +198,7 @@ private:
         refuse_options(app(), {"--velocity", "--error", "--memory", "--nano"},
                        ranks() != nullptr ? "does not work in several processes of MPI" : "does not work with --part");
         if (asked_.from == "points") throw Error(ErrorCode::InvalidInput, "is not done in shares", "--from points");
-        const HexMesh mesh = load(input_, report);
+        const HexMesh mesh = load(input_, common(), report);
         const RasterizeOptions options = set_up(mesh, report);
         std::vector<VdbGrid> grids =
             report.timed("rasterize", [&] { return rasterize_share(mesh, names_of(mesh), options, share.part, share.of); });
@@ -301,7 +301,7 @@ private:
         const FrameRange range = parse_frames(asked_.frames);
         if (asked_.to.empty()) check_frames(input_, range);
         MeshFrames frames(input_, asked_.to.empty() ? std::nullopt : std::optional(asked_.to), range,
-                          [&](const std::string& name) { return load(name, report); });
+                          [&](const std::string& name) { return load(name, common(), report); });
         write_frames(share, range, frames, {}, report);
     }
 
@@ -317,9 +317,7 @@ private:
         check_numbered(output_.path);
         const MeshSeries series = open_series(input_);
         const FrameRange range = chosen_steps(series, common());
-        MeshFrames frames(range, series.times, [&](int step) {
-            return with_written_fields(tets_.hexes(load_mesh(input_, of_step(common(), step), report), 2, report), report);
-        });
+        MeshFrames frames(range, series.times, [&](int step) { return load(input_, of_step(common(), step), report); });
         const FrameRange own = frames_of(share, range);
         report["times"] = std::vector(series.times.begin() + own.first, series.times.begin() + own.last + 1);
         write_frames(share, range, frames, series.times, report);

@@ -66,6 +66,17 @@ class Series(InFolder):
             self.run_ok("render", f"t{k}.vtu", "-o", "one.exr", "--tf-range", "0,4", *view)
             self.run_ok("compare", f"p_{k}.exr", "one.exr", "--fail-under", "psnr=100")
 
+    def test_grids_of_steps_are_mapped_turned_and_scaled_too(self):
+        asked = ["--resolution", "10", "--remap", "0,4", "--up", "y", "--scale", "2", "--json"]
+        report = self.run_ok("vdb", "run.pvd", "-o", "g_##.vdb", "--step", "all", *asked).json()
+        self.assertAlmostEqual(report["voxel_size"], 0.2)
+        for frame, t in zip(report["frames"], TIMES):
+            self.assertAlmostEqual(frame["grids"][0]["min"], t / 4, delta=1e-6)  # a voxel centre lies at z = 0
+            one = self.run_ok("vdb", f"t{TIMES.index(t)}.vtu", "-o", "one.vdb", *asked).json()["grids"][0]
+            grid = self.run_ok("info", f"g_{TIMES.index(t):02}.vdb", "--json").json()["grids"][0]
+            self.assertEqual([grid["active_voxels"], grid["min"], grid["max"]], [one["active_voxels"], one["min"], one["max"]])
+            self.assertAlmostEqual(grid["bounds"][0][1], 0, delta=0.11)  # z is up in the file, y in the grid
+
     def test_points_of_steps(self):
         report = self.run_ok("points", "run.pvd", "-o", "k_#.ply", "--step", "0-1", "--json").json()
         self.assertEqual([(f["time"], f["output"]) for f in report["frames"]], [(0, "k_0.ply"), (1, "k_1.ply")])
