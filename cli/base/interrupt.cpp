@@ -21,6 +21,7 @@ volatile std::sig_atomic_t interrupted = 0;
 volatile std::sig_atomic_t extensions = 0;
 std::atomic<int> children = 0;
 std::atomic<bool> speaks = false, has_spoken = false;  // whoever is first says the last words
+bool another_speaks = false;                           // another process, for all
 
 struct LastWords {
     int signal;
@@ -57,6 +58,7 @@ void on_timer(int /*signal*/) {
         }
         end_now();
     }
+    if (another_speaks) end_now();
     write_all(STDERR_FILENO, isatty(STDERR_FILENO) != 0 ? "\r\033[Ksubvol: cancelled\n" : "subvol: cancelled\n");
     for (const LastWords& last : last_words) {
         if (last.signal == interrupted) write_all(STDOUT_FILENO, last.words.data());
@@ -72,7 +74,8 @@ void on_interrupt(int signal) {
 
 }  // namespace
 
-void catch_interrupts() {
+void catch_interrupts(bool silent) {
+    another_speaks = silent;
     std::signal(SIGALRM, on_timer);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);

@@ -186,7 +186,7 @@ int run(CLI::App& program, std::vector<std::string> arguments) {
         }
         std::optional<subvol::cli::Ranks> ranks;
         if (rank) verb->set_ranks(&ranks.emplace());
-        subvol::cli::catch_interrupts();
+        subvol::cli::catch_interrupts(!speaks());
         subvol::cli::Report report(speaks() ? verb->common() : silent(verb->common()));
         const int code = ranks ? run_in_ranks(*verb, report, *ranks) : run_naming_input(*verb, report);
         report.finish();

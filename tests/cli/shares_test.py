@@ -423,6 +423,22 @@ class RanksOfBricks(WithRanks):
             self.ranks(3, verb, "t.bricks", "-o", name, *options)
             (self.folder / name).unlink()
 
+    def test_a_cancelled_run_is_one_sentence(self):
+        """mpirun passes the signal on to all ranks; one of them speaks."""
+        self.run_ok("split", "model:twist:40", "-o", "t.bricks", "--bricks", 30, "--quiet")
+        run = subprocess.Popen([MPIRUN, "--oversubscribe", "-n", "4", COMMAND, "vdb", "t.bricks", "-o", "a.vdb", "--resolution", "300"],
+                               cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                               env={**os.environ, **AS_ROOT})
+        ranks = []
+        while run.poll() is None and len(ranks) < 4:
+            ranks = [pid for pid in children(run.pid) if rank_of(pid) is not None]
+        time.sleep(0.5)  # anywhere in its work
+        run.send_signal(signal.SIGTERM)
+        said = [line for line in run.communicate(timeout=600)[1].splitlines() if line.startswith("subvol:")]
+        self.assertLessEqual(len(said), 1, said)
+        wait_for_end(ranks)
+        self.assertEqual(self.files(), ["b.bricks", "t.bricks"])
+
     def test_what_cannot_be_written_is_one_sentence(self):
         """By rank 0, which writes; and by any rank, whose kernels wait in files until they are drawn."""
         for verb, name, *options in (["points", "a.ply"], ["vdb", "a.vdb", "--resolution", 40], ["render", "a.exr", *PICTURE]):
