@@ -164,9 +164,10 @@ private:
                 {attribute.name, channels, std::vector<double>(count * channels), std::vector<Vec3>(count * channels)});
         }
         if (all.fields.empty()) return;
+        const LimitEvaluator limit(mesh_, {.scheme = options_.scheme});
         for (std::size_t begin = 0; begin < count; begin += kBatch) {
             const auto places = std::span(all.places).subspan(begin, std::min(kBatch, count - begin));
-            const LimitSamples samples = evaluate_limit(mesh_, places, {.scheme = options_.scheme});
+            const LimitSamples samples = limit.at(places);
             for (std::size_t f = 0; f < all.fields.size(); ++f) {
                 const std::size_t channels = all.fields[f].channels;
                 detail::parallel_each(places.size() * channels, [&](std::size_t i) {

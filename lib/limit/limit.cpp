@@ -100,14 +100,25 @@ void refine_rest(const HexMesh& control, std::span<const LimitQuery> queries, st
     for (const LimitReport& report : reports) detail::add_report(report, samples.report);
 }
 
-}  // namespace
-
-struct LimitEvaluator::State {
-    State(const HexMesh& mesh, const LimitOptions& with)
-        : options(with),
+/// What calls for one mesh have in common.
+struct Evaluation {
+    Evaluation(const HexMesh& mesh, const LimitOptions& with)
+        : options((check(with), with)),
           control(detail::control_mesh(mesh, options.scheme)),
           scales(channel_scales(control)),
           descents(control, options.scheme) {}
+
+    /// keep: what had to be refined, for the next call
+    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, const LimitOptions& wanted, bool keep) const {
+        check(wanted);
+        check(control, queries);
+        LimitSamples samples = make_samples(control, queries.size());
+        const auto order = sorted_by_cells(queries, control.cells.size());
+        const auto cells = places_of_cells(queries, order);
+        const auto rest = descents.run({control, queries, order, wanted, scales, samples}, cells, keep);
+        if (!rest.empty()) refine_rest(control, queries, rest, wanted, scales, samples);
+        return samples;
+    }
 
     LimitOptions options;
     HexMesh control;
@@ -115,30 +126,26 @@ struct LimitEvaluator::State {
     detail::LimitDescents descents;
 };
 
-LimitEvaluator::LimitEvaluator(const HexMesh& mesh, const LimitOptions& options) {
-    check(options);
-    state_ = std::make_unique<State>(mesh, options);
+}  // namespace
+
+struct LimitEvaluator::State {
+    Evaluation evaluation;
+};
+
+LimitEvaluator::LimitEvaluator(const HexMesh& mesh, const LimitOptions& options) : state_(new State{{mesh, options}}) {
 }
 LimitEvaluator::~LimitEvaluator() = default;
 LimitEvaluator::LimitEvaluator(LimitEvaluator&&) noexcept = default;
 LimitEvaluator& LimitEvaluator::operator=(LimitEvaluator&&) noexcept = default;
 
 LimitSamples LimitEvaluator::at(std::span<const LimitQuery> queries, std::optional<double> tolerance) const {
-    const auto& [usual, control, scales, descents] = *state_;
-    LimitOptions options = usual;
+    LimitOptions options = state_->evaluation.options;
     if (tolerance) options.tolerance = *tolerance;
-    check(options);
-    check(control, queries);
-    LimitSamples samples = make_samples(control, queries.size());
-    const auto order = sorted_by_cells(queries, control.cells.size());
-    const auto cells = places_of_cells(queries, order);
-    const auto rest = descents.run({control, queries, order, options, scales, samples}, cells);
-    if (!rest.empty()) refine_rest(control, queries, rest, options, scales, samples);
-    return samples;
+    return state_->evaluation.at(queries, options, true);
 }
 
 LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries, const LimitOptions& options) {
-    return LimitEvaluator(mesh, options).at(queries);
+    return Evaluation(mesh, options).at(queries, options, false);
 }
 
 }  // namespace subvol

@@ -13,7 +13,7 @@ namespace subvol::detail {
 ///     level 0   cells inside a grid ────────────────► the regular class, level by level
 ///               cells of a class that is common ────► that class, level by level
 ///               splines on a grid, linear cells: exact at once
-///               the others: refined twice, batch by batch
+///               the others: refined twice (`RefinedStore`)
 ///     level 2   the class of the neighbourhood of the descendant that has the place, and of its children …
 ///
 /// A descendant is evaluated by a cubic through its regular grid, or trilinearly where there is none, until two levels agree.
@@ -28,11 +28,12 @@ public:
 
     /// Fills the samples of the task, whose mesh and scheme are those above. Returns the queries, by their numbers, whose
     /// surroundings have no class: those are left to the caller. Several threads may call it.
-    [[nodiscard]] std::vector<std::size_t> run(const DescentTask& task, std::span<const CellPlaces> cells) const;
+    ///
+    /// keep: what had to be refined, for the next call
+    [[nodiscard]] std::vector<std::size_t> run(const DescentTask& task, std::span<const CellPlaces> cells, bool keep) const;
 
 private:
     struct State;
-    struct Run;
     std::unique_ptr<State> state_;
 };
 

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "refined_cells.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+
+#include "subvol/cell.h"
+#include "subvol/detail/parallel_each.h"
+#include "topology_parts.h"
+
+namespace subvol::detail {
+
+namespace {
+
+/// All channels of the points of a mesh.
+std::vector<double> rows_of(const HexMesh& mesh, std::size_t stride) {
+    std::vector<double> rows(mesh.points.size() * stride);
+    parallel_each(mesh.points.size(), [&](std::size_t p) { Channels::read(mesh, static_cast<Index>(p), &rows[p * stride]); });
+    return rows;
+}
+
+template <class T>
+std::size_t bytes_of(const std::vector<T>& values) {
+    return values.capacity() * sizeof(T);
+}
+
+}  // namespace
+
+DescentMesh::DescentMesh(const HexMesh& mesh, const SchemeOptions& with)
+    : control(mesh),
+      scheme(with),
+      stride(Channels(mesh).stride()),
+      topology(build_topology(mesh)),
+      links(build_links(mesh, topology)),
+      rows(rows_of(mesh, stride)) {
+}
+
+bool DescentMesh::load(Index cell, CellJets& jets) const {
+    GridPoints grid;
+    if (scheme.kind != Scheme::Linear && regular_grid(topology, cell, grid)) {
+        jets.load_grid(rows.data(), grid);
+        return true;
+    }
+    std::array<Index, 8> corners;
+    for (std::size_t octant = 0; octant < 8; ++octant) corners[octant] = control.cells[cell][kCornerOctants[octant]];
+    jets.load_corners(rows.data(), corners);
+    return false;
+}
+
+RefinedCells::RefinedCells(const DescentMesh& mesh, const PatchSource& source, std::shared_ptr<ClassGraph> classes,
+                           std::span<const Index> cells, std::span<const std::uint8_t> octants)
+    : mesh_(mesh), classes_(std::move(classes)) {
+    const Patch first = refine_patch(source.cut(cells, 2), mesh.scheme, 2);
+    const Topology first_topology = build_topology(first.mesh, InteriorCreases::Ignore);
+    first_rows_ = rows_of(first.mesh, mesh.stride);
+    const std::vector<Index> refined = find_octants(first, first_topology, octants);
+    if (refined.empty()) return;
+    HexMesh second = refine_cells(first, first_topology, mesh.scheme, refined);
+    second_rows_ = rows_of(second, mesh.stride);
+    second_cells_ = std::move(second.cells);
+}
+
+/// The walks about the cells of level 1 that are wanted. Returns the cells that are to be refined for them, in the order of
+/// slots_.
+std::vector<Index> RefinedCells::find_octants(const Patch& first, const Topology& topology,
+                                              std::span<const std::uint8_t> octants) {
+    octants_.resize(8 * octants.size());
+    std::vector<std::uint8_t> wanted(first.first_layer, 0);
+    // The second layer ends the patch: colours of one round see no further.
+    const CellLinks links = build_links(first.mesh, topology, 1);
+    tbb::enumerable_thread_specific<NeighborhoodWalk> walks([&] { return NeighborhoodWalk(first.mesh, links); });
+    tbb::enumerable_thread_specific<Neighborhood> abouts;
+    const bool is_spline = !interpolates(mesh_.scheme.kind);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, octants.size(), 16), [&](const auto& range) {
+        NeighborhoodWalk& walk = walks.local();
+        Neighborhood& about = abouts.local();
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            for (std::size_t octant = 0; octant < 8; ++octant) {
+                if ((octants[i] >> octant & 1) == 0) continue;
+                const std::size_t cell = 8 * i + kCornerOctants[octant];
+                octants_[cell].cells = this;
+                if (!walk.find(static_cast<Index>(cell), 1, about)) continue;
+                const ClassEntry& entry = classes_->entry(about);
+                const auto points = about.points.begin();
+                octants_[cell] = {this, &entry, about.turn, {points, entry.on_grid ? about.points.end() : points + 8}};
+                if (is_spline && entry.on_grid) continue;
+                octants_[cell].visited.assign(walk.visited().begin(), walk.visited().end());
+                for (const auto& visited : walk.visited()) {
+                    std::atomic_ref(wanted[visited.cell]).store(1, std::memory_order_relaxed);
+                }
+            }
+        }
+    });
+    std::vector<Index> refined;
+    slots_.assign(wanted.size(), kNone);
+    for (std::size_t c = 0; c < wanted.size(); ++c) {
+        if (wanted[c] == 0) continue;
+        slots_[c] = static_cast<Index>(refined.size());
+        refined.push_back(static_cast<Index>(c));
+    }
+    return refined;
+}
+
+const RefinedOctant& RefinedCells::octant(std::size_t number, std::size_t octant) const {
+    return octants_[8 * number + kCornerOctants[octant]];
+}
+
+void RefinedCells::run(const RefinedOctant& in, std::span<OpenPlace> places, DescentWorker& with) const {
+    if (in.entry == nullptr) return with.leave(places);
+    if (in.entry->on_grid) {
+        GridPoints grid = in.entry->grid;
+        for (Index& p : grid) p = p == kNone ? kNone : in.points[p];
+        with.jets().load_grid(first_rows_.data(), grid);
+    } else {
+        with.jets().load_corners(first_rows_.data(), std::span(in.points).first<8>());
+    }
+    places = with.evaluate(places, in.turn, 1, in.entry->on_grid);
+    if (!places.empty()) enter(in, places, with);
+}
+
+/// From a cell of level 1 to the classes of its children.
+void RefinedCells::enter(const RefinedOctant& parent, std::span<OpenPlace> places, DescentWorker& with) const {
+    const std::size_t stride = mesh_.stride;
+    const auto row_of = [&](const ClassEntry::Corner& at) {
+        const auto& [from, from_turn] = parent.visited[at.cell];
+        const auto& octants = cell_turns()[from_turn].octants;
+        const auto& corners = second_cells_[8 * slots_[from] + kCornerOctants[octants[at.child]]];
+        return &second_rows_[corners[kCornerOctants[octants[at.corner]]] * stride];
+    };
+    each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
+        const ClassEntry::Child& child = parent.entry->children[walk_octant(parent.turn, octant)];
+        if (child.to == nullptr) return with.leave(inside);
+        double* to = with.values(2, child.rows.size());
+        for (const std::uint16_t row : child.rows) to = copy_row(row_of(parent.entry->points[row]), stride, to);
+        with.begin(*child.to, composed(child.turn, parent.turn), 2, inside, *classes_);
+    });
+}
+
+std::size_t RefinedCells::bytes() const {
+    std::size_t bytes =
+        bytes_of(octants_) + bytes_of(slots_) + bytes_of(second_cells_) + bytes_of(first_rows_) + bytes_of(second_rows_);
+    for (const RefinedOctant& octant : octants_) bytes += bytes_of(octant.points) + bytes_of(octant.visited);
+    return bytes;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "descent_worker.h"
+#include "patch.h"
+
+namespace subvol::detail {
+
+/// The mesh of the control points, and what is made of it once. rows: the channels of the points
+struct DescentMesh {
+    const HexMesh& control;
+    SchemeOptions scheme;
+    std::size_t stride;  // of rows
+    Topology topology;
+    CellLinks links;
+    std::vector<double> rows;
+
+    DescentMesh(const HexMesh& mesh, const SchemeOptions& with);
+
+    /// Loads a cell, by its regular grid if it has one. Returns whether it has.
+    [[nodiscard]] bool load(Index cell, CellJets& jets) const;
+};
+
+class RefinedCells;
+
+/// A cell of level 1, with the walk about it. entry: null if it has no class, or is not wanted
+struct RefinedOctant {
+    const RefinedCells* cells = nullptr;  // that it is one of
+    const ClassEntry* entry = nullptr;
+    std::uint8_t turn = kIdentityTurn;
+    std::vector<Index> points{};  // that it is evaluated from
+    std::vector<NeighborhoodWalk::Visited> visited{};
+};
+
+/// Control cells without a common class, refined twice: the descendants of level 2 have classes.
+class RefinedCells {
+public:
+    /// The mesh is kept by reference.
+    ///
+    /// octants: of each cell those that will have places (bit by bit)
+    RefinedCells(const DescentMesh& mesh, const PatchSource& source, std::shared_ptr<ClassGraph> classes,
+                 std::span<const Index> cells, std::span<const std::uint8_t> octants);
+    RefinedCells(const RefinedCells&) = delete;
+    RefinedCells& operator=(const RefinedCells&) = delete;
+
+    /// number: of the cell, in the order that they were given
+    [[nodiscard]] const RefinedOctant& octant(std::size_t number, std::size_t octant) const;
+
+    /// Evaluates places in one of its octants. Thread-safe.
+    void run(const RefinedOctant& in, std::span<OpenPlace> places, DescentWorker& with) const;
+
+    [[nodiscard]] std::size_t bytes() const;
+
+private:
+    [[nodiscard]] std::vector<Index> find_octants(const Patch& first, const Topology& topology,
+                                                  std::span<const std::uint8_t> octants);
+    void enter(const RefinedOctant& parent, std::span<OpenPlace> places, DescentWorker& with) const;
+
+    const DescentMesh& mesh_;
+    std::shared_ptr<ClassGraph> classes_;
+    std::vector<RefinedOctant> octants_;  // as children of their cells, eight for each
+    std::vector<Index> slots_;            // of cells of level 1 among the refined ones
+    std::vector<std::array<Index, 8>> second_cells_;
+    std::vector<double> first_rows_, second_rows_;
+};
+
+}  // namespace subvol::detail
