@@ -85,7 +85,9 @@ bool SoupCutter::has_hull(Index cell) const {
 SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::optional<std::vector<Index>>& active) const {
     if (!active) active = candidates(cut);
     const GridNumbers numbers(topology_, level);
-    const DenseCells dense(mesh_, {.scheme = scheme_, .levels = level, .progress = progress_}, true);
+    // Cells that share a vertex must agree on which side of the isovalue it is. On the hull only its number counts.
+    const DenseCells dense(mesh_, {.scheme = scheme_, .levels = level, .progress = progress_}, true,
+                           cut.iso ? DenseBits::OfRefine : DenseBits::ToRounding);
     std::vector<Index> slots(mesh_.cells.size(), kNone);
     std::vector<CellTriangles> parts;
     std::vector<Index> cells, todo = *active;
