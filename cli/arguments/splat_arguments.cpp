@@ -9,9 +9,14 @@
 
 namespace subvol::cli {
 
-SplatMethod splat_method(const std::string& backend, bool by_sheets) {
-    if (by_sheets) return SplatMethod::Sheets;
+SplatMethod splat_method(const std::string& method, const std::string& backend) {
+    if (method == "sheets") return SplatMethod::Sheets;
+    if (method == "footprints") return SplatMethod::Footprints;
     return backend == "gl" ? SplatMethod::Gl : backend == "cpu" ? SplatMethod::Cpu : SplatMethod::Auto;
+}
+
+bool splats(const std::string& method) {
+    return method == "splat" || method == "sheets" || method == "footprints";
 }
 
 void SplatArguments::add_to(CLI::App& app) {
@@ -45,22 +50,29 @@ void SplatArguments::add_to(CLI::App& app) {
         ->excludes("--footprint");
 }
 
-SplatOptions SplatArguments::options(bool by_sheets) const {
+SplatOptions SplatArguments::options(const std::string& method) const {
     check_choice("--backend", backend, {"auto", "gl", "cpu"});
+    const bool by_sheets = method == "sheets", by_footprints = method == "footprints";
     if (by_sheets && backend == "cpu") {
         throw Error(ErrorCode::InvalidInput, "sheets are drawn by OpenGL only", "--backend cpu", "auto or gl");
+    }
+    if (by_footprints && (backend == "gl" || device)) {
+        throw Error(ErrorCode::InvalidInput, "footprints are drawn by the CPU only", "--backend gl, --device", "auto or cpu");
+    }
+    if (by_footprints && (sheets != 0 || seconds)) {
+        throw Error(ErrorCode::InvalidInput, "footprints are drawn without them", "--sheets, --seconds", "--method splat");
     }
     if (device && backend == "cpu") {
         throw Error(ErrorCode::InvalidInput, "is for OpenGL, not for --backend cpu", "--device");
     }
     SplatOptions options{
-        .method = splat_method(backend, by_sheets), .device = device, .sheets = sheets, .normalized = !plain_sums};
+        .method = splat_method(method, backend), .device = device, .sheets = sheets, .normalized = !plain_sums};
     if (color_field) options.color_channel = 1;
     if (shade) options.shading = Shading{};
     options.shadows = shadows;
     options.ambient_occlusion = ambient_occlusion;
-    if (by_sheets && (shadows || ambient_occlusion > 0)) {
-        throw Error(ErrorCode::InvalidInput, "sheets are drawn without them", "--shadows, --ambient-occlusion",
+    if ((by_sheets || by_footprints) && (shadows || ambient_occlusion > 0)) {
+        throw Error(ErrorCode::InvalidInput, method + " are drawn without them", "--shadows, --ambient-occlusion",
                     "--method splat");
     }
     return options;

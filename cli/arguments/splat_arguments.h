@@ -13,8 +13,11 @@ class App;
 
 namespace subvol::cli {
 
-/// The method of a backend's name (auto, gl, cpu).
-[[nodiscard]] SplatMethod splat_method(const std::string& backend, bool by_sheets);
+/// How the method of that name splats (splat, sheets, footprints), and where (auto, gl, cpu).
+[[nodiscard]] SplatMethod splat_method(const std::string& method, const std::string& backend);
+
+/// Whether a method draws kernels.
+[[nodiscard]] bool splats(const std::string& method);
 
 /// The options of splatting.
 struct SplatArguments {
@@ -32,9 +35,9 @@ struct SplatArguments {
 
     /// If there is a --color-field, it is the volume's second channel.
     ///
-    /// by_sheets: --method sheets
-    /// throws:    Error(InvalidInput) if a name is unknown, or the backend cannot draw sheets
-    [[nodiscard]] SplatOptions options(bool by_sheets) const;
+    /// method: of --method
+    /// throws: Error(InvalidInput) if a name is unknown, or the backend cannot draw so
+    [[nodiscard]] SplatOptions options(const std::string& method) const;
 };
 
 /// Adds the seconds, the backend and the device of a splatted picture to the report.

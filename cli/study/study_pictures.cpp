@@ -49,28 +49,20 @@ Image repeated(const Scene& scene, const Draw& draw) {
     return image;
 }
 
-Image splat(const Scene& scene, bool by_sheets) {
+Image splats(const Scene& scene) {
     const detail::Stopwatch watch;
     RbfVolume volume = sample_rbf_points(scene.mesh, study_sampling(scene.of, scene.mesh)).volume;
     scene.result.metrics["sampled"] = static_cast<double>(volume.size());
     if (scene.of.flag("visible_only")) volume = drop_invisible(volume, 0, scene.optics.function()).volume;
     scene.result.metrics["kernels"] = scene.result.metrics["primitives"] = static_cast<double>(volume.size());
-    Splatter splatter(volume,
-                      {.method = splat_method(scene.of.text("backend"), by_sheets), .sheets = scene.of.whole("sheets")});
+    Splatter splatter(volume, {.method = splat_method(scene.of.text("method"), scene.of.text("backend")),
+                               .sheets = scene.of.whole("sheets")});
     scene.result.costs["prepare_seconds"] = watch.seconds();
     return repeated(scene, [&] {
         SplatResult drawn = splatter.draw(scene.view, scene.optics);
         scene.result.notes["device"] = drawn.report.device;
         return std::move(drawn.image);
     });
-}
-
-Image splats(const Scene& scene) {
-    return splat(scene, false);
-}
-
-Image sheets(const Scene& scene) {
-    return splat(scene, true);
 }
 
 HexMesh refined(const Scene& scene) {
@@ -138,7 +130,7 @@ Image grid(const Scene& scene) {
 
 using Draw = Image (*)(const Scene&);
 
-const std::map<std::string, Draw> kDraw{{"splat", splats},      {"sheets", sheets}, {"tets", tets},
+const std::map<std::string, Draw> kDraw{{"splat", splats},      {"sheets", splats}, {"footprints", splats}, {"tets", tets},
                                         {"pt", projected_tets}, {"dense", dense},   {"grid", grid}};
 
 Image draw(const Scene& scene) {

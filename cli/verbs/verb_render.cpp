@@ -73,11 +73,12 @@ public:
         app()
             .add_option("--method", method_,
                         "splat (kernels, the default), sheets (the same by OpenGL sheet buffers), "
+                        "footprints (kernels coloured first, as Westover did), "
                         "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL), "
                         "dense (rays through the dense grids of the limit) or "
                         "grid (rays through a .vdb file's voxels)")
             ->type_name("NAME")
-            ->check(offered({"splat", "sheets", "tets", "pt", "dense", "grid"}));
+            ->check(offered({"splat", "sheets", "footprints", "tets", "pt", "dense", "grid"}));
         picture_.add_to(app());
         clip_.add_to(app());
         reference_.add_to(app());
@@ -98,8 +99,8 @@ public:
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
-        check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
-        options_ = splat_.options(method_ == "sheets");
+        check_choice("--method", method_, {"splat", "sheets", "footprints", "tets", "pt", "dense", "grid"});
+        options_ = splat_.options(method_);
         picture_.settle_look(!holds_points(input_) && !is_vdb_file(input_) && !splat_.shade);
         if (reference_.samples == 0) reference_.samples = picture_.look == Look::Solid ? 2 : 1;
         options_.samples = reference_.samples;
@@ -137,7 +138,7 @@ private:
     void set_share(PictureOutput& output, bool frames) {
         if (!shares(share_)) return;
         const Share share = share_of(share_);
-        if (!frames && (!drawn_by_splats() || splat_.seconds)) {
+        if (!frames && (!drawn_by_splats() || method_ == "footprints" || splat_.seconds)) {
             throw Error(ErrorCode::InvalidInput, "is not drawn in shares", splat_.seconds ? "--seconds" : "--method " + method_,
                         "--method splat, or shares of frames: --turntable N, --step all");
         }
@@ -166,7 +167,7 @@ private:
                           "--tolerance-image", "--order", "--kbuffer", "--lod", "--memory", "--part"});
     }
 
-    [[nodiscard]] bool drawn_by_splats() const { return method_ == "splat" || method_ == "sheets"; }
+    [[nodiscard]] bool drawn_by_splats() const { return splats(method_); }
 
     /// Refuses options of splatting for the other methods.
     void check_reference() const {

@@ -96,7 +96,7 @@ public:
         const bool points = voxels || holds_points(input_);
         picture_.settle_look(!points);
         picture_.check();
-        const SplatOptions splat = splat_.options(method_ == "sheets");
+        const SplatOptions splat = splat_.options(method_);
         if (!screenshot_.empty()) check_output(screenshot_, {".png", ".exr"});
         const bool headless = !window_ && (!script_.empty() || !screenshot_.empty());
         const std::string script = script_.empty() ? "[]" : text_of(script_);

@@ -42,6 +42,7 @@ std::string range_of(const StudyResults& results, const std::string& key, int di
 std::string method_names(const StudyResults& results) {
     static const std::map<std::string, std::string> kWords{{"splat", "splatting of radial basis functions"},
                                                            {"sheets", "image-aligned sheet buffers"},
+                                                           {"footprints", "footprints of kernels that are classified first"},
                                                            {"tets", "rays through tetrahedra"},
                                                            {"pt", "projected tetrahedra"},
                                                            {"dense", "rays through dense grids of the cells"},

@@ -58,6 +58,7 @@ std::vector<StudyMethod> make_methods() {
     using enum StudyKind;
     return {{"splat", Pictures, splats + Keys{choice("backend", {"cpu", "auto", "gl"})}},
             {"sheets", Pictures, splats},
+            {"footprints", Pictures, kernels + Keys{flag("visible_only"), repeat}},
             {"tets", Pictures, {level, samples, repeat}},
             {"pt", Pictures, {level, choice("order", {"topological", "centroid", "lists", "havs"}), repeat}},
             {"dense", Pictures, dense},

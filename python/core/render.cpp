@@ -48,7 +48,8 @@ SplatMethod backend_named(const std::string& name) {
     if (name == "cpu") return SplatMethod::Cpu;
     if (name == "gl") return SplatMethod::Gl;
     if (name == "sheets") return SplatMethod::Sheets;
-    throw unknown_word(name, "backend", "auto, cpu, gl or sheets");
+    if (name == "footprints") return SplatMethod::Footprints;
+    throw unknown_word(name, "backend", "auto, cpu, gl, sheets or footprints");
 }
 
 SplatOptions splat_options(const std::string& backend, const std::optional<int>& device, int samples, int sheets,

@@ -53,8 +53,9 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
            progress: Progress = None) -> Image:
     """Draws a mesh, points or a grid: the picture of `subvol render` with the same options, bit for bit.
 
-    method:       "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "tets" (rays through tetrahedra), "pt" (tetrahedra
-                  projected by OpenGL), "dense" (rays through the limit's cells), "grid" (rays through voxels)
+    method:       "splat" (kernels), "sheets" (the same by OpenGL sheet buffers), "footprints" (kernels coloured first, as
+                  Westover did), "tets" (rays through tetrahedra), "pt" (tetrahedra projected by OpenGL), "dense" (rays through the
+                  limit's cells), "grid" (rays through voxels)
     view:         the side to look from: +x -x +y -y +z -z iso
     camera:       instead: a Camera, or text as of --camera
     size:         width and height in pixels
@@ -76,14 +77,14 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     Returns an Image: `numpy.asarray(image)` is (height, width, 4) float32, linear, premultiplied, without a copy. Its `report` has
     counts and seconds.
     """
-    if method not in ("splat", "sheets", "tets", "pt", "dense", "grid"):
-        raise InvalidInput(f"method: '{method}' is not known (splat, sheets, tets, pt, dense or grid)", "method",
-                           "splat, sheets, tets, pt, dense or grid")
+    if method not in ("splat", "sheets", "footprints", "tets", "pt", "dense", "grid"):
+        raise InvalidInput(f"method: '{method}' is not known (splat, sheets, footprints, tets, pt, dense or grid)", "method",
+                           "splat, sheets, footprints, tets, pt, dense or grid")
     if isinstance(what, Field):
         raise InvalidInput("what: a Field cannot be drawn; draw the mesh or the points that it is of", "what", "a mesh, points or a grid")
     if len(size) != 2 or not (1 <= size[0] <= 65536 and 1 <= size[1] <= 65536):
         raise InvalidInput(f"size: {size} is not a picture size", "size", "width and height, 1 to 65536")
-    splats = method in ("splat", "sheets")
+    splats = method in ("splat", "sheets", "footprints")
     if isinstance(what, HexMesh):
         body = True
     elif isinstance(what, (RbfVolume, Grid)):
@@ -143,7 +144,7 @@ def render(what: Drawable, *, method: str = "splat", view: str = "iso", camera: 
     eye = _camera_of(view, camera, bounds, framed, size, ortho)
     scene = _core.Scene(eye, (int(size[0]), int(size[1])), knots, unit, _planes_of(clip, "clip"), _box_of(clip_box),
                         _planes_of(slice, "slice"), around)
-    way = "sheets" if method == "sheets" else backend
+    way = backend if method == "splat" else method
 
     with listening(progress) as listener:
         if isinstance(what, RbfVolume):

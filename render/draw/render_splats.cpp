@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "footprints.h"
 #include "gl_context.h"
 #include "gl_sheets.h"
 #include "gl_splatter.h"
@@ -138,6 +139,7 @@ struct Splatter::State {
                         "the method splat");
         }
         if (options.method == SplatMethod::Sheets) sheets = make_sheet_drawer(options);
+        if (options.method == SplatMethod::Footprints) footprints.emplace(scene);
     }
 
     /// Draws with the CPU or with sheet buffers; the CPU prepares the frame for both.
@@ -153,6 +155,15 @@ struct Splatter::State {
         report.bin_entries = frame.tile_splats.size();
         report.boundary_hits = frame.intervals.hits;
         return sheets ? sheets->draw(frame, progress) : detail::draw_splats_cpu(frame, progress);
+    }
+
+    [[nodiscard]] detail::Drawn draw_footprints(const View& view, const detail::Classification& classification,
+                                                Progress* progress, SplatReport& report) {
+        report.backend = "cpu";
+        report.device = cpu_threads();
+        detail::Drawn drawn = footprints->draw(frame, view, classification, progress);
+        report.bin_entries = frame.tile_splats.size();
+        return drawn;
     }
 
     [[nodiscard]] detail::Drawn draw_on_gpu(const View& view, const detail::Classification& classification, Progress* progress,
@@ -175,6 +186,7 @@ struct Splatter::State {
     std::vector<double> light_key{};  // what it was made of, besides the kernels
     std::optional<detail::GlSplatter> gpu;
     std::unique_ptr<SheetDrawer> sheets;
+    std::optional<detail::Footprints> footprints;
     detail::SplatFrame frame{};  // its memory is used for every picture
 };
 
@@ -190,10 +202,11 @@ Splatter& Splatter::operator=(Splatter&&) noexcept = default;
 void Splatter::set_clip(const Clip& clip) {
     detail::set_clip(state_->scene, clip);
     state_->options.clip = clip;
+    if (state_->footprints) detail::check_footprints(state_->scene);
 }
 
 void Splatter::set_boundary_colors(const Surface& boundary, std::span<const double> values) {
-    const bool shown = !values.empty() && !state_->scene.shadowed();
+    const bool shown = !values.empty() && !state_->scene.shadowed() && !state_->footprints;
     state_->boundary = shown ? &boundary : nullptr;
     state_->values = values;
 }
@@ -223,8 +236,9 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     report.seconds_prepare = watch.seconds();
     const int n = state.options.samples;
     const View fine(view.camera(), n * view.width(), n * view.height());  // the centres of its pixels are the samples
-    auto drawn = state.gpu ? state.draw_on_gpu(fine, classification, progress, report)
-                           : state.draw_frame(fine, classification, progress, report);
+    auto drawn = state.gpu          ? state.draw_on_gpu(fine, classification, progress, report)
+                 : state.footprints ? state.draw_footprints(fine, classification, progress, report)
+                                    : state.draw_frame(fine, classification, progress, report);
     result.image = std::move(drawn.image);
     result.depth = std::move(drawn.depth);
     take_means(result, n);

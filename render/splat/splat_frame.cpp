@@ -57,22 +57,27 @@ void list_tiles(SplatFrame& frame) {
 
 }  // namespace
 
-void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
-                   int sheets, Progress* progress) {
-    report_progress(progress, "prepare splats", 0);
+void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
+                     int sheets, Progress* progress) {
     frame.scene = &scene;
     frame.view = &view;
     frame.classification = &classification;
     frame.sheets = make_sheets(scene, view, sheets);
     frame.tiles_x = (view.width() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
     frame.tiles_y = (view.height() + SplatFrame::kTile_px - 1) / SplatFrame::kTile_px;
+    report_progress(progress, "prepare splats", 0);
+    eye_splats(frame.kernels, scene, view, classification);
+    report_progress(progress, "prepare splats", 0.3);
+    list_tiles(frame);
+    report_progress(progress, "prepare splats", 0.6);
+}
+
+void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
+                   int sheets, Progress* progress) {
+    prepare_kernels(frame, scene, view, classification, sheets, progress);
     frame.intervals = scene_intervals(scene, view, frame.sheets);
     if (scene.shading && !frame.intervals.offsets.empty()) frame.entry_lights = entry_lights(frame.intervals, scene, view);
     if (scene.light) frame.to_light = eye_to_nodes(*scene.light, view, view.to_eye(scene.middle).z);
-    report_progress(progress, "prepare splats", 0.4);
-    eye_splats(frame.kernels, scene, view, classification);
-    report_progress(progress, "prepare splats", 0.7);
-    list_tiles(frame);
     report_progress(progress, "prepare splats", 1);
 }
 

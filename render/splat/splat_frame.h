@@ -37,6 +37,10 @@ struct SplatFrame {
     std::vector<std::uint32_t> tile_splats;
 };
 
+/// Fills the parts of a frame that depend on kernels alone: without the boundary and what rays meet there.
+void prepare_kernels(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
+                     int sheets, Progress* progress);
+
 /// Fills a frame, and uses again the memory of one that was filled before.
 void prepare_frame(SplatFrame& frame, const SplatScene& scene, const View& view, const Classification& classification,
                    int sheets, Progress* progress);

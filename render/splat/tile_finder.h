@@ -12,6 +12,7 @@ namespace subvol::detail {
 struct TileRect {
     int x0, x1, y0, y1;  // inclusive; empty if x1 < x0
 };
+using PixelBox = TileRect;
 
 /// The tiles that a kernel may touch on the sheets of a frame: those of a box around its ellipsoid.
 class TileFinder {
@@ -25,6 +26,16 @@ public:
           mid_y_(0.5f * static_cast<float>(frame.view->height())) {}
 
     [[nodiscard]] TileRect find(const EyeSplat& s) const {
+        return places(s, SplatFrame::kTile_px, frame_.tiles_x, frame_.tiles_y);
+    }
+    /// The same in pixels.
+    [[nodiscard]] PixelBox pixels_of(const EyeSplat& s) const {
+        return places(s, 1, frame_.view->width(), frame_.view->height());
+    }
+
+private:
+    /// size: of a place in pixels; columns, rows: how many there are
+    [[nodiscard]] TileRect places(const EyeSplat& s, int size, int columns, int rows) const {
         constexpr TileRect kNone{0, -1, 0, -1};
         const SheetStack& sheets = frame_.sheets;
         const float reach = 1.0f / std::sqrt(s.inv_szz);
@@ -36,23 +47,22 @@ public:
         const float hx = half(s.extent_x, s.shear_x), hy = half(s.extent_y, s.shear_y);
         const auto [left, right] = pixels(s.center_x - hx, s.center_x + hx, front, back);
         const auto [low, high] = pixels(s.center_y - hy, s.center_y + hy, front, back);
-        const auto [x0, x1] = tiles(mid_x_ + left, mid_x_ + right, frame_.tiles_x, frame_.view->width());
-        const auto [y0, y1] = tiles(mid_y_ - high, mid_y_ - low, frame_.tiles_y, frame_.view->height());
+        const auto [x0, x1] = tiles(mid_x_ + left, mid_x_ + right, size, columns, frame_.view->width());
+        const auto [y0, y1] = tiles(mid_y_ - high, mid_y_ - low, size, rows, frame_.view->height());
         return x1 < x0 || y1 < y0 ? kNone : TileRect{x0, x1, y0, y1};
     }
 
-private:
     /// Pixels from the middle that an interval of eye space spans between two depths.
     [[nodiscard]] std::pair<float, float> pixels(float low, float high, float front, float back) const {
         if (!perspective_) return {low * per_pixel_, high * per_pixel_};
         const float a = per_pixel_ / (frame_.sheets.middle + front), b = per_pixel_ / (frame_.sheets.middle + back);
         return {std::min(low * a, low * b), std::max(high * a, high * b)};
     }
-    [[nodiscard]] static std::pair<int, int> tiles(float low, float high, int count, int size) {
-        if (!(high > -1) || !(low < static_cast<float>(size) + 1)) return {0, -1};
+    [[nodiscard]] static std::pair<int, int> tiles(float low, float high, int size_px, int count, int end_px) {
+        if (!(high > -1) || !(low < static_cast<float>(end_px) + 1)) return {0, -1};
         // One pixel more on each side, so that rounding does not lose a kernel's rim.
         const auto tile = [&](float px) {
-            return static_cast<int>(std::clamp(px / SplatFrame::kTile_px, 0.0f, static_cast<float>(count - 1)));
+            return static_cast<int>(std::clamp(px / static_cast<float>(size_px), 0.0f, static_cast<float>(count - 1)));
         };
         return {tile(low - 1), tile(high + 1)};
     }

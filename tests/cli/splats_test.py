@@ -54,6 +54,20 @@ class Splats(InFolder):
             done = subvol("render", *small, "-o", "x.png", "--shadows", *wrong, folder=self.folder)
             self.assertEqual(done.code, 2, (wrong, done.err))
 
+    def test_footprints_are_another_picture(self):
+        small = ["model:ball:3", "--size", 32, "--look", "volume"]
+        self.run_ok("render", *small, "-o", "splat.exr")
+        done = self.run_ok("render", *small, "-o", "footprints.exr", "--method", "footprints", "--json").json()
+        self.assertEqual((done["method"], done["backend"]), ("footprints", "cpu"))
+        psnr = self.run_ok("compare", "splat.exr", "footprints.exr", "--json").json()["psnr"]
+        self.assertTrue(20 < psnr < 50, psnr)  # the same thing, but blurred
+        for wrong in (["--backend", "gl"], ["--sheets", "9"], ["--shadows"], ["--clip", "0,0,0,1,0,0"], ["--seconds", "1"],
+                      ["--part", "1/2"]):
+            done = subvol("render", *small, "-o", "x.exr", "--method", "footprints", *wrong, folder=self.folder)
+            self.assertEqual(done.code, 2, (wrong, done.err))
+            self.assertEqual(len(done.err.strip().splitlines()), 1, done.err)
+            self.assertFalse((self.folder / "x.exr").exists())
+
     def test_colours_of_a_second_field(self):
         self.run_ok("points", "model:twist:6", "-o", "a.vtp")
         self.render("same.exr", "--backend", "cpu", "--color-field", "density", source="a.vtp")

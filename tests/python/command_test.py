@@ -81,6 +81,13 @@ def test_pictures(tmp_path, command, flags, options):
         assert np.asarray(a).tobytes() == np.asarray(b).tobytes(), ending
 
 
+def test_footprints(tmp_path, command):
+    command("render", "model:ball:3", "-o", tmp_path / "a.exr", "--size", "48", "--method", "footprints", "--look", "volume")
+    subvol.render(subvol.model("ball", 3), size=(48, 48), method="footprints", look="volume").write(tmp_path / "b.exr")
+    a, b = subvol.read_image(tmp_path / "a.exr"), subvol.read_image(tmp_path / "b.exr")
+    assert np.asarray(a).tobytes() == np.asarray(b).tobytes() and np.asarray(a).any()
+
+
 def test_pictures_by_opengl(tmp_path, command):
     if not subvol.gl_devices():
         pytest.skip("there is no OpenGL 4.5")

@@ -10,14 +10,17 @@
 
 namespace subvol {
 
-/// How kernels are drawn; the pictures are the same.
+/// How kernels are drawn; the pictures of the first four are the same.
 ///
 /// Auto:   Gl where there is a hardware GPU, else Cpu
 /// Cpu:    tiles of the picture, batches of sheets, on all threads
 /// Gl:     the same by OpenGL compute shaders
 /// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, also by software: the method of the EuroVis 2007
 ///         paper, for comparison
-enum class SplatMethod { Auto, Cpu, Gl, Sheets };
+/// Footprints: the method of [westover1990], for comparison: kernels are coloured first, by the value at their centre, and composited
+///         one by one by the integrals of their weights along rays. Another picture: blurred, and not cut off at the boundary.
+///         By the CPU, for radial kernels, without cuts and shadows
+enum class SplatMethod { Auto, Cpu, Gl, Sheets, Footprints };
 
 /// Light on surfaces: the model of Blinn and Phong, with a light at the eye and a key light. Inside the volume surfaces are
 /// those of equal value, lit on either side; where the value hardly changes there is no surface, and colours are not changed.
