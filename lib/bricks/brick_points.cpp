@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "subvol/detail/ply_rows.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/detail/sample_part.h"
 #include "subvol/error.h"
 
@@ -20,13 +21,6 @@ void check_halo(const Bricks& bricks, const SampleOptions& options) {
                 "its bricks have " + std::to_string(bricks.halo_layers) + " layers of halo, these kernels need " +
                     std::to_string(needed),
                 bricks.path.string(), "split with --halo " + std::to_string(needed));
-}
-
-template <class Values>
-void keep(Values& values, const std::vector<std::size_t>& places) {
-    if (values.empty()) return;
-    for (std::size_t i = 0; i < places.size(); ++i) values[i] = values[places[i]];
-    values.resize(places.size());
 }
 
 /// A part of the progress of a whole.
@@ -58,14 +52,7 @@ BrickPoints sample_brick(const Bricks& bricks, BrickMesh brick, const SampleOpti
         result.numbers.push_back(brick.point_numbers[p]);
     }
     result.volume = std::move(sampled.volume);
-    keep(result.volume.centers, places);
-    keep(result.volume.frames, places);
-    for (RbfChannel& channel : result.volume.channels) {
-        keep(channel.values, places);
-        keep(channel.gradients, places);
-        keep(channel.moments, places);
-        keep(channel.hessians, places);
-    }
+    detail::keep_kernels(result.volume, places);
     result.flat_frames = sampled.report.flat_frames;
     return result;
 }
