@@ -130,7 +130,7 @@ private:
             if (path.ends_with(".vdb")) {
                 write_vdb_points(path, volume);
             } else {
-                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis(), .note = note_});
+                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis(up_).value(), .note = note_});
             }
         });
     }
@@ -254,8 +254,6 @@ private:
         merge(volume, report);
         return volume;
     }
-
-    [[nodiscard]] UpAxis up_axis() const { return up_ == "x" ? UpAxis::X : up_ == "y" ? UpAxis::Y : UpAxis::Z; }
 
     [[nodiscard]] std::optional<TransferFunction> seen(const Range& range) const {
         if (transfer_function_.empty()) return std::nullopt;
