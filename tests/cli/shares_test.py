@@ -156,7 +156,8 @@ class Parts(Shared):
                                      (b'"of":3', b'"of":9999999999999999999', "cannot be"),
                                      (b'"part":1', b'"part":-1', "cannot be"),
                                      (b'"part":1', b'"part":"1"', "its note of the part"),
-                                     (b'"how":{', b'"how":{"up":7,"was":{', "its note of the part")):
+                                     (b'"how":{', b'"how":{"up":7,"was":{', "its note of the part"),
+                                     (b'"how":{', b'"how":{"up":"w","was":{', "its note of the part")):
             bytes_of_one = self.bytes_of(one)
             self.assertIn(said, bytes_of_one)
             changed = bytes_of_one.replace(said, wrong, 1)
@@ -164,6 +165,16 @@ class Parts(Shared):
             others = (two, three) if b"was" in wrong else ()
             self.assertIn(message, self.refused("join", "changed.ply", *others, "-o", "j.ply"))
         self.assertFalse((self.folder / "j.ply").exists())
+
+    def test_wrong_figures_are_refused(self):
+        sound = self.run_ok("info", "model:ball:4", "--json", "--part", "1/1").json()
+        for key, wrong in (("cells", -1), ("edges", 1.5), ("faces", "many"), ("interior_edge_valence", [[4, -7]]),
+                           ("interior_edge_valence", [[-4, 7]]), ("interior_edge_valence", [[1 << 40, 7]]),
+                           ("inverted", [-1]), ("volumes", ["x"]), ("bounds", [])):
+            figures = {**sound["part_figures"], key: wrong}
+            (self.folder / "p.json").write_text(json.dumps({**sound, "part_figures": figures}))
+            self.assertIn("its figures of a share cannot be read", self.refused("join", "p.json", "-o", "j.json"), key)
+            self.assertFalse((self.folder / "j.json").exists())
 
 
 class PartsOfBricks(Shared):
