@@ -10,6 +10,7 @@
 #include <iomanip>
 #include <limits>
 
+#include "grid_fields.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/vdb_file.h"
@@ -143,8 +144,6 @@ public:
         const BrickMesh part = gather(what_.bricks, box);
         if (part.mesh.cells.empty()) return {};
         const HexMesh mesh = with_brick_fields(part.mesh, what_.fields);
-        std::vector<std::string> names;
-        for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
         RasterizeOptions options = what_.options;
         LimitCells limit;
         if (what_.limit) {
@@ -155,7 +154,7 @@ public:
             options.limit = &limit;
             converged_ = converged_ && limit.converged;
         }
-        return rasterize_block(mesh, names, options, block);
+        return rasterize_block(mesh, names_of(mesh), options, block);
     }
 
     [[nodiscard]] bool converged() const { return converged_; }
@@ -224,12 +223,10 @@ void make_blocks(const BricksToVoxels& what, const BlockPlan& plan, Report& repo
 /// The grids of no voxels.
 std::vector<VdbGrid> empty_grids(const BricksToVoxels& what) {
     const HexMesh mesh = with_brick_fields(stand_in(what.bricks), what.fields);
-    std::vector<std::string> names;
-    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
     RasterizeOptions options = what.options;
     options.refine = {.levels = 0};
     options.on_limit = false;
-    return rasterize_block(mesh, names, options, {{1, 1, 1}, {1, 1, 1}}).grids;
+    return rasterize_block(mesh, names_of(mesh), options, {{1, 1, 1}, {1, 1, 1}}).grids;
 }
 
 }  // namespace

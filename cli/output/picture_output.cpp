@@ -112,8 +112,7 @@ bool PictureOutput::wants_next() const {
     return written_ >= begin && written_ < end;
 }
 
-void PictureOutput::write_sheet(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
-                                Report& report) {
+void PictureOutput::write_sheet(const std::vector<View>& views, const DrawPicture& draw, Report& report) {
     const int width = views.front().width(), height = views.front().height();
     Picture sheet{Image(2 * width, 2 * height), {}};
     sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
@@ -142,8 +141,7 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
     report.add_seconds("write", watch.seconds());
 }
 
-void PictureOutput::write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
-                          Report& report) {
+void PictureOutput::write(const std::vector<View>& views, const DrawPicture& draw, Report& report) {
     if (sheet_) return write_sheet(views, draw, report);
     for (const View& view : views) {
         if (!wants_next()) {
