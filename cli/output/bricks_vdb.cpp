@@ -13,6 +13,7 @@
 #include "grid_fields.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/vdb_file.h"
 #include "subvol/join_grids.h"
 #include "subvol/rasterize_block.h"
@@ -185,29 +186,18 @@ void add(Json& sums, const std::vector<VdbGrid>& grids) {
     }
 }
 
-/// Shows the blocks that are done, not the stages within each.
-class BlockProgress : public Progress {
-public:
-    explicit BlockProgress(Progress* shown) : shown_(shown) {}
-    void report(std::string_view, double) override {}
-    [[nodiscard]] bool cancelled() const override { return shown_ && shown_->cancelled(); }
-
-private:
-    Progress* shown_;
-};
-
 /// Makes the blocks of a plan one after the other.
 ///
 /// take: gets the grids of each that has some
 void make_blocks(const BricksToVoxels& what, const BlockPlan& plan, Report& report,
                  const std::function<void(std::vector<VdbGrid>)>& take) {
-    BlockProgress quiet(what.options.progress);
     BricksToVoxels blockwise = what;
-    blockwise.options.progress = blockwise.options.refine.progress = &quiet;
     BlockMaker maker(blockwise);
     std::size_t folded = 0;
     for (std::size_t b = 0; b < plan.blocks().size(); ++b) {
-        report_progress(what.options.progress, "rasterize", static_cast<double>(b) / static_cast<double>(plan.blocks().size()));
+        detail::PartOfProgress progress(what.options.progress, "rasterize", b, plan.blocks().size());
+        blockwise.options.progress = blockwise.options.refine.progress = &progress;
+        report_progress(&progress, "rasterize", 0);
         const VoxelCubes& block = plan.blocks()[b];
         BlockGrids made = report.timed("rasterize", [&] { return maker.make(block, plan.box_of(block)); });
         if (made.folded) {
