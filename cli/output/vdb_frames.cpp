@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "frame_velocity.h"
 #include "subvol/detail/number_text.h"
@@ -39,6 +40,8 @@ void write_frames(MeshGrids& maker, const FramesToGrids& what, const VdbArgument
         report.begin_part(text("frame ", frame - range.first + 1, " of ", range.count()),
                           static_cast<std::size_t>(frame - range.first), static_cast<std::size_t>(range.count()));
         HexMesh mesh = frames.mesh(frame);
+        std::optional<Attribute> velocity;
+        if (asked.velocity) velocity = frames.velocity(frame);
         const bool same = same_cells(first, mesh);
         options.tables = tables && same ? &*tables : nullptr;
         if (!times.empty()) {
@@ -49,7 +52,7 @@ void write_frames(MeshGrids& maker, const FramesToGrids& what, const VdbArgument
             const std::size_t other = step == 0 ? 1 : step - 1;
             if (asked.velocity) frames_per_second = 1 / std::abs(times[step] - times.at(other));
         }
-        if (asked.velocity) add_velocity(frames.velocity(frame), mesh, times.empty() ? frames_per_second : 1);
+        if (velocity) add_velocity(std::move(*velocity), mesh, times.empty() ? frames_per_second : 1);
         LimitCells of_this;  // with tables the first limit serves all meshes with the same cells
         if (of_first && !options.tables && (asked.velocity || frame > what.all.first)) {
             of_this = reported_limit(mesh, options.refine, options.voxel_size_world, report);
