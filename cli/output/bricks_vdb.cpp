@@ -13,6 +13,7 @@
 #include "grid_fields.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/vdb_file.h"
 #include "subvol/join_grids.h"
@@ -28,7 +29,13 @@ constexpr std::uint64_t kDefaultMemory = std::uint64_t{1} << 30;
 constexpr double kBytesOfCell = 1600;
 constexpr double kBytesOfChannel = 10;  // of a voxel: leaves that are not full, and the grid that is made of them
 
-using Place = std::array<int, 3>;
+constexpr double kMostIndex = 1 << 30;  // as of the voxels of a mesh
+constexpr std::size_t kMostBlocks = 1'000'000;
+
+[[noreturn]] void fail_too_fine(double voxel, const std::string& why, double right) {
+    throw Error(ErrorCode::InvalidInput, why, "voxel size " + detail::number_text(voxel),
+                "at least " + detail::number_text(right) + " would be right");
+}
 
 /// Cuts a share of the space of voxels into blocks whose cells and voxels fit into the memory.
 class BlockPlan {
@@ -38,11 +45,21 @@ public:
         for (const StreamedField& field : what.fields) channels_ += field.vector ? 3 : 1;
         Box reach;
         for (const Brick& brick : bricks_.bricks) reach.add(brick.reach);
+        const Vec3 far = glm::max(glm::abs(reach.lower), glm::abs(reach.upper)) / voxel_;
+        if (const double farthest = std::max({far.x, far.y, far.z}); !(farthest < kMostIndex)) {
+            fail_too_fine(voxel_, "voxel numbers count from the world's origin and would not fit 32 bits",
+                          1.01 * voxel_ * farthest / kMostIndex);
+        }
         VoxelCubes all;
         for (int d = 0; d < 3; ++d) {
             const auto cube = [&](double x) { return static_cast<int>(std::floor(x / voxel_ / VoxelCubes::kSide)); };
             all.lower[static_cast<std::size_t>(d)] = cube(reach.lower[d] - voxel_);
             all.upper[static_cast<std::size_t>(d)] = cube(reach.upper[d] + voxel_) + 1;
+        }
+        const double blocks = bytes_of(all) / memory_;
+        if (!(blocks <= kMostBlocks)) {
+            fail_too_fine(voxel_, "the mesh would be made in more than a million blocks of voxels",
+                          1.01 * voxel_ * std::cbrt(blocks / kMostBlocks));
         }
         if (!share.whole()) all = slab_of(all, share);
         if (all.lower[0] < all.upper[0]) cut(all);
@@ -120,6 +137,10 @@ private:
         const auto side = [&](std::size_t d) { return block.upper[d] - block.lower[d]; };
         for (std::size_t d = 1; d < 3; ++d) longest = side(d) > side(longest) ? d : longest;
         if (bytes <= memory_ || side(longest) == 1) {
+            if (blocks_.size() == kMostBlocks) {
+                throw Error(ErrorCode::InvalidInput, "the mesh would be made in more than a million blocks of voxels",
+                            "--memory " + detail::number_text(memory_), "more memory, or larger voxels");
+            }
             blocks_.push_back(block);
             return;
         }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bricks_input.h"
 #include "input.h"
 #include "quantities.h"
 #include "subvol/error.h"
@@ -37,7 +38,8 @@ LimitCells reported_limit(const HexMesh& mesh, const RefineOptions& refinement, 
 }
 
 MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine)
-    : input_(std::move(input)), asked_(asked), refine_(refine), fields_(asked), tets_(refine) {
+    : input_(std::move(input)), asked_(asked), refine_(refine), fields_(asked) {
+    if (!is_bricks_input(input_)) tets_ = TetRefinement(refine);
     if (!asked.like.empty()) like_grids_ = read_vdb(asked.like);
 }
 

@@ -31,8 +31,8 @@ class MeshGrids {
 public:
     /// input:  of the command, for the metadata
     /// asked:  referred to
-    /// refine: referred to; a scheme of tetrahedra is taken out of it, see `TetRefinement`
-    /// throws: Error(InvalidInput) for options that cannot be read; Error(Io) if --like cannot be
+    /// refine: referred to; unless the input is a folder of bricks, a scheme of tetrahedra is taken out of it, see
+    /// `TetRefinement` throws: Error(InvalidInput) for options that cannot be read; Error(Io) if --like cannot be
     MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine);
 
     [[nodiscard]] const WrittenFields& fields() const { return fields_; }

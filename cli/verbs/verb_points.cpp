@@ -94,7 +94,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "turns what viewers of splats read; all else keeps its place", "--up",
                         "--splats");
         }
-        tets_ = TetRefinement(refine_);
+        if (!is_bricks_input(input_)) tets_ = TetRefinement(refine_);
         report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
         if (is_bricks_input(input_)) {
             write_bricks(share, report);

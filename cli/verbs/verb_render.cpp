@@ -98,7 +98,7 @@ public:
         options_.samples = reference_.samples;
         options_.clip = reference_.clip = clip_.clip();
         if (picture_.lit()) options_.shading = Shading{};
-        tets_ = TetRefinement(refine_);
+        if (!is_bricks_input(input_)) tets_ = TetRefinement(refine_);
         check_method(method_, picture_, splat_, reference_);
         picture_.check();
         report.if_long(method_ == "dense"      ? "--levels 2, a smaller --size, or --method splat"
