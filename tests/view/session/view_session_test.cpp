@@ -173,6 +173,19 @@ TEST_F(Session, RefusesInOneSentenceAndChangesNothing) {
     EXPECT_EQ(session.state_json(), before);
 }
 
+TEST_F(Session, AStepWithoutTheFieldChangesNothing) {
+    const auto read = [&](std::size_t step) { return step == 1 ? make_model("ball", 2) : mesh; };
+    ViewSession steps({.input = "ball", .read = read, .times = {0, 1, 2}}, mesh, small_state(bounds(mesh), kFromCorner),
+                      kByCpu);
+    steps.run(R"({"field": "height"})");
+    const std::string before = steps.state_json();
+    EXPECT_THROW(steps.run(R"({"step": 1})"), Error);
+    EXPECT_EQ(steps.state_json(), before);
+    EXPECT_EQ(steps.fields(), session.fields());
+    steps.run(R"({"step": 2})");
+    EXPECT_EQ(steps.state().step, 2u);
+}
+
 TEST_F(Session, AScriptNamesTheActionThatIsWrong) {
     try {
         session.run_script(R"([{"orbit": [1, 2]}, {"zoom": "in"}])", "turn.json");
