@@ -117,7 +117,7 @@ public:
         } else if (holds_points(input_)) {
             draw_points(output, report);
         } else if (is_vdb_file(input_)) {
-            splat_voxels(output, report);
+            draw_voxels(output, report);
         } else {
             draw_mesh(output, report);
         }
@@ -300,23 +300,9 @@ private:
         return report.timed("boundary", [&] { return boundary_values(mesh, options); });
     }
 
+    /// Rays through voxels, or the voxels as kernels.
     void draw_voxels(PictureOutput& output, Report& report) {
-        const VdbGrid grid = load_grid(input_, common(), report);
-        const Box box = box_of(grid.report());
-        const Range range{grid.report().min, grid.report().max};
-        const Optics optics = picture_.make_optics(box, range, range);
-        const LegendOptions legend = picture_.legend_options({grid.report().name, range}, {grid.report().name, range});
-        output.set_notes(make_notes(picture_, optics, legend, nullptr));
-        const auto voxels = grid.voxels();
-        const auto draw = [&](const View& view, Progress* progress) {
-            return draw_grid(*voxels, view, optics, reference_, progress, report);
-        };
-        output.write(picture_.make_views(box), draw, report);
-        if (speaks()) picture_.write_legend(optics, legend, report);
-    }
-
-    void splat_voxels(PictureOutput& output, Report& report) {
-        if (!is_of_splats(method_)) {
+        if (method_ != "grid" && !is_of_splats(method_)) {
             throw Error(ErrorCode::InvalidInput, "a grid has no cells", "--method " + method_, "use grid, splat or sheets");
         }
         const VdbGrid grid = load_grid(input_, common(), report);
@@ -325,8 +311,16 @@ private:
         const Optics optics = picture_.make_optics(box, range, range);
         const LegendOptions legend = picture_.legend_options({grid.report().name, range}, {grid.report().name, range});
         output.set_notes(make_notes(picture_, optics, legend, nullptr));
-        const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
-        splat(volume, {}, picture_.make_views(box), optics, output, report);
+        if (method_ == "grid") {
+            const auto voxels = grid.voxels();
+            const auto draw = [&](const View& view, Progress* progress) {
+                return draw_grid(*voxels, view, optics, reference_, progress, report);
+            };
+            output.write(picture_.make_views(box), draw, report);
+        } else {
+            const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
+            splat(volume, {}, picture_.make_views(box), optics, output, report);
+        }
         if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
