@@ -3,23 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iomanip>
 #include <limits>
 
 #include "grid_fields.h"
-#include "subvol/detail/atomic_file.h"
 #include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/part_of_progress.h"
-#include "subvol/detail/vdb_file.h"
 #include "subvol/join_grids.h"
 #include "subvol/rasterize_block.h"
-#include "subvol/version.h"
 #include "text.h"
+#include "vdb_parts.h"
 
 namespace subvol::cli {
 namespace {
@@ -257,41 +251,20 @@ std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t mem
 void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report) {
     const double memory = static_cast<double>(output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory);
     const BlockPlan plan(what, memory, {});
-    const std::filesystem::path path(output.path);
-    std::deque<detail::AtomicFile> files;  // all of them appear, or none
-    std::uint64_t active = 0;
-    Json parts = Json::array(), grids = Json::array();
+    VdbParts parts(output);
+    Json grids = Json::array();
     make_blocks(what, plan, report, [&](const std::vector<VdbGrid>& made) {
         if (!has_voxels(made)) return;
         add(grids, made);
-        const GridReport& first = made.front().report();
-        const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), parts.size(), ".vdb");
-        report.timed("write",
-                     [&] { detail::write_vdb(files.emplace_back(path.parent_path() / name), name, made, output.compression); });
-        active += first.active_voxels;
-        Json entry{{"file", name}, {"active_voxels", first.active_voxels}};
-        const auto corner = [](const Vec3& p) { return Json::array({p.x, p.y, p.z}); };
-        entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
-        parts.push_back(std::move(entry));
+        report.timed("write", [&] { parts.write(made, parts.count()); });
     });
-    if (active == 0) throw no_voxels(report.json().at("input"), "try a smaller --voxel-size");
-    const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
-    const Json json{{"input", report.json().at("input")},
-                    {"version", SUBVOL_VERSION},
-                    {"voxel_size", what.options.voxel_size_world},
-                    {"active_voxels", active},
-                    {"parts", parts}};
-    const detail::AtomicFile& list = files.emplace_back(manifest);
-    std::ofstream out(list.path(), std::ios::binary);
-    out << json.dump(2) << "\n";
-    out.close();
-    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", manifest.string());
-    for (detail::AtomicFile& file : files) file.commit();
-    report["output"] = manifest.string();
+    const std::string input = report.json().at("input");
+    if (parts.active_voxels() == 0) throw no_voxels(input, "try a smaller --voxel-size");
+    report["output"] = parts.finish(input, what.options.voxel_size_world);
     report["voxel_size"] = what.options.voxel_size_world;
-    report["active_voxels"] = active;
+    report["active_voxels"] = parts.active_voxels();
     report["grids"] = grids;
-    report["parts"] = parts.size();
+    report["parts"] = parts.count();
 }
 
 }  // namespace subvol::cli
