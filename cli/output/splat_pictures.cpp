@@ -87,8 +87,9 @@ void write_splats(BricksToSplats what, const std::vector<View>& views, const Opt
             return ranked ? render_bricks_ranked(bricks, fields, std::move(own), view, optics, options, *work.ranks, shipped)
                           : render_bricks(bricks, fields, std::move(own), view, optics, options);
         });
+        report["method"] = work.method;
         report["points"] = drawn.report.points;
-        report_drawn(drawn.report, work, report);
+        report_splats(drawn.report, report);
         Picture picture{std::move(drawn.image), std::move(drawn.depth)};
         if (ranked) {
             report_shipped(shipped, *work.ranks, report);
