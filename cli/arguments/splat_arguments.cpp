@@ -15,10 +15,6 @@ SplatMethod splat_method(const std::string& method, const std::string& backend) 
     return backend == "gl" ? SplatMethod::Gl : backend == "cpu" ? SplatMethod::Cpu : SplatMethod::Auto;
 }
 
-bool splats(const std::string& method) {
-    return method == "splat" || method == "sheets" || method == "footprints";
-}
-
 void SplatArguments::add_to(CLI::App& app) {
     app.add_option("--backend", backend, "where to splat: auto (default: a GPU, else the CPU), gl, cpu")
         ->type_name("NAME")

@@ -16,9 +16,6 @@ namespace subvol::cli {
 /// How the method of that name splats (splat, sheets, footprints), and where (auto, gl, cpu).
 [[nodiscard]] SplatMethod splat_method(const std::string& method, const std::string& backend);
 
-/// Whether a method draws kernels.
-[[nodiscard]] bool splats(const std::string& method);
-
 /// The options of splatting.
 struct SplatArguments {
     std::string backend = "auto";

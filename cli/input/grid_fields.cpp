@@ -44,6 +44,12 @@ std::pair<double, double> pair_of(const std::string& text, const std::string& wh
 
 }  // namespace
 
+std::vector<std::string> names_of(const HexMesh& mesh) {
+    std::vector<std::string> names;
+    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+    return names;
+}
+
 std::vector<GridField> parse_grid_fields(const std::vector<std::string>& texts) {
     std::vector<GridField> fields;
     for (const std::string& text : texts) {
@@ -76,8 +82,7 @@ void apply(const Remap& remap, HexMesh& mesh) {
     auto field = mesh.attributes.begin();
     if (!remap.grid.empty()) field = std::ranges::find(mesh.attributes, remap.grid, &Attribute::name);
     if (field == mesh.attributes.end()) {
-        std::vector<std::string> names;
-        for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
+        const std::vector<std::string> names = names_of(mesh);
         throw Error(ErrorCode::InvalidInput, "no grid \"" + remap.grid + "\"" + detail::did_you_mean(remap.grid, names),
                     "--remap", "the grids are: " + join(names));
     }

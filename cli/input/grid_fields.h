@@ -10,6 +10,9 @@
 
 namespace subvol::cli {
 
+/// The names of the fields of a mesh.
+[[nodiscard]] std::vector<std::string> names_of(const HexMesh& mesh);
+
 /// A grid's name, and the field or the expression that it gets its values from: often its name.
 struct GridField {
     std::string name, source;

@@ -3,20 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iomanip>
 #include <limits>
 
-#include "subvol/detail/atomic_file.h"
+#include "grid_fields.h"
 #include "subvol/detail/limit_of_part.h"
-#include "subvol/detail/vdb_file.h"
+#include "subvol/detail/number_text.h"
+#include "subvol/detail/part_of_progress.h"
 #include "subvol/join_grids.h"
 #include "subvol/rasterize_block.h"
-#include "subvol/version.h"
 #include "text.h"
+#include "vdb_parts.h"
 
 namespace subvol::cli {
 namespace {
@@ -26,7 +23,13 @@ constexpr std::uint64_t kDefaultMemory = std::uint64_t{1} << 30;
 constexpr double kBytesOfCell = 1600;
 constexpr double kBytesOfChannel = 10;  // of a voxel: leaves that are not full, and the grid that is made of them
 
-using Place = std::array<int, 3>;
+constexpr double kMostIndex = 1 << 30;  // as of the voxels of a mesh
+constexpr std::size_t kMostBlocks = 1'000'000;
+
+[[noreturn]] void fail_too_fine(double voxel, const std::string& why, double right) {
+    throw Error(ErrorCode::InvalidInput, why, "voxel size " + detail::number_text(voxel),
+                "at least " + detail::number_text(right) + " would be right");
+}
 
 /// Cuts a share of the space of voxels into blocks whose cells and voxels fit into the memory.
 class BlockPlan {
@@ -36,11 +39,21 @@ public:
         for (const StreamedField& field : what.fields) channels_ += field.vector ? 3 : 1;
         Box reach;
         for (const Brick& brick : bricks_.bricks) reach.add(brick.reach);
+        const Vec3 far = glm::max(glm::abs(reach.lower), glm::abs(reach.upper)) / voxel_;
+        if (const double farthest = std::max({far.x, far.y, far.z}); !(farthest < kMostIndex)) {
+            fail_too_fine(voxel_, "voxel numbers count from the world's origin and would not fit 32 bits",
+                          1.01 * voxel_ * farthest / kMostIndex);
+        }
         VoxelCubes all;
         for (int d = 0; d < 3; ++d) {
             const auto cube = [&](double x) { return static_cast<int>(std::floor(x / voxel_ / VoxelCubes::kSide)); };
             all.lower[static_cast<std::size_t>(d)] = cube(reach.lower[d] - voxel_);
             all.upper[static_cast<std::size_t>(d)] = cube(reach.upper[d] + voxel_) + 1;
+        }
+        const double blocks = bytes_of(all) / memory_;
+        if (!(blocks <= kMostBlocks)) {
+            fail_too_fine(voxel_, "the mesh would be made in more than a million blocks of voxels",
+                          1.01 * voxel_ * std::cbrt(blocks / kMostBlocks));
         }
         if (!share.whole()) all = slab_of(all, share);
         if (all.lower[0] < all.upper[0]) cut(all);
@@ -118,6 +131,10 @@ private:
         const auto side = [&](std::size_t d) { return block.upper[d] - block.lower[d]; };
         for (std::size_t d = 1; d < 3; ++d) longest = side(d) > side(longest) ? d : longest;
         if (bytes <= memory_ || side(longest) == 1) {
+            if (blocks_.size() == kMostBlocks) {
+                throw Error(ErrorCode::InvalidInput, "the mesh would be made in more than a million blocks of voxels",
+                            "--memory " + detail::number_text(memory_), "more memory, or larger voxels");
+            }
             blocks_.push_back(block);
             return;
         }
@@ -143,8 +160,6 @@ public:
         const BrickMesh part = gather(what_.bricks, box);
         if (part.mesh.cells.empty()) return {};
         const HexMesh mesh = with_brick_fields(part.mesh, what_.fields);
-        std::vector<std::string> names;
-        for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
         RasterizeOptions options = what_.options;
         LimitCells limit;
         if (what_.limit) {
@@ -155,7 +170,7 @@ public:
             options.limit = &limit;
             converged_ = converged_ && limit.converged;
         }
-        return rasterize_block(mesh, names, options, block);
+        return rasterize_block(mesh, names_of(mesh), options, block);
     }
 
     [[nodiscard]] bool converged() const { return converged_; }
@@ -186,29 +201,18 @@ void add(Json& sums, const std::vector<VdbGrid>& grids) {
     }
 }
 
-/// Shows the blocks that are done, not the stages within each.
-class BlockProgress : public Progress {
-public:
-    explicit BlockProgress(Progress* shown) : shown_(shown) {}
-    void report(std::string_view, double) override {}
-    [[nodiscard]] bool cancelled() const override { return shown_ && shown_->cancelled(); }
-
-private:
-    Progress* shown_;
-};
-
 /// Makes the blocks of a plan one after the other.
 ///
 /// take: gets the grids of each that has some
 void make_blocks(const BricksToVoxels& what, const BlockPlan& plan, Report& report,
                  const std::function<void(std::vector<VdbGrid>)>& take) {
-    BlockProgress quiet(what.options.progress);
     BricksToVoxels blockwise = what;
-    blockwise.options.progress = blockwise.options.refine.progress = &quiet;
     BlockMaker maker(blockwise);
     std::size_t folded = 0;
     for (std::size_t b = 0; b < plan.blocks().size(); ++b) {
-        report_progress(what.options.progress, "rasterize", static_cast<double>(b) / static_cast<double>(plan.blocks().size()));
+        detail::PartOfProgress progress(what.options.progress, "rasterize", b, plan.blocks().size());
+        blockwise.options.progress = blockwise.options.refine.progress = &progress;
+        report_progress(&progress, "rasterize", 0);
         const VoxelCubes& block = plan.blocks()[b];
         BlockGrids made = report.timed("rasterize", [&] { return maker.make(block, plan.box_of(block)); });
         if (made.folded) {
@@ -224,12 +228,10 @@ void make_blocks(const BricksToVoxels& what, const BlockPlan& plan, Report& repo
 /// The grids of no voxels.
 std::vector<VdbGrid> empty_grids(const BricksToVoxels& what) {
     const HexMesh mesh = with_brick_fields(stand_in(what.bricks), what.fields);
-    std::vector<std::string> names;
-    for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
     RasterizeOptions options = what.options;
     options.refine = {.levels = 0};
     options.on_limit = false;
-    return rasterize_block(mesh, names, options, {{1, 1, 1}, {1, 1, 1}}).grids;
+    return rasterize_block(mesh, names_of(mesh), options, {{1, 1, 1}, {1, 1, 1}}).grids;
 }
 
 }  // namespace
@@ -249,41 +251,20 @@ std::vector<VdbGrid> grids_of_bricks(const BricksToVoxels& what, std::size_t mem
 void write_bricks_vdb(const BricksToVoxels& what, const VdbOutput& output, Report& report) {
     const double memory = static_cast<double>(output.memory_bytes > 0 ? output.memory_bytes : kDefaultMemory);
     const BlockPlan plan(what, memory, {});
-    const std::filesystem::path path(output.path);
-    std::deque<detail::AtomicFile> files;  // all of them appear, or none
-    std::uint64_t active = 0;
-    Json parts = Json::array(), grids = Json::array();
+    VdbParts parts(output);
+    Json grids = Json::array();
     make_blocks(what, plan, report, [&](const std::vector<VdbGrid>& made) {
         if (!has_voxels(made)) return;
         add(grids, made);
-        const GridReport& first = made.front().report();
-        const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), parts.size(), ".vdb");
-        report.timed("write",
-                     [&] { detail::write_vdb(files.emplace_back(path.parent_path() / name), name, made, output.compression); });
-        active += first.active_voxels;
-        Json entry{{"file", name}, {"active_voxels", first.active_voxels}};
-        const auto corner = [](const Vec3& p) { return Json::array({p.x, p.y, p.z}); };
-        entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
-        parts.push_back(std::move(entry));
+        report.timed("write", [&] { parts.write(made, parts.count()); });
     });
-    if (active == 0) throw no_voxels(report.json().at("input"), "try a smaller --voxel-size");
-    const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
-    const Json json{{"input", report.json().at("input")},
-                    {"version", SUBVOL_VERSION},
-                    {"voxel_size", what.options.voxel_size_world},
-                    {"active_voxels", active},
-                    {"parts", parts}};
-    const detail::AtomicFile& list = files.emplace_back(manifest);
-    std::ofstream out(list.path(), std::ios::binary);
-    out << json.dump(2) << "\n";
-    out.close();
-    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", manifest.string());
-    for (detail::AtomicFile& file : files) file.commit();
-    report["output"] = manifest.string();
+    const std::string input = report.json().at("input");
+    if (parts.active_voxels() == 0) throw no_voxels(input, "try a smaller --voxel-size");
+    report["output"] = parts.finish(input, what.options.voxel_size_world);
     report["voxel_size"] = what.options.voxel_size_world;
-    report["active_voxels"] = active;
+    report["active_voxels"] = parts.active_voxels();
     report["grids"] = grids;
-    report["parts"] = parts.size();
+    report["parts"] = parts.count();
 }
 
 }  // namespace subvol::cli

@@ -7,6 +7,7 @@
 #include "mesh_frames.h"
 #include "outputs.h"
 #include "ranked_splats.h"
+#include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/picture_part.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
@@ -15,29 +16,6 @@
 
 namespace subvol::cli {
 namespace {
-
-/// Reports all frames as one stage, whose fraction grows from frame to frame.
-class FrameProgress : public Progress {
-public:
-    FrameProgress(Progress* whole, std::size_t frame, std::size_t frames)
-        : whole_(whole),
-          stage_(text("frame ", frame + 1, " of ", frames)),
-          first_(static_cast<double>(frame) / static_cast<double>(frames)),
-          part_(1.0 / static_cast<double>(frames)) {}
-
-    /// A frame may have several stages; its part of the whole grows with the longest of them, and never shrinks.
-    void report(std::string_view, double fraction) override {
-        done_ = std::max(done_, std::min(fraction, 1.0));
-        whole_->report(stage_, first_ + part_ * done_);
-    }
-    [[nodiscard]] bool cancelled() const override { return whole_->cancelled(); }
-
-private:
-    Progress* whole_;
-    std::string stage_;
-    double first_, part_;
-    double done_ = 0;
-};
 
 /// The largest opacity of a pixel.
 float most_opaque(const Image& image) {
@@ -112,8 +90,7 @@ bool PictureOutput::wants_next() const {
     return written_ >= begin && written_ < end;
 }
 
-void PictureOutput::write_sheet(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
-                                Report& report) {
+void PictureOutput::write_sheet(const std::vector<View>& views, const DrawPicture& draw, Report& report) {
     const int width = views.front().width(), height = views.front().height();
     Picture sheet{Image(2 * width, 2 * height), {}};
     sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
@@ -142,15 +119,15 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const std::funct
     report.add_seconds("write", watch.seconds());
 }
 
-void PictureOutput::write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
-                          Report& report) {
+void PictureOutput::write(const std::vector<View>& views, const DrawPicture& draw, Report& report) {
     if (sheet_) return write_sheet(views, draw, report);
     for (const View& view : views) {
         if (!wants_next()) {
             skip();
             continue;
         }
-        FrameProgress of_frame(report.progress(), written_, static_cast<std::size_t>(frames_.value_or(1)));
+        const auto frames = static_cast<std::size_t>(frames_.value_or(1));
+        detail::PartOfProgress of_frame(report.progress(), text("frame ", written_ + 1, " of ", frames), written_, frames);
         Progress* const progress = frames_ ? &of_frame : report.progress();
         report_progress(progress, "draw", 0);
         Picture picture = draw(view, progress);

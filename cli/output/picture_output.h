@@ -17,6 +17,9 @@
 
 namespace subvol::cli {
 
+/// Draws the picture of a view.
+using DrawPicture = std::function<Picture(const View&, Progress*)>;
+
 /// Where the pictures of a run go: one file, numbered files NAME_0000.png and so on, or a video.
 class PictureOutput {
 public:
@@ -45,15 +48,14 @@ public:
     void set_notes(PictureNotes notes) { notes_ = std::move(notes); }
 
     /// Draws and writes one picture for each view, after those of earlier calls.
-    void write(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw, Report& report);
+    void write(const std::vector<View>& views, const DrawPicture& draw, Report& report);
 
     /// To be called after the last picture: puts the names of the files into the report.
     void finish(Report& report);
 
 private:
     [[nodiscard]] std::filesystem::path frame_path(std::size_t frame) const;
-    void write_sheet(const std::vector<View>& views, const std::function<Picture(const View&, Progress*)>& draw,
-                     Report& report);
+    void write_sheet(const std::vector<View>& views, const DrawPicture& draw, Report& report);
     void write_frame(std::size_t frame, const Picture& picture);
     void write_rows(const Picture& picture);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference_pictures.h"
 
+#include <utility>
+
+#include "subvol/boundary_shading.h"
 #include "subvol/progressive.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
@@ -130,6 +133,36 @@ Picture draw_grid(const Voxels& voxels, const View& view, const Optics& optics, 
     report["cells"] = drawn.report.cells;
     report["blocks"] = drawn.report.blocks;
     return Picture{std::move(drawn.image)};
+}
+
+DrawPicture lit(DrawPicture draw, Surface boundary, const ReferenceArguments& arguments) {
+    if (boundary.triangles.empty()) return draw;
+    return [draw = std::move(draw), boundary = std::move(boundary), &arguments](const View& view, Progress* progress) {
+        Picture picture = draw(view, progress);
+        light_boundary(picture.image, boundary, view, Shading{}, arguments.samples, arguments.clip);
+        return picture;
+    };
+}
+
+void write_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
+                const ReferenceArguments& arguments, PictureOutput& output, Report& report) {
+    const TetsRenderer renderer(mesh);
+    report.add_seconds("prepare", renderer.seconds_build());
+    const auto draw = [&](const View& view, Progress* progress) {
+        return draw_tets(renderer, view, optics, arguments, progress, report);
+    };
+    output.write(views, lit(draw, boundary, arguments), report);
+}
+
+void write_projected_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
+                          const ReferenceArguments& arguments, std::optional<int> device, std::optional<double> seconds,
+                          PictureOutput& output, Report& report) {
+    ProjectedRenderer renderer(mesh, {}, device);
+    report.add_seconds("prepare", renderer.seconds_build());
+    const auto draw = [&](const View& view, Progress* progress) {
+        return draw_projected_tets(renderer, view, optics, arguments, seconds, progress, report);
+    };
+    output.write(views, lit(draw, boundary, arguments), report);
 }
 
 }  // namespace subvol::cli

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "picture_output.h"
 #include "reference_arguments.h"
@@ -9,6 +10,7 @@
 #include "subvol/refine.h"
 #include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
+#include "subvol/surface.h"
 #include "subvol/vdb_grid.h"
 
 namespace subvol::cli {
@@ -28,5 +30,23 @@ namespace subvol::cli {
 
 [[nodiscard]] Picture draw_grid(const Voxels& voxels, const View& view, const Optics& optics,
                                 const ReferenceArguments& arguments, Progress* progress, Report& report);
+
+/// The same pictures with light on the boundary; the reference methods have none.
+///
+/// boundary: empty: the pictures as they are
+[[nodiscard]] DrawPicture lit(DrawPicture draw, Surface boundary, const ReferenceArguments& arguments);
+
+/// Draws and writes a picture by `draw_tets` for each view.
+///
+/// boundary: of `lit`
+void write_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
+                const ReferenceArguments& arguments, PictureOutput& output, Report& report);
+
+/// Draws and writes a picture by `draw_projected_tets` for each view.
+///
+/// device: of OpenGL; none: the first
+void write_projected_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
+                          const ReferenceArguments& arguments, std::optional<int> device, std::optional<double> seconds,
+                          PictureOutput& output, Report& report);
 
 }  // namespace subvol::cli

@@ -3,19 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <optional>
 
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/stopwatch.h"
-#include "subvol/detail/vdb_file.h"
 #include "subvol/mesh_report.h"
 #include "subvol/nanovdb.h"
-#include "subvol/version.h"
 #include "text.h"
+#include "vdb_parts.h"
 
 namespace subvol::cli {
 namespace {
@@ -40,18 +37,6 @@ Json about(const GridReport& grid, const VdbOutput& output) {
         json["density"] = *density;
     }
     return json;
-}
-
-Json corner(const Vec3& p) {
-    return {p.x, p.y, p.z};
-}
-
-/// Writes a text into a file that is committed later. path: its final name, for error messages
-void write_text(const detail::AtomicFile& file, const std::filesystem::path& path, const std::string& text) {
-    std::ofstream out(file.path(), std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw Error(ErrorCode::Io, "cannot be written; the disk may be full", path.string());
 }
 
 void write_files(std::span<const VdbGrid> grids, const VdbOutput& output) {
@@ -120,42 +105,26 @@ void write_frame(int frame, std::span<const VdbGrid> grids, const VdbOutput& out
 void write_parts(const std::string& input, const HexMesh& mesh, std::span<const std::string> fields,
                  const RasterizeOptions& options, const VdbOutput& output, Report& report,
                  const std::function<void(std::vector<VdbGrid>&)>& prepare) {
-    const std::filesystem::path path(output.path);
-    std::deque<detail::AtomicFile> files;  // all of them appear, or none
-    std::size_t active = 0;
+    VdbParts parts(output);
     double voxel_size_world = 0;
-    Json parts = Json::array();
     // The parts are written between the stages of the rasterizer, whose own time is what is left.
     const detail::Stopwatch whole;
     double writing = 0;
     rasterize_parts(mesh, fields, options, output.memory_bytes, [&](GridPart part) {
         prepare(part.grids);
-        const std::string name = text(path.stem().string(), "_", std::setw(4), std::setfill('0'), part.number, ".vdb");
-        const GridReport& first = part.grids.front().report();
+        report["voxel_size"] = voxel_size_world = part.grids.front().report().voxel_size_world;
+        Json grids = Json::array();
+        for (const VdbGrid& grid : part.grids) grids.push_back(about(grid.report(), output));
         const detail::Stopwatch one;
-        detail::write_vdb(files.emplace_back(path.parent_path() / name), name, part.grids, output.compression);
+        parts.write(part.grids, static_cast<std::size_t>(part.number), {{"grids", std::move(grids)}});
         writing += one.seconds();
-        active += first.active_voxels;
-        report["voxel_size"] = voxel_size_world = first.voxel_size_world;
-        Json entry{{"file", name}, {"active_voxels", first.active_voxels}, {"grids", Json::array()}};
-        if (first.active_voxels > 0) entry["bounds"] = {corner(first.bounds.lower), corner(first.bounds.upper)};
-        for (const VdbGrid& grid : part.grids) entry["grids"].push_back(about(grid.report(), output));
-        parts.push_back(std::move(entry));
     });
-    if (active == 0) throw no_voxels(input, finer_voxels(mesh));
+    if (parts.active_voxels() == 0) throw no_voxels(input, finer_voxels(mesh));
     report.add_seconds("rasterize", whole.seconds() - writing);
     report.add_seconds("write", writing);
-    const std::filesystem::path manifest = std::filesystem::path(path).replace_extension(".json");
-    const Json json{{"input", input},
-                    {"version", SUBVOL_VERSION},
-                    {"voxel_size", voxel_size_world},
-                    {"active_voxels", active},
-                    {"parts", parts}};
-    write_text(files.emplace_back(manifest), manifest, json.dump(2) + "\n");
-    for (detail::AtomicFile& file : files) file.commit();
-    report["output"] = manifest.string();
-    report["active_voxels"] = active;
-    report["parts"] = parts.size();
+    report["output"] = parts.finish(input, voxel_size_world);
+    report["active_voxels"] = parts.active_voxels();
+    report["parts"] = parts.count();
 }
 
 }  // namespace subvol::cli

@@ -2,11 +2,16 @@
 #include "mesh_figures.h"
 
 #include <array>
+#include <limits>
 
 #include "subvol/error.h"
 
 namespace subvol::cli {
 namespace {
+
+[[noreturn]] void fail_figures(const std::string& file) {
+    throw Error(ErrorCode::InvalidInput, "its figures of a share cannot be read", file);
+}
 
 Json corner(const Vec3& v) {
     return Json::array({v.x, v.y, v.z});
@@ -18,6 +23,12 @@ Json to_json(const Box& box) {
 
 Vec3 corner_from(const Json& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+/// throws: Error(InvalidInput) if it is not a whole number of 0 or more
+std::size_t count_from(const Json& json, const std::string& file) {
+    if (!json.is_number_unsigned()) fail_figures(file);
+    return json.get<std::size_t>();
 }
 
 /// The counts of a share that are added up, under the names of `info`.
@@ -77,17 +88,19 @@ Json json_of(const detail::MeshShare& share) {
 detail::MeshShare mesh_share_from(const Json& json, const std::string& file) {
     try {
         detail::MeshShare share;
-        for (const auto& [name, count] : kCounts) share.counts.*count = json.at(name).get<std::size_t>();
+        for (const auto& [name, count] : kCounts) share.counts.*count = count_from(json.at(name), file);
         for (const Json& pair : json.at("interior_edge_valence")) {
-            share.counts.interior_edge_valence[pair.at(0).get<int>()] = pair.at(1).get<std::size_t>();
+            const std::size_t valence = count_from(pair.at(0), file);
+            if (valence > std::numeric_limits<int>::max()) fail_figures(file);
+            share.counts.interior_edge_valence[static_cast<int>(valence)] = count_from(pair.at(1), file);
         }
         share.counts.min_scaled_jacobian = json.at("min_scaled_jacobian").get<double>();
         share.counts.bounds = {corner_from(json.at("bounds").at(0)), corner_from(json.at("bounds").at(1))};
         share.volumes = json.at("volumes").get<std::vector<double>>();
-        share.inverted = json.at("inverted").get<std::vector<std::size_t>>();
+        for (const Json& cell : json.at("inverted")) share.inverted.push_back(count_from(cell, file));
         return share;
     } catch (const Json::exception&) {
-        throw Error(ErrorCode::InvalidInput, "its figures of a share cannot be read", file);
+        fail_figures(file);
     }
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iomanip>
 #include <span>
 
 #include "bricks_input.h"
@@ -14,6 +13,7 @@
 #include "share.h"
 #include "steps.h"
 #include "subvol/detail/bricks_share.h"
+#include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 #include "subvol/join_grids.h"
 #include "subvol/mesh_report.h"
@@ -233,7 +233,7 @@ private:
                                        {"min", about.min},
                                        {"max", about.max},
                                        {"bytes", about.bytes},
-                                       {"hash", text(std::hex, std::setw(16), std::setfill('0'), hash_of_grid(grid))}});
+                                       {"hash", detail::hex_digits(hash_of_grid(grid))}});
         }
         for (const auto& [name, type] : contents.others) report["grids"].push_back({{"name", name}, {"kind", type}});
         if (points_.empty()) return;

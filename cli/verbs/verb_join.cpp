@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "mesh_figures.h"
 #include "mesh_lines.h"
@@ -126,12 +127,9 @@ private:
                 }
             }
         });
-        const std::string up = how("up", std::string("z"));
-        const PointsWriteOptions options{.ascii = how("ascii", false),
-                                         .splats = how("splats", false),
-                                         .up = up == "x"   ? UpAxis::X
-                                               : up == "y" ? UpAxis::Y
-                                                           : UpAxis::Z};
+        const std::optional<UpAxis> up = up_axis(how("up", std::string("z")));
+        if (!up) fail_note(parts_.front());
+        const PointsWriteOptions options{.ascii = how("ascii", false), .splats = how("splats", false), .up = *up};
         report.timed("write", [&] {
             if (output_.ends_with(".vdb")) {
                 write_vdb_points(output_, volume);

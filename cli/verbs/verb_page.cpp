@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "choices.h"
+#include "grid_fields.h"
 #include "input.h"
 #include "outputs.h"
 #include "picture_arguments.h"
@@ -122,10 +123,7 @@ private:
     /// The mesh with the fields of the page, each a scalar; the one of --field is the first.
     [[nodiscard]] HexMesh shown_mesh(HexMesh mesh, const CommonOptions& common, Report& report) const {
         std::vector<std::string> names = fields_;
-        if (names == std::vector<std::string>{"all"}) {
-            names.clear();
-            for (const Attribute& attribute : mesh.attributes) names.push_back(attribute.name);
-        }
+        if (names == std::vector<std::string>{"all"}) names = names_of(mesh);
         CommonOptions first = common;
         if (!names.empty() && !common.field && !common.density && fields_ != std::vector<std::string>{"all"}) {
             first.field = names.front();

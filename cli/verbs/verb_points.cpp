@@ -94,7 +94,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "turns what viewers of splats read; all else keeps its place", "--up",
                         "--splats");
         }
-        tets_ = TetRefinement(refine_);
+        if (!is_bricks_input(input_)) tets_ = TetRefinement(refine_);
         report.if_long(sample_.reduce_rmse ? "a larger --reduce, and no --refine" : "a larger --spacing or --tolerance");
         if (is_bricks_input(input_)) {
             write_bricks(share, report);
@@ -130,7 +130,7 @@ private:
             if (path.ends_with(".vdb")) {
                 write_vdb_points(path, volume);
             } else {
-                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis(), .note = note_});
+                write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis(up_).value(), .note = note_});
             }
         });
     }
@@ -254,8 +254,6 @@ private:
         merge(volume, report);
         return volume;
     }
-
-    [[nodiscard]] UpAxis up_axis() const { return up_ == "x" ? UpAxis::X : up_ == "y" ? UpAxis::Y : UpAxis::Z; }
 
     [[nodiscard]] std::optional<TransferFunction> seen(const Range& range) const {
         if (transfer_function_.empty()) return std::nullopt;

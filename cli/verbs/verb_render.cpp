@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <functional>
+#include <optional>
 #include <utility>
 
 #include "bricks_input.h"
@@ -10,28 +9,22 @@
 #include "clip_arguments.h"
 #include "grid_input.h"
 #include "input.h"
-#include "level_of_detail.h"
 #include "part_note.h"
 #include "picture_arguments.h"
 #include "picture_output.h"
 #include "points_input.h"
 #include "rank_report.h"
-#include "ranked_bricks.h"
-#include "ranked_splats.h"
 #include "reference_arguments.h"
 #include "reference_pictures.h"
+#include "render_method.h"
 #include "sampled_points.h"
 #include "share.h"
 #include "splat_arguments.h"
+#include "splat_pictures.h"
 #include "steps.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
-#include "subvol/detail/points_range.h"
 #include "subvol/error.h"
-#include "subvol/progressive.h"
-#include "subvol/render_bricks.h"
-#include "subvol/render_tets.h"
-#include "subvol/splat.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
@@ -106,12 +99,12 @@ public:
         options_.samples = reference_.samples;
         options_.clip = reference_.clip = clip_.clip();
         if (picture_.lit()) options_.shading = Shading{};
-        tets_ = TetRefinement(refine_);
-        check_reference();
+        if (!is_bricks_input(input_)) tets_ = TetRefinement(refine_);
+        check_method(method_, picture_, splat_, reference_);
         picture_.check();
-        report.if_long(method_ == "dense"  ? "--levels 2, a smaller --size, or --method splat"
-                       : drawn_by_splats() ? "a smaller --size, a larger --spacing, or fewer --sheets"
-                                           : "a smaller --size, fewer --samples, or --method splat");
+        report.if_long(method_ == "dense"      ? "--levels 2, a smaller --size, or --method splat"
+                       : is_of_splats(method_) ? "a smaller --size, a larger --spacing, or fewer --sheets"
+                                               : "a smaller --size, fewer --samples, or --method splat");
         if (asks_for_steps(common()) && !is_bricks_input(input_)) {
             draw_steps(report);
             return 0;
@@ -125,7 +118,7 @@ public:
         } else if (holds_points(input_)) {
             draw_points(output, report);
         } else if (is_vdb_file(input_)) {
-            splat_voxels(output, report);
+            draw_voxels(output, report);
         } else {
             draw_mesh(output, report);
         }
@@ -138,7 +131,7 @@ private:
     void set_share(PictureOutput& output, bool frames) {
         if (!shares(share_)) return;
         const Share share = share_of(share_);
-        if (!frames && (!drawn_by_splats() || method_ == "footprints" || splat_.seconds)) {
+        if (!frames && (!is_of_splats(method_) || method_ == "footprints" || splat_.seconds)) {
             throw Error(ErrorCode::InvalidInput, "is not drawn in shares", splat_.seconds ? "--seconds" : "--method " + method_,
                         "--method splat, or shares of frames: --turntable N, --step all");
         }
@@ -167,50 +160,9 @@ private:
                           "--tolerance-image", "--order", "--kbuffer", "--lod", "--memory", "--part"});
     }
 
-    [[nodiscard]] bool drawn_by_splats() const { return splats(method_); }
-
-    /// Refuses options of splatting for the other methods.
-    void check_reference() const {
-        if (reference_.lod && !std::isfinite(*reference_.lod))
-            throw Error(ErrorCode::InvalidInput, "is not a number of pixels", "--lod", "0 or more");
-        (void)reference_.projected_order();
-        if (method_ == "pt") (void)reference_.projected_options();
-        if (drawn_by_splats()) {
-            if (reference_.lod && splat_.seconds)
-                throw Error(ErrorCode::InvalidInput, "a time limit chooses its own kernels", "--lod", "leave out --seconds");
-            return;
-        }
-        if (reference_.lod && method_ != "pt") {
-            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws all there is", "--lod",
-                        "use --method splat, sheets or pt");
-        }
-        if (splat_.shadows || splat_.ambient_occlusion > 0) {
-            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws without them", "--shadows, --ambient-occlusion",
-                        "use --method splat");
-        }
-        if (splat_.shade || splat_.color_field) {
-            throw Error(ErrorCode::InvalidInput, "method " + method_ + " draws one field without light",
-                        "--shade, --color-field", "use --method splat or sheets");
-        }
-        if (picture_.edges) {
-            throw Error(ErrorCode::InvalidInput, "method " + method_ + " has no depths to hide lines by", "--edges",
-                        "use --method splat or sheets");
-        }
-        const bool on_gpu = method_ == "pt";
-        if (splat_.seconds && !on_gpu) {
-            throw Error(ErrorCode::InvalidInput, "method " + method_ + " has no time limit", "--seconds",
-                        "use --method splat, sheets or pt");
-        }
-        if (splat_.backend == (on_gpu ? "cpu" : "gl")) {
-            throw Error(ErrorCode::InvalidInput,
-                        text("method ", method_, " is drawn by ", on_gpu ? "OpenGL" : "the CPU", " only"),
-                        text("--backend ", splat_.backend));
-        }
-    }
-
     [[nodiscard]] HexMesh shown_mesh(const CommonOptions& options, Report& report) const {
         HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report, splat_.color_field);
-        mesh = tets_.hexes(std::move(mesh), drawn_by_splats() ? 1 : 2, report);
+        mesh = tets_.hexes(std::move(mesh), is_of_splats(method_) ? 1 : 2, report);
         check_coordinates(mesh);
         return mesh;
     }
@@ -278,15 +230,21 @@ private:
         if (mesh.attributes.size() == 1) options_.color_channel.reset();  // the field of the colours is --field itself
         if (method_ == "tets" || method_ == "pt") {
             const HexMesh fine = refine_reported(mesh, refine_.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-            draw_tetrahedra(fine, skin_of(mesh, report).surface, views, optics, output, report);
+            const Surface boundary = skin_of(mesh, report).surface;
+            if (method_ == "tets") {
+                write_tets(fine, boundary, views, optics, reference_, output, report);
+            } else {
+                write_projected_tets(fine, boundary, views, optics, reference_, splat_.device, splat_.seconds, output, report);
+            }
         } else if (method_ == "dense") {
             const RefineOptions refine = refine_.options(0, report);
             const auto draw = [&](const View& view, Progress* progress) {
                 return draw_dense(mesh, refine, refine_.levels, view, optics, reference_, progress, report);
             };
-            output.write(views, lit(draw, skin_of(mesh, report).surface), report);
+            output.write(views, lit(draw, skin_of(mesh, report).surface, reference_), report);
         } else if (splat_.seconds) {
-            splat_in_time(mesh, views.front(), optics, output, report);
+            const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
+            write_splats_in_time(mesh, sample, *splat_.seconds, views.front(), optics, splat_work(), output, report);
         } else {
             BoundaryValues skin;
             // Shadows and occlusion are those of the kernels: the boundary's own colours have none.
@@ -294,11 +252,10 @@ private:
             if (!own_light && picture_.paints_boundary(app(), refine_)) skin = skin_of(mesh, report);
             const RbfVolume volume = tets_.asked() ? sample_tets_reported(mesh, sample_, optics.function(), report)
                                                    : sample_reported(mesh, sample_, refine_, optics.function(), report);
-            splat(volume, views, optics, output, report, skin);
+            splat(volume, skin, views, optics, output, report);
         }
     }
 
-    /// Each brick is sampled once for each view; its kernels wait in files until their part of the picture is drawn.
     void draw_bricks(PictureOutput& output, Report& report) {
         if (method_ != "splat") {
             throw Error(ErrorCode::InvalidInput, "a folder of bricks can only be splatted", "--method " + method_, "splat");
@@ -321,41 +278,15 @@ private:
             .sample = sample_.options(bricks.bounds, refine), .splat = options_, .memory_bytes = memory_bytes_};
         options.splat.color_channel.reset();
         options.splat.progress = report.progress();
-        if (by_rows_) options.rows = rows_of(share_of(share_), views.front().height());
         BoundaryValues skin;
         if ((!by_rows_ || speaks()) && picture_.paints_boundary(app(), refine_)) {
             skin = report.timed("boundary", [&] { return boundary_values(bricks, fields, refine.scheme); });
         }
         Surface boundary = report.timed("boundary", [&] { return sample_bricks_boundary(bricks, options.sample); });
-        const auto draw = [&](const View& view, Progress*) {
-            Surface own = views.size() > 1 ? boundary : std::move(boundary);
-            const bool ranked = by_rows_ && ranks() != nullptr;
-            ShippedKernels shipped;
-            SplatResult drawn = report.timed("draw", [&] {
-                return ranked ? render_bricks_ranked(bricks, fields, std::move(own), view, optics, options, *ranks(), shipped)
-                              : render_bricks(bricks, fields, std::move(own), view, optics, options);
-            });
-            report["method"] = method_;
-            report["points"] = drawn.report.points;
-            report_splats(drawn.report, report);
-            if (ranked) {
-                report_shipped(shipped, report);
-                Picture rows{std::move(drawn.image), std::move(drawn.depth)};
-                gather_rows(rows, *ranks());
-                drawn.image = std::move(rows.image);
-                drawn.depth = std::move(rows.depth);
-            }
-            if (!skin.values.empty()) {
-                color_boundary(drawn.image, skin.surface, skin.values.back(), view, optics, Shading{}, reference_.samples,
-                               options_.clip);
-            }
-            return Picture{std::move(drawn.image), std::move(drawn.depth)};
-        };
-        output.write(views, draw, report);
+        write_splats({bricks, fields, options, std::move(boundary), skin, reference_.samples}, views, optics, splat_work(),
+                     output, report);
         if (speaks()) picture_.write_legend(optics, legend, report);
     }
-
-    using Draw = std::function<Picture(const View&, Progress*)>;
 
     /// The surface that is lit, if there is light, and the values on it.
     [[nodiscard]] BoundaryValues skin_of(const HexMesh& mesh, Report& report) const {
@@ -370,52 +301,9 @@ private:
         return report.timed("boundary", [&] { return boundary_values(mesh, options); });
     }
 
-    /// The same pictures with light on the boundary; the methods themselves know none.
-    [[nodiscard]] Draw lit(const Draw& draw, Surface boundary) const {
-        if (!picture_.lit()) return draw;
-        return [this, draw, boundary = std::move(boundary)](const View& view, Progress* progress) {
-            Picture picture = draw(view, progress);
-            light_boundary(picture.image, boundary, view, Shading{}, reference_.samples, options_.clip);
-            return picture;
-        };
-    }
-
-    void draw_tetrahedra(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
-                         PictureOutput& output, Report& report) const {
-        if (method_ == "pt") {
-            ProjectedRenderer renderer(mesh, {}, splat_.device);
-            report.add_seconds("prepare", renderer.seconds_build());
-            const auto draw = [&](const View& view, Progress* progress) {
-                return draw_projected_tets(renderer, view, optics, reference_, splat_.seconds, progress, report);
-            };
-            output.write(views, lit(draw, boundary), report);
-        } else {
-            const TetsRenderer renderer(mesh);
-            report.add_seconds("prepare", renderer.seconds_build());
-            const auto draw = [&](const View& view, Progress* progress) {
-                return draw_tets(renderer, view, optics, reference_, progress, report);
-            };
-            output.write(views, lit(draw, boundary), report);
-        }
-    }
-
+    /// Rays through voxels, or the voxels as kernels.
     void draw_voxels(PictureOutput& output, Report& report) {
-        const VdbGrid grid = load_grid(input_, common(), report);
-        const Box box = box_of(grid.report());
-        const Range range{grid.report().min, grid.report().max};
-        const Optics optics = picture_.make_optics(box, range, range);
-        const LegendOptions legend = picture_.legend_options({grid.report().name, range}, {grid.report().name, range});
-        output.set_notes(make_notes(picture_, optics, legend, nullptr));
-        const auto voxels = grid.voxels();
-        const auto draw = [&](const View& view, Progress* progress) {
-            return draw_grid(*voxels, view, optics, reference_, progress, report);
-        };
-        output.write(picture_.make_views(box), draw, report);
-        if (speaks()) picture_.write_legend(optics, legend, report);
-    }
-
-    void splat_voxels(PictureOutput& output, Report& report) {
-        if (!drawn_by_splats()) {
+        if (method_ != "grid" && !is_of_splats(method_)) {
             throw Error(ErrorCode::InvalidInput, "a grid has no cells", "--method " + method_, "use grid, splat or sheets");
         }
         const VdbGrid grid = load_grid(input_, common(), report);
@@ -424,13 +312,21 @@ private:
         const Optics optics = picture_.make_optics(box, range, range);
         const LegendOptions legend = picture_.legend_options({grid.report().name, range}, {grid.report().name, range});
         output.set_notes(make_notes(picture_, optics, legend, nullptr));
-        const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
-        splat(volume, picture_.make_views(box), optics, output, report);
+        if (method_ == "grid") {
+            const auto voxels = grid.voxels();
+            const auto draw = [&](const View& view, Progress* progress) {
+                return draw_grid(*voxels, view, optics, reference_, progress, report);
+            };
+            output.write(picture_.make_views(box), draw, report);
+        } else {
+            const RbfVolume volume = sample_reported(grid, sample_, optics.function(), app(), report);
+            splat(volume, {}, picture_.make_views(box), optics, output, report);
+        }
         if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
     void draw_points(PictureOutput& output, Report& report) {
-        if (!drawn_by_splats()) throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        if (!is_of_splats(method_)) throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         if (volume.channels.size() == 1) options_.color_channel.reset();
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
@@ -438,81 +334,17 @@ private:
         const LegendOptions legend =
             picture_.legend_options({volume.channels.front().name, range}, {volume.channels.back().name, colors});
         output.set_notes(make_notes(picture_, optics, legend, nullptr));
-        const std::vector<View> views = picture_.make_views(volume.bounds);
-        splat(volume, views, optics, output, report);
+        splat(volume, {}, picture_.make_views(volume.bounds), optics, output, report);
         if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
-    /// What all ranks have sent.
-    void report_shipped(const ShippedKernels& shipped, Report& report) const {
-        std::vector<std::int64_t> counts{static_cast<std::int64_t>(shipped.kernels), static_cast<std::int64_t>(shipped.bytes)};
-        ranks()->sum(counts);
-        report["kernels_shipped"] = counts[0];
-        report["kernel_bytes_sent"] = counts[1];
+    [[nodiscard]] SplatWork splat_work() const {
+        return {method_, options_, by_rows_ ? std::optional(share_of(share_)) : std::nullopt, ranks()};
     }
 
-    /// One picture, of which this process draws its rows; the whole at rank 0.
-    [[nodiscard]] SplatResult draw_rows(const RbfVolume& volume, const BoundaryValues& skin, const View& view,
-                                        const Optics& optics, Progress* progress, Report& report) const {
-        SplatOptions options = options_;
-        const auto drawn_of = [&](const RbfVolume& band) {
-            Splatter splatter(band, options);
-            if (!skin.values.empty()) splatter.set_boundary_colors(skin.surface, skin.values.back());
-            return splatter.draw(view, optics, progress);
-        };
-        if (ranks() == nullptr) {
-            const RbfVolume band = kernels_of_rows(volume, share_of(share_), view, optics, options);
-            return drawn_of(band);
-        }
-        const auto [begin, end] = ranks()->share().range(volume.size());
-        RbfVolume own = detail::kernels_between(volume, begin, end);
-        own.boundary = volume.boundary;
-        ShippedKernels shipped;
-        const RbfVolume band = ship_kernels(own, view, optics, options, *ranks(), shipped);
-        report_shipped(shipped, report);
-        SplatResult drawn = drawn_of(band);
-        drawn.report.points = volume.size();
-        return drawn;
-    }
-
-    /// skin: if it is not empty, the boundary of a solid, which gets its colours from it
-    void splat(const RbfVolume& volume, const std::vector<View>& views, const Optics& optics, PictureOutput& output,
-               Report& report, const BoundaryValues& skin = {}) const {
-        LevelOfDetail levels(volume, reference_.lod.value_or(0), options_.channel, report);
-        std::optional<Splatter> splatter;
-        if (!by_rows_) {
-            splatter.emplace(volume, options_);
-            if (!skin.values.empty()) splatter->set_boundary_colors(skin.surface, skin.values.back());
-        }
-        const auto draw = [&](const View& view, Progress* progress) {
-            const RbfVolume& shown = levels.of(view, report);
-            if (splatter && levels.has_changed()) splatter->set_kernels(shown);
-            SplatResult drawn =
-                splatter ? splatter->draw(view, optics, progress) : draw_rows(shown, skin, view, optics, progress, report);
-            report["method"] = method_;
-            report_splats(drawn.report, report);
-            Picture picture{std::move(drawn.image), std::move(drawn.depth)};
-            if (by_rows_ && ranks() != nullptr) gather_rows(picture, *ranks());
-            return picture;
-        };
-        output.write(views, draw, report);
-    }
-
-    void splat_in_time(const HexMesh& mesh, const View& view, const Optics& optics, PictureOutput& output,
-                       Report& report) const {
-        const auto draw = [&](const View&, Progress* progress) {
-            const SampleOptions sample = sample_.options(bounds(mesh), refine_.options(0, report));
-            ProgressiveResult drawn = render_progressively(
-                mesh, view, optics, {.seconds = *splat_.seconds, .sample = sample, .splat = options_, .progress = progress});
-            report["method"] = method_;
-            report_splats(drawn.splat.report, report);
-            report["points"] = drawn.splat.report.points;
-            report["steps"] = drawn.steps;
-            report["picture_scale"] = drawn.picture_scale;
-            report["footprint_px"] = drawn.footprint_px;
-            return Picture{std::move(drawn.splat.image), std::move(drawn.splat.depth)};
-        };
-        output.write({view}, draw, report);
+    void splat(const RbfVolume& volume, const BoundaryValues& skin, const std::vector<View>& views, const Optics& optics,
+               PictureOutput& output, Report& report) const {
+        write_splats(volume, skin, reference_.lod.value_or(0), views, optics, splat_work(), output, report);
     }
 
     std::string input_;

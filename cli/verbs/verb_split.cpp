@@ -76,7 +76,10 @@ private:
             int resolution = 0;
             const char *begin = input_.data() + kTwist.size(), *end = input_.data() + input_.size();
             const auto [stop, error] = std::from_chars(begin, end, resolution);
-            if (error != std::errc() || stop != end) resolution = 0;
+            if (error != std::errc() || stop != end) {
+                throw Error(ErrorCode::InvalidInput, "'" + input_.substr(kTwist.size()) + "' is not a resolution",
+                            "model:twist", "2..4096");
+            }
             return report.timed("split", [&] { return split_twist(output_, resolution, options_); });
         }
         HexMesh mesh = load_mesh(input_, common(), report);

@@ -6,10 +6,9 @@
 #include <sstream>
 
 #include "study_keys.h"
-#include "subvol/camera.h"
+#include "study_scenes.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
-#include "subvol/model.h"
 
 namespace subvol {
 
@@ -28,33 +27,12 @@ const std::vector<std::string> kMetrics{"mse",           "rmse",      "mae",    
                                         "ssim",          "flip",      "flip_hdr",     "psnr_interior", "psnr_edge",
                                         "flip_interior", "flip_edge", "optical_depth"};
 
-std::vector<Key> input_keys() {
-    using enum KeyKind;
-    std::vector<std::string> models{"cell"};
-    for (const ModelInfo& model : list_models()) models.push_back(model.name);
-    return {{"model", Text, 0, 0, {}, models}, {"file"},  {"resolution", Whole, 2, 512},
-            {"refine", Whole, 0, 4},           {"field"}, {"density"}};
-}
-
-const std::vector<Key>& light_keys() {
-    static const std::vector<Key> kKeys{{"colors"}, {"opacity"}, {"opacity_unit", KeyKind::Number, 0, 1e12}};
-    return kKeys;
-}
-
 const std::vector<Key>& reference_keys() {
     static const std::vector<Key> kKeys{{"method", KeyKind::Text, 0, 0, std::string("dense"), {"dense"}},
                                         {"tolerance", KeyKind::Number, 0, 1, 1e-3},
                                         {"max_levels", KeyKind::Whole, 1, 8, 6.0},
                                         {"samples", KeyKind::Whole, 1, 16, 1.0}};
     return kKeys;
-}
-
-/// A hash of a file that a case depends on, as a part of the case's values: a changed file is another case.
-std::string content_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << in.rdbuf();
-    return in ? hash_text(bytes.str()) : "";
 }
 
 class Parser {
@@ -84,163 +62,6 @@ private:
         return json_.contains(key) && std::get<bool>(read_value(json_[key], {key, KeyKind::Switch}, in(root_, key)));
     }
 
-    /// Names become parts of file names.
-    [[nodiscard]] static std::string name_of(const Json& json, const std::string& path) {
-        if (!json.contains("name")) refuse(in(path, "name"), "the name is missing");
-        return checked_name(read_text(json["name"], in(path, "name")), in(path, "name"));
-    }
-
-    /// The name of an input file that has none: the file's, with other characters replaced.
-    static std::string name_of_file(const fs::path& file) {
-        std::string name = file.stem().string().substr(0, 64);
-        for (char& c : name) {
-            if (!is_plain(static_cast<unsigned char>(c))) c = '-';
-        }
-        return name.empty() ? "mesh" : name;
-    }
-
-    static bool is_plain(unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; }
-
-    static std::string checked_name(std::string name, const std::string& path) {
-        if (name.empty() || name.size() > 64 || !std::ranges::all_of(name, is_plain)) {
-            refuse(path, "'" + shortened(name) + "' is not a valid name", "1 to 64 letters, digits, _ and -");
-        }
-        return name;
-    }
-
-    [[nodiscard]] const Json& list(const char* key) const {
-        static const Json kNone = Json::array();
-        const auto found = json_.find(key);
-        if (found == json_.end()) return kNone;
-        if (!found->is_array()) refuse(in(root_, key), must_be("a list", *found));
-        if (found->empty()) refuse(in(root_, key), "the list is empty");
-        if (found->size() > kMaxStudyCases) refuse(in(root_, key), "the list is too long");
-        return *found;
-    }
-
-    [[nodiscard]] std::string resolved(const std::string& name) const {
-        const fs::path path(name);
-        return path.is_absolute() ? name : (file_.parent_path() / path).lexically_normal().string();
-    }
-
-    /// Numbers and texts that are known from elsewhere and shown beside the results.
-    static void read_given(const Json& json, const std::string& path, StudyValues& values) {
-        const auto found = json.find("given");
-        if (found == json.end()) return;
-        if (!found->is_object()) refuse(in(path, "given"), must_be("an object", *found));
-        for (const auto& [key, value] : found->items()) {
-            const std::string place = in(in(path, "given"), key);
-            if (!value.is_number() && !value.is_string()) refuse(place, must_be("a number or a string", value));
-            values["given." + key] = value.is_number() ? StudyValue(value.get<double>()) : value.get<std::string>();
-        }
-    }
-
-    std::vector<StudyValues> inputs() const {
-        std::vector<StudyValues> all;
-        const Json& items = list("inputs");
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const std::string path = at(in(root_, "inputs"), i);
-            const auto keys = input_keys();
-            const std::vector<std::string> besides{"name", "given"};
-            for (const StudyValues& read : read_values(items[i], keys, besides, path)) {
-                if (read.contains("model") == read.contains("file")) refuse(path, "an input has either a model or a file");
-                if (read.contains("file") && read.contains("resolution")) refuse(path, "a file has no resolution");
-                if (read.contains("field") && read.contains("density"))
-                    refuse(path, "an input has either a field or a density");
-                StudyValues values;
-                for (const auto& [key, value] : read) values["input." + key] = value;
-                const std::string name =
-                    read.contains("model") ? as_text(read.at("model")) : name_of_file(as_text(read.at("file")));
-                if (read.contains("file")) {
-                    const std::string file = resolved(as_text(read.at("file")));
-                    const std::string content = content_of(file);
-                    if (content.empty()) refuse(in(path, "file"), "'" + printable(file) + "' cannot be read");
-                    values["input.file"] = file;
-                    values["input.content"] = content;
-                }
-                values["input"] = items[i].contains("name") ? name_of(items[i], path) : name;
-                read_given(items[i], path, values);
-                all.push_back(std::move(values));
-                check_count(all.size(), path);
-            }
-        }
-        return all;
-    }
-
-    std::vector<StudyValues> cameras() const {
-        std::vector<StudyValues> all;
-        const Json& items = list("cameras");
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const std::string path = at(in(root_, "cameras"), i);
-            std::string name = "camera" + std::to_string(i), camera;
-            if (items[i].is_object()) {
-                const std::vector<std::string> known{"name", "camera", "visible"};
-                check_object(items[i], path, known);
-                name = name_of(items[i], path);
-                if (!items[i].contains("camera")) refuse(in(path, "camera"), "the camera is missing");
-                camera = read_text(items[i]["camera"], in(path, "camera"));
-            } else {
-                camera = read_text(items[i], path);
-                if (camera.size() <= 4) name = camera;  // a side, such as +x
-            }
-            StudyValues values{{"view", name}, {"camera", camera}};
-            if (items[i].is_object() && items[i].contains("visible")) {
-                values["camera.visible"] = read_value(items[i]["visible"], {"visible", KeyKind::Switch}, in(path, "visible"));
-            }
-            if (camera.ends_with(".json")) add_file(values, "camera", path);
-            check_camera(as_text(values["camera"]), path);
-            all.push_back(std::move(values));
-        }
-        if (all.empty()) all.push_back({{"view", "iso"}, {"camera", "iso"}});
-        return all;
-    }
-
-    /// Cases fit their cameras to their meshes; whether the text is a camera can be seen with any box.
-    static void check_camera(const std::string& camera, const std::string& path) {
-        try {
-            static_cast<void>(parse_camera(camera, {{0, 0, 0}, {1, 1, 1}}));
-        } catch (const Error& error) {
-            refuse(path, error.what());
-        }
-    }
-
-    std::vector<StudyValues> lights() const {
-        std::vector<StudyValues> all;
-        const Json& items = list("transfer_functions");
-        for (std::size_t i = 0; i < items.size(); ++i) {
-            const std::string path = at(in(root_, "transfer_functions"), i);
-            if (items[i].is_string()) {
-                const std::string colors = read_text(items[i], path);
-                StudyValues values{{"tf", fs::path(colors).stem().string()}, {"tf.colors", colors}};
-                add_file(values, "tf.colors", path);
-                all.push_back(std::move(values));
-                continue;
-            }
-            const std::vector<std::string> besides{"name"};
-            for (const StudyValues& read : read_values(items[i], light_keys(), besides, path)) {
-                StudyValues values{{"tf", name_of(items[i], path)}};
-                for (const auto& [key, value] : read) values["tf." + key] = value;
-                add_file(values, "tf.colors", path);
-                all.push_back(std::move(values));
-                check_count(all.size(), path);
-            }
-        }
-        if (all.empty()) all.push_back({{"tf", "viridis"}, {"tf.colors", "viridis"}});
-        return all;
-    }
-
-    void add_file(StudyValues& values, const std::string& key, const std::string& path) const {
-        if (!values.contains(key)) return;
-        const std::string named = as_text(values[key]);
-        const std::size_t end = named.find(".json");
-        if (end == std::string::npos) return;
-        const std::string file = resolved(named.substr(0, end + 5));
-        const std::string content = content_of(file);
-        if (content.empty()) refuse(path, "'" + printable(file) + "' cannot be read");
-        values[key] = file + named.substr(end + 5);
-        values[key + ".content"] = content;
-    }
-
     /// The values that all pictures share: their size, metrics and reference.
     StudyValues picture_values() const {
         StudyValues values;
@@ -255,7 +76,7 @@ private:
             values["width"] = values["height"] = size == json_.end() ? 512.0 : read_value(*size, edge, in(root_, "size"));
         }
         std::string metrics;
-        const Json& names = list("metrics");
+        const Json& names = list_of(json_, root_, "metrics");
         for (std::size_t i = 0; i < names.size(); ++i) {
             const Key metric{"metric", KeyKind::Text, 0, 0, {}, kMetrics};
             metrics += (metrics.empty() ? "" : ",") + as_text(read_value(names[i], metric, at(in(root_, "metrics"), i)));
@@ -271,9 +92,9 @@ private:
     }
 
     void expand(Study& study) const {
-        const Scenes scenes{inputs(), cameras(), lights()};
+        const StudyScenes scenes = read_scenes(json_, file_, root_);
         const StudyValues common = picture_values();
-        const Json& items = list("methods");
+        const Json& items = list_of(json_, root_, "methods");
         if (items.empty()) refuse(in(root_, "methods"), "the list is missing");
         for (std::size_t m = 0; m < items.size(); ++m) {
             const std::string path = at(in(root_, "methods"), m);
@@ -291,13 +112,8 @@ private:
         check_different(study);
     }
 
-    /// What methods are applied to.
-    struct Scenes {
-        std::vector<StudyValues> inputs, cameras, lights;
-    };
-
     /// The cases of one method. already: how many cases there are before
-    static std::vector<StudyValues> combinations(const Json& item, const StudyMethod& method, const Scenes& scenes,
+    static std::vector<StudyValues> combinations(const Json& item, const StudyMethod& method, const StudyScenes& scenes,
                                                  std::size_t already, const std::string& path) {
         const std::vector<std::string> besides{"method", "label", "given"};
         StudyValues head{{"method", std::string(method.name)}, {"label", std::string(method.name)}};
@@ -332,11 +148,6 @@ private:
             from = close + 1;
         }
         return done + label.substr(from);
-    }
-
-    static void check_count(std::size_t count, const std::string& path) {
-        if (count <= kMaxStudyCases) return;
-        refuse(path, "there are too many cases", "at most " + std::to_string(kMaxStudyCases));
     }
 
     static std::vector<std::string> swept_keys(const Json& method) {

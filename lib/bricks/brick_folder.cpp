@@ -17,7 +17,6 @@ namespace {
 
 constexpr const char* kProgress = "progress.json";
 constexpr std::uint64_t kBytesOfCell = 1000;  // topology, kernels and the halo of a brick while it is worked on
-constexpr std::size_t kMostBricks = 1'000'000;
 
 [[noreturn]] void fail(const fs::path& path, const std::error_code& error) {
     throw Error(ErrorCode::Io, "cannot be written: " + error.message(), path.string());

@@ -8,6 +8,8 @@
 
 namespace subvol::detail {
 
+inline constexpr std::size_t kMostBricks = 1'000'000;
+
 /// A folder of bricks that is being written: beside its place, under NAME.unfinished. What an interrupted run has finished is
 /// kept if it was cut from the same mesh in the same way.
 class BricksWriter {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/ply_rows.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/detail/sample_part.h"
 #include "subvol/error.h"
 
@@ -22,29 +24,6 @@ void check_halo(const Bricks& bricks, const SampleOptions& options) {
                 bricks.path.string(), "split with --halo " + std::to_string(needed));
 }
 
-template <class Values>
-void keep(Values& values, const std::vector<std::size_t>& places) {
-    if (values.empty()) return;
-    for (std::size_t i = 0; i < places.size(); ++i) values[i] = values[places[i]];
-    values.resize(places.size());
-}
-
-/// A part of the progress of a whole.
-class PartOfProgress : public Progress {
-public:
-    PartOfProgress(Progress* whole, const char* stage, std::size_t part, std::size_t of)
-        : whole_(whole), stage_(stage), part_(part), of_(of) {}
-    void report(std::string_view, double fraction) override {
-        if (whole_) whole_->report(stage_, (static_cast<double>(part_) + fraction) / static_cast<double>(of_));
-    }
-    [[nodiscard]] bool cancelled() const override { return whole_ && whole_->cancelled(); }
-
-private:
-    Progress* whole_;
-    const char* stage_;
-    std::size_t part_, of_;
-};
-
 }  // namespace
 
 BrickPoints sample_brick(const Bricks& bricks, BrickMesh brick, const SampleOptions& options) {
@@ -58,14 +37,7 @@ BrickPoints sample_brick(const Bricks& bricks, BrickMesh brick, const SampleOpti
         result.numbers.push_back(brick.point_numbers[p]);
     }
     result.volume = std::move(sampled.volume);
-    keep(result.volume.centers, places);
-    keep(result.volume.frames, places);
-    for (RbfChannel& channel : result.volume.channels) {
-        keep(channel.values, places);
-        keep(channel.gradients, places);
-        keep(channel.moments, places);
-        keep(channel.hessians, places);
-    }
+    detail::keep_kernels(result.volume, places);
     result.flat_frames = sampled.report.flat_frames;
     return result;
 }
@@ -89,9 +61,8 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
         rows.emplace(path, like, points_of_share, boundary, share ? share->note : std::string());
     };
     for (std::size_t b = begin; b < end; ++b) {
-        PartOfProgress progress(options.progress, "sample", b - begin, end - begin);
-        progress.report({}, 0);
-        if (progress.cancelled()) throw Error(ErrorCode::Cancelled, "cancelled");
+        detail::PartOfProgress progress(options.progress, "sample", b - begin, end - begin);
+        report_progress(&progress, "sample", 0);
         SampleOptions of_brick = options;
         of_brick.progress = &progress;
         BrickMesh brick = read_brick(bricks, b);

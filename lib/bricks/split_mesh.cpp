@@ -151,7 +151,7 @@ SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, std::s
                     "the mesh has " + std::to_string(mesh.cells.size()));
     }
     const std::size_t count = std::size_t{std::ranges::max(brick_of_cell)} + 1;
-    if (count > 1'000'000) throw Error(ErrorCode::InvalidInput, "there are more than a million bricks");
+    if (count > kMostBricks) throw Error(ErrorCode::InvalidInput, "there are more than a million bricks");
     BricksWriter writer(folder, hash_of(mesh, brick_of_cell), options.halo_layers);
     BrickTaker taker(mesh, brick_of_cell, count);
     for (std::size_t k = 0; k < count; ++k) {

@@ -64,11 +64,15 @@ SplitResult split_twist(const std::filesystem::path& folder, int resolution, con
         throw Error(ErrorCode::InvalidInput, std::to_string(std::ranges::max(along)) + " bricks along a side", {},
                     "there are " + std::to_string(n) + " cells along it");
     }
+    const std::size_t count = along[0] * along[1] * along[2];
+    if (count > kMostBricks) {
+        throw Error(ErrorCode::InvalidInput, std::to_string(count) + " bricks are too many", "model:twist",
+                    "at most a million");
+    }
     ByteHash id;
     id.add("model twist " + std::to_string(n) + " in " + std::to_string(along[0]) + " " + std::to_string(along[1]) + " " +
            std::to_string(along[2]));
     BricksWriter writer(folder, id.value(), options.halo_layers);
-    const std::size_t count = along[0] * along[1] * along[2];
     const auto halo = static_cast<std::uint64_t>(options.halo_layers);
     for (std::size_t k = 0; k < count; ++k) {
         report_progress(options.progress, "split", static_cast<double>(k) / static_cast<double>(count));

@@ -2,8 +2,10 @@
 #include "merge_kernels.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "kernel_tree.h"
 

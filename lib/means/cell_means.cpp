@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mean_rows.h"
 #include "subvol/detail/parallel_each.h"
@@ -82,6 +83,27 @@ std::vector<double> channel_values(std::span<const Attribute> fields, const Chan
     std::vector<double> values(field.values.size() / width);
     for (std::size_t c = 0; c < values.size(); ++c) values[c] = field.values[c * width + channel.number];
     return values;
+}
+
+// The power of two by which values are divided while they are fitted: sums of squares of very large and very small ones would
+// leave the range of doubles. Nothing else changes, as a power of two changes no digits.
+int exponent_of(const std::vector<double>& values) {
+    constexpr int kPlain = 300;
+    double most = 0;
+    for (const double value : values) most = std::max(most, std::abs(value));
+    const int exponent = most > 0 ? std::ilogb(most) : 0;
+    return std::abs(exponent) > kPlain ? exponent : 0;
+}
+
+void divide(std::vector<double>& values, int exponent) {
+    if (exponent == 0) return;
+    for (double& value : values) value = std::ldexp(value, -exponent);
+}
+
+double multiplied(double value, int exponent) {
+    if (exponent == 0) return value;
+    constexpr double kMost = std::numeric_limits<double>::max();
+    return std::clamp(std::ldexp(value, exponent), -kMost, kMost);  // the gradient may lead beyond
 }
 
 // Up to kLanes channels, which are fitted together.
@@ -202,7 +224,12 @@ CellMeansFit fit_cell_means(const HexMesh& mesh, std::span<const Attribute> fiel
     for (std::size_t first = 0; first < channels.size(); first += kLanes) {
         const std::size_t count = std::min(kLanes, channels.size() - first);
         std::vector<std::vector<double>> of_cells;
-        for (std::size_t l = 0; l < count; ++l) of_cells.push_back(channel_values(fields, channels[first + l]));
+        std::array<int, kLanes> exponents{};
+        for (std::size_t l = 0; l < count; ++l) {
+            std::vector<double>& values = of_cells.emplace_back(channel_values(fields, channels[first + l]));
+            exponents[l] = exponent_of(values);
+            divide(values, exponents[l]);
+        }
         Batch batch = first_batch(mesh, topology, means, wholes, of_cells);
         CellMeansReport& report = result.report;
         report.first_rms_off = std::max(report.first_rms_off, most_rms(batch));
@@ -215,7 +242,8 @@ CellMeansFit fit_cell_means(const HexMesh& mesh, std::span<const Attribute> fiel
             Attribute& fitted = result.fields[channels[first + l].field];
             const auto width = static_cast<std::size_t>(fitted.channels);
             for (std::size_t p = 0; p < batch.values.size(); ++p) {
-                fitted.values[p * width + channels[first + l].number] = constant ? batch.least[l] : batch.values[p][l];
+                const double value = constant ? batch.least[l] : batch.values[p][l];
+                fitted.values[p * width + channels[first + l].number] = multiplied(value, exponents[l]);
             }
         }
     }

@@ -9,6 +9,7 @@
 
 #include "assemble.h"
 #include "curved_cells.h"
+#include "curved_pieces.h"
 #include "edge_classes.h"
 #include "split_grids.h"
 #include "subvol/cell.h"
@@ -24,16 +25,6 @@ using Sizes = std::array<std::size_t, 3>;
 
 constexpr std::string_view kDegrees = "HigherOrderDegrees";
 constexpr std::string_view kWeights = "RationalWeights";
-
-// Volumes add up the error of the shape, and nothing adds up that of the fields. The limit is nearer to the fields than the
-// straight lines whose error is measured.
-constexpr double kFieldsPerShape = 400;
-
-// No more hexahedra than this are made, or than this for each cell where that is more.
-constexpr std::size_t kMostHexes = std::size_t{1} << 15, kMostPerCell = 4;
-
-// A direction is never split more often than this.
-constexpr double kMostPieces = 1e4;
 
 const FileArray* find_array(const MeshFile& found, std::string_view name, bool at_cells, int components) {
     for (const FileArray& array : found.arrays) {
@@ -55,8 +46,8 @@ public:
         refuse_not_finite();
         find_ranges();
         measure();
-        choose_pieces();
-        if (std::ranges::all_of(pieces_, [](std::size_t n) { return n == 1; })) {
+        pieces_ = choose_pieces(cells_, edges_, bends_, tolerance_);
+        if (std::ranges::all_of(pieces_.of_class, [](std::size_t n) { return n == 1; })) {
             report_straight();
             return false;
         }
@@ -203,12 +194,6 @@ private:
         return {*layout_of_[c], values, channels_ + (is_rational(c) ? 1 : 0), is_rational(c)};
     }
 
-    // How far a straight line is from the curve at most, if a direction of a cell is not split: in parts of the mesh's size,
-    // and of the fields' ranges. The distance falls with the square of the number of pieces.
-    struct Bend {
-        std::array<float, 3> shape{}, fields{};
-    };
-
     void measure() {
         bends_.resize(cells_.size());
         for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -226,52 +211,8 @@ private:
         }
     }
 
-    // Splits all edges of a class alike, as the cell that needs it most. Three directions share the tolerance. Where there
-    // would be too many pieces, the fields give way first.
-    void choose_pieces() {
-        std::vector<double> of_shape(edges_.size()), of_fields(edges_.size());
-        class_of_.resize(cells_.size());
-        for (std::size_t c = 0; c < cells_.size(); ++c) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const std::size_t e = class_of_[c][axis] = edges_.class_of(edges_.edge(cells_[c], 4 * axis));
-                of_shape[e] = std::max(of_shape[e], 3. * bends_[c].shape[axis] / tolerance_);
-                of_fields[e] = std::max(of_fields[e], 3. * bends_[c].fields[axis] / (kFieldsPerShape * tolerance_));
-            }
-        }
-        pieces_.resize(edges_.size());
-        const double most = most_hexes();
-        const auto fits = [&](double shape_part, double fields_part) {
-            for (std::size_t e = 0; e < pieces_.size(); ++e) {
-                const double needed = std::max(of_shape[e] * shape_part, of_fields[e] * fields_part);
-                pieces_[e] = static_cast<std::size_t>(std::clamp(std::ceil(std::sqrt(needed) - 1e-6), 1., kMostPieces));
-            }
-            double count = 0;
-            for (std::size_t c = 0; c < cells_.size(); ++c) {
-                const Sizes n = pieces_of(c);
-                count += static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]);
-            }
-            return count <= most;
-        };
-        constexpr double kLess = .8;
-        const bool shape_fits = fits(1, 0);
-        limited_ = !shape_fits || !fits(1, 1);
-        if (!limited_) return;
-        double part = 1;
-        if (shape_fits) {
-            while (!fits(1, part)) part = part < 1e-12 ? 0 : part * kLess;
-        } else {
-            while (!fits(part, part)) part = part < 1e-12 ? 0 : part * kLess;
-        }
-    }
-
-    [[nodiscard]] double most_hexes() const { return static_cast<double>(std::max(kMostHexes, kMostPerCell * cells_.size())); }
-
-    [[nodiscard]] Sizes pieces_of(std::size_t c) const {
-        return {pieces_[class_of_[c][0]], pieces_[class_of_[c][1]], pieces_[class_of_[c][2]]};
-    }
-
     void fill() {
-        const SplitGrids grids(cells_, edges_, pieces_, found_.points.size());
+        const SplitGrids grids(cells_, edges_, pieces_.of_class, found_.points.size());
         if (grids.point_count() >= kNone) fail("its curved cells would be split into too many hexahedra", "a larger tolerance");
         std::vector<Vec3> points(grids.point_count());
         std::vector<std::vector<double>> values;
@@ -279,7 +220,7 @@ private:
         std::vector<std::uint8_t> filled(points.size());
         FileCells<8> hexes;
         for (std::size_t c = 0; c < cells_.size(); ++c) {
-            const Sizes n = pieces_of(c);
+            const Sizes n = pieces_.of_cell(c);
             const auto grid = grids.grid_of(c);
             const auto at_grid = shape_of(c).at_grid(n);
             for (std::size_t i = 0; i < grid.size(); ++i) {
@@ -340,7 +281,7 @@ private:
     void report() {
         double shape = 0, fields = 0;
         for (std::size_t c = 0; c < cells_.size(); ++c) {
-            const Sizes n = pieces_of(c);
+            const Sizes n = pieces_.of_cell(c);
             double of_shape = 0, of_fields = 0;
             for (std::size_t a = 0; a < 3; ++a) {
                 const auto squared = static_cast<double>(n[a] * n[a]);
@@ -359,9 +300,9 @@ private:
         if (std::any_of(groups_.begin() + 1, groups_.end(), [](const Group& group) { return group.range > 0; })) {
             warning += ", its fields within " + short_text(fields) + " of their ranges";
         }
-        if (limited_) {
+        if (pieces_.limited) {
             warning += "; for a tolerance of " + short_text(tolerance_) + " there would be more than " +
-                       std::to_string(static_cast<std::size_t>(most_hexes()));
+                       std::to_string(pieces_.most_hexes);
         }
         found_.warnings.push_back(warning);
         found_.hexes = std::move(new_hexes_);
@@ -389,10 +330,8 @@ private:
     std::map<LayoutKey, CurvedLayout> layouts_;
     std::vector<const CurvedLayout*> layout_of_;
     std::vector<Group> groups_;
-    std::vector<Bend> bends_;
-    std::vector<Sizes> class_of_;
-    std::vector<std::size_t> pieces_;  // of each class of edges
-    bool limited_ = false;
+    std::vector<CellBend> bends_;
+    CurvedPieces pieces_;
     FileCells<8> new_hexes_;
 };
 

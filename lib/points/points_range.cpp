@@ -33,6 +33,14 @@ std::vector<T> chosen(const std::vector<T>& list, std::span<const std::size_t> n
 }
 
 template <class T>
+void keep(std::vector<T>& list, const std::vector<std::size_t>& places) {
+    if (list.empty()) return;
+    for (std::size_t i = 0; i < places.size(); ++i) list[i] = list[places[i]];
+    list.resize(places.size());
+    list.shrink_to_fit();
+}
+
+template <class T>
 void append(std::vector<T>& list, const std::vector<T>& next) {
     list.insert(list.end(), next.begin(), next.end());
 }
@@ -68,6 +76,17 @@ RbfVolume chosen_kernels(const RbfVolume& volume, std::span<const std::size_t> n
         to.hessians = chosen(from.hessians, numbers);
     }
     return result;
+}
+
+void keep_kernels(RbfVolume& volume, const std::vector<std::size_t>& places) {
+    keep(volume.centers, places);
+    keep(volume.frames, places);
+    for (RbfChannel& channel : volume.channels) {
+        keep(channel.values, places);
+        keep(channel.gradients, places);
+        keep(channel.moments, places);
+        keep(channel.hessians, places);
+    }
 }
 
 void append_kernels(RbfVolume& volume, const RbfVolume& next) {

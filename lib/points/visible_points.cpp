@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -159,13 +160,6 @@ bool is_visible(const TransferFunction& function, const ValueRange& range) {
                        [&](const auto& k) { return k.alpha > 0 && k.value > range.low && k.value < range.high; });
 }
 
-template <class T>
-void keep(std::vector<T>& values, const std::vector<std::size_t>& kept) {
-    for (std::size_t i = 0; i < kept.size(); ++i) values[i] = values[kept[i]];
-    values.resize(kept.size());
-    values.shrink_to_fit();
-}
-
 bool has_negative_lobes(const Kernel& kernel) {
     return !(std::holds_alternative<CompactKernel>(kernel) || std::holds_alternative<GaussianKernel>(kernel) ||
              std::holds_alternative<WendlandC2Kernel>(kernel) || std::holds_alternative<WendlandC4Kernel>(kernel));
@@ -193,14 +187,7 @@ VisibleVolume drop_invisible(const RbfVolume& volume, std::size_t channel, const
         if (visible[i]) kept.push_back(i);
     }
     result.dropped = volume.size() - kept.size();
-    keep(result.volume.centers, kept);
-    keep(result.volume.frames, kept);
-    for (RbfChannel& c : result.volume.channels) {
-        keep(c.values, kept);
-        keep(c.gradients, kept);
-        keep(c.moments, kept);
-        if (!c.hessians.empty()) keep(c.hessians, kept);
-    }
+    detail::keep_kernels(result.volume, kept);
     return result;
 }
 

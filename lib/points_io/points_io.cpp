@@ -41,6 +41,13 @@ RbfVolume read(const std::filesystem::path& path, std::vector<double>* numbers) 
 
 }  // namespace
 
+std::optional<UpAxis> up_axis(std::string_view name) {
+    if (name == "x") return UpAxis::X;
+    if (name == "y") return UpAxis::Y;
+    if (name == "z") return UpAxis::Z;
+    return std::nullopt;
+}
+
 bool is_points_file(const std::filesystem::path& path) {
     return format_of(path) == ".PLY" || format_of(path) == ".VTP";
 }

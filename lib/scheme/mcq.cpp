@@ -16,13 +16,12 @@
 
 #include "antipode.h"
 #include "incident.h"
+#include "opposites.h"
 #include "schemes.h"
 
 namespace subvol::detail {
 
 namespace {
-
-using Pair = std::array<Index, 2>;
 
 class McqRules final : public SchemeRules {
 public:
@@ -113,7 +112,7 @@ private:
         std::size_t k = 0;
         for (std::size_t side = 0; side < 6; ++side) {
             const auto [c0, c1] = topology_.face_cells[topology_.cell_faces[cell][side]];
-            for (const Index p : side_points(cell, side)) q[k++] = across_cell(topology_, c0 == cell ? c1 : c0, p);
+            for (const Index p : side_points(topology_, cell, side)) q[k++] = across_cell(topology_, c0 == cell ? c1 : c0, p);
         }
         row.add_run(topology_.cells[cell], (1 + 6 * omega_) / 8);
         row.add_run(q, -omega_ / 4);
@@ -162,13 +161,13 @@ private:
     /// The antipodal term across the edge from a to d: the neighbours of d in the ring of faces about that edge.
     [[nodiscard]] auto across_edge(Index face, Index a, Index d) const {
         return [=, this](StencilBuilder& row, double weight) {
-            const Index edge = edge_in_face(face, a, d);
+            const Index edge = edge_in_face(topology_, face, a, d);
             if (!topology_.edge_has_ring[edge]) return false;
             const auto ring = topology_.edge_faces[edge];
             const std::size_t m = ring.size(), start = slot_of(ring, face);
             for (std::size_t j = 0; j < m; ++j) {
                 const double c = antipodal_(m, j);
-                if (c != 0) row.add(beside(ring[(start + j) % m], d, a), c * weight);
+                if (c != 0) row.add(beside(topology_, ring[(start + j) % m], d, a), c * weight);
             }
             return true;
         };
@@ -183,7 +182,7 @@ private:
             for (std::size_t j = 0; j < m; ++j) {
                 const double c = antipodal_(m, j);
                 if (c == 0) continue;
-                for (const Index p : far_side(ring[(start + j) % m], edge)) row.add(p, c * weight);
+                for (const Index p : far_side(topology_, ring[(start + j) % m], edge)) row.add(p, c * weight);
             }
             return true;
         };
@@ -198,7 +197,7 @@ private:
             const auto cells = topology_.edge_cells[edge];
             const std::size_t m = faces.size(), start = slot_of(faces, face);
             for (const std::size_t j : {std::size_t{1}, m - 2}) {
-                for (const Index p : opposite_edge(cells[(start + j) % m], edge)) row.add(p, weight);
+                for (const Index p : opposite_edge(topology_, cells[(start + j) % m], edge)) row.add(p, weight);
             }
             return true;
         };
@@ -210,7 +209,7 @@ private:
             const Index face = topology_.cell_faces[cell][side];
             if (topology_.face_on_boundary(face)) return false;
             const auto [c0, c1] = topology_.face_cells[face];
-            add(row, opposite_points(c0 == cell ? c1 : c0, face), weight);
+            add(row, opposite_points(topology_, c0 == cell ? c1 : c0, face), weight);
             return true;
         };
     }
@@ -245,9 +244,9 @@ private:
     /// Across the edge from a to d, in the boundary surface: the neighbour of d in the next face.
     [[nodiscard]] auto across_surface_edge(Index face, Index a, Index d) const {
         return [=, this](StencilBuilder& row, double weight) {
-            const Index edge = edge_in_face(face, a, d);
+            const Index edge = edge_in_face(topology_, face, a, d);
             if (topology_.edge_is_crease[edge]) return false;
-            row.add(beside(other_boundary_face(topology_, edge, face), d, a), weight);
+            row.add(beside(topology_, other_boundary_face(topology_, edge, face), d, a), weight);
             return true;
         };
     }
@@ -256,7 +255,7 @@ private:
     [[nodiscard]] auto over_surface(Index face, Index edge) const {
         return [=, this](StencilBuilder& row, double weight) {
             if (topology_.edge_is_crease[edge]) return false;
-            for (const Index p : far_side(other_boundary_face(topology_, edge, face), edge)) row.add(p, weight);
+            for (const Index p : far_side(topology_, other_boundary_face(topology_, edge, face), edge)) row.add(p, weight);
             return true;
         };
     }
@@ -270,7 +269,7 @@ private:
         if (!topology_.edge_has_ring[edge]) return;
         const double weight = omega_ / static_cast<double>(faces.size());
         for (const Index face : faces) {
-            const Index d = beside(face, a, b), c = beside(face, b, a);
+            const Index d = beside(topology_, face, a, b), c = beside(topology_, face, b, a);
             add(row, Pair{c, d}, weight);
             both_ways(row, -weight, d, c, across_edge(face, a, d), across_edge(face, b, c));
         }
@@ -278,20 +277,21 @@ private:
 
     void interior_face(Index face, StencilBuilder& row) const {
         add(row, topology_.faces[face], (1 + 2 * omega_) / 4);
-        for (const Index cell : topology_.face_cells[face]) add(row, opposite_points(cell, face), omega_ / 4);
+        for (const Index cell : topology_.face_cells[face]) add(row, opposite_points(topology_, cell, face), omega_ / 4);
         for (std::size_t k = 0; k < 4; ++k) {
             const Pair g{topology_.faces[face][k], topology_.faces[face][(k + 1) % 4]};
             const Pair h{topology_.faces[face][(k + 3) % 4], topology_.faces[face][(k + 2) % 4]};
             const Index edge_g = topology_.face_edges[face][k], edge_h = topology_.face_edges[face][(k + 2) % 4];
             extrapolated(row, -omega_ / 4, g, h, in_plane(face, edge_g), in_plane(face, edge_h));
-            extrapolated(row, -omega_ / 8, lifted(face, g), lifted(face, h), diagonal(face, edge_g), diagonal(face, edge_h));
+            extrapolated(row, -omega_ / 8, lifted(topology_, face, g), lifted(topology_, face, h), diagonal(face, edge_g),
+                         diagonal(face, edge_h));
         }
     }
 
     void interior_cell(Index cell, StencilBuilder& row) const {
         add(row, topology_.cells[cell], (1 + 6 * omega_) / 8);
         for (std::size_t side = 0; side < 6; ++side) {
-            const auto near = side_points(cell, side), far = side_points(cell, side ^ 1);
+            const auto near = side_points(topology_, cell, side), far = side_points(topology_, cell, side ^ 1);
             extrapolated(row, -omega_ / 4, near, far, far_points(cell, side), far_points(cell, side ^ 1));
         }
     }
@@ -310,7 +310,7 @@ private:
         both_ways(row, -omega_ / 2, a, b, across_spokes(edge, a), across_spokes(edge, b));
         const auto [f0, f1] = boundary_faces_of(topology_, edge);
         for (const Index face : {f0, f1}) {
-            const Index d = beside(face, a, b), c = beside(face, b, a);
+            const Index d = beside(topology_, face, a, b), c = beside(topology_, face, b, a);
             add(row, Pair{c, d}, omega_ / 4);
             both_ways(row, -omega_ / 4, d, c, across_surface_edge(face, a, d), across_surface_edge(face, b, c));
         }
@@ -324,66 +324,6 @@ private:
             const Index edge_g = topology_.face_edges[face][k], edge_h = topology_.face_edges[face][(k + 2) % 4];
             extrapolated(row, -omega_ / 2, g, h, over_surface(face, edge_g), over_surface(face, edge_h));
         }
-    }
-
-    // Neighbours within a face or a cell.
-
-    /// The neighbour of `point` in a face that is not `other`; `other` must be its other neighbour.
-    Index beside(Index face, Index point, Index other) const {
-        const auto& quad = topology_.faces[face];
-        const std::size_t k = slot_of(quad, point);
-        const Index next = quad[(k + 1) % 4];
-        return next == other ? quad[(k + 3) % 4] : next;
-    }
-
-    Index edge_in_face(Index face, Index a, Index b) const {
-        const auto& quad = topology_.faces[face];
-        const std::size_t k = slot_of(quad, a);
-        return topology_.face_edges[face][quad[(k + 1) % 4] == b ? k : (k + 3) % 4];
-    }
-
-    /// The two points of a face that are not on one of its edges, in the order of the edge's ends.
-    Pair far_side(Index face, Index edge) const {
-        const auto [a, b] = topology_.edges[edge];
-        return {beside(face, a, b), beside(face, b, a)};
-    }
-
-    /// The edge of a cell diagonally opposite another.
-    Pair opposite_edge(Index cell, Index edge) const {
-        const std::size_t k = slot_of(topology_.cell_edges[cell], edge);
-        // The four edges along an axis are listed 00, 10, 01, 11 over the other two axes: the opposite one is 3 − i.
-        return topology_.edges[topology_.cell_edges[cell][k / 4 * 4 + 3 - k % 4]];
-    }
-
-    std::array<Index, 4> side_points(Index cell, std::size_t side) const {
-        std::array<Index, 4> points;
-        for (std::size_t k = 0; k < 4; ++k) points[k] = topology_.cells[cell][static_cast<std::size_t>(kCellFaces[side][k])];
-        return points;
-    }
-
-    /// The four points of a cell that are not on one of its faces.
-    std::array<Index, 4> opposite_points(Index cell, Index face) const {
-        return side_points(cell, slot_of(topology_.cell_faces[cell], face) ^ 1);
-    }
-
-    /// The points over two points of a face, in both of its cells.
-    std::array<Index, 4> lifted(Index face, const Pair& points) const {
-        std::array<Index, 4> result{};
-        std::size_t count = 0;
-        for (const Index cell : topology_.face_cells[face]) {
-            const std::size_t side = slot_of(topology_.cell_faces[cell], face);
-            const auto axis = static_cast<std::size_t>(side / 2);
-            for (const Index p : points) {
-                for (std::size_t k = 4 * axis; k < 4 * axis + 4; ++k) {
-                    const auto& edge = kCellEdges[k];
-                    const Index a = topology_.cells[cell][static_cast<std::size_t>(edge[0])];
-                    const Index b = topology_.cells[cell][static_cast<std::size_t>(edge[1])];
-                    if (a == p) result[count++] = b;
-                    if (b == p) result[count++] = a;
-                }
-            }
-        }
-        return result;
     }
 
     const Topology& topology_;

@@ -249,10 +249,10 @@ void bind_points(py::module_& module) {
     module.def(
         "write_points",
         [](const std::string& path, const RbfVolume& volume, bool ascii, bool splats, const std::string& up) {
-            if (up != "x" && up != "y" && up != "z") throw unknown_word(up, "up", "x, y or z");
-            const UpAxis axis = up == "x" ? UpAxis::X : up == "y" ? UpAxis::Y : UpAxis::Z;
+            const std::optional<UpAxis> axis = up_axis(up);
+            if (!axis) throw unknown_word(up, "up", "x, y or z");
             const py::gil_scoped_release without_gil;
-            write_points(path, volume, {.ascii = ascii, .splats = splats, .up = axis});
+            write_points(path, volume, {.ascii = ascii, .splats = splats, .up = *axis});
         },
         py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"), py::arg("up"));
     module.def("fit", &fit, py::arg("shape"), py::arg("scheme"), py::arg("level"), py::arg("extent"), py::arg("terms"));

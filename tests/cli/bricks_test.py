@@ -163,12 +163,27 @@ class WhatGoesWrong(InFolder):
         self.assert_said("split with --halo 4", "points", "t.bricks", "-o", "a.ply", "--correction", "full")
         self.assert_said("settled when a mesh is split", "points", "t.bricks", "-o", "a.ply", "--weld")
         self.assert_said("does not take", "split", "t.bricks", "-o", "u.bricks")
+        for scheme in ("tetoct", "boxspline"):
+            for verb, name in (("points", "a.ply"), ("vdb", "a.vdb"), ("render", "a.png"), ("probe", "a.csv")):
+                place = ["--at", "0,0,0"] if verb == "probe" else []
+                self.assert_said("has hexahedra only", verb, "t.bricks", "-o", name, "--scheme", scheme, *place)
+
+    def test_voxels_that_are_too_small(self):
+        for part in ([], ["--part", "1/2"]):
+            self.assert_said("would not fit 32 bits", "vdb", "t.bricks", "-o", "a.vdb", "--voxel-size", "1e-12", *part)
+            self.assert_said("more than a million blocks", "vdb", "t.bricks", "-o", "a.vdb", "--voxel-size", "1e-7", *part)
+        index = self.folder / "t.bricks" / "index.json"
+        found = json.loads(index.read_text())
+        found["bricks"][0]["reach"][1][0] = 1e300
+        index.write_text(json.dumps(found))
+        self.assert_said("would not fit 32 bits", "vdb", "t.bricks", "-o", "a.vdb", "--resolution", "20")
 
     def test_splitting(self):
         (self.folder / "mine").mkdir()
         (self.folder / "mine" / "letter").write_text("dear")
         self.assert_said("is no folder of bricks", "split", "model:twist:4", "-o", "mine", "--bricks", 2)
         self.assert_said("is not a resolution", "split", "model:twist:1", "-o", "a.bricks")
+        self.assert_said("'12x' is not a resolution (2..4096)", "split", "model:twist:12x", "-o", "a.bricks")
         self.assert_said("bricks along a side", "split", "model:twist:4", "-o", "a.bricks", "--bricks", 101)
         self.assert_said("too few for a brick", "split", "model:twist:4", "-o", "a.bricks", "--memory", "10K")
 

@@ -91,6 +91,9 @@ class Series(InFolder):
         self.assertIn("such files have no named blocks", self.error("info", "t0.vtu", "--blocks", "a"))
         self.assertIn("a model has no steps", self.error("info", "model:ball", "--step", "0"))
         self.assertIn("--curved", self.error("info", "t0.vtu", "--curved", "0"))
+        (self.folder / "one.pvd").write_text('<VTKFile type="Collection"><Collection><DataSet timestep="0" file="t0.vtu"/>'
+                                             '</Collection></VTKFile>')
+        self.assertIn("needs at least two frames", self.error("vdb", "one.pvd", "-o", "a_#.vdb", "--step", "all", "--velocity"))
 
 
 if __name__ == "__main__":

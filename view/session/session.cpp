@@ -75,9 +75,15 @@ std::shared_ptr<const PickedField> ViewSession::State::field() {
 }
 
 void ViewSession::State::take_step(std::size_t number, HexMesh read) {
-    mesh = std::move(read);
-    state.step = number;
-    choose_body();
+    std::swap(mesh, read);
+    const std::size_t shown = std::exchange(state.step, number);
+    try {
+        choose_body();
+    } catch (...) {  // a step may lack the field
+        std::swap(mesh, read);
+        state.step = shown;
+        throw;
+    }
     show();
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "assemble.h"
 #include "join_pieces.h"
@@ -12,13 +11,12 @@
 #include "text_scanner.h"
 #include "vtk/vtk_cells.h"
 #include "xdmf_file.h"
+#include "xdmf_steps.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostNested = 16;
-constexpr std::size_t kMostGrids = 100000;
 constexpr int kVariable = -1;  // the number of nodes follows in the list of mixed cells
 
 // number: of the type in lists of mixed cells; vtk: of the type in VTK
@@ -72,75 +70,6 @@ bool is_collection(const pugi::xml_node& grid) {
     const std::string kind = kind_of(grid, {"GridType"});
     return kind == "COLLECTION" || kind == "TREE";
 }
-bool is_temporal(const pugi::xml_node& grid) {
-    return kind_of(grid, {"GridType"}) == "COLLECTION" && kind_of(grid, {"CollectionType"}) == "TEMPORAL";
-}
-
-// The grids of each step, in the order of the times.
-struct Steps {
-    std::vector<double> times;
-    std::vector<pugi::xml_node> grids;
-};
-
-class StepFinder {
-public:
-    explicit StepFinder(XdmfFile& file) : file_(file) {}
-
-    Steps find() {
-        const auto grids = file_.children(file_.domain(), "Grid");
-        if (grids.empty()) file_.fail_at(file_.domain(), "it has no grids");
-        const auto temporal = std::ranges::find_if(grids, is_temporal);
-        if (temporal == grids.end()) return {{}, {file_.domain()}};
-        Steps steps;
-        steps.grids = file_.children(*temporal, "Grid");
-        if (steps.grids.empty()) file_.fail_at(*temporal, "it has no steps");
-        if (steps.grids.size() > kMostGrids) file_.fail_at(*temporal, "it has too many steps");
-        const auto listed = listed_times(*temporal, steps.grids.size());
-        for (std::size_t k = 0; k < steps.grids.size(); ++k) {
-            steps.times.push_back(listed.empty() ? time_of(steps.grids[k], static_cast<double>(k), 0) : listed[k]);
-        }
-        std::vector<std::size_t> order(steps.times.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::stable_sort(order, {}, [&](std::size_t k) { return steps.times[k]; });
-        Steps sorted;
-        for (const std::size_t k : order) {
-            sorted.times.push_back(steps.times[k]);
-            sorted.grids.push_back(steps.grids[k]);
-        }
-        return sorted;
-    }
-
-private:
-    // The times of a collection that has them in one place.
-    std::vector<double> listed_times(const pugi::xml_node& collection, std::size_t count) {
-        const pugi::xml_node time = file_.child(collection, "Time");
-        const std::string kind = kind_of(time, {"TimeType", "Type"});
-        if (!time || kind.empty() || kind == "SINGLE") return {};
-        auto values = file_.items(time, 1).front();
-        if (kind == "HYPERSLAB" && values.size() >= 2) {
-            std::vector<double> times;
-            for (std::size_t k = 0; k < count; ++k) times.push_back(values[0] + static_cast<double>(k) * values[1]);
-            values = std::move(times);
-        }
-        if (values.size() != count || !std::ranges::all_of(values, [](double t) { return std::isfinite(t); })) {
-            file_.fail_at(time, "it does not give a time for each of the " + counted(count, "step", "steps"));
-        }
-        return values;
-    }
-
-    double time_of(const pugi::xml_node& grid, double otherwise, int depth) {
-        if (const pugi::xml_node time = file_.child(grid, "Time")) {
-            const double value = time.attribute("Value").as_double(otherwise);
-            if (!std::isfinite(value)) file_.fail_at(time, "its value is not a number");
-            return value;
-        }
-        const pugi::xml_node first = file_.child(grid, "Grid");
-        return first && depth < kMostNested ? time_of(first, otherwise, depth + 1) : otherwise;
-    }
-
-    XdmfFile& file_;
-};
-
 class XdmfReader {
 public:
     XdmfReader(std::string_view text, std::string_view file, const ReadOptions& options)
@@ -151,7 +80,7 @@ public:
     }
 
     ReadResult read() {
-        const Steps steps = StepFinder(file_).find();
+        const XdmfSteps steps = xdmf_steps(file_);
         std::vector<std::string> warnings;
         const std::size_t step = chosen_step(options_, steps.grids.size(), file_.name(), warnings);
         first_ = steps.grids.front();
@@ -397,7 +326,7 @@ ReadResult read_xdmf(std::string_view text, std::string_view file, const ReadOpt
 std::vector<double> xdmf_times(const std::filesystem::path& path) {
     const std::string text = read_text(path);
     XdmfFile file(text, path);
-    return StepFinder(file).find().times;
+    return xdmf_steps(file).times;
 }
 
 }  // namespace subvol::detail

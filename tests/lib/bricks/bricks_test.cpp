@@ -262,6 +262,13 @@ TEST_F(BricksTest, TheTwistIsWrittenWithoutTheWhole) {
     }
 }
 
+TEST_F(BricksTest, ATwistOfTooManyBricksIsRefusedBeforeAnyIsWritten) {
+    const SplitOptions options{.memory_bytes = 1'000'000};
+    const std::string said = test::error_of([&] { (void)split_twist(path("t.bricks"), 4096, options); });
+    EXPECT_NE(said.find("at most a million"), std::string::npos) << said;
+    EXPECT_EQ(file_count(), 0U);
+}
+
 TEST_F(BricksTest, NumbersThatAMeshHasAreNoField) {
     HexMesh mesh = make_model("twist", 6);  // as it comes from pieces
     test::add_field(mesh, "GlobalNodeId", [](const Vec3& x) { return x.x; });

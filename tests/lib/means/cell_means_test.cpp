@@ -154,6 +154,28 @@ TEST(CellMeans, AreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(found[0], found[2]);
 }
 
+TEST(CellMeans, VeryLargeAndVerySmallValuesAreFittedAlike) {
+    const HexMesh mesh = irregular();
+    const std::vector<double> plain = means(mesh, smooth);
+    const auto fitted = [&](int exponent) {
+        Attribute field{"f", 1, plain};
+        for (double& value : field.values) value = std::ldexp(value, exponent);
+        return fit_cell_means(mesh, std::vector<Attribute>{field});
+    };
+    const CellMeansFit expected = fitted(0);
+    for (const int exponent : {-900, -290, 290, 900}) {
+        const CellMeansFit found = fitted(exponent);
+        for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+            EXPECT_EQ(found.fields[0].values[p], std::ldexp(expected.fields[0].values[p], exponent)) << exponent;
+        }
+        EXPECT_EQ(found.report.rms_off, expected.report.rms_off) << exponent;
+    }
+    const HexMesh two = make_box(2, 1, 1);
+    for (const double value : fit_cell_means(two, std::vector<Attribute>{{"f", 1, {1e308, -1e308}}}).fields[0].values) {
+        EXPECT_TRUE(std::isfinite(value));
+    }
+}
+
 TEST(CellMeans, WrongInputIsRefused) {
     const HexMesh mesh = make_box(1, 1, 1);
     EXPECT_THROW(static_cast<void>(fit_cell_means(mesh, std::vector<Attribute>{{"f", 1, {1, 2}}})), Error);

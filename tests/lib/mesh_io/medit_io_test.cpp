@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "mesh_files.h"
 #include "mesh_texts.h"
 #include "subvol/mesh_io.h"
 
@@ -15,21 +15,12 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class MeditIo : public TempFolder {
-protected:
-    [[nodiscard]] ReadResult read(const std::string& name, const std::string& text) const {
-        return read_mesh(write(name, text));
-    }
-    [[nodiscard]] std::string read_error(const std::string& name, const std::string& text) const {
-        return error_of([&] { static_cast<void>(read(name, text)); });
-    }
-};
+class MeditIo : public MeshFiles {};
 
 const HexMesh kBox = make_box(2, 2, 2);
 
 void expect_box(const HexMesh& mesh) {
-    EXPECT_EQ(mesh.points, kBox.points);
-    EXPECT_EQ(mesh.cells, kBox.cells);
+    expect_same_geometry(mesh, kBox);
 }
 
 TEST_F(MeditIo, LetsTheSectionsComeInAnyOrder) {

@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
+#include "mesh_files.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "vtu_texts.h"
@@ -59,19 +59,10 @@ std::string values_of_box(VtuText& vtu) {
            vtu.array("Float64", "Name=\"c\"", std::vector<double>(kBox.cells.size(), 7)) + "</CellData>";
 }
 
-class StructuredIo : public TempFolder {
-protected:
-    [[nodiscard]] ReadResult read(const std::string& name, const std::string& text, const ReadOptions& options = {}) const {
-        return read_mesh(write(name, text), options);
-    }
-    [[nodiscard]] std::string read_error(const std::string& name, const std::string& text) const {
-        return error_of([&] { static_cast<void>(read(name, text)); });
-    }
-};
+class StructuredIo : public MeshFiles {};
 
 void expect_box(const HexMesh& mesh) {
-    EXPECT_EQ(mesh.points, kBox.points);
-    EXPECT_EQ(mesh.cells, kBox.cells);
+    expect_same_geometry(mesh, kBox);
     EXPECT_EQ(inspect(mesh).volume, 24);
 }
 

@@ -43,6 +43,33 @@ TEST(PointsRange, ChosenKernelsKeepTheirNumbers) {
     }
 }
 
+TEST(PointsRange, KeptKernelsAreTheChosenOnes) {
+    RbfVolume kept = ball();
+    // A channel has what was computed for it: one without gradients stays without.
+    kept.channels.push_back({.name = "values alone", .values = kept.channels.front().values});
+    const RbfVolume whole = kept;
+    const std::vector<std::size_t> places{0, 2, 3, whole.size() - 1};
+    detail::keep_kernels(kept, places);
+    RbfVolume chosen = detail::chosen_kernels(whole, places);
+    EXPECT_EQ(kept.centers, chosen.centers);
+    EXPECT_EQ(kept.frames, chosen.frames);
+    EXPECT_EQ(kept.boundary.points, whole.boundary.points);
+    for (std::size_t c = 0; c < 2; ++c) {
+        EXPECT_EQ(kept.channels[c].values, chosen.channels[c].values);
+        EXPECT_EQ(kept.channels[c].gradients, chosen.channels[c].gradients);
+        EXPECT_EQ(kept.channels[c].moments, chosen.channels[c].moments);
+        EXPECT_EQ(kept.channels[c].hessians, chosen.channels[c].hessians);
+    }
+    EXPECT_TRUE(kept.channels[1].gradients.empty());
+}
+
+TEST(PointsRange, NothingKeptIsNothing) {
+    RbfVolume kept = ball();
+    detail::keep_kernels(kept, {});
+    EXPECT_EQ(kept.size(), 0U);
+    EXPECT_TRUE(kept.channels.front().hessians.empty());
+}
+
 TEST(PointsRange, OtherChannelsAreNotAppended) {
     RbfVolume a = ball(), b = a;
     b.channels.front().name = "other";

@@ -61,6 +61,17 @@ TEST(EmptySpaceLimits, EverythingOrNothing) {
     EXPECT_EQ(drop_invisible(volume, 0, opaque_above(-10)).dropped, 0u);
 }
 
+TEST(EmptySpaceLimits, ChannelsThatAreNotDrawnNeedNoGradients) {
+    auto volume = sample_rbf_points(make_model("ball", 8)).volume;
+    volume.channels.push_back({.name = "values alone", .values = volume.channels[0].values});
+    const float most = *std::max_element(volume.channels[0].values.begin(), volume.channels[0].values.end());
+    const VisibleVolume visible = drop_invisible(volume, 0, opaque_above(0.9 * most));
+    ASSERT_GT(visible.dropped, 0u);
+    ASSERT_GT(visible.volume.size(), 0u);
+    EXPECT_EQ(visible.volume.channels[1].values, visible.volume.channels[0].values);
+    EXPECT_TRUE(visible.volume.channels[1].gradients.empty());
+}
+
 TEST(EmptySpaceLimits, RefusesChannelsAndKernelsThatItCannotBound) {
     auto volume = sample_rbf_points(make_model("ball", 4)).volume;
     EXPECT_THROW((void)drop_invisible(volume, 1, opaque_above(0)), Error);

@@ -2,42 +2,26 @@
 // Sessions of kernels without a mesh, and what a window starts without waiting.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <thread>
 
+#include "small_sessions.h"
 #include "subvol/error.h"
 #include "subvol/gl_device.h"
-#include "subvol/model.h"
 #include "subvol/render_projected.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
 #include "subvol/transfer_function.h"
-#include "subvol/view_session.h"
 
 namespace subvol {
 namespace {
 
-const DrawSettings kByCpu{.splat = {.method = SplatMethod::Cpu}};
-
-HexMesh with_height() {
-    HexMesh mesh = make_model("ball", 3);
-    Attribute height{"height", 1, {}};
-    for (const Vec3& point : mesh.points) height.values.push_back(point.z);
-    mesh.attributes.push_back(std::move(height));
-    return mesh;
-}
-
-ViewState small_state(const Box& box) {
-    return {.camera = fit_camera(box, {0, 1, 0}), .width = 48, .height = 40};
-}
-
 class PointsSession : public testing::Test {
 protected:
-    std::shared_ptr<const RbfVolume> volume = std::make_shared<const RbfVolume>(sample_rbf_points(with_height()).volume);
+    std::shared_ptr<const RbfVolume> volume = std::make_shared<const RbfVolume>(sample_rbf_points(ball_with_height()).volume);
     ViewSession session{{.input = "points.ply", .points = {.volume = volume, .box = volume->bounds}},
                         mesh_of_points(*volume),
-                        small_state(volume->bounds),
+                        small_state(volume->bounds, {0, 1, 0}),
                         kByCpu};
 };
 
@@ -73,14 +57,14 @@ TEST_F(PointsSession, HaveNoCellsToDrawOrToEdit) {
 
 class WaitingNowhere : public testing::Test {
 protected:
-    HexMesh mesh = with_height();
+    HexMesh mesh = ball_with_height();
     ViewSession session{
         {.input = "ball",
          .read = [](std::size_t step) { return make_model("ball", step == 0 ? 3 : 2); },
          .times = {0, 1, 2},
          .write_picture = [this](const std::filesystem::path&, const Image& image, const Vec3&) { written = image; }},
         mesh,
-        small_state(bounds(mesh)),
+        small_state(bounds(mesh), {0, 1, 0}),
         kByCpu};
     Image written{};
 
@@ -109,7 +93,7 @@ TEST_F(WaitingNowhere, StartsWhatIsSlowAndTakesItsResults) {
     EXPECT_LT(session.body().mesh.cells.size(), mesh.cells.size());
     EXPECT_THROW(session.start(R"({"step": 3})"), Error);
     session.start(R"({"orbit": [10, 0]})");  // all else is done at once
-    EXPECT_NE(session.state().camera.eye, small_state(bounds(mesh)).camera.eye);
+    EXPECT_NE(session.state().camera.eye, small_state(bounds(mesh), {0, 1, 0}).camera.eye);
 }
 
 TEST_F(WaitingNowhere, DrawsProjectedTetrahedra) {
@@ -118,13 +102,7 @@ TEST_F(WaitingNowhere, DrawsProjectedTetrahedra) {
     const auto shown = session.wait();
     session.run(R"({"method": "tets"})");
     const auto traced = session.wait();
-    double sum = 0;
-    for (std::size_t k = 0; k < traced->image.rgba.size(); ++k) {
-        const double d = double{shown->image.rgba[k]} - double{traced->image.rgba[k]};
-        sum += d * d;
-    }
-    EXPECT_LT(std::sqrt(sum / static_cast<double>(traced->image.rgba.size())),
-              1e-3);  // both are exact, one in single precision
+    EXPECT_LT(rms_difference(shown->image, traced->image), 1e-3);  // both are exact, one in single precision
     EXPECT_EQ(shown->backend, "gl");
 }
 

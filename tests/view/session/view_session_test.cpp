@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "seen_view.h"
+#include "small_sessions.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
 #include "subvol/error.h"
@@ -17,26 +18,14 @@
 namespace subvol {
 namespace {
 
-HexMesh two_fields() {
-    HexMesh mesh = make_model("ball", 3);
-    Attribute height{"height", 1, {}};
-    for (const Vec3& point : mesh.points) height.values.push_back(point.z);
-    mesh.attributes.push_back(std::move(height));
-    return mesh;
-}
-
-ViewState small_state(const HexMesh& mesh, Look look = Look::Volume) {
-    return {.camera = fit_camera(bounds(mesh), {-1, 1, -1}), .width = 48, .height = 40, .look = {.look = look}};
-}
-
-const DrawSettings kByCpu{.splat = {.method = SplatMethod::Cpu}};
+const Vec3 kFromCorner(-1, 1, -1);
 
 class Session : public testing::Test {
 protected:
-    HexMesh mesh = two_fields();
-    ViewSession session{{.input = "model:ball:3", .read = [](std::size_t) { return two_fields(); }, .times = {0, 1, 2}},
+    HexMesh mesh = ball_with_height();
+    ViewSession session{{.input = "model:ball:3", .read = [](std::size_t) { return ball_with_height(); }, .times = {0, 1, 2}},
                         mesh,
-                        small_state(mesh),
+                        small_state(bounds(mesh), kFromCorner),
                         kByCpu};
 
     [[nodiscard]] std::string refusal(const std::string& action) {
@@ -82,13 +71,7 @@ TEST_F(Session, ReferenceAndSplatsShowTheSame) {
     const auto splats = session.wait();
     session.run(R"({"method": "tets"})");
     const auto tets = session.wait();
-    double sum = 0;
-    for (std::size_t k = 0; k < tets->image.rgba.size(); ++k) {
-        const double d = double{tets->image.rgba[k]} - double{splats->image.rgba[k]};
-        sum += d * d;
-    }
-    EXPECT_LT(std::sqrt(sum / static_cast<double>(tets->image.rgba.size())),
-              0.03);  // one kernel for each control point of 3³ cells
+    EXPECT_LT(rms_difference(tets->image, splats->image), 0.03);  // one kernel for each control point of 3³ cells
 }
 
 TEST_F(Session, CutsThePictureAndBringsItBack) {
@@ -190,6 +173,19 @@ TEST_F(Session, RefusesInOneSentenceAndChangesNothing) {
     EXPECT_EQ(session.state_json(), before);
 }
 
+TEST_F(Session, AStepWithoutTheFieldChangesNothing) {
+    const auto read = [&](std::size_t step) { return step == 1 ? make_model("ball", 2) : mesh; };
+    ViewSession steps({.input = "ball", .read = read, .times = {0, 1, 2}}, mesh, small_state(bounds(mesh), kFromCorner),
+                      kByCpu);
+    steps.run(R"({"field": "height"})");
+    const std::string before = steps.state_json();
+    EXPECT_THROW(steps.run(R"({"step": 1})"), Error);
+    EXPECT_EQ(steps.state_json(), before);
+    EXPECT_EQ(steps.fields(), session.fields());
+    steps.run(R"({"step": 2})");
+    EXPECT_EQ(steps.state().step, 2u);
+}
+
 TEST_F(Session, AScriptNamesTheActionThatIsWrong) {
     try {
         session.run_script(R"([{"orbit": [1, 2]}, {"zoom": "in"}])", "turn.json");
@@ -226,8 +222,8 @@ TEST_F(Session, ManyMotionsEndInTheLastPicture) {
 
 TEST(SolidSession, ShowsTheColoursOfTheBoundary) {
     const HexMesh mesh = make_model("ball", 3);
-    ViewSession session({.input = "ball", .read = [&](std::size_t) { return mesh; }}, mesh, small_state(mesh, Look::Solid),
-                        kByCpu);
+    ViewSession session({.input = "ball", .read = [&](std::size_t) { return mesh; }}, mesh,
+                        small_state(bounds(mesh), kFromCorner, Look::Solid), kByCpu);
     const auto shown = session.wait();
     const ViewState& state = session.state();
     const Optics optics = optics_of(state, session.body());
@@ -241,7 +237,7 @@ TEST(SolidSession, ShowsTheColoursOfTheBoundary) {
 
 TEST(FitSession, TheBodyIsBesideTheLegend) {
     const HexMesh mesh = make_model("ball", 3);
-    ViewState state = small_state(mesh, Look::Solid);
+    ViewState state = small_state(bounds(mesh), kFromCorner, Look::Solid);
     state.width = 260;
     state.height = 240;
     state.legend = true;
@@ -267,8 +263,8 @@ TEST(FitSession, TheBodyIsBesideTheLegend) {
 
 TEST(WrongLook, BecomesTheErrorOfThePicture) {
     const HexMesh mesh = make_model("ball", 2);
-    ViewSession session({.input = "ball", .read = [&](std::size_t) { return mesh; }}, mesh, small_state(mesh, Look::Isosurface),
-                        kByCpu);
+    ViewSession session({.input = "ball", .read = [&](std::size_t) { return mesh; }}, mesh,
+                        small_state(bounds(mesh), kFromCorner, Look::Isosurface), kByCpu);
     (void)session.wait();
     session.run(R"({"method": "tets"})");
     EXPECT_THROW((void)session.wait(), Error);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "subvol/rbf_volume.h"
 
@@ -11,6 +12,9 @@ namespace subvol {
 
 /// The axis of the world that is up.
 enum class UpAxis { X, Y, Z };
+
+/// name: "x", "y" or "z"; nothing for other names
+[[nodiscard]] std::optional<UpAxis> up_axis(std::string_view name);
 
 /// ascii:  for `.ply`: text instead of binary numbers
 /// splats: for `.ply`: adds properties for viewers of 3-D Gaussian splats, see `write_points`

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_grids.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bricks_input.h"
+#include "input.h"
+#include "quantities.h"
+#include "subvol/error.h"
+#include "subvol/grid_error.h"
+#include "subvol/mesh_motion.h"
+#include "subvol/mesh_report.h"
+#include "subvol/vdb_contents.h"
+#include "subvol/version.h"
+#include "text.h"
+#include "voxels_of_points.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kBytesOfChannel = 5.5;  // a voxel's float in leaves that are not all full, with their masks
+
+}  // namespace
+
+LimitCells reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size, Report& report) {
+    LimitCells limit = report.timed("limit level", [&] { return limit_for_voxels(mesh, refinement, voxel_size); });
+    const int levels = finest_level(limit);
+    report["levels"] = levels;
+    report["cells"] = limit.piece_count;
+    report["limit_deviation"] = {{"voxels", limit.position_world / voxel_size}, {"of_range", limit.value_of_range}};
+    if (!limit.converged) {
+        report.warn(text("level ", levels, " was the finest within limits; the last step still moved points by ",
+                         limit.position_world / voxel_size, " voxels and values by ", limit.value_of_range, " of their range"));
+    }
+    return limit;
+}
+
+MeshGrids::MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine)
+    : input_(std::move(input)), asked_(asked), refine_(refine), fields_(asked) {
+    if (!is_bricks_input(input_)) tets_ = TetRefinement(refine);
+    if (!asked.like.empty()) like_grids_ = read_vdb(asked.like);
+}
+
+HexMesh MeshGrids::load(const std::string& input, const CommonOptions& options, Report& report) const {
+    HexMesh mesh = fields_.chosen(tets_.hexes(load_mesh(input, options, report), 2, report), options, report);
+    if (asked_.up == "y") turn_y_up(mesh);
+    if (asked_.scale != 1) scale_points(mesh, asked_.scale);
+    return mesh;
+}
+
+RasterizeOptions MeshGrids::options(Report& report) const {
+    return {.like = like_grids_.empty() ? nullptr : &like_grids_.front(),
+            .half = asked_.half,
+            .cell_numbers = asked_.cell_numbers,
+            .mask = asked_.mask,
+            .coverage = asked_.coverage,
+            .metadata = {{"subvol_input", input_}, {"subvol_from", asked_.from}, {"subvol_version", SUBVOL_VERSION}},
+            .progress = report.progress()};
+}
+
+double MeshGrids::voxel_size_world(const HexMesh& mesh) const {
+    if (!like_grids_.empty()) return like_grids_.front().report().voxel_size_world;
+    if (asked_.voxel_size > 0) return asked_.voxel_size;
+    if (asked_.budget_bytes > 0) {
+        double channels = asked_.cell_numbers ? 1 : 0;
+        for (const Attribute& attribute : mesh.attributes) channels += attribute.channels;
+        return std::cbrt(std::abs(measure_cells(mesh).volume) * kBytesOfChannel * channels /
+                         static_cast<double>(asked_.budget_bytes));
+    }
+    const Vec3 size = bounds(mesh).size();
+    return std::max({size.x, size.y, size.z}) / asked_.resolution;
+}
+
+RasterizeOptions MeshGrids::set_up(const HexMesh& mesh, Report& report) {
+    const double voxel_size = voxel_size_world(mesh);
+    RefineOptions refinement = refine_.options(0, report);
+    int levels = refinement.levels;
+    if (refine_.levels) {
+        report["levels"] = refinement.levels;
+        report["cells"] = mesh.cells.size() << (3 * refinement.levels);
+    } else {
+        limit_ = reported_limit(mesh, refinement, voxel_size, report);
+        levels = finest_level(limit_);
+    }
+    RasterizeOptions options = this->options(report);
+    options.voxel_size_world = voxel_size;
+    options.refine = refinement;
+    options.on_limit = !interpolates(refinement.scheme.kind);
+    options.limit = refine_.levels ? nullptr : &limit_;
+    options.level_set = asked_.level_set();
+    if (options.level_set && mesh.find_attribute(options.level_set->name)) {
+        throw Error(ErrorCode::InvalidInput, "the mesh has a field of this name", options.level_set->name,
+                    "--sdf with another name");
+    }
+    options.metadata.emplace_back("subvol_scheme", tets_.asked() ? tets_.name() : refine_.scheme);
+    options.metadata.emplace_back("subvol_level", std::to_string(levels));
+    return options;
+}
+
+std::vector<VdbGrid> MeshGrids::make(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const {
+    std::vector<VdbGrid> grids = asked_.from == "points"
+                                     ? kernel_sums(mesh, options, asked_.per_edge, report)
+                                     : report.timed("rasterize", [&] { return rasterize(mesh, names_of(mesh), options); });
+    fields_.clamp(mesh, grids);
+    return grids;
+}
+
+std::vector<GridErrorFigures> MeshGrids::add_errors(const HexMesh& mesh, const RasterizeOptions& options,
+                                                    std::vector<VdbGrid>& grids, Report& report) const {
+    std::vector<GridErrorFigures> figures;
+    const std::size_t count = grids.size();
+    std::size_t outside = 0;
+    for (std::size_t g = 0; g < count; ++g) {
+        const Attribute* field = mesh.find_attribute(grids[g].report().name);
+        if (field == nullptr || field->channels != 1) continue;
+        GridError error = report.timed("error", [&] {
+            return grid_error(grids[g], mesh, field->name,
+                              {.scheme = options.refine.scheme, .half = asked_.half, .progress = report.progress()});
+        });
+        figures.push_back({g, error.max, error.rms});
+        outside = std::max(outside, error.outside);
+        grids.push_back(std::move(error.grid));
+    }
+    if (outside > 0) {
+        report.note(text(count_text(outside), " voxels' centres lie outside the limit, by less than the grid resolves"));
+    }
+    return figures;
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common_options.h"
+#include "refine_arguments.h"
+#include "report.h"
+#include "subvol/limit_level.h"
+#include "subvol/rasterize.h"
+#include "tet_refinement.h"
+#include "vdb_arguments.h"
+#include "written_fields.h"
+
+namespace subvol::cli {
+
+/// The limit of a mesh for voxels of a size. The report's "levels" is the finest level, its "cells" the number of curved
+/// pieces, 27 vertices each.
+[[nodiscard]] LimitCells reported_limit(const HexMesh& mesh, const RefineOptions& refinement, double voxel_size,
+                                        Report& report);
+
+/// The greatest and the mean error of a grid. grid: its number
+struct GridErrorFigures {
+    std::size_t grid;
+    double max, rms;
+};
+
+/// From a mesh to the grids that the options of `subvol vdb` ask for.
+class MeshGrids {
+public:
+    /// input:  of the command, for the metadata
+    /// asked:  referred to
+    /// refine: referred to; unless the input is a folder of bricks, a scheme of tetrahedra is taken out of it, see
+    /// `TetRefinement` throws: Error(InvalidInput) for options that cannot be read; Error(Io) if --like cannot be
+    MeshGrids(std::string input, const VdbArguments& asked, RefineArguments& refine);
+
+    [[nodiscard]] const WrittenFields& fields() const { return fields_; }
+
+    /// Reads a mesh, with the fields that are written, turned and scaled.
+    [[nodiscard]] HexMesh load(const std::string& input, const CommonOptions& options, Report& report) const;
+
+    /// The options that do not depend on the mesh.
+    [[nodiscard]] RasterizeOptions options(Report& report) const;
+
+    /// The options for a mesh, which depend on its box and its fields. They refer to the limit of the mesh, which is kept until
+    /// the next call.
+    ///
+    /// throws: Error(InvalidInput) if the mesh has a field with the name of the level set
+    [[nodiscard]] RasterizeOptions set_up(const HexMesh& mesh, Report& report);
+
+    [[nodiscard]] std::vector<VdbGrid> make(const HexMesh& mesh, const RasterizeOptions& options, Report& report) const;
+
+    /// Adds a grid of errors for each grid of a scalar field.
+    [[nodiscard]] std::vector<GridErrorFigures> add_errors(const HexMesh& mesh, const RasterizeOptions& options,
+                                                           std::vector<VdbGrid>& grids, Report& report) const;
+
+private:
+    [[nodiscard]] double voxel_size_world(const HexMesh& mesh) const;
+
+    std::string input_;
+    const VdbArguments& asked_;
+    const RefineArguments& refine_;
+    WrittenFields fields_;
+    TetRefinement tets_;
+    std::vector<VdbGrid> like_grids_;
+    LimitCells limit_;
+};
+
+}  // namespace subvol::cli

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "written_fields.h"
+
+#include <algorithm>
+
+#include "frame_velocity.h"
+#include "input.h"
+#include "subvol/field_expression.h"
+#include "subvol/field_range.h"
+#include "subvol/vdb_contents.h"
+
+namespace subvol::cli {
+
+WrittenFields::WrittenFields(const VdbArguments& asked) : fields_(parse_grid_fields(asked.fields)), clamp_(asked.clamp) {
+    for (const std::string& remap : asked.remaps) remaps_.push_back(parse_remap(remap));
+}
+
+HexMesh WrittenFields::chosen(HexMesh mesh, const CommonOptions& options, Report& report) const {
+    if (fields_.empty()) {
+        mesh = with_selected_field(std::move(mesh), options, report);
+    } else {
+        std::vector<Attribute> chosen;
+        for (const auto& [name, source] : fields_) {
+            if (name != source) {
+                chosen.push_back(field_of(mesh, name, source));
+                continue;
+            }
+            if (const Attribute* vector = mesh.find_attribute(name); vector && vector->channels == 3) {
+                chosen.push_back(*vector);
+                continue;
+            }
+            SelectedField selected = select_field(mesh, name);
+            report.warn(selected.warning);
+            chosen.push_back(std::move(selected.scalar));
+        }
+        mesh.attributes = std::move(chosen);
+    }
+    for (const Remap& remap : remaps_) apply(remap, mesh);
+    return mesh;
+}
+
+bool WrittenFields::maps(const Remap& remap, const Attribute& field, const HexMesh& mesh) {
+    return remap.grid.empty() ? &field == &mesh.attributes.front() : remap.grid == field.name;
+}
+
+void WrittenFields::clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) const {
+    for (VdbGrid& grid : grids) {
+        const Attribute* field = mesh.find_attribute(grid.report().name);
+        if (field == nullptr || field->name == kVelocity) continue;
+        if (clamp_) clamp_voxels(grid, range_of(*field));
+        for (const Remap& remap : remaps_) {
+            if (maps(remap, *field, mesh))
+                clamp_voxels(grid, {{std::min(remap.to_low, remap.to_high)}, {std::max(remap.to_low, remap.to_high)}});
+        }
+    }
+}
+
+void WrittenFields::note_overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, Report& report) const {
+    for (const VdbGrid& grid : grids) {
+        const Attribute* field = mesh.find_attribute(grid.report().name);
+        if (field == nullptr || field->channels != 1 || clamp_) continue;
+        if (std::ranges::any_of(remaps_, [&](const Remap& remap) { return maps(remap, *field, mesh); })) continue;
+        const FieldRange range = range_of(*field);
+        note_beyond(field->name, {range.min[0], range.max[0]}, {grid.report().min, grid.report().max}, report);
+    }
+}
+
+}  // namespace subvol::cli

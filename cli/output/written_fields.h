@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common_options.h"
+#include "grid_fields.h"
+#include "report.h"
+#include "subvol/hex_mesh.h"
+#include "subvol/vdb_grid.h"
+#include "vdb_arguments.h"
+
+namespace subvol::cli {
+
+/// The fields of a mesh that become grids, as --fields, --remap and --clamp of `subvol vdb` say.
+class WrittenFields {
+public:
+    /// throws: Error(InvalidInput) for --fields or --remap that cannot be read
+    explicit WrittenFields(const VdbArguments& asked);
+
+    /// What --fields asks for; empty: the field that --field or --density select.
+    [[nodiscard]] const std::vector<GridField>& asked() const { return fields_; }
+
+    /// The mesh with only these fields, their values mapped.
+    ///
+    /// throws: Error(InvalidInput) if there is no such field
+    [[nodiscard]] HexMesh chosen(HexMesh mesh, const CommonOptions& options, Report& report) const;
+
+    /// Keeps the grids of fields within what --clamp and --remap say.
+    void clamp(const HexMesh& mesh, std::vector<VdbGrid>& grids) const;
+
+    /// Says which fields have voxels beyond the values of the mesh.
+    void note_overshoot(const HexMesh& mesh, const std::vector<VdbGrid>& grids, Report& report) const;
+
+private:
+    [[nodiscard]] static bool maps(const Remap& remap, const Attribute& field, const HexMesh& mesh);
+
+    std::vector<GridField> fields_;
+    std::vector<Remap> remaps_;
+    bool clamp_ = false;
+};
+
+}  // namespace subvol::cli
