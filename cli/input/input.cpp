@@ -72,6 +72,16 @@ bool is_model(const std::string& input) {
     return input.starts_with(kModelPrefix);
 }
 
+ReadOptions read_options(const std::string& input, const CommonOptions& options) {
+    return {.other_cells = other_cells(options.other_cells),
+            .weld = weld_distance(options),
+            .sharp = options.sharp,
+            .curved_tolerance = curved_tolerance(options),
+            .step = one_step(input, options),
+            .blocks = options.blocks,
+            .cell_values = cell_values(options)};
+}
+
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
     if (is_bricks(input)) {
@@ -83,14 +93,7 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = report.timed("read", [&] {
-        return model ? generate(input.substr(kModelPrefix.size()))
-                     : read_mesh(input, {.other_cells = other_cells(options.other_cells),
-                                         .weld = weld_distance(options),
-                                         .sharp = options.sharp,
-                                         .curved_tolerance = curved_tolerance(options),
-                                         .step = one_step(input, options),
-                                         .blocks = options.blocks,
-                                         .cell_values = cell_values(options)});
+        return model ? generate(input.substr(kModelPrefix.size())) : read_mesh(input, read_options(input, options));
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;
