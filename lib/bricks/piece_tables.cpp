@@ -5,6 +5,8 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -375,9 +377,10 @@ private:
                     list_ + ", array " + in_quotes(array.name));
     }
 
-    void check_cell_values(const std::vector<double>& records, const std::vector<Index>& in_file, std::size_t k) const {
+    void check_cell_values(const std::vector<double>& records, const std::vector<Index>& in_file, std::size_t k) {
         const std::size_t length = tables_->components(true);
         each_column(true, [&](const FileArray& array, std::size_t column, std::size_t components) {
+            keep_least(array, records, column, length);
             for (std::size_t i = 0; i < in_file.size(); ++i) {
                 for (std::size_t c = column; c < column + components; ++c) {
                     if (std::isfinite(records[i * length + c])) continue;
@@ -387,7 +390,7 @@ private:
         });
     }
 
-    void check_point_values() const {
+    void check_point_values() {
         if (!tables_->point_values) return;
         const std::size_t length = tables_->components(false);
         std::vector<double> records;
@@ -396,6 +399,7 @@ private:
             records.resize(count * length);
             tables_->point_values->read(begin, records_of(records));
             each_column(false, [&](const FileArray& array, std::size_t column, std::size_t components) {
+                keep_least(array, records, column, length);
                 for (std::size_t p = 0; p < count; ++p) {
                     if (!tables_->used[static_cast<Index>(begin + p)]) continue;
                     for (std::size_t c = column; c < column + components; ++c) {
@@ -404,6 +408,32 @@ private:
                 }
             });
         }
+    }
+
+    // Of the first component, and of the values that are finite.
+    void keep_least(const FileArray& array, const std::vector<double>& records, std::size_t column, std::size_t length) {
+        double least = HUGE_VAL;
+        for (std::size_t i = column; i < records.size(); i += length) {
+            if (std::isfinite(records[i])) least = std::min(least, records[i]);
+        }
+        if (least == HUGE_VAL) return;
+        double& kept = least_.try_emplace({array.name, array.at_cells}, least).first->second;
+        kept = std::min(kept, least);
+    }
+
+    // What is said of the arrays of a mesh, whatever its cells are: of a cube that has the least value of each everywhere.
+    [[nodiscard]] std::vector<std::string> warnings_of_arrays() const {
+        MeshFile cube;
+        for (const Vec3 x : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}) cube.points.push_back(x);
+        for (std::size_t p = 0; p < 4; ++p) cube.points.push_back(cube.points[p] + Vec3(0, 0, 1));
+        cube.hexes = {{{0, 1, 2, 3, 4, 5, 6, 7}}, {0}};
+        for (const FileArray& array : tables_->arrays) {
+            const auto count = static_cast<std::size_t>(array.components) * (array.at_cells ? 1 : cube.points.size());
+            cube.arrays.push_back(array);
+            const auto least = least_.find({array.name, array.at_cells});
+            cube.arrays.back().values.assign(count, least == least_.end() ? 0 : least->second);
+        }
+        return assemble(std::move(cube), list_, names_in_parts(), {.cell_values = CellValues::Mean}).warnings;
     }
 
     std::unique_ptr<PieceTables> finished() {
@@ -426,6 +456,7 @@ private:
         }
         warnings_.push_back(joining_report(hashes_.size(), files_.word, joined_, by, order));
         if (ghosts_ > 0) warnings_.push_back(ghosts_left_out(ghosts_));
+        std::ranges::copy(warnings_of_arrays(), std::back_inserter(warnings_));
         tables.warnings = files_.warnings;
         tables.warnings.insert(tables.warnings.end(), warnings_.begin(), warnings_.end());
         return std::move(tables_);
@@ -449,6 +480,7 @@ private:
     std::vector<Candidate> point_numbers_, cell_numbers_;
     Candidate *by_numbers_ = nullptr, *order_ = nullptr;
     std::optional<RanksOfPlaces> places_;
+    std::map<std::pair<std::string, bool>, double> least_;  // of the first component of each array
     std::vector<std::string> warnings_;
     std::set<std::string> said_;
 
