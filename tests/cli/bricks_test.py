@@ -98,6 +98,17 @@ class SameAsTheWhole(InFolder):
                 if b["inside"]:
                     self.assertAlmostEqual(a["value"], b["value"], delta=1e-9)
 
+    def test_surfaces(self):
+        for options in (["--boundary"], ["--iso", 0.1, "--cap", "--tolerance", 3e-3, "--color-field", "density"]):
+            whole = self.run_ok("surface", BALL, "-o", "whole.ply", *options, "--json").json()
+            for cut in self.cuts([(3, "slabs"), (5, "blocks"), (4, "random")]):
+                parts = self.run_ok("surface", "b.bricks", "-o", "parts.ply", *options, "--json").json()
+                for key in ("points", "triangles", "watertight", "euler", "components", "level"):
+                    self.assertEqual(parts[key], whole[key], f"{cut} {key}")
+                for key in ("area", "volume"):  # values of the limit differ by roundings, crossings by 1e-6 of an edge
+                    self.assertAlmostEqual(parts[key], whole[key], delta=1e-6 * whole[key], msg=f"{cut} {key}")
+                self.assertEqual(len(self.bytes_of("parts.ply")), len(self.bytes_of("whole.ply")), cut)
+
     def test_the_twist_is_written_brick_by_brick(self):
         self.run_ok("points", "model:twist:10", "-o", "whole.ply", "--quiet")
         split = self.run_ok("split", "model:twist:10", "-o", "t.bricks", "--bricks", 8, "--json").json()
@@ -123,6 +134,7 @@ class WhatGoesWrong(InFolder):
         self.assert_said(naming, "points", "t.bricks", "-o", "a.ply")
         self.assert_said(naming, "vdb", "t.bricks", "-o", "a.vdb", "--resolution", 20)
         self.assert_said(naming, "render", "t.bricks", "-o", "a.png", "--size", "64x64")
+        self.assert_said(naming, "surface", "t.bricks", "-o", "a.ply")
         self.assert_said(naming, "info", "t.bricks")
 
     def test_missing_changed_and_foreign_bricks(self):
@@ -152,7 +164,6 @@ class WhatGoesWrong(InFolder):
 
     def test_what_cannot_be_done_by_bricks(self):
         said = "is a folder of bricks, which this command does not take yet"
-        self.assert_said(said, "surface", "t.bricks", "-o", "a.ply", "--boundary")
         self.assert_said(said, "slice", "t.bricks", "-o", "a.png", "--plane", "0,0,0,0,0,1")
         self.assert_said(said, "subdivide", "t.bricks", "-o", "a.vtu")
         self.assert_said("whole mesh in memory", "vdb", "t.bricks", "-o", "a.vdb", "--sdf")
@@ -162,6 +173,8 @@ class WhatGoesWrong(InFolder):
         self.assert_said("can only be splatted", "render", "t.bricks", "-o", "a.png", "--method", "tets")
         self.assert_said("split with --halo 4", "points", "t.bricks", "-o", "a.ply", "--correction", "full")
         self.assert_said("settled when a mesh is split", "points", "t.bricks", "-o", "a.ply", "--weld")
+        self.assert_said("is not refined by", "surface", "t.bricks", "-o", "a.ply", "--scheme", "tetoct")
+        self.assert_said("the limit does not take this value", "surface", "t.bricks", "-o", "a.ply", "--iso", 99)
         self.assert_said("does not take", "split", "t.bricks", "-o", "u.bricks")
 
     def test_splitting(self):
