@@ -33,12 +33,6 @@ public:
     }
 
 private:
-    struct Center {
-        double at;
-        Index cell;
-        bool operator<(const Center& other) const { return at != other.at ? at < other.at : cell < other.cell; }
-    };
-
     /// Calls call(cell, coordinate) for all cells in their order.
     template <class Call>
     void each_center(int axis, std::span<const Index> cells, const Call& call) const {
@@ -70,23 +64,34 @@ private:
         }
         const std::size_t low = count / 2, middle = cells.size() * low / count;
         const int axis = slabs_ ? axis_ : longest_side(cells);
-        const Center border = nth(axis, cells, middle);
+        const Border border = border_of(axis, cells, middle);
         std::vector<Index> below, above;
         below.reserve(middle);
         above.reserve(cells.size() - middle);
-        each_center(axis, cells, [&](Index c, double x) { (Center{x, c} < border ? below : above).push_back(c); });
+        std::size_t equal = 0;
+        each_center(axis, cells, [&](Index c, double x) {
+            const bool is_below = x < border.at || (x == border.at && equal++ < border.equal_below);
+            (is_below ? below : above).push_back(c);
+        });
         cells = {};
         tbb::parallel_invoke([&] { cut(std::move(below), first, low); },
                              [&] { cut(std::move(above), first + low, count - low); });
     }
 
-    [[nodiscard]] Center nth(int axis, std::span<const Index> cells, std::size_t place) const {
-        std::vector<Center> centers;
+    /// Cells are below with smaller coordinates, and so many of those with this one, the first ones.
+    struct Border {
+        double at;
+        std::size_t equal_below;
+    };
+
+    [[nodiscard]] Border border_of(int axis, std::span<const Index> cells, std::size_t place) const {
+        std::vector<double> centers;
         centers.reserve(cells.size());
-        each_center(axis, cells, [&](Index c, double x) { centers.push_back({x, c}); });
+        each_center(axis, cells, [&](Index, double x) { centers.push_back(x); });
         const auto border = centers.begin() + static_cast<std::ptrdiff_t>(place);
         std::nth_element(centers.begin(), border, centers.end());
-        return *border;
+        const auto smaller = std::count_if(centers.begin(), border, [&](double x) { return x < *border; });
+        return {*border, place - static_cast<std::size_t>(smaller)};
     }
 
     bool slabs_;

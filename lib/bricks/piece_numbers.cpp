@@ -11,7 +11,8 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kWaiting = 1024;               // records of a bucket
-constexpr std::size_t kRoom = std::size_t{1} << 20;  // numbers before the first search for equal ones
+constexpr std::size_t kRoom = std::size_t{1} << 20;  // numbers before the first search for equal ones; words of flags
+constexpr double kLargestWhole = 9007199254740992;   // 2⁵³
 
 std::uint64_t hash_of(const Vec3& x) {
     std::uint64_t hash = 0;
@@ -22,8 +23,51 @@ std::uint64_t hash_of(const Vec3& x) {
 }  // namespace
 
 void RanksOfNumbers::add(std::span<const double> numbers) {
-    numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
-    if (numbers_.size() > 2 * compacted_ + kRoom) compact();
+    if (numbers.empty()) return;
+    added_ += numbers.size();
+    if (!listed_ && !make_room(numbers)) give_up_flags();
+    if (listed_) {
+        numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
+        if (numbers_.size() > 2 * compacted_ + kRoom) compact();
+        return;
+    }
+    for (const double number : numbers) {
+        const std::int64_t n = static_cast<std::int64_t>(number) - 64 * first_word_;
+        const std::uint64_t flag = std::uint64_t{1} << n % 64;
+        std::uint64_t& word = words_[static_cast<std::size_t>(n / 64)];
+        different_ = different_ && (word & flag) == 0;
+        word |= flag;
+    }
+}
+
+// Returns false if the flags would take more than 8 bytes for each number, and 8 MB.
+bool RanksOfNumbers::make_room(std::span<const double> numbers) {
+    const auto [least, largest] = std::ranges::minmax(numbers);
+    if (!(least >= -kLargestWhole && largest <= kLargestWhole)) return false;
+    const auto word_of = [](double number) { return static_cast<std::int64_t>(std::floor(number / 64)); };
+    std::int64_t begin = word_of(least), end = word_of(largest) + 1;
+    if (!words_.empty()) {
+        begin = std::min(begin, first_word_);
+        end = std::max(end, first_word_ + static_cast<std::int64_t>(words_.size()));
+    }
+    if (static_cast<std::uint64_t>(end - begin) > added_ + kRoom) return false;
+    const std::int64_t in_front = words_.empty() ? 0 : first_word_ - begin;
+    words_.insert(words_.begin(), static_cast<std::size_t>(in_front), 0);
+    words_.resize(static_cast<std::size_t>(end - begin));
+    first_word_ = begin;
+    return true;
+}
+
+void RanksOfNumbers::give_up_flags() {
+    listed_ = true;
+    for (std::size_t w = 0; w < words_.size(); ++w) {
+        for (std::uint64_t word = words_[w]; word != 0; word &= word - 1) {
+            const std::int64_t n = 64 * (first_word_ + static_cast<std::int64_t>(w)) + std::countr_zero(word);
+            numbers_.push_back(static_cast<double>(n));
+        }
+    }
+    compacted_ = numbers_.size();
+    words_ = {};
 }
 
 void RanksOfNumbers::compact() {
@@ -37,15 +81,20 @@ void RanksOfNumbers::compact() {
 bool RanksOfNumbers::finish() {
     compact();
     numbers_.shrink_to_fit();
+    size_ = numbers_.size();
+    for (const std::uint64_t word : words_) {
+        before_.push_back(static_cast<Index>(size_));
+        size_ += static_cast<std::size_t>(std::popcount(word));
+    }
     return different_;
 }
 
 Index RanksOfNumbers::rank(double number) const {
-    const double guess = number - numbers_.front();  // right if there are no gaps
-    if (guess >= 0 && guess < static_cast<double>(numbers_.size()) && numbers_[static_cast<std::size_t>(guess)] == number) {
-        return static_cast<Index>(guess);
-    }
-    return static_cast<Index>(std::ranges::lower_bound(numbers_, number) - numbers_.begin());
+    if (listed_) return static_cast<Index>(std::ranges::lower_bound(numbers_, number) - numbers_.begin());
+    const std::int64_t n = static_cast<std::int64_t>(number) - 64 * first_word_;
+    const auto w = static_cast<std::size_t>(n / 64);
+    const std::uint64_t lower = (std::uint64_t{1} << n % 64) - 1;
+    return before_[w] + static_cast<Index>(std::popcount(words_[w] & lower));
 }
 
 RanksOfPlaces::RanksOfPlaces(const std::filesystem::path& folder)

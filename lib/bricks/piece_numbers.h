@@ -12,23 +12,30 @@
 
 namespace subvol::detail {
 
-/// Things that have numbers of their own, in the order of these: 8 bytes for each different number.
+/// Things that have whole numbers of their own, in the order of these: two bits for each number between the least and the
+/// largest, or, where these are far apart, 8 bytes for each different number.
 class RanksOfNumbers {
 public:
-    /// throws: Error(InvalidInput) if there are as many as an Index can count
     void add(std::span<const double> numbers);
     /// After the last number. Returns whether all of them were different.
     bool finish();
 
-    [[nodiscard]] std::size_t size() const { return numbers_.size(); }
+    [[nodiscard]] std::size_t size() const { return size_; }
     /// number: one of those that were added
     [[nodiscard]] Index rank(double number) const;
 
 private:
+    [[nodiscard]] bool make_room(std::span<const double> numbers);
+    void give_up_flags();
     void compact();
 
+    // Flags of the numbers from 64 * first_word_ on, unless they are listed.
+    std::vector<std::uint64_t> words_;
+    std::vector<Index> before_;
+    std::int64_t first_word_ = 0;
+    bool listed_ = false;
     std::vector<double> numbers_;
-    std::size_t compacted_ = 0;
+    std::size_t added_ = 0, compacted_ = 0, size_ = 0;
     bool different_ = true;
 };
 

@@ -75,7 +75,7 @@ struct PieceTables {
 /// folder:  for the tables
 /// returns: nothing if the mesh cannot be joined piece by piece; `why` is then a reason such as "it has tetrahedra"
 /// throws:  Error(InvalidInput) as `read_mesh` of the whole; or if a piece changes meanwhile
-/// cost:    memory: a piece; 8 bytes a point and a cell with numbers of their own, 16 bytes a joined point without
+/// cost:    memory: a piece; for points and cells with numbers that of RanksOfNumbers, for points without that of RanksOfPlaces
 [[nodiscard]] std::unique_ptr<PieceTables> tables_of_pieces(const PartFiles& files, const std::string& list,
                                                             const std::filesystem::path& folder, const ReadOptions& options,
                                                             Progress* progress, std::string& why);

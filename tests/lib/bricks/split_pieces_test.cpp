@@ -20,6 +20,7 @@ using testing::HasSubstr;
 /// What the pieces of a mesh have besides a field at their points.
 struct Extras {
     bool point_numbers = false, cell_numbers = false, cell_field = false, ghosts = true;
+    bool repeat_cell_numbers = false;
     double apart = 0;  // how far the copies of a point are from each other
 };
 
@@ -80,7 +81,7 @@ protected:
             ends << 8 * (i + 1) << ' ';
             types << "12 ";
             ghosts << (i < own ? 0 : 1) << ' ';
-            cell_ids << 7 * c + 2 << ' ';
+            cell_ids << (extras.repeat_cell_numbers ? c % 9 : 7 * c + 2) << ' ';
             heat << std::cos(static_cast<double>(c)) << ' ';
         }
         const bool any = !cells.empty();
@@ -167,6 +168,14 @@ TEST_F(SplitPieces, NumbersThatNumberNothingAreNotUsed) {
     const HexMesh mesh = ball();
     // The same numbers at places that are too far apart.
     expect_same_bricks(write_pieces(mesh, cut(mesh, false), {.point_numbers = true, .apart = 0.5}), {.bricks = 3}, "");
+}
+
+TEST_F(SplitPieces, NumbersThatCellsShareAreNotUsed) {
+    const HexMesh mesh = ball();
+    const Extras repeated{.cell_numbers = true, .repeat_cell_numbers = true};
+    expect_same_bricks(write_pieces(mesh, cut(mesh, true), repeated), {.bricks = 3}, "");
+    EXPECT_THAT(read_mesh(path("all.pvtu")).warnings,
+                testing::Contains("array \"GlobalElementId\" does not number the cells: not used"));
 }
 
 TEST_F(SplitPieces, CutsOfOneMeshWithNumberedCellsGiveOneMesh) {

@@ -87,7 +87,7 @@ struct PiecesSplit {
 /// returns: nothing as result if the file is no such list, or the pieces are not hexahedra with plain corners, or
 ///          pieces.read asks for welded points or fitted values
 /// throws:  as `read_mesh` and `split_mesh`; Error(InvalidInput) if a piece changes meanwhile
-/// cost:    memory: a piece, or a brick and 12 bytes a cell, or 24 bytes a cell while cells are given to bricks
+/// cost:    memory: a piece, or 16 bytes a cell, or 12 bytes a cell and a brick
 PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesystem::path& mesh,
                          const PiecesOptions& pieces = {}, const SplitOptions& options = {});
 
