@@ -17,8 +17,8 @@ using testing::HasSubstr;
 
 class BrickSurface : public test::TempFolder {
 protected:
-    /// A part of a mesh may use other tables of weights than the whole, so values of the limit differ by roundings. Then
-    /// Newton's method may end a step earlier, which leaves at most the square of its last step: (1e-3)² of an edge.
+    /// Places are those of the limit to its tolerance: 1e-6 of the diagonal. (The order of a crossing's digits is smaller:
+    /// Newton's method ends with a step of at most 1e-3 of an edge, which leaves its square.)
     void expect_same(const HexMesh& mesh, const SplitOptions& split, const SurfaceOptions& options) const {
         const LimitSurface whole = limit_surface(mesh, "f", options);
         const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
