@@ -5,9 +5,9 @@
     bench/equality.py [build/release/bin/subvol] [--counts 1,2,3,4,7] [--resolution 4]
 
 The mesh is `ball` in pieces (.pvtu) by slabs, by blocks or at random, a cell at a time: with a layer of ghost cells, with the
-points between pieces in each of them, with a piece that is empty. It is read as it is, and as bricks that are cut in the same
-way. Each row is computed by one process, by as many shares as --counts says (`--part`, `join`), and by as many ranks
-(`mpirun`, where it is installed). Prints the table of docs/shares.md; ends with 1 if a hash differs.
+points between pieces in each of them, with a piece that is empty; points and cells have their global numbers. It is read as it
+is, and as bricks that are cut in the same way. Each row is computed by one process, by as many shares as --counts says (`--part`,
+`join`), and by as many ranks (`mpirun`, where it is installed). Prints the table of docs/shares.md; ends with 1 if a hash differs, also between two cuts.
 """
 import argparse
 import hashlib
@@ -96,7 +96,8 @@ def write_pieces(folder, points, cells, values, shape):
         text = (f'<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="{len(used)}" '
                 f'NumberOfCells="{len(kept)}"><PointData>{array("density", "Float64", (values[p] for p in used))}'
                 f'{array("GlobalNodeId", "Int64", used)}</PointData><CellData>'
-                f'{array("vtkGhostType", "UInt8", [0] * len(own) + [1] * len(ghosts))}</CellData><Points>'
+                f'{array("vtkGhostType", "UInt8", [0] * len(own) + [1] * len(ghosts))}'
+                f'{array("GlobalElementId", "Int64", kept)}</CellData><Points>'
                 f'{array("Points", "Float64", (x for p in used for x in points[p]), 3)}</Points><Cells>'
                 f'{array("connectivity", "Int64", (place[p] for c in kept for p in cells[c]))}'
                 f'{array("offsets", "Int64", (8 * (i + 1) for i in range(len(kept))))}'
@@ -146,9 +147,9 @@ def main():
         points, cells, values = read_medit(runner.folder / "ball.mesh")
         print("| cut | read as | " + " | ".join(f"`{verb}`" for verb in VERBS) + " |")
         print("|---|---|" + "---|" * len(VERBS))
+        first = {}
         for shape in SHAPES:
             pieces = write_pieces(runner.folder, points, cells, values, shape)
-            first = {}
             bricks = f"{shape}.bricks"
             runner.run("split", pieces, "-o", bricks, "--bricks", 5, "--by", shape, "--quiet")
             for source, form in ((pieces, "pieces"), (bricks, "bricks")):

@@ -9,7 +9,7 @@
 
 namespace subvol::cli {
 
-/// Whether a method of `subvol render` draws kernels: splat or sheets.
+/// Whether a method of `subvol render` draws kernels: splat, sheets or footprints.
 [[nodiscard]] bool is_of_splats(const std::string& method);
 
 /// Refuses options that a method does not have.

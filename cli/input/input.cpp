@@ -72,25 +72,28 @@ bool is_model(const std::string& input) {
     return input.starts_with(kModelPrefix);
 }
 
+ReadOptions read_options(const std::string& input, const CommonOptions& options) {
+    return {.other_cells = other_cells(options.other_cells),
+            .weld = weld_distance(options),
+            .sharp = options.sharp,
+            .curved_tolerance = curved_tolerance(options),
+            .step = one_step(input, options),
+            .blocks = options.blocks,
+            .cell_values = cell_values(options)};
+}
+
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
     report["input"] = input;
     if (is_bricks(input)) {
         throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which this command does not take yet", input,
-                    "info, points, vdb, render and probe do; each .vtu file in it is a mesh");
+                    "info, points, vdb, render, surface and probe do; each .vtu file in it is a mesh");
     }
     const bool model = is_model(input);
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = report.timed("read", [&] {
-        return model ? generate(input.substr(kModelPrefix.size()))
-                     : read_mesh(input, {.other_cells = other_cells(options.other_cells),
-                                         .weld = weld_distance(options),
-                                         .sharp = options.sharp,
-                                         .curved_tolerance = curved_tolerance(options),
-                                         .step = one_step(input, options),
-                                         .blocks = options.blocks,
-                                         .cell_values = cell_values(options)});
+        return model ? generate(input.substr(kModelPrefix.size())) : read_mesh(input, read_options(input, options));
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;

@@ -18,6 +18,9 @@ namespace subvol::cli {
 /// Whether the input is "model:NAME" and no file.
 [[nodiscard]] bool is_model(const std::string& input);
 
+/// How a mesh file is to be read.
+[[nodiscard]] ReadOptions read_options(const std::string& input, const CommonOptions& options);
+
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
 [[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);
 

@@ -7,6 +7,7 @@
 #include "input.h"
 #include "quantities.h"
 #include "subvol/error.h"
+#include "subvol/expression.h"
 #include "subvol/split.h"
 #include "text.h"
 #include "verb.h"
@@ -21,6 +22,7 @@ public:
     explicit SplitVerb(CLI::App& program)
         : Verb(program, "split", "Cut a mesh into a folder of bricks, for meshes that do not fit into memory.",
                "  subvol split big.vtu -o big.bricks --memory 2G\n"
+               "  subvol split run.pvtu -o run.bricks             piece by piece\n"
                "  subvol split model:twist:464 -o twist.bricks    10^8 cells, never in memory\n"
                "  subvol points big.bricks -o big.ply\n"
                "  subvol vdb big.bricks -o big.vdb --resolution 4000 --memory 4G\n"
@@ -81,6 +83,17 @@ private:
                             "model:twist", "2..4096");
             }
             return report.timed("split", [&] { return split_twist(output_, resolution, options_); });
+        }
+        if (!is_model(input_)) {
+            report["input"] = input_;  // for errors
+            if (common().density) static_cast<void>(evaluate_expression(*common().density, {}));
+            const ReadOptions read = read_options(input_, common());
+            PiecesOptions pieces{.read = read, .change = {}, .about_change = common().density.value_or("")};
+            if (common().density) pieces.change = [&](HexMesh mesh) { return used_mesh(std::move(mesh), common()); };
+            PiecesSplit split = report.timed("split", [&] { return split_pieces(output_, input_, pieces, options_); });
+            for (const std::string& warning : split.warnings) report.warn(warning);
+            if (split.result) return std::move(*split.result);
+            if (!split.held_whole.empty()) report.note(text("all pieces are held in memory: ", split.held_whole));
         }
         HexMesh mesh = load_mesh(input_, common(), report);
         return report.timed("split", [&] { return split_mesh(output_, std::move(mesh), options_); });

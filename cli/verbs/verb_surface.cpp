@@ -2,11 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "bricks_input.h"
 #include "input.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "quantities.h"
 #include "refine_arguments.h"
+#include "subvol/brick_surface.h"
 #include "subvol/error.h"
 #include "subvol/limit_surface.h"
 #include "tet_refinement.h"
@@ -24,6 +26,7 @@ public:
                "  subvol surface part.vtu -o iso.ply --iso 300 --iso 350 --field Temp\n"
                "  subvol surface part.vtu -o hot.stl --iso 350 --cap --tolerance 3e-4\n"
                "  subvol surface part.vtu -o skin.glb --boundary --color-field Temp --tf viridis\n"
+               "  subvol surface big.bricks -o iso.ply --iso 300\n"
                "\n"
                "The points lie on the limit, with normals from its exact gradients. Cells are refined where the surface is, "
                "until the triangles are within the tolerance. JSON: points, triangles, area, volume (of what a watertight "
@@ -72,6 +75,14 @@ public:
                                .max_level = max_level_,
                                .improve = !keep_slivers_,
                                .progress = report.progress()};
+        if (is_bricks_input(input_)) {
+            if (tets.asked()) {
+                throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which is not refined by \"" + tets.name() + "\"",
+                            input_, "another --scheme");
+            }
+            extract_from_bricks(options, report);
+            return 0;
+        }
         const HexMesh mesh = tets.hexes(load_mesh(input_, common(), report), 2, report);
         HexMesh chosen = with_selected_field(mesh, common(), report);
         const std::string field = chosen.attributes.front().name;
@@ -79,30 +90,60 @@ public:
             if (attribute.name != field) chosen.attributes.push_back(attribute);
         }
         SurfaceFileOptions file;
-        if (!color_field_.empty()) file = colors(chosen);
+        if (!color_field_.empty()) {
+            const std::size_t number = add_color_field(chosen);
+            file = {number, find_transfer_function(function_, field_range(chosen, number))};
+        }
         const LimitSurface surface = report.timed("surface", [&] { return limit_surface(chosen, field, options); });
-        if (surface.surface.triangles.empty()) throw nothing(chosen);
+        if (surface.surface.triangles.empty()) throw nothing(field, field_range(chosen));
         report.timed("write", [&] { write_limit_surface(output_, surface, file); });
         put(surface, report);
         return 0;
     }
 
 private:
-    [[nodiscard]] SurfaceFileOptions colors(HexMesh& mesh) const {
+    /// As of a mesh in one piece, with the ranges that the index has.
+    void extract_from_bricks(const SurfaceOptions& options, Report& report) {
+        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const StreamedField field = select_brick_field(bricks, common(), report);
+        const auto chosen = [&](HexMesh brick) {
+            std::vector<Attribute> all = brick.attributes;
+            brick = with_brick_fields(std::move(brick), {field});
+            const std::string name = brick.attributes.front().name;
+            for (Attribute& attribute : all) {
+                if (attribute.name != name) brick.attributes.push_back(std::move(attribute));
+            }
+            if (!color_field_.empty()) (void)add_color_field(brick);
+            return brick;
+        };
+        HexMesh like = chosen(stand_in(bricks));
+        SurfaceFileOptions file;
+        if (!color_field_.empty()) {
+            const StreamedField color = named_brick_field(bricks, color_field_, false);
+            file = {add_color_field(like), find_transfer_function(function_, {color.min, color.max})};
+        }
+        const std::string name = like.attributes.front().name;
+        const LimitSurface surface = report.timed("surface", [&] { return limit_surface(bricks, name, options, chosen); });
+        if (surface.surface.triangles.empty()) throw nothing(name, {field.min, field.max});
+        report.timed("write", [&] { write_limit_surface(output_, surface, file); });
+        put(surface, report);
+    }
+
+    /// The number of the attribute with the colours' values, one for each point; it is added if there is none.
+    [[nodiscard]] std::size_t add_color_field(HexMesh& mesh) const {
         const auto named = [&] {
             return std::ranges::find(mesh.attributes, color_field_, &Attribute::name) - mesh.attributes.begin();
         };
         if (named() == std::ssize(mesh.attributes)) mesh.attributes.push_back(select_field(mesh, color_field_).scalar);
         const auto number = static_cast<std::size_t>(named());
         if (mesh.attributes[number].channels > 1) mesh.attributes[number] = select_field(mesh, color_field_).scalar;
-        return {number, find_transfer_function(function_, field_range(mesh, number))};
+        return number;
     }
 
-    [[nodiscard]] Error nothing(const HexMesh& mesh) const {
-        const Range range = field_range(mesh);
+    [[nodiscard]] Error nothing(const std::string& field, const Range& range) const {
         return {ErrorCode::InvalidInput,
-                text("the limit does not take ", isos_.size() == 1 ? "this value" : "these values", "; ",
-                     mesh.attributes.front().name, " has control values from ", range.min, " to ", range.max),
+                text("the limit does not take ", isos_.size() == 1 ? "this value" : "these values", "; ", field,
+                     " has control values from ", range.min, " to ", range.max),
                 "--iso"};
     }
 

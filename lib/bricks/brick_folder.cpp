@@ -48,16 +48,21 @@ void replace_folder(const fs::path& made, const fs::path& folder) {
 
 }  // namespace
 
+void check_target(const fs::path& folder) {
+    const fs::path target = with_suffix(folder, ""), above = target.parent_path();
+    std::error_code error;
+    if (fs::exists(target, error) && !is_bricks(target)) {
+        throw Error(ErrorCode::InvalidInput, "exists and is no folder of bricks", target.string(), "another name");
+    }
+    if (!above.empty() && !fs::is_directory(above, error)) {
+        throw Error(ErrorCode::Io, "the folder \"" + above.string() + "\" does not exist", target.string());
+    }
+}
+
 BricksWriter::BricksWriter(fs::path folder, std::uint64_t id, int halo_layers)
     : folder_(with_suffix(folder, "")), work_(with_suffix(folder, ".unfinished")) {
+    check_target(folder_);
     std::error_code error;
-    if (fs::exists(folder_, error) && !is_bricks(folder_)) {
-        throw Error(ErrorCode::InvalidInput, "exists and is no folder of bricks", folder_.string(), "another name");
-    }
-    const fs::path above = folder_.parent_path();
-    if (!above.empty() && !fs::is_directory(above, error)) {
-        throw Error(ErrorCode::Io, "the folder \"" + above.string() + "\" does not exist", folder_.string());
-    }
     const fs::path progress = work_ / kProgress;
     if (fs::exists(work_, error)) {
         if (!fs::is_regular_file(progress, error)) {

@@ -35,6 +35,9 @@ private:
     SplitResult result_;
 };
 
+/// throws: Error(InvalidInput) if `folder` exists and is no folder of bricks; Error(Io) if it has no place
+void check_target(const std::filesystem::path& folder);
+
 /// throws: Error(InvalidInput) for options out of range
 void check_options(const SplitOptions& options);
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "brick_shapes.h"
+
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "brick_folder.h"
@@ -14,51 +17,86 @@ using namespace detail;
 
 namespace {
 
+constexpr std::size_t kChunk = std::size_t{1} << 16;  // cells whose centres are looked at together
+
 /// Cuts a range of cells into bricks of about equal size, across the longest side of their box.
 class Cutter {
 public:
-    Cutter(const HexMesh& mesh, bool slabs, std::vector<std::uint32_t>& bricks)
-        : slabs_(slabs), centers_(mesh.cells.size()), bricks_(bricks) {
-        parallel_each(centers_.size(), [&](std::size_t c) {
-            Vec3 sum(0.0);
-            for (const Index p : mesh.cells[c]) sum += mesh.points[p];
-            centers_[c] = sum / 8.0;
-        });
-    }
+    Cutter(const CellCenters& centers, bool slabs, std::vector<std::uint32_t>& bricks)
+        : slabs_(slabs), centers_(centers), bricks_(bricks) {}
 
     void run(std::size_t count) {
-        std::vector<Index> cells(centers_.size());
+        std::vector<Index> cells(centers_.count());
         std::iota(cells.begin(), cells.end(), Index{0});
-        axis_ = longest_side(cells);
-        cut(cells, 0, count);
+        if (count > 1) axis_ = longest_side(cells);
+        cut(std::move(cells), 0, count);
     }
 
 private:
+    /// Calls call(cell, coordinate) for all cells in their order.
+    template <class Call>
+    void each_center(int axis, std::span<const Index> cells, const Call& call) const {
+        std::vector<double> values(std::min(cells.size(), kChunk));
+        for (std::size_t begin = 0; begin < cells.size(); begin += kChunk) {
+            const auto some = cells.subspan(begin, std::min(kChunk, cells.size() - begin));
+            centers_.read(axis, some, std::span(values).first(some.size()));
+            for (std::size_t i = 0; i < some.size(); ++i) call(some[i], values[i]);
+        }
+    }
+
     [[nodiscard]] int longest_side(std::span<const Index> cells) const {
-        Box box;
-        for (const Index c : cells) box.add(centers_[c]);
-        const Vec3 size = box.size();
+        Vec3 size;
+        for (int axis = 0; axis < 3; ++axis) {
+            double low = std::numeric_limits<double>::infinity(), high = -low;
+            each_center(axis, cells, [&](Index, double x) {
+                low = std::min(low, x);
+                high = std::max(high, x);
+            });
+            size[axis] = low <= high ? high - low : 0;
+        }
         return size.x >= std::max(size.y, size.z) ? 0 : size.y >= size.z ? 1 : 2;
     }
 
-    void cut(std::span<Index> cells, std::size_t first, std::size_t count) {
+    void cut(std::vector<Index> cells, std::size_t first, std::size_t count) {
         if (count == 1) {
             for (const Index c : cells) bricks_[c] = static_cast<std::uint32_t>(first);
             return;
         }
         const std::size_t low = count / 2, middle = cells.size() * low / count;
         const int axis = slabs_ ? axis_ : longest_side(cells);
-        std::nth_element(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(middle), cells.end(),
-                         [&](Index a, Index b) {
-                             return centers_[a][axis] != centers_[b][axis] ? centers_[a][axis] < centers_[b][axis] : a < b;
-                         });
-        tbb::parallel_invoke([&] { cut(cells.first(middle), first, low); },
-                             [&] { cut(cells.subspan(middle), first + low, count - low); });
+        const Border border = border_of(axis, cells, middle);
+        std::vector<Index> below, above;
+        below.reserve(middle);
+        above.reserve(cells.size() - middle);
+        std::size_t equal = 0;
+        each_center(axis, cells, [&](Index c, double x) {
+            const bool is_below = x < border.at || (x == border.at && equal++ < border.equal_below);
+            (is_below ? below : above).push_back(c);
+        });
+        cells = {};
+        tbb::parallel_invoke([&] { cut(std::move(below), first, low); },
+                             [&] { cut(std::move(above), first + low, count - low); });
+    }
+
+    /// Cells are below with smaller coordinates, and so many of those with this one, the first ones.
+    struct Border {
+        double at;
+        std::size_t equal_below;
+    };
+
+    [[nodiscard]] Border border_of(int axis, std::span<const Index> cells, std::size_t place) const {
+        std::vector<double> centers;
+        centers.reserve(cells.size());
+        each_center(axis, cells, [&](Index, double x) { centers.push_back(x); });
+        const auto border = centers.begin() + static_cast<std::ptrdiff_t>(place);
+        std::nth_element(centers.begin(), border, centers.end());
+        const auto smaller = std::count_if(centers.begin(), border, [&](double x) { return x < *border; });
+        return {*border, place - static_cast<std::size_t>(smaller)};
     }
 
     bool slabs_;
     int axis_ = 0;
-    std::vector<Vec3> centers_;
+    const CellCenters& centers_;
     std::vector<std::uint32_t>& bricks_;
 };
 
@@ -69,24 +107,44 @@ std::uint64_t scattered(std::uint64_t number) {  // splitmix64
     return number ^ number >> 31;
 }
 
+class CentersOfMesh : public CellCenters {
+public:
+    explicit CentersOfMesh(const HexMesh& mesh) : mesh_(mesh) {}
+    [[nodiscard]] std::size_t count() const override { return mesh_.cells.size(); }
+    void read(int axis, std::span<const Index> cells, std::span<double> values) const override {
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            double sum = 0;
+            for (const Index p : mesh_.cells[cells[i]]) sum += mesh_.points[p][axis];
+            values[i] = sum / 8.0;
+        }
+    }
+
+private:
+    const HexMesh& mesh_;
+};
+
 }  // namespace
 
-std::vector<std::uint32_t> bricks_of_cells(const HexMesh& mesh, const SplitOptions& options) {
+std::vector<std::uint32_t> detail::bricks_of_cells(const CellCenters& centers, const SplitOptions& options) {
     check_options(options);
-    const std::size_t count = brick_count(mesh.cells.size(), options);
-    if (count > mesh.cells.size()) {
+    const std::size_t cells = centers.count(), count = brick_count(cells, options);
+    if (count > cells) {
         throw Error(ErrorCode::InvalidInput, std::to_string(count) + " bricks", {},
-                    "the mesh has " + std::to_string(mesh.cells.size()) + " cells");
+                    "the mesh has " + std::to_string(cells) + " cells");
     }
-    std::vector<std::uint32_t> bricks(mesh.cells.size());
+    std::vector<std::uint32_t> bricks(cells);
     if (options.shape == BrickShape::Random) {
         parallel_each(bricks.size(), [&](std::size_t c) {
             bricks[c] = static_cast<std::uint32_t>(scattered(options.seed ^ scattered(c)) % count);
         });
     } else {
-        Cutter(mesh, options.shape == BrickShape::Slabs, bricks).run(count);
+        Cutter(centers, options.shape == BrickShape::Slabs, bricks).run(count);
     }
     return bricks;
+}
+
+std::vector<std::uint32_t> bricks_of_cells(const HexMesh& mesh, const SplitOptions& options) {
+    return bricks_of_cells(CentersOfMesh(mesh), options);
 }
 
 }  // namespace subvol

@@ -10,10 +10,12 @@
 #include "soup_cutter.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
+#include "surface_part.h"
 #include "surface_shape.h"
 
 namespace subvol {
 
+using detail::check_surface_options;
 using detail::Cut;
 using detail::SettledPoints;
 using detail::SurfaceSoup;
@@ -26,23 +28,35 @@ constexpr double kCrease = 0.9;  // cosine: normals of the limit and of the tria
 
 class Extractor {
 public:
-    Extractor(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options)
+    Extractor(const HexMesh& mesh, std::string_view field, std::span<const std::uint8_t> owned, double longest_side,
+              const SurfaceOptions& options)
         : mesh_(mesh),
           options_(options),
           field_(field_number(field)),
           topology_(build_topology(mesh)),
           scalar_(with_field_only(mesh, field_)),
-          cutter_(scalar_, topology_, options.scheme, options.progress),
-          settler_(scalar_, topology_, options.scheme, options.progress) {
-        const Vec3 size = bounds(mesh).size();
-        tolerance_world_ = options.tolerance * std::max({size.x, size.y, size.z, 1e-300});
+          cutter_(scalar_, topology_, owned, options.scheme, options.progress),
+          settler_(scalar_, topology_, options.scheme, options.progress),
+          tolerance_world_(options.tolerance * std::max(longest_side, 1e-300)) {}
+
+    [[nodiscard]] std::vector<std::uint8_t> candidates() const {
+        std::vector<std::uint8_t> flags(mesh_.cells.size(), 0);
+        const auto add = [&](const Cut& cut) {
+            for (const Index c : cutter_.candidates(cut)) flags[c] = 1;
+        };
+        for (const double iso : options_.isos) add({iso, options_.cap});
+        if (options_.boundary) add({{}, true});
+        return flags;
     }
+
+    [[nodiscard]] bool leads_out() const { return leads_out_; }
 
     LimitSurface run() {
         LimitSurface all;
         all.report.converged = true;
         for (const double iso : options_.isos) append(surface_of({iso, options_.cap}), all);
         if (options_.boundary) append(surface_of({{}, true}), all);
+        if (leads_out_) return all;
         report_progress(options_.progress, "fields", 0);
         evaluate_fields(all);
         detail::measure_surface(all.surface, all.report);
@@ -68,6 +82,10 @@ private:
         LimitSurface found;
         for (int level = std::min(kFirstLevel, options_.max_level);;) {
             const SurfaceSoup soup = cutter_.cut(cut, level, active);
+            if (soup.leads_out) {
+                leads_out_ = true;
+                return found;
+            }
             const SettledPoints settled = settler_.settle(soup, cut, level);
             const double deviation = settler_.deviation(soup, settled, level);
             const double more = std::log2(std::max(deviation / tolerance_world_, 1e-9)) / 2;
@@ -186,10 +204,29 @@ private:
     HexMesh scalar_;
     detail::SoupCutter cutter_;
     detail::PointSettler settler_;
-    double tolerance_world_ = 0;
+    double tolerance_world_;
+    bool leads_out_ = false;
 };
 
-void check(const SurfaceOptions& options) {
+/// Creases are found once, so that all stages have the same.
+struct Tagged {
+    Tagged(const HexMesh& from, const SurfaceOptions& wanted) : mesh(from), options(wanted) {
+        if (!options.scheme.crease_angle_deg) return;
+        tag_creases(mesh, *options.scheme.crease_angle_deg);
+        options.scheme.crease_angle_deg.reset();
+    }
+    HexMesh mesh;
+    SurfaceOptions options;
+};
+
+double longest_side(const Box& box) {
+    const Vec3 size = box.size();
+    return std::max({size.x, size.y, size.z});
+}
+
+}  // namespace
+
+void detail::check_surface_options(const SurfaceOptions& options) {
     const auto refuse = [](const std::string& what, const std::string& allowed) {
         throw Error(ErrorCode::InvalidInput, what, "surface", allowed);
     };
@@ -203,18 +240,27 @@ void check(const SurfaceOptions& options) {
     if (options.max_level < 1 || options.max_level > 8) refuse("the finest level is out of range", "1 to 8");
 }
 
-}  // namespace
-
 LimitSurface limit_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options) {
-    check(options);
+    check_surface_options(options);
     validate(mesh);
-    HexMesh tagged = mesh;
-    SurfaceOptions wanted = options;
-    if (options.scheme.crease_angle_deg) {  // once, so that all stages have the same creases
-        tag_creases(tagged, *options.scheme.crease_angle_deg);
-        wanted.scheme.crease_angle_deg.reset();
-    }
-    return Extractor(tagged, field, wanted).run();
+    const Tagged tagged(mesh, options);
+    return Extractor(tagged.mesh, field, {}, longest_side(bounds(mesh)), tagged.options).run();
+}
+
+std::vector<std::uint8_t> detail::surface_candidates(const HexMesh& part, std::string_view field,
+                                                     const SurfaceOptions& options) {
+    const Tagged tagged(part, options);
+    return Extractor(tagged.mesh, field, {}, 1, tagged.options).candidates();
+}
+
+std::optional<LimitSurface> detail::limit_surface_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
+                                                          double longest_side, std::string_view field,
+                                                          const SurfaceOptions& options) {
+    const Tagged tagged(part, options);
+    Extractor extractor(tagged.mesh, field, owned, longest_side, tagged.options);
+    LimitSurface surface = extractor.run();
+    if (extractor.leads_out()) return {};
+    return surface;
 }
 
 }  // namespace subvol

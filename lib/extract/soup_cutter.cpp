@@ -52,12 +52,14 @@ SurfaceSoup join(const std::vector<Index>& cells, const std::vector<CellTriangle
 
 }  // namespace
 
-/// The control cells through which the surface may pass, by the values at the vertices of level 1 or 2.
 std::vector<Index> SoupCutter::candidates(const Cut& cut) const {
     std::vector<std::uint8_t> wanted(mesh_.cells.size(), 0);
     if (cut.iso) {
-        std::vector<Index> all(mesh_.cells.size());
-        for (Index c = 0; c < all.size(); ++c) all[c] = c;
+        std::vector<Index> all;
+        all.reserve(mesh_.cells.size());
+        for (Index c = 0; c < mesh_.cells.size(); ++c) {
+            if (may_cut(c)) all.push_back(c);
+        }
         const DenseCells cells(mesh_, {.scheme = scheme_, .levels = 1, .progress = progress_}, true, DenseBits::ToRounding);
         cells.for_each(all, [&](const DenseCell& cell) {
             const auto [low, high] = std::ranges::minmax(cell.values[0]);
@@ -68,7 +70,7 @@ std::vector<Index> SoupCutter::candidates(const Cut& cut) const {
             wanted[cell.cell] = crossed || on_hull ? 1 : 0;
         });
     } else {
-        for (Index c = 0; c < wanted.size(); ++c) wanted[c] = has_hull(c) ? 1 : 0;
+        for (Index c = 0; c < wanted.size(); ++c) wanted[c] = may_cut(c) && has_hull(c) ? 1 : 0;
     }
     std::vector<Index> found;
     for (Index c = 0; c < wanted.size(); ++c) {
@@ -91,6 +93,7 @@ SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::optional<std::vector
     std::vector<Index> slots(mesh_.cells.size(), kNone);
     std::vector<CellTriangles> parts;
     std::vector<Index> cells, todo = *active;
+    bool leads_out = false;
     while (!todo.empty()) {
         for (const Index cell : todo) {
             slots[cell] = static_cast<Index>(cells.size());
@@ -103,11 +106,16 @@ SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::optional<std::vector
             parts[slots[cell.cell]] = cut_cell(cell, values, cut, topology_, numbers);
         });
         todo = reached(cells, parts, todo.size(), slots, level);
+        const std::size_t before = todo.size();
+        std::erase_if(todo, [&](Index cell) { return !may_cut(cell); });
+        leads_out = leads_out || todo.size() < before;
     }
     std::erase_if(cells, [&](Index cell) { return parts[slots[cell]].triangles.empty(); });
     std::ranges::sort(cells);
     active = cells;
-    return join(cells, parts, slots);
+    SurfaceSoup soup = join(cells, parts, slots);
+    soup.leads_out = leads_out;
+    return soup;
 }
 
 /// Cells that have not been cut, but share a face with a point on it.

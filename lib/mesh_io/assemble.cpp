@@ -20,20 +20,11 @@ std::array<Vec3, 8> corners_of(const HexMesh& mesh, const std::array<Index, 8>& 
     return corners;
 }
 
-bool is_folded(const std::array<Vec3, 8>& x) {
-    for (std::size_t k = 0; k < 8; ++k) {
-        const auto edge = [&](std::size_t e) { return x[kCornerNeighbors[k][e]] - x[k]; };
-        if (glm::dot(edge(0), glm::cross(edge(1), edge(2))) < 0) return true;
-    }
-    return false;
-}
-
 void turn_hexes(ReadResult& result) {
     const std::size_t count = result.mesh.cells.size();
     const std::size_t turned = orient_cells(result.mesh);
     if (turned == 0) return;
-    result.warnings.push_back(std::to_string(turned) + " of " + counted(count, "hexahedron", "hexahedra") +
-                              (turned == 1 ? " was" : " were") + " left-handed (negative Jacobian) and turned round");
+    result.warnings.push_back(cells_turned(turned, count));
 }
 
 void warn_of_folded(ReadResult& result) {
@@ -41,8 +32,7 @@ void warn_of_folded(ReadResult& result) {
     const auto folded =
         std::count_if(cells.begin(), cells.end(), [&](const auto& cell) { return is_folded(corners_of(result.mesh, cell)); });
     if (folded == 0) return;
-    result.warnings.push_back(std::to_string(folded) + " of " + counted(cells.size(), "hexahedron", "hexahedra") +
-                              (folded == 1 ? " has" : " have") + " a negative Jacobian at a corner");
+    result.warnings.push_back(cells_folded(static_cast<std::size_t>(folded), cells.size()));
 }
 
 FieldInfo describe(const FileArray& array) {
@@ -237,6 +227,24 @@ void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin
 }
 
 }  // namespace
+
+bool is_folded(const std::array<Vec3, 8>& x) {
+    for (std::size_t k = 0; k < 8; ++k) {
+        const auto edge = [&](std::size_t e) { return x[kCornerNeighbors[k][e]] - x[k]; };
+        if (glm::dot(edge(0), glm::cross(edge(1), edge(2))) < 0) return true;
+    }
+    return false;
+}
+
+std::string cells_turned(std::size_t turned, std::size_t cells) {
+    return std::to_string(turned) + " of " + counted(cells, "hexahedron", "hexahedra") + (turned == 1 ? " was" : " were") +
+           " left-handed (negative Jacobian) and turned round";
+}
+
+std::string cells_folded(std::size_t folded, std::size_t cells) {
+    return std::to_string(folded) + " of " + counted(cells, "hexahedron", "hexahedra") + (folded == 1 ? " has" : " have") +
+           " a negative Jacobian at a corner";
+}
 
 void refuse_not_finite(const MeshFile& found, const TextScanner& in, const EntityNames& names) {
     if (found.not_finite.empty()) return;

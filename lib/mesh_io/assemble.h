@@ -27,6 +27,18 @@ inline constexpr std::string_view kGhostArray = "vtkGhostType";
 inline constexpr unsigned kDuplicateCell = 1, kRefinedCell = 8, kHiddenCell = 32;
 inline constexpr unsigned kHiddenPoint = 2;
 
+/// Whether a value of the array of ghosts leaves a cell out, and whether it hides a point.
+[[nodiscard]] bool leaves_out_cell(double ghost);
+[[nodiscard]] bool hides_point(double ghost);
+
+/// What is said of cells that were left out as ghosts, of cells that were turned round, and of those that fold over.
+[[nodiscard]] std::string ghosts_left_out(std::size_t count);
+[[nodiscard]] std::string cells_turned(std::size_t turned, std::size_t cells);
+[[nodiscard]] std::string cells_folded(std::size_t folded, std::size_t cells);
+
+/// Whether the Jacobian is negative at a corner of a hexahedron.
+[[nodiscard]] bool is_folded(const std::array<Vec3, 8>& corners);
+
 /// Leaves out the cells that the array of ghosts marks as duplicates of another piece's cells, as refined or as hidden, and the
 /// cells with a hidden point, with a warning that counts them. Removes the array.
 void drop_ghosts(MeshFile& found);

@@ -43,17 +43,15 @@ std::size_t filter_all(MeshFile& found, const Keeps& keeps) {
 
 void drop_by_cells(MeshFile& found, const std::vector<double>& ghosts) {
     const std::size_t dropped = filter_all(found, [&](const auto& cells, std::size_t c) {
-        return cells.numbers.empty() || !has_bit(ghosts[cells.numbers[c]], kLeftOutCell);
+        return cells.numbers.empty() || !leaves_out_cell(ghosts[cells.numbers[c]]);
     });
-    if (dropped == 0) return;
-    found.warnings.push_back(counted(dropped, "ghost cell (duplicate or hidden)", "ghost cells (duplicate or hidden)") +
-                             " left out");
+    if (dropped > 0) found.warnings.push_back(ghosts_left_out(dropped));
 }
 
 void drop_by_points(MeshFile& found, const std::vector<double>& ghosts) {
     const std::size_t dropped = filter_all(found, [&](const auto& cells, std::size_t c) {
         const auto& corners = cells.corners[c];
-        return std::none_of(corners.begin(), corners.end(), [&](Index p) { return has_bit(ghosts[p], kHiddenPoint); });
+        return std::none_of(corners.begin(), corners.end(), [&](Index p) { return hides_point(ghosts[p]); });
     });
     if (dropped > 0) found.warnings.push_back(counted(dropped, "cell", "cells") + " with hidden points left out");
 }
@@ -71,6 +69,18 @@ void drop_curved(MeshFile& found) {
 }
 
 }  // namespace
+
+bool leaves_out_cell(double ghost) {
+    return has_bit(ghost, kLeftOutCell);
+}
+
+bool hides_point(double ghost) {
+    return has_bit(ghost, kHiddenPoint);
+}
+
+std::string ghosts_left_out(std::size_t count) {
+    return counted(count, "ghost cell (duplicate or hidden)", "ghost cells (duplicate or hidden)") + " left out";
+}
 
 void drop_ghosts(MeshFile& found) {
     for (const FileArray& array : found.arrays) {

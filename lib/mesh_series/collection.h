@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "mesh_file.h"
 #include "subvol/mesh_io.h"
 
 namespace subvol::detail {
@@ -33,6 +36,27 @@ struct Collection {
 
 [[nodiscard]] std::vector<double> pvd_times(const std::filesystem::path& path);
 [[nodiscard]] std::vector<double> series_list_times(const std::filesystem::path& path);
+
+/// The files of one step of a collection that are read as parts of one mesh.
+///
+/// files:    in the order of the lists; those of blocks that are not chosen and of surfaces are left out
+/// warnings: of the step, and of the surfaces
+struct PartFiles {
+    std::vector<ListedFile> files;
+    std::string_view word;  // "piece" or "block"
+    std::vector<std::string> warnings;
+};
+
+/// Nothing if the file is no collection, or its step is a single file.
+///
+/// throws: Error(InvalidInput) as `read_mesh`
+[[nodiscard]] std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options);
+
+/// How messages name what is in several files: "point", "cell", from 0.
+[[nodiscard]] const EntityNames& names_in_parts();
+
+/// Reads a file as a part of a mesh, with its block's name.
+[[nodiscard]] MeshFile read_part(const ListedFile& file, const ReadOptions& options);
 
 /// Reads a step of a collection and makes one mesh of its files.
 [[nodiscard]] ReadResult read_pvd_step(const std::filesystem::path& path, const ReadOptions& options);

@@ -48,39 +48,26 @@ std::size_t cells_of(const MeshFile& found) {
     return count;
 }
 
-// Reads the files as parts of a mesh. Surfaces are left out.
-std::vector<MeshFile> read_parts(const std::vector<ListedFile>& files, std::string_view list, const ReadOptions& options) {
+// Leaves out the files of blocks that are not chosen, and surfaces.
+PartFiles chosen_files(std::vector<ListedFile> files, std::string_view list, const ReadOptions& options) {
     std::vector<std::string> names;
     for (const ListedFile& file : files) {
         if (!file.block.empty()) names.push_back(file.block);
     }
     const BlockChoice choice(options.blocks, names, list);
-    std::vector<MeshFile> parts;
+    PartFiles chosen{{}, names.empty() ? "piece" : "block", {}};
     std::size_t surfaces = 0;
-    for (const ListedFile& file : files) {
+    for (ListedFile& file : files) {
         if (!choice.takes(file.block)) continue;
         const std::string extension = upper_case(file.path.extension().string());
         if (std::ranges::find(kSurfaces, extension) != kSurfaces.end()) {
             ++surfaces;
-            continue;
+        } else {
+            chosen.files.push_back(std::move(file));
         }
-        const MeshFormat* format = format_of(file.path);
-        if (format == nullptr || format->piece == nullptr) {
-            throw Error(ErrorCode::InvalidInput,
-                        in_quotes(file.path.filename().string()) + " cannot be read as a part of a mesh", file.place,
-                        ".vtu, .vts, .vtr and .vti files can");
-        }
-        const std::string name = file.path.string();
-        MeshFile part = format->piece(read_text(file.path), name, options);
-        if (part.points.empty()) continue;
-        if (!file.block.empty()) part.blocks = {{file.block, cells_of(part)}};
-        parts.push_back(std::move(part));
     }
-    if (parts.empty()) parts.emplace_back();
-    if (surfaces > 0) {
-        parts.front().warnings.push_back(counted(surfaces, "file", "files") + " of surfaces (.vtp) ignored");
-    }
-    return parts;
+    if (surfaces > 0) chosen.warnings.push_back(counted(surfaces, "file", "files") + " of surfaces (.vtp) ignored");
+    return chosen;
 }
 
 // Blocks that consist of several files are listed once.
@@ -97,23 +84,41 @@ void merge_blocks(std::vector<MeshBlock>& blocks) {
     blocks = std::move(merged);
 }
 
-ReadResult read_step(const std::filesystem::path& path, const Collection& collection, const ReadOptions& options) {
-    const std::string list = path.string();
-    std::vector<std::string> warnings;
+// The files of a step, and a warning if it is the last one because none was chosen.
+std::vector<ListedFile> files_of_step(const std::string& list, const Collection& collection, const ReadOptions& options,
+                                      std::vector<std::string>& warnings) {
     const std::size_t step = chosen_step(options, collection.times.size(), list, warnings);
     std::vector<ListedFile> files;
     for (const ListedFile& file : collection.files[step]) expand(file, 0, files);
+    return files;
+}
+
+bool is_single(const std::vector<ListedFile>& files) {
+    return files.size() == 1 && files.front().block.empty();
+}
+
+ReadResult read_step(const std::filesystem::path& path, const Collection& collection, const ReadOptions& options) {
+    const std::string list = path.string();
+    std::vector<std::string> warnings;
+    std::vector<ListedFile> files = files_of_step(list, collection, options, warnings);
     ReadOptions of_file = options;
     of_file.step.reset();
-    if (files.size() == 1 && files.front().block.empty()) {
+    if (is_single(files)) {
         const MeshFormat& format = readable_format(files.front().path);
         check_options(format, files.front().path, of_file);
         ReadResult result = format.read(files.front().path, of_file);
         result.warnings.insert(result.warnings.begin(), warnings.begin(), warnings.end());
         return result;
     }
-    const bool blocks = std::ranges::any_of(files, [](const ListedFile& file) { return !file.block.empty(); });
-    MeshFile found = join_pieces(read_parts(files, list, options), blocks ? "block" : "piece", list);
+    const PartFiles chosen = chosen_files(std::move(files), list, options);
+    warnings.insert(warnings.end(), chosen.warnings.begin(), chosen.warnings.end());
+    std::vector<MeshFile> parts;
+    for (const ListedFile& file : chosen.files) {
+        MeshFile part = read_part(file, options);
+        if (!part.points.empty()) parts.push_back(std::move(part));
+    }
+    if (parts.empty()) parts.emplace_back();
+    MeshFile found = join_pieces(std::move(parts), chosen.word, list);
     if (cells_of(found) == 0) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its files", list);
     merge_blocks(found.blocks);
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
@@ -121,6 +126,35 @@ ReadResult read_step(const std::filesystem::path& path, const Collection& collec
 }
 
 }  // namespace
+
+const EntityNames& names_in_parts() {
+    return kNames;
+}
+
+std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options) {
+    const MeshFormat& format = readable_format(path);
+    if (format.files == nullptr) return {};
+    check_options(format, path, options);
+    const std::string list = path.string();
+    std::vector<std::string> warnings, none;
+    if (!format.times) static_cast<void>(chosen_step(options, 1, list, none));
+    std::vector<ListedFile> files = files_of_step(list, format.files(path), options, warnings);
+    if (is_single(files)) return {};
+    PartFiles chosen = chosen_files(std::move(files), list, options);
+    chosen.warnings.insert(chosen.warnings.begin(), warnings.begin(), warnings.end());
+    return chosen;
+}
+
+MeshFile read_part(const ListedFile& file, const ReadOptions& options) {
+    const MeshFormat* format = format_of(file.path);
+    if (format == nullptr || format->piece == nullptr) {
+        throw Error(ErrorCode::InvalidInput, in_quotes(file.path.filename().string()) + " cannot be read as a part of a mesh",
+                    file.place, ".vtu, .vts, .vtr and .vti files can");
+    }
+    MeshFile part = format->piece(read_text(file.path), file.path.string(), options);
+    if (!file.block.empty() && !part.points.empty()) part.blocks = {{file.block, cells_of(part)}};
+    return part;
+}
 
 ReadResult read_pvd_step(const std::filesystem::path& path, const ReadOptions& options) {
     return read_step(path, read_pvd(path), options);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "collection.h"
 #include "mesh_file.h"
 #include "subvol/mesh_io.h"
 
@@ -21,6 +22,7 @@ namespace subvol::detail {
 /// blocks:     whether it has named parts, which ReadOptions::blocks chooses
 /// times:      the times of the steps of a file; null if a file of this format is one step
 /// finite_volumes: its values at cells are means over them
+/// files:      reads a list of other files; null if the format is no such list
 /// piece:      reads a file as a part of a mesh, before it is assembled; null if such files are no parts
 struct MeshFormat {
     std::array<std::string_view, 4> extensions;
@@ -32,6 +34,7 @@ struct MeshFormat {
     std::vector<double> (*times)(const std::filesystem::path& path) = nullptr;
     bool finite_volumes = false;
     MeshFile (*piece)(std::string_view text, std::string_view file, const ReadOptions& options) = nullptr;
+    Collection (*files)(const std::filesystem::path& path) = nullptr;
 };
 
 [[nodiscard]] std::span<const MeshFormat> mesh_formats();

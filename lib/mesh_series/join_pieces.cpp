@@ -15,9 +15,39 @@
 
 namespace subvol::detail {
 
-namespace {
+const FileArray* find_array(const MeshFile& part, std::string_view name, bool at_cells, int components) {
+    const auto found = std::ranges::find_if(part.arrays, [&](const FileArray& array) {
+        return array.name == name && array.at_cells == at_cells && array.components == components;
+    });
+    return found == part.arrays.end() ? nullptr : &*found;
+}
 
-constexpr std::array<std::string_view, 3> kNodeNumbers{"GlobalNodeId", "GlobalNodeID", "GlobalPointIds"};
+std::size_t cell_count(const MeshFile& part) {
+    std::size_t count = 0;
+    for (const FileArray& array : part.arrays) {
+        if (array.at_cells) count = std::max(count, array.values.size() / static_cast<std::size_t>(array.components));
+    }
+    each_kind(part, [&](const auto& cells) {
+        for (const Index number : cells.numbers) count = std::max(count, std::size_t{number} + 1);
+    });
+    return count;
+}
+
+std::string joining_report(std::size_t parts, std::string_view word, std::size_t joined, const std::string& by,
+                           const std::string& order_by) {
+    return counted(parts, word, std::string(word) + "s") + " put together; " + counted(joined, "point", "points") +
+           " joined with those of another, by " + by + (order_by.empty() ? "" : "; cells in the order of " + order_by);
+}
+
+std::string not_everywhere(const std::string& name, std::string_view word) {
+    return "array " + in_quotes(name) + " is not in every " + std::string(word) + ": ignored";
+}
+
+std::string does_not_number(std::string_view name, std::string_view things) {
+    return "array " + in_quotes(std::string(name)) + " does not number the " + std::string(things) + ": not used";
+}
+
+namespace {
 
 struct PointHash {
     std::size_t operator()(const Vec3& x) const {
@@ -27,25 +57,6 @@ struct PointHash {
         return static_cast<std::size_t>(hash ^ (hash >> 32));
     }
 };
-
-const FileArray* find_array(const MeshFile& piece, std::string_view name, bool at_cells, int components) {
-    const auto found = std::ranges::find_if(piece.arrays, [&](const FileArray& array) {
-        return array.name == name && array.at_cells == at_cells && array.components == components;
-    });
-    return found == piece.arrays.end() ? nullptr : &*found;
-}
-
-// The number of cells of all kinds that the piece's file has.
-std::size_t cell_count(const MeshFile& piece) {
-    std::size_t count = 0;
-    for (const FileArray& array : piece.arrays) {
-        if (array.at_cells) count = std::max(count, array.values.size() / static_cast<std::size_t>(array.components));
-    }
-    each_kind(piece, [&](const auto& cells) {
-        for (const Index number : cells.numbers) count = std::max(count, std::size_t{number} + 1);
-    });
-    return count;
-}
 
 class Joiner {
 public:
@@ -64,6 +75,7 @@ public:
         all_.points.reserve(points);
         if (!join_by_numbers()) join_by_places();
         for (MeshFile& piece : pieces_) add_cells(piece);
+        order_cells();
         add_arrays();
         std::set<std::string> said;
         for (const MeshFile& piece : pieces_) {
@@ -73,8 +85,7 @@ public:
             all_.cut = all_.cut || piece.cut;
             all_.blocks.insert(all_.blocks.end(), piece.blocks.begin(), piece.blocks.end());
         }
-        all_.warnings.push_back(counted(pieces_.size(), word_, std::string(word_) + "s") + " put together; " +
-                                counted(joined_, "point", "points") + " joined with those of another, by " + by_);
+        all_.warnings.push_back(joining_report(pieces_.size(), word_, joined_, by_, order_by_));
         return std::move(all_);
     }
 
@@ -100,7 +111,7 @@ private:
     // Returns whether that is possible: numbers that are whole and not repeated in a piece, each at one place.
     bool join_by_numbers() {
         std::vector<const FileArray*> numbers;
-        for (const std::string_view name : kNodeNumbers) {
+        for (const std::string_view name : kPointNumberArrays) {
             numbers.clear();
             for (const MeshFile& piece : pieces_) {
                 if (const FileArray* array = find_array(piece, name, false, 1)) numbers.push_back(array);
@@ -113,7 +124,7 @@ private:
         for (const MeshFile& piece : pieces_) {
             for (const Vec3& x : piece.points) box.add(x);
         }
-        const double near = 1e-6 * box.diagonal();
+        const double near = kNearOfDiagonal * box.diagonal();
         for (std::size_t k = 0; k < pieces_.size(); ++k) {
             const auto& of_piece = numbers[k]->values;
             bool sound = true;
@@ -127,7 +138,7 @@ private:
                 return at->second;
             });
             if (sound) continue;
-            all_.warnings.push_back("array " + in_quotes(numbers[k]->name) + " does not number the points: not used");
+            all_.warnings.push_back(does_not_number(numbers[k]->name, "points"));
             all_.points.clear();
             places_.clear();
             sources_.clear();
@@ -196,6 +207,69 @@ private:
         }
     }
 
+    // Puts the cells in the order of their numbers, so that it does not depend on how the mesh was cut. Ghosts have the numbers
+    // of other cells and go beside them; they are left out later.
+    void order_cells() {
+        for (const std::string_view name : kCellNumberArrays) {
+            std::vector<double> numbers(cells_);
+            std::vector<std::uint8_t> counts(cells_, 1);  // the cell is no ghost
+            bool everywhere = cells_ > 0;
+            for (std::size_t k = 0; k < pieces_.size() && everywhere; ++k) {
+                const std::size_t end = k + 1 < pieces_.size() ? first_cells_[k + 1] : cells_;
+                if (end == first_cells_[k]) continue;
+                const FileArray* array = find_array(pieces_[k], name, true, 1);
+                everywhere = array != nullptr;
+                if (!everywhere) break;
+                const FileArray* ghosts = find_array(pieces_[k], kGhostArray, true, 1);
+                for (std::size_t c = first_cells_[k]; c < end; ++c) {
+                    numbers[c] = array->values[c - first_cells_[k]];
+                    if (ghosts) counts[c] = !leaves_out_cell(ghosts->values[c - first_cells_[k]]);
+                }
+            }
+            if (!everywhere) continue;
+            if (order_by(numbers, counts)) {
+                order_by_ = in_quotes(std::string(name));
+                for (MeshFile& piece : pieces_) {  // their means at points would mean nothing
+                    std::erase_if(piece.arrays, [&](const FileArray& array) { return array.at_cells && array.name == name; });
+                }
+            } else {
+                all_.warnings.push_back(does_not_number(name, "cells"));
+            }
+            return;
+        }
+    }
+
+    // Returns whether the numbers are those of the cells: whole, and different for cells that count.
+    bool order_by(const std::vector<double>& numbers, const std::vector<std::uint8_t>& counts) {
+        std::vector<double> sorted;
+        bool whole = true;
+        each_kind(all_, [&](const auto& cells) {
+            for (const Index c : cells.numbers) {
+                whole = whole && numbers[c] == std::floor(numbers[c]);
+                if (counts[c]) sorted.push_back(numbers[c]);
+            }
+        });
+        if (!whole) return false;
+        std::ranges::sort(sorted);
+        if (std::ranges::adjacent_find(sorted) != sorted.end()) return false;
+        each_kind(all_, [&](auto& cells) {
+            const auto before = [&](Index a, Index b) { return numbers[a] != numbers[b] ? numbers[a] < numbers[b] : a < b; };
+            if (std::ranges::is_sorted(cells.numbers, before)) return;
+            std::vector<std::size_t> order(cells.numbers.size());
+            std::iota(order.begin(), order.end(), std::size_t{0});
+            std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return before(cells.numbers[a], cells.numbers[b]); });
+            std::remove_reference_t<decltype(cells)> ordered;
+            ordered.corners.reserve(order.size());
+            ordered.numbers.reserve(order.size());
+            for (const std::size_t place : order) {
+                ordered.corners.push_back(cells.corners[place]);
+                ordered.numbers.push_back(cells.numbers[place]);
+            }
+            cells = std::move(ordered);
+        });
+        return true;
+    }
+
     void add_arrays() {
         std::set<std::pair<std::string, bool>> done;
         for (const MeshFile& first : pieces_) {
@@ -207,8 +281,7 @@ private:
                 }
                 const bool ghosts = array.name == kGhostArray;  // where it is missing there are none
                 if (!ghosts && std::ranges::find(parts, nullptr) != parts.end()) {
-                    all_.warnings.push_back("array " + in_quotes(array.name) + " is not in every " + std::string(word_) +
-                                            ": ignored");
+                    all_.warnings.push_back(not_everywhere(array.name, word_));
                     continue;
                 }
                 all_.arrays.push_back(joined(array, parts));
@@ -244,7 +317,7 @@ private:
     std::vector<std::pair<std::size_t, std::size_t>> sources_;  // of each point of the whole: piece and point
     std::vector<std::size_t> first_cells_;
     std::size_t cells_ = 0, joined_ = 0;
-    std::string by_;
+    std::string by_, order_by_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "subvol/boundary_values.h"
 #include "subvol/brick_points.h"
 #include "subvol/brick_probe.h"
+#include "subvol/brick_surface.h"
 #include "subvol/bricks.h"
 #include "subvol/camera.h"
 #include "subvol/camera_fit.h"

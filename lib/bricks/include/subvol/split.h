@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "subvol/bricks.h"
+#include "subvol/mesh_io.h"
 #include "subvol/progress.h"
 
 namespace subvol {
@@ -57,6 +60,36 @@ SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, const 
 /// The same for given bricks. brick_of_cell: one number for each cell; numbers without cells make no brick
 SplitResult split_mesh(const std::filesystem::path& folder, HexMesh mesh, std::span<const std::uint32_t> brick_of_cell,
                        const SplitOptions& options = {});
+
+/// How to read a mesh in pieces.
+///
+/// change:       what is done with each brick's mesh before it is written: another field, for example
+/// about_change: what `change` does, in any words: a split that was interrupted goes on only if they are the same
+struct PiecesOptions {
+    ReadOptions read = {};
+    BrickFields change = {};
+    std::string about_change = {};
+};
+
+/// result:     nothing if the mesh must be held whole: then nothing has been written
+/// held_whole: why, such as "it has tetrahedra"; empty if the file is no list of pieces
+/// warnings:   those of `read_mesh`
+struct PiecesSplit {
+    std::optional<SplitResult> result;
+    std::string held_whole;
+    std::vector<std::string> warnings;
+};
+
+/// Cuts a mesh in pieces (.pvtu, .vtm and others that name several files) into bricks without holding it: the bricks are those
+/// of `split_mesh` of the mesh that `read_mesh` makes of the pieces. The pieces are read one at a time, two or three times
+/// each; their points and cells wait in files without names beside `folder`, some 100 bytes a cell.
+///
+/// returns: nothing as result if the file is no such list, or the pieces are not hexahedra with plain corners, or
+///          pieces.read asks for welded points or fitted values
+/// throws:  as `read_mesh` and `split_mesh`; Error(InvalidInput) if a piece changes meanwhile
+/// cost:    memory: a piece, or 16 bytes a cell, or 12 bytes a cell and a brick
+PiecesSplit split_pieces(const std::filesystem::path& folder, const std::filesystem::path& mesh,
+                         const PiecesOptions& pieces = {}, const SplitOptions& options = {});
 
 /// Writes the model `twist` with resolution³ cells as bricks, brick by brick: the bits are those of `make_model`.
 ///

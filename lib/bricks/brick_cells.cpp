@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "brick_cells.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace subvol::detail {
+
+namespace {
+
+constexpr std::size_t kChunk = std::size_t{1} << 16;  // cells that are read together
+constexpr std::uint32_t kNobody = ~0U;
+
+// The bricks that reach a point: its owner, and for few points others.
+class Reach {
+public:
+    using Other = std::pair<Index, std::uint32_t>;  // a point, and a brick that does not own it
+
+    explicit Reach(std::size_t points) : owners(points, kNobody), has_others_(points, false) {}
+
+    std::vector<std::uint32_t> owners;
+
+    [[nodiscard]] bool has(Index p, std::uint32_t brick) const {
+        return owners[p] == brick || (has_others_[p] && std::ranges::binary_search(others_, Other{p, brick}));
+    }
+    template <class Call>
+    void each(Index p, const Call& call) const {
+        call(owners[p]);
+        if (!has_others_[p]) return;
+        for (auto at = std::ranges::lower_bound(others_, Other{p, 0}); at != others_.end() && at->first == p; ++at) {
+            call(at->second);
+        }
+    }
+
+    void add(Index p, std::uint32_t brick) {
+        fresh_.emplace_back(p, brick);
+        if (fresh_.size() >= kFresh + 2 * compacted_) compact();
+    }
+    void settle() {
+        compact();
+        const std::size_t before = others_.size();
+        for (const Other& other : fresh_) has_others_[other.first] = true;
+        others_.insert(others_.end(), fresh_.begin(), fresh_.end());
+        std::inplace_merge(others_.begin(), others_.begin() + static_cast<std::ptrdiff_t>(before), others_.end());
+        fresh_ = {};
+        compacted_ = 0;
+    }
+
+private:
+    static constexpr std::size_t kFresh = std::size_t{1} << 20;
+
+    void compact() {
+        std::ranges::sort(fresh_);
+        fresh_.erase(std::unique(fresh_.begin(), fresh_.end()), fresh_.end());
+        compacted_ = fresh_.size();
+    }
+
+    std::vector<bool> has_others_;
+    std::vector<Other> others_, fresh_;
+    std::size_t compacted_ = 0;
+};
+
+template <class Call>
+void each_cell(const SpillFile& corners, std::size_t count, const Call& call) {
+    std::vector<std::array<Index, 8>> cells;
+    for (std::size_t begin = 0; begin < count; begin += kChunk) {
+        cells.resize(std::min(kChunk, count - begin));
+        corners.read(begin, records_of(cells));
+        for (std::size_t i = 0; i < cells.size(); ++i) call(static_cast<Index>(begin + i), cells[i]);
+    }
+}
+
+// The bricks that reach one of the corners: the cell's own, and in `others` those whose next layer it is in or that have it.
+void bricks_at(const Reach& reach, const std::array<Index, 8>& cell, std::uint32_t own, std::vector<std::uint32_t>& others) {
+    others.clear();
+    for (const Index p : cell) {
+        reach.each(p, [&](std::uint32_t brick) {
+            if (brick != own && std::ranges::find(others, brick) == others.end()) others.push_back(brick);
+        });
+    }
+}
+
+}  // namespace
+
+std::vector<Index> BrickCells::stored(std::size_t brick) const {
+    const auto b = static_cast<std::uint32_t>(brick);
+    const auto more = std::ranges::equal_range(halo, b, {}, [](const auto& pair) { return pair.first; });
+    const std::span<const Index> own = owned_by(brick);
+    std::vector<Index> cells(own.begin(), own.end());
+    cells.reserve(cells.size() + more.size());
+    for (const auto& [of, cell] : more) cells.push_back(cell);
+    std::ranges::inplace_merge(cells, cells.begin() + static_cast<std::ptrdiff_t>(own.size()));
+    return cells;
+}
+
+std::span<const Index> BrickCells::owned_by(std::size_t brick) const {
+    return std::span(owned).subspan(first[brick], first[brick + 1] - first[brick]);
+}
+
+BrickCells cells_of_bricks(const SpillFile& corners, std::size_t points, std::vector<std::uint32_t> bricks, int layers) {
+    const std::size_t cells = bricks.size();
+    Reach reach(points);
+    each_cell(corners, cells, [&](Index c, const std::array<Index, 8>& cell) {
+        for (const Index p : cell) {
+            if (reach.owners[p] == kNobody) reach.owners[p] = bricks[c];
+            if (reach.owners[p] != bricks[c]) reach.add(p, bricks[c]);
+        }
+    });
+    reach.settle();
+    std::vector<std::uint32_t> others;
+    for (int layer = 1; layer < layers; ++layer) {
+        each_cell(corners, cells, [&](Index c, const std::array<Index, 8>& cell) {
+            bricks_at(reach, cell, bricks[c], others);
+            for (const std::uint32_t brick : others) {
+                for (const Index p : cell) {
+                    if (!reach.has(p, brick)) reach.add(p, brick);
+                }
+            }
+        });
+        reach.settle();
+    }
+    BrickCells result;
+    each_cell(corners, cells, [&](Index c, const std::array<Index, 8>& cell) {
+        bricks_at(reach, cell, bricks[c], others);
+        for (const std::uint32_t brick : others) result.halo.emplace_back(brick, c);
+    });
+    std::ranges::sort(result.halo);
+    result.owners = std::move(reach.owners);
+    const std::size_t count = std::size_t{std::ranges::max(bricks)} + 1;
+    result.first.assign(count + 1, 0);
+    for (const std::uint32_t brick : bricks) ++result.first[brick + 1];
+    for (std::size_t b = 0; b < count; ++b) result.first[b + 1] += result.first[b];
+    std::vector<std::size_t> next(result.first.begin(), result.first.end() - 1);
+    result.owned.resize(cells);
+    for (std::size_t c = 0; c < cells; ++c) result.owned[next[bricks[c]]++] = static_cast<Index>(c);
+    return result;
+}
+
+}  // namespace subvol::detail

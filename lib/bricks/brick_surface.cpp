@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/brick_surface.h"
+
+#include <algorithm>
+
+#include "brick_layers.h"
+#include "subvol/error.h"
+#include "surface_part.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+constexpr int kHaloOfLimit = 3;  // layers of cells that values and gradients of the limit depend on
+
+/// The stages of a surface are those of the whole; what is before them is said by this.
+void say(const SurfaceOptions& options, const char* stage, std::size_t brick, const Bricks& bricks) {
+    report_progress(options.progress, stage, static_cast<double>(brick) / static_cast<double>(bricks.bricks.size()));
+}
+
+BrickMesh read_with(const Bricks& bricks, std::size_t b, const BrickFields& fields) {
+    BrickMesh brick = read_brick(bricks, b);
+    if (fields) brick.mesh = fields(std::move(brick.mesh));
+    return brick;
+}
+
+/// The numbers of the cells that a surface may pass through, and of `layers` of cells about them.
+std::vector<std::uint64_t> wanted_cells(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
+                                        const BrickFields& fields, int layers) {
+    SurfaceOptions quiet = options;
+    quiet.progress = nullptr;
+    std::vector<std::uint64_t> wanted;
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        say(options, "look", b, bricks);
+        const BrickMesh brick = read_with(bricks, b, fields);
+        std::vector<std::uint8_t> here = surface_candidates(brick.mesh, field, quiet);
+        for (std::size_t c = 0; c < here.size(); ++c) here[c] = here[c] && brick.owned_cells[c];
+        grow(brick.mesh, here, layers);
+        for (std::size_t c = 0; c < here.size(); ++c) {
+            if (here[c]) wanted.push_back(brick.cell_numbers[c]);
+        }
+    }
+    std::ranges::sort(wanted);
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    return wanted;
+}
+
+/// These cells as owned ones, with their halos.
+BrickMesh with_halos(const Bricks& bricks, const std::vector<std::uint64_t>& wanted, const SurfaceOptions& options,
+                     const BrickFields& fields) {
+    std::vector<BrickMesh> parts;
+    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        say(options, "gather", b, bricks);
+        BrickMesh brick = read_with(bricks, b, fields);
+        bool any = false;
+        for (std::size_t c = 0; c < brick.owned_cells.size(); ++c) {
+            brick.owned_cells[c] = brick.owned_cells[c] && std::ranges::binary_search(wanted, brick.cell_numbers[c]);
+            any = any || brick.owned_cells[c];
+        }
+        if (!any) continue;
+        std::vector<std::uint8_t> kept = brick.owned_cells;
+        grow(brick.mesh, kept, kHaloOfLimit);
+        parts.push_back(subset(brick, kept));
+    }
+    return merged(std::move(parts));
+}
+
+}  // namespace
+
+LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
+                           const BrickFields& fields) {
+    check_surface_options(options);
+    if (bricks.halo_layers < kHaloOfLimit) {
+        throw Error(ErrorCode::InvalidInput,
+                    "its bricks have " + std::to_string(bricks.halo_layers) + " layers of halo, surfaces need " +
+                        std::to_string(kHaloOfLimit),
+                    bricks.path.string(), "split with --halo " + std::to_string(kHaloOfLimit));
+    }
+    const Vec3 size = bricks.bounds.size();
+    // The boundary leads nowhere; an isosurface may lead out of the cells that the first look finds.
+    for (int layers = options.isos.empty() ? 0 : 1; layers <= bricks.halo_layers; ++layers) {
+        const std::vector<std::uint64_t> wanted = wanted_cells(bricks, field, options, fields, layers);
+        if (wanted.empty()) return {};
+        const BrickMesh part = with_halos(bricks, wanted, options, fields);
+        auto surface = limit_surface_of_part(part.mesh, part.owned_cells, std::max({size.x, size.y, size.z}), field, options);
+        if (!surface) continue;
+        for (LimitQuery& place : surface->places) {
+            const std::uint64_t number = part.cell_numbers[place.cell];
+            place.cell = number < kNone ? static_cast<Index>(number) : kNone;
+        }
+        return std::move(*surface);
+    }
+    throw Error(ErrorCode::InvalidInput, "an isosurface leads farther than the halo of its bricks", bricks.path.string(),
+                "split with a larger --halo");
+}
+
+}  // namespace subvol

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+#include "subvol/bricks.h"
+#include "subvol/limit_surface.h"
+
+namespace subvol {
+
+/// Isosurfaces and the boundary of a mesh in bricks, as `limit_surface` of the whole: the same triangles, with positions and
+/// fields to the tolerance of the limit (`LimitOptions`), relative to the part of the mesh that is gathered.
+///
+/// Each brick is looked at for cells that a surface may pass through; these are then gathered with their halos, and the surface
+/// is cut from them alone.
+///
+/// The places of the result have the cells' numbers in the whole mesh; kNone if an Index cannot hold them.
+///
+/// fields: changes the attributes of each brick; none: they stay
+/// throws: as `limit_surface` and `read_brick`; Error(InvalidInput) if the bricks have fewer than three layers of halo
+/// cost:   memory: a brick with its topology; then some 2 kB for each cell that the surface passes, and 300 bytes a triangle
+[[nodiscard]] LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
+                                         const BrickFields& fields = {});
+
+}  // namespace subvol

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "subvol/limit_surface.h"
+
+namespace subvol::detail {
+
+/// Throws Error(InvalidInput) if an option is out of range, or nothing is asked for.
+void check_surface_options(const SurfaceOptions& options);
+
+/// A flag for each cell of a part of a mesh: whether the first look finds that a surface may pass through it. In the halo the
+/// flags mean nothing.
+[[nodiscard]] std::vector<std::uint8_t> surface_candidates(const HexMesh& part, std::string_view field,
+                                                           const SurfaceOptions& options);
+
+/// `limit_surface` of a mesh of which only a part is there.
+///
+/// part:        its points and cells have the order that they have in the whole
+/// owned:       a flag for each cell that a surface may be cut from; all `surface_candidates` of the whole are owned, and have
+/// their
+///              halo about them
+/// longest_side: of the box of the whole
+/// returns:     nothing if the surface leads into a cell that is not owned
+[[nodiscard]] std::optional<LimitSurface> limit_surface_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
+                                                                double longest_side, std::string_view field,
+                                                                const SurfaceOptions& options);
+
+}  // namespace subvol::detail

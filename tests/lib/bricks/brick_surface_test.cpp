@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces of a mesh in bricks have the triangles of the mesh in one piece.
+#include "subvol/brick_surface.h"
+
+#include <gmock/gmock.h>
+
+#include "../temp_folder.h"
+#include "../test_meshes.h"
+#include "subvol/model.h"
+#include "subvol/split.h"
+
+namespace subvol {
+namespace {
+
+using test::error_of;
+using testing::HasSubstr;
+
+class BrickSurface : public test::TempFolder {
+protected:
+    /// Places are those of the limit to its tolerance: 1e-6 of the diagonal. (The order of a crossing's digits is smaller:
+    /// Newton's method ends with a step of at most 1e-3 of an edge, which leaves its square.)
+    void expect_same(const HexMesh& mesh, const SplitOptions& split, const SurfaceOptions& options) const {
+        const LimitSurface whole = limit_surface(mesh, "f", options);
+        const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
+        const LimitSurface found = limit_surface(bricks, "f", options);
+        ASSERT_GT(whole.surface.triangles.size(), 100U);
+        EXPECT_EQ(found.surface.triangles, whole.surface.triangles);
+        ASSERT_EQ(found.surface.points.size(), whole.surface.points.size());
+        const double near = 1e-6 * bounds(mesh).diagonal();
+        for (std::size_t p = 0; p < whole.surface.points.size(); ++p) {
+            EXPECT_LT(glm::distance(found.surface.points[p], whole.surface.points[p]), near);
+            EXPECT_EQ(found.places[p].cell, whole.places[p].cell);
+        }
+        ASSERT_EQ(found.fields.size(), whole.fields.size());
+        EXPECT_EQ(found.fields[1].name, "g");
+        EXPECT_EQ(found.report.level, whole.report.level);
+        EXPECT_EQ(found.report.cells, whole.report.cells);
+        EXPECT_EQ(found.report.watertight, whole.report.watertight);
+        EXPECT_EQ(found.report.euler, whole.report.euler);
+        EXPECT_NEAR(found.report.volume, whole.report.volume, 1e-6 * std::abs(whole.report.volume));
+    }
+};
+
+HexMesh ball() {
+    HexMesh mesh = make_model("ball", 4);
+    mesh.attributes.clear();
+    test::jitter(mesh, 0.02, 3);
+    test::add_field(mesh, "f", [](const Vec3& x) { return x.x * x.x + 2 * x.y * x.y + x.z + 0.3 * x.x * x.y; });
+    test::add_field(mesh, "g", [](const Vec3& x) { return x.y; });
+    return mesh;
+}
+
+TEST_F(BrickSurface, HasTheTrianglesOfTheWhole) {
+    const HexMesh mesh = ball();
+    for (const BrickShape shape : {BrickShape::Blocks, BrickShape::Random}) {
+        const SplitOptions split{.bricks = 5, .shape = shape};
+        expect_same(mesh, split, {.boundary = true});
+        expect_same(mesh, split, {.isos = {0.3}, .tolerance = 3e-3});
+        expect_same(mesh, split, {.isos = {0.1, 0.6}, .cap = true, .tolerance = 3e-3});
+        expect_same(mesh, split, {.scheme = {.crease_angle_deg = 40}, .isos = {0.3}, .boundary = true});
+    }
+}
+
+TEST_F(BrickSurface, SaysWhatItCannotDo) {
+    const HexMesh mesh = ball();
+    const Bricks thin = split_mesh(path("thin"), mesh, {.bricks = 2, .halo_layers = 2}).bricks;
+    EXPECT_THAT(error_of([&] { (void)limit_surface(thin, "f", {.boundary = true}); }), HasSubstr("split with --halo 3"));
+    const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 2}).bricks;
+    EXPECT_THAT(error_of([&] { (void)limit_surface(bricks, "f", {}); }), HasSubstr("nothing is asked for"));
+    EXPECT_THAT(error_of([&] { (void)limit_surface(bricks, "none", {.isos = {0.3}}); }), HasSubstr("\"none\""));
+    EXPECT_TRUE(limit_surface(bricks, "f", {.isos = {1e6}}).surface.triangles.empty());
+}
+
+}  // namespace
+}  // namespace subvol
