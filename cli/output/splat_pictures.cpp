@@ -77,15 +77,15 @@ void write_splats(const RbfVolume& volume, const BoundaryValues& skin, double lo
 
 void write_splats(BricksToSplats what, const std::vector<View>& views, const Optics& optics, const SplatWork& work,
                   PictureOutput& output, Report& report) {
-    const auto& [bricks, fields, options, boundary, skin, samples] = what;
     if (work.rows) what.options.rows = rows_of(*work.rows, views.front().height());
     const bool ranked = work.rows && work.ranks != nullptr;
     const auto draw = [&](const View& view, Progress*) {
-        Surface own = views.size() > 1 ? boundary : std::move(what.boundary);
+        Surface own = views.size() > 1 ? what.boundary : std::move(what.boundary);
         ShippedKernels shipped;
         SplatResult drawn = report.timed("draw", [&] {
-            return ranked ? render_bricks_ranked(bricks, fields, std::move(own), view, optics, options, *work.ranks, shipped)
-                          : render_bricks(bricks, fields, std::move(own), view, optics, options);
+            return ranked ? render_bricks_ranked(what.bricks, what.fields, std::move(own), view, optics, what.options,
+                                                 *work.ranks, shipped)
+                          : render_bricks(what.bricks, what.fields, std::move(own), view, optics, what.options);
         });
         report["method"] = work.method;
         report["points"] = drawn.report.points;
@@ -95,9 +95,10 @@ void write_splats(BricksToSplats what, const std::vector<View>& views, const Opt
             report_shipped(shipped, *work.ranks, report);
             gather_rows(picture, *work.ranks);
         }
+        const BoundaryValues& skin = what.skin;
         if (!skin.values.empty()) {
-            color_boundary(picture.image, skin.surface, skin.values.back(), view, optics, Shading{}, samples,
-                           options.splat.clip);
+            color_boundary(picture.image, skin.surface, skin.values.back(), view, optics, Shading{}, what.samples,
+                           what.options.splat.clip);
         }
         return picture;
     };

@@ -16,7 +16,8 @@ namespace subvol::detail {
 /// The kernels with these numbers, in that order; no boundary. The bounds are those of the whole.
 [[nodiscard]] RbfVolume chosen_kernels(const RbfVolume& volume, std::span<const std::size_t> numbers);
 
-/// Leaves only the kernels at these places, in that order; the boundary and the bounds stay. Gives the memory of the others back.
+/// Leaves only the kernels at these places, in that order; the boundary and the bounds stay. Gives the memory of the others
+/// back.
 ///
 /// places: ascending, less than volume.size()
 void keep_kernels(RbfVolume& volume, const std::vector<std::size_t>& places);
