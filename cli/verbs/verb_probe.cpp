@@ -9,6 +9,7 @@
 #include "places_input.h"
 #include "quantities.h"
 #include "refine_arguments.h"
+#include "subvol/brick_measure.h"
 #include "subvol/brick_probe.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/number_text.h"
@@ -131,22 +132,31 @@ private:
     }
 
     void probe_the_bricks(const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) {
-        refuse_options(app(), {"--stats"}, "needs the whole mesh in memory; this is a folder of bricks");
         const Bricks bricks = open_bricks_input(input_, app(), report);
         (void)select_brick_field(bricks, common(), report);
-        const ProbeResult found = report.timed("probe", [&] {
-            LimitOptions quiet = limit;
-            quiet.progress = nullptr;
-            const auto chosen_first = [&](HexMesh brick) {
-                const std::string first = report.json().at("field");
-                (void)std::ranges::stable_partition(brick.attributes,
-                                                    [&](const Attribute& field) { return field.name == first; });
-                if (brick.attributes.empty()) brick.attributes.push_back(select_field(brick, {}).scalar);
-                return brick;
-            };
-            return probe_bricks(bricks, places, {.limit = quiet}, chosen_first, report.progress());
-        });
-        show(found, places, report);
+        const auto chosen_first = [&](HexMesh brick) {
+            const std::string first = report.json().at("field");
+            (void)std::ranges::stable_partition(brick.attributes, [&](const Attribute& field) { return field.name == first; });
+            if (brick.attributes.empty()) brick.attributes.push_back(select_field(brick, {}).scalar);
+            return brick;
+        };
+        if (!places.empty()) {
+            const ProbeResult found = report.timed("probe", [&] {
+                LimitOptions quiet = limit;
+                quiet.progress = nullptr;
+                return probe_bricks(bricks, places, {.limit = quiet}, chosen_first, report.progress());
+            });
+            show(found, places, report);
+        }
+        if (stats_) {
+            say_stats(report.timed("measure",
+                                   [&] {
+                                       return measure_limit(
+                                           bricks, {.scheme = limit.scheme, .bins = bins_, .progress = report.progress()},
+                                           chosen_first);
+                                   }),
+                      report);
+        }
         if (!output_.empty()) report["output"] = output_;
     }
 
@@ -287,6 +297,10 @@ private:
                 mesh,
                 {.scheme = scheme, .bins = bins_, .groups = parts.groups, .names = parts.names, .progress = report.progress()});
         });
+        say_stats(found, report);
+    }
+
+    static void say_stats(const LimitMeasure& found, Report& report) {
         report["stats"] = {{"whole", as_json(found.whole)}, {"parts", Json::array()}, {"pieces", found.pieces}};
         for (const PartMeasure& part : found.parts) report["stats"]["parts"].push_back(as_json(part));
         say(found.whole, "", report);

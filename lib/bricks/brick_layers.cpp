@@ -6,6 +6,7 @@
 
 #include "subvol/cell.h"
 #include "subvol/detail/parallel_each.h"
+#include "subvol/error.h"
 #include "topology_parts.h"
 
 namespace subvol::detail {
@@ -33,6 +34,14 @@ void grow(const HexMesh& mesh, std::vector<std::uint8_t>& cells, int layers) {
             if (!cells[c]) cells[c] = std::ranges::any_of(mesh.cells[c], [&](Index p) { return points[p] != 0; });
         });
     }
+}
+
+void check_halo_of_limit(const Bricks& bricks) {
+    if (bricks.halo_layers >= kHaloOfLimit) return;
+    throw Error(ErrorCode::InvalidInput,
+                "its bricks have " + std::to_string(bricks.halo_layers) + " layers of halo, values of the limit need " +
+                    std::to_string(kHaloOfLimit),
+                bricks.path.string(), "split with --halo " + std::to_string(kHaloOfLimit));
 }
 
 CellReaches::CellReaches(const HexMesh& mesh) : mesh_(mesh), about_(mesh.points.size()) {

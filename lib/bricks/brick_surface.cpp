@@ -13,8 +13,6 @@ using namespace detail;
 
 namespace {
 
-constexpr int kHaloOfLimit = 3;  // layers of cells that values and gradients of the limit depend on
-
 /// The stages of a surface are those of the whole; what is before them is said by this.
 void say(const SurfaceOptions& options, const char* stage, std::size_t brick, const Bricks& bricks) {
     report_progress(options.progress, stage, static_cast<double>(brick) / static_cast<double>(bricks.bricks.size()));
@@ -72,12 +70,7 @@ BrickMesh with_halos(const Bricks& bricks, const std::vector<std::uint64_t>& wan
 LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
                            const BrickFields& fields) {
     check_surface_options(options);
-    if (bricks.halo_layers < kHaloOfLimit) {
-        throw Error(ErrorCode::InvalidInput,
-                    "its bricks have " + std::to_string(bricks.halo_layers) + " layers of halo, surfaces need " +
-                        std::to_string(kHaloOfLimit),
-                    bricks.path.string(), "split with --halo " + std::to_string(kHaloOfLimit));
-    }
+    check_halo_of_limit(bricks);
     const Vec3 size = bricks.bounds.size();
     // The boundary leads nowhere; an isosurface may lead out of the cells that the first look finds.
     for (int layers = options.isos.empty() ? 0 : 1; layers <= bricks.halo_layers; ++layers) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "measure_part.h"
 #include "piece_tree.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
@@ -79,10 +80,11 @@ struct Sums {
 
 class Measurer {
 public:
-    Measurer(const HexMesh& mesh, const MeasureOptions& options) : mesh_(mesh), options_(options) {
+    /// of: no flags: all cells
+    Measurer(const HexMesh& mesh, const detail::MeasuredCells& of, const MeasureOptions& options)
+        : mesh_(mesh), options_(options), owned_(of.owned) {
         check();
-        const Vec3 size = bounds(mesh).size();
-        const LimitCellsOptions cells{.position_world = options.tolerance * std::max({size.x, size.y, size.z, 1e-300}),
+        const LimitCellsOptions cells{.position_world = options.tolerance * std::max(of.longest_side, 1e-300),
                                       .value_of_range = options.tolerance,
                                       .max_bytes = kMostBytes};
         pieces_ = find_limit_cells(mesh, {.scheme = options.scheme, .levels = 0, .progress = options.progress}, cells).pieces;
@@ -95,12 +97,12 @@ public:
         for (const Index group : options.groups) parts_ = std::max(parts_, static_cast<std::size_t>(group) + 1);
     }
 
-    LimitMeasure measure() {
+    LimitMeasure measure(bool histograms) {
         std::vector<Sums> sums = integrate();
         Sums whole = sums.front();
         for (std::size_t p = 1; p < sums.size(); ++p) add(sums[p], whole);
         std::vector<PartMeasure> found(1, summed(whole));
-        found[0].cells = mesh_.cells.size();
+        found[0].cells = owned_.empty() ? mesh_.cells.size() : static_cast<std::size_t>(std::ranges::count(owned_, 1));
         if (!options_.groups.empty()) {
             for (const Sums& part : sums) found.push_back(summed(part));
             for (std::size_t p = 0; p < parts_; ++p) found[p + 1].name = p < options_.names.size() ? options_.names[p] : "";
@@ -109,13 +111,55 @@ public:
         std::vector<const Sums*> of{&whole};
         for (std::size_t p = 0; p + 1 < found.size(); ++p) of.push_back(&sums[p]);
         search(of, found);
-        add_histograms(found);
-        LimitMeasure result{std::move(found.front()), {}, pieces_->cells.size()};
+        if (histograms) add_histograms(found);
+        LimitMeasure result{std::move(found.front()), {}, count_pieces()};
         result.parts.assign(std::make_move_iterator(found.begin() + 1), std::make_move_iterator(found.end()));
         return result;
     }
 
+    /// Of the parts and the whole, the first, between its extremes.
+    void add_histograms(std::vector<PartMeasure>& found) const {
+        const auto bins = static_cast<std::size_t>(options_.bins);
+        const std::size_t size = found.size() * channels_ * bins;
+        std::vector<std::vector<double>> chunks(kChunks);
+        tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
+            auto& counts = chunks[chunk];
+            counts.assign(size, 0);
+            for (std::size_t piece = chunk_begin(chunk); piece < chunk_begin(chunk + 1); ++piece) {
+                if (!is_owned(piece)) continue;
+                const std::size_t part = part_of(pieces_->cells[piece]) + 1;
+                each_gauss_point(piece, [&](const Vec3&, double weight, std::span<const double> values) {
+                    for (std::size_t c = 0; c < channels_; ++c) {
+                        const FieldMeasure& whole = found[0].fields[c];
+                        const double width = whole.max.value - whole.min.value;
+                        const double t = width > 0 ? (values[c] - whole.min.value) / width * static_cast<double>(bins) : 0;
+                        const auto bin = static_cast<std::size_t>(std::clamp(t, 0.0, static_cast<double>(bins - 1)));
+                        counts[c * bins + bin] += weight;
+                        if (found.size() > 1) counts[(part * channels_ + c) * bins + bin] += weight;
+                    }
+                });
+            }
+        });
+        for (std::size_t p = 0; p < found.size(); ++p) {
+            for (std::size_t c = 0; c < channels_; ++c) {
+                auto& histogram = found[p].fields[c].histogram;
+                histogram.assign(bins, 0);
+                for (std::size_t b = 0; b < bins; ++b) {
+                    for (const auto& counts : chunks) histogram[b] += counts[(p * channels_ + c) * bins + b];
+                }
+            }
+        }
+    }
+
 private:
+    [[nodiscard]] bool is_owned(std::size_t piece) const { return owned_.empty() || owned_[pieces_->cells[piece]] != 0; }
+
+    [[nodiscard]] std::size_t count_pieces() const {
+        std::size_t count = 0;
+        for (std::size_t piece = 0; piece < pieces_->cells.size(); ++piece) count += is_owned(piece) ? 1 : 0;
+        return count;
+    }
+
     void check() const {
         const auto refuse = [](const std::string& what, const std::string& allowed) {
             throw Error(ErrorCode::InvalidInput, what, "measure", allowed);
@@ -173,6 +217,7 @@ private:
             sums.resize(parts_);
             for (Sums& part : sums) part = {0, std::vector<double>(channels_), std::vector<Extremes>(channels_)};
             for (std::size_t piece = chunk_begin(chunk); piece < chunk_begin(chunk + 1); ++piece) {
+                if (!is_owned(piece)) continue;
                 Sums& part = sums[part_of(pieces_->cells[piece])];
                 const double step = 0.5 * std::ldexp(1.0, -pieces_->levels[piece]);
                 each_gauss_point(piece, [&](const Vec3& t, double weight, std::span<const double> values) {
@@ -283,40 +328,9 @@ private:
         return 0;
     }
 
-    void add_histograms(std::vector<PartMeasure>& found) const {
-        const auto bins = static_cast<std::size_t>(options_.bins);
-        const std::size_t size = found.size() * channels_ * bins;
-        std::vector<std::vector<double>> chunks(kChunks);
-        tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
-            auto& counts = chunks[chunk];
-            counts.assign(size, 0);
-            for (std::size_t piece = chunk_begin(chunk); piece < chunk_begin(chunk + 1); ++piece) {
-                const std::size_t part = part_of(pieces_->cells[piece]) + 1;
-                each_gauss_point(piece, [&](const Vec3&, double weight, std::span<const double> values) {
-                    for (std::size_t c = 0; c < channels_; ++c) {
-                        const FieldMeasure& whole = found[0].fields[c];
-                        const double width = whole.max.value - whole.min.value;
-                        const double t = width > 0 ? (values[c] - whole.min.value) / width * static_cast<double>(bins) : 0;
-                        const auto bin = static_cast<std::size_t>(std::clamp(t, 0.0, static_cast<double>(bins - 1)));
-                        counts[c * bins + bin] += weight;
-                        if (found.size() > 1) counts[(part * channels_ + c) * bins + bin] += weight;
-                    }
-                });
-            }
-        });
-        for (std::size_t p = 0; p < found.size(); ++p) {
-            for (std::size_t c = 0; c < channels_; ++c) {
-                auto& histogram = found[p].fields[c].histogram;
-                histogram.assign(bins, 0);
-                for (std::size_t b = 0; b < bins; ++b) {
-                    for (const auto& counts : chunks) histogram[b] += counts[(p * channels_ + c) * bins + b];
-                }
-            }
-        }
-    }
-
     const HexMesh& mesh_;
     const MeasureOptions& options_;
+    std::span<const std::uint8_t> owned_;
     std::shared_ptr<const LimitPieces> pieces_;
     std::size_t channels_ = 0, parts_ = 1;
 };
@@ -325,7 +339,23 @@ private:
 
 LimitMeasure measure_limit(const HexMesh& mesh, const MeasureOptions& options) {
     validate(mesh);
-    return Measurer(mesh, options).measure();
+    const Vec3 size = bounds(mesh).size();
+    return Measurer(mesh, {{}, std::max({size.x, size.y, size.z})}, options).measure(true);
+}
+
+LimitMeasure detail::measure_part(const HexMesh& part, const MeasuredCells& cells, const MeasureOptions& options) {
+    return Measurer(part, cells, options).measure(false);
+}
+
+void detail::add_to_histograms(const HexMesh& part, const MeasuredCells& cells, const MeasureOptions& options,
+                               PartMeasure& whole) {
+    std::vector<PartMeasure> here(1, whole);
+    Measurer(part, cells, options).add_histograms(here);
+    for (std::size_t f = 0; f < whole.fields.size(); ++f) {
+        for (std::size_t b = 0; b < whole.fields[f].histogram.size(); ++b) {
+            whole.fields[f].histogram[b] += here[0].fields[f].histogram[b];
+        }
+    }
 }
 
 }  // namespace subvol

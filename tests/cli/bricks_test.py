@@ -98,6 +98,19 @@ class SameAsTheWhole(InFolder):
                 if b["inside"]:
                     self.assertAlmostEqual(a["value"], b["value"], delta=1e-9)
 
+    def test_statistics(self):
+        whole = self.run_ok("probe", "model:twist:4", "--stats", "--json").json()["stats"]["whole"]
+        self.run_ok("split", "model:twist:4", "-o", "b.bricks", "--bricks", 2, "--quiet")
+        parts = self.run_ok("probe", "b.bricks", "--stats", "--at", "0,0,0", "--json").json()
+        self.assertEqual(len(parts["values"]), 1)
+        parts = parts["stats"]["whole"]
+        self.assertEqual(parts["cells"], whole["cells"])
+        self.assertAlmostEqual(parts["volume"], whole["volume"], delta=2e-4 * whole["volume"])
+        for a, b in zip(parts["fields"], whole["fields"], strict=True):
+            extent = b["max"]["value"] - b["min"]["value"] if isinstance(b["max"], dict) else b["max"] - b["min"]
+            self.assertEqual(a["name"], b["name"])
+            self.assertAlmostEqual(a["mean"], b["mean"], delta=2e-4 * extent)
+
     def test_surfaces(self):
         for options in (["--boundary"], ["--iso", 0.1, "--cap", "--tolerance", 3e-3, "--color-field", "density"]):
             whole = self.run_ok("surface", BALL, "-o", "whole.ply", *options, "--json").json()

@@ -5,6 +5,7 @@
 
 #include "subvol/basis_function.h"
 #include "subvol/boundary_values.h"
+#include "subvol/brick_measure.h"
 #include "subvol/brick_points.h"
 #include "subvol/brick_probe.h"
 #include "subvol/brick_surface.h"
