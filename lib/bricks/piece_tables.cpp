@@ -2,212 +2,57 @@
 #include "piece_tables.h"
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <numeric>
-#include <set>
+#include <optional>
 
 #include "assemble.h"
-#include "join_pieces.h"
-#include "piece_numbers.h"
-#include "subvol/cell.h"
+#include "piece_survey.h"
 #include "subvol/detail/byte_hash.h"
-#include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 16;  // cells, or points, that are worked on together
-
-template <class T>
-std::string_view bytes_of(const std::vector<T>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
-}
-
-std::uint64_t hash_of(const MeshFile& piece) {
-    ByteHash hash;
-    hash.add(bytes_of(piece.points));
-    hash.add(bytes_of(piece.hexes.corners));
-    for (const FileArray& array : piece.arrays) {
-        hash.add_text(array.name);
-        hash.add(bytes_of(array.values));
-    }
-    return hash.value();
-}
+constexpr std::size_t kChunk = std::size_t{1} << 16;  // points that are checked together
 
 // Reads the pieces, and puts them into the tables.
 class Maker {
 public:
     Maker(const PartFiles& files, std::string list, std::filesystem::path folder, const ReadOptions& options,
           Progress* progress, std::string& why)
-        : files_(files),
-          list_(std::move(list)),
-          folder_(std::move(folder)),
-          options_(options),
-          progress_(progress),
-          why_(why) {}
+        : files_(files), list_(std::move(list)), folder_(std::move(folder)), stream_(files, options, progress), why_(why) {}
 
     std::unique_ptr<PieceTables> run() {
-        if (!look()) return {};
-        if (hashes_.empty() || cells_in_files_ == 0) {
-            throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its files", list_);
-        }
-        choose_cell_order();
-        const auto everywhere = [&](const Candidate& c) { return c.parts == hashes_.size(); };
-        const auto numbers = std::ranges::find_if(point_numbers_, everywhere);
-        if (numbers != point_numbers_.end() && !numbers->whole) {
-            warnings_.push_back(does_not_number(numbers->name, "points"));
-        } else if (numbers != point_numbers_.end()) {
+        std::optional<PieceSurvey> survey = survey_pieces(stream_, list_, why_);
+        if (!survey) return {};
+        survey_ = std::move(*survey);
+        const auto everywhere = [&](const PieceSurvey::Numbers& n) { return n.parts == survey_.pieces(); };
+        const auto numbers = std::ranges::find_if(survey_.point_numbers, everywhere);
+        if (numbers != survey_.point_numbers.end() && !numbers->whole) {
+            survey_.warnings.push_back(does_not_number(numbers->name, "points"));
+        } else if (numbers != survey_.point_numbers.end()) {
             by_numbers_ = &*numbers;
             numbers->ranks.finish();
             if (fill()) return finished();
             if (!why_.empty()) return {};
-            warnings_.push_back(does_not_number(numbers->name, "points"));
+            survey_.warnings.push_back(does_not_number(numbers->name, "points"));
             by_numbers_ = nullptr;
         }
-        point_numbers_.clear();
+        survey_.point_numbers.clear();
         find_places();
         return fill() ? finished() : nullptr;
     }
 
 private:
-    // An array that may number points or cells.
-    struct Candidate {
-        std::string_view name;
-        std::size_t parts = 0;  // that have it
-        bool whole = true;
-        RanksOfNumbers ranks;
-    };
-
-    // Reads the next piece that is not empty; nothing after the last one.
-    std::optional<MeshFile> next() {
-        while (at_ < files_.files.size()) {
-            report_progress(progress_, "read",
-                            (round_ + static_cast<double>(at_) / static_cast<double>(files_.files.size())) / 2);
-            MeshFile piece = read_part(files_.files[at_++], options_);
-            if (!piece.points.empty()) return piece;
-        }
-        return {};
-    }
-    void begin(double round) {
-        at_ = 0;
-        round_ = round;
-    }
-
-    // The first round: what the pieces have in common, and the numbers of points and cells. Returns whether they can be joined
-    // one by one.
-    bool look() {
-        for (const std::string_view name : kPointNumberArrays) point_numbers_.push_back({name, 0, true, {}});
-        for (const std::string_view name : kCellNumberArrays) cell_numbers_.push_back({name, 0, true, {}});
-        begin(0);
-        std::uint64_t points = 0;
-        while (const auto piece = next()) {
-            if (const std::string why = why_whole(*piece); !why.empty()) {
-                why_ = why;
-                return false;
-            }
-            hashes_.push_back(hash_of(*piece));
-            points += piece->points.size();
-            first_cells_.push_back(cells_in_files_);
-            cells_in_files_ += cell_count(*piece);
-            if (points >= kNone || cells_in_files_ >= kNone) {
-                throw Error(ErrorCode::InvalidInput, "too many points or cells", list_);
-            }
-            for (const Vec3& x : piece->points) box_.add(x);
-            look_at_arrays(*piece);
-            for (Candidate& candidate : point_numbers_) look_at_numbers(*piece, false, hashes_.size() - 1, candidate);
-            if (cell_count(*piece) > 0) {
-                for (Candidate& candidate : cell_numbers_) look_at_numbers(*piece, true, with_cells_, candidate);
-                ++with_cells_;
-            }
-            for (const std::string& warning : piece->warnings) {
-                if (said_.insert(warning).second) warnings_.push_back(warning);
-            }
-        }
-        return true;
-    }
-
-    [[nodiscard]] static std::string why_whole(const MeshFile& piece) {
-        if (!piece.tets.corners.empty()) return "it has tetrahedra";
-        if (!piece.prisms.corners.empty()) return "it has prisms";
-        if (!piece.pyramids.corners.empty()) return "it has pyramids";
-        if (piece.curved.size() > 0) return "it has curved cells";
-        const FileArray* ghosts = find_array(piece, kGhostArray, false, 1);
-        if (ghosts && std::ranges::any_of(ghosts->values, hides_point)) return "it has hidden points";
-        return {};
-    }
-
-    void look_at_arrays(const MeshFile& piece) {
-        for (const FileArray& array : piece.arrays) {
-            if (known_.insert({array.name, array.at_cells}).second) {
-                arrays_.push_back({{array.name, array.components, array.at_cells, {}}, 0});
-            }
-        }
-        for (auto& [array, parts] : arrays_)
-            parts += find_array(piece, array.name, array.at_cells, array.components) != nullptr;
-    }
-
-    // before: how many pieces there were that could have the array
-    void look_at_numbers(const MeshFile& piece, bool at_cells, std::size_t before, Candidate& candidate) const {
-        if (candidate.parts != before) return;  // another lacks it
-        const FileArray* array = find_array(piece, candidate.name, at_cells, 1);
-        if (!array) {
-            candidate.ranks = {};
-            return;
-        }
-        ++candidate.parts;
-        const auto is_whole = [](double n) { return n == std::floor(n); };
-        if (!at_cells) {
-            candidate.whole = candidate.whole && std::ranges::all_of(array->values, is_whole);
-            if (candidate.whole) candidate.ranks.add(array->values);
-            return;
-        }
-        std::vector<double> numbers;
-        each_cell(piece, [&](std::size_t, std::size_t number, bool is_ghost) {
-            candidate.whole = candidate.whole && is_whole(array->values[number]);
-            if (!is_ghost) numbers.push_back(array->values[number]);
-        });
-        if (candidate.whole) candidate.ranks.add(numbers);
-    }
-
-    // Calls call(place in the list, number in the file, whether it is a ghost) for each cell.
-    template <class Call>
-    static void each_cell(const MeshFile& piece, const Call& call) {
-        const FileArray* ghosts = find_array(piece, kGhostArray, true, 1);
-        for (std::size_t c = 0; c < piece.hexes.corners.size(); ++c) {
-            const std::size_t number = piece.hexes.numbers.empty() ? c : piece.hexes.numbers[c];
-            call(c, number, ghosts && leaves_out_cell(ghosts->values[number]));
-        }
-    }
-
-    void choose_cell_order() {
-        const auto found = std::ranges::find_if(cell_numbers_, [&](const Candidate& c) { return c.parts == with_cells_; });
-        if (found == cell_numbers_.end()) return;
-        if (found->whole && found->ranks.finish()) {
-            order_ = &*found;
-        } else {
-            warnings_.push_back(does_not_number(found->name, "cells"));
-        }
-        for (Candidate& candidate : cell_numbers_) {
-            if (&candidate != order_) candidate.ranks = {};
-        }
-    }
-
-    // Not the ghosts, nor the numbers that are the order of the cells.
-    [[nodiscard]] bool is_field(const FileArray& array) const {
-        return array.name != kGhostArray && !(order_ && array.at_cells && array.name == order_->name);
-    }
-
     // Another round, where points have no numbers.
     void find_places() {
         places_.emplace(folder_);
-        begin(0);
-        while (const auto piece = next()) places_->add_piece(piece->points);
+        stream_.begin(0);
+        while (const auto piece = stream_.next()) places_->add_piece(piece->points);
         places_->finish();
     }
 
@@ -215,9 +60,9 @@ private:
     // reason.
     bool fill() {
         tables_ = std::make_unique<PieceTables>(folder_);
-        for (const auto& [array, parts] : arrays_) {
-            if (!is_field(array)) continue;
-            if (parts == hashes_.size()) tables_->arrays.push_back(array);
+        for (const auto& [array, parts] : survey_.arrays) {
+            if (!survey_.is_field(array)) continue;
+            if (parts == survey_.pieces()) tables_->arrays.push_back(array);
         }
         for (const bool at_cells : {false, true}) {
             const std::size_t components = tables_->components(at_cells);
@@ -230,12 +75,11 @@ private:
         PointFlags known;
         if (by_numbers_) known.resize(points_);
         tables_->used.resize(by_numbers_ ? points_ : 0);
-        begin(1);
+        stream_.begin(1);
         std::size_t k = 0;
-        while (const auto piece = next()) {
-            if (k == hashes_.size() || hash_of(*piece) != hashes_[k]) {
-                throw Error(ErrorCode::InvalidInput, "has changed while it was being read",
-                            files_.files[at_ - 1].path.string());
+        while (const auto piece = stream_.next()) {
+            if (k == survey_.pieces() || hash_of(*piece) != survey_.hashes[k]) {
+                throw Error(ErrorCode::InvalidInput, "has changed while it was being read", stream_.file().path.string());
             }
             if (!add_points(*piece, known) || !add_cells(*piece, k)) return false;
             ++k;
@@ -294,7 +138,7 @@ private:
         for (const Index i : again) numbers.push_back(ranks_[i]);
         std::vector<Vec3> there(again.size());
         tables_->coordinates.read_some(numbers, records_of(there));
-        const double near = kNearOfDiagonal * box_.diagonal();
+        const double near = kNearOfDiagonal * survey_.box.diagonal();
         for (std::size_t i = 0; i < again.size(); ++i) {
             if (!(glm::distance(there[i], piece.points[again[i]]) <= near)) return false;
         }
@@ -320,7 +164,7 @@ private:
     }
 
     bool add_cells(const MeshFile& piece, std::size_t k) {
-        const FileArray* numbers = order_ ? find_array(piece, order_->name, true, 1) : nullptr;
+        const FileArray* numbers = survey_.order ? find_array(piece, survey_.order->name, true, 1) : nullptr;
         std::vector<Index> ranks, places, in_file;
         bool collapsed = false;
         each_cell(piece, [&](std::size_t c, std::size_t number, bool is_ghost) {
@@ -331,7 +175,7 @@ private:
                 for (std::size_t j = 0; j < i; ++j) collapsed = collapsed || corners[i] == corners[j];
                 tables_->used.set(corners[i]);
             }
-            ranks.push_back(numbers ? order_->ranks.rank(numbers->values[number]) : static_cast<Index>(tables_->cells));
+            ranks.push_back(numbers ? survey_.order->ranks.rank(numbers->values[number]) : static_cast<Index>(tables_->cells));
             places.push_back(static_cast<Index>(c));
             in_file.push_back(static_cast<Index>(number));
             ++tables_->cells;
@@ -384,7 +228,7 @@ private:
             for (std::size_t i = 0; i < in_file.size(); ++i) {
                 for (std::size_t c = column; c < column + components; ++c) {
                     if (std::isfinite(records[i * length + c])) continue;
-                    refuse(array, names_in_parts().cell(first_cells_[k] + in_file[i]));
+                    refuse(array, names_in_parts().cell(survey_.first_cells[k] + in_file[i]));
                 }
             }
         });
@@ -443,119 +287,43 @@ private:
         check_point_values();
         tables.used.count();
         ByteHash hash;
-        for (const std::uint64_t of_piece : hashes_) hash.add({reinterpret_cast<const char*>(&of_piece), sizeof of_piece});
+        for (const std::uint64_t of_piece : survey_.hashes)
+            hash.add({reinterpret_cast<const char*>(&of_piece), sizeof of_piece});
         const std::string by = by_numbers_ ? in_quotes(std::string(by_numbers_->name)) : "their places";
-        const std::string order = order_ ? in_quotes(std::string(order_->name)) : std::string();
+        const std::string order = survey_.order ? in_quotes(std::string(survey_.order->name)) : std::string();
         hash.add_text(by);
         hash.add_text(order);
         tables.hash = hash.value();
-        for (const auto& [array, parts] : arrays_) {
-            if (parts != hashes_.size() && is_field(array)) {
-                warnings_.push_back(not_everywhere(array.name, files_.word));
+        for (const auto& [array, parts] : survey_.arrays) {
+            if (parts != survey_.pieces() && survey_.is_field(array)) {
+                survey_.warnings.push_back(not_everywhere(array.name, files_.word));
             }
         }
-        warnings_.push_back(joining_report(hashes_.size(), files_.word, joined_, by, order));
-        if (ghosts_ > 0) warnings_.push_back(ghosts_left_out(ghosts_));
-        std::ranges::copy(warnings_of_arrays(), std::back_inserter(warnings_));
+        survey_.warnings.push_back(joining_report(survey_.pieces(), files_.word, joined_, by, order));
+        if (ghosts_ > 0) survey_.warnings.push_back(ghosts_left_out(ghosts_));
+        std::ranges::copy(warnings_of_arrays(), std::back_inserter(survey_.warnings));
         tables.warnings = files_.warnings;
-        tables.warnings.insert(tables.warnings.end(), warnings_.begin(), warnings_.end());
+        tables.warnings.insert(tables.warnings.end(), survey_.warnings.begin(), survey_.warnings.end());
         return std::move(tables_);
     }
 
     const PartFiles& files_;
     std::string list_;
     std::filesystem::path folder_;
-    const ReadOptions& options_;
-    Progress* progress_;
+    PieceStream stream_;
     std::string& why_;
 
-    std::size_t at_ = 0;  // the next file
-    double round_ = 0;
-    std::vector<std::uint64_t> hashes_;  // of the pieces that are not empty
-    std::vector<std::size_t> first_cells_;
-    std::size_t cells_in_files_ = 0, with_cells_ = 0;
-    Box box_;
-    std::set<std::pair<std::string, bool>> known_;
-    std::vector<std::pair<FileArray, std::size_t>> arrays_;  // and how many pieces have it
-    std::vector<Candidate> point_numbers_, cell_numbers_;
-    Candidate *by_numbers_ = nullptr, *order_ = nullptr;
+    PieceSurvey survey_;
+    PieceSurvey::Numbers* by_numbers_ = nullptr;
     std::optional<RanksOfPlaces> places_;
     std::map<std::pair<std::string, bool>, double> least_;  // of the first component of each array
-    std::vector<std::string> warnings_;
-    std::set<std::string> said_;
 
     std::unique_ptr<PieceTables> tables_;
     std::size_t points_ = 0, joined_ = 0, ghosts_ = 0;
     std::vector<Index> ranks_;  // of the points of the piece at work
 };
 
-// The centres lie in a file for each axis.
-class SpilledCenters : public CellCenters {
-public:
-    SpilledCenters(std::size_t count, const std::filesystem::path& folder)
-        : count_(count),
-          files_{SpillFile(folder, sizeof(double)), SpillFile(folder, sizeof(double)), SpillFile(folder, sizeof(double))} {}
-    [[nodiscard]] std::size_t count() const override { return count_; }
-    void read(int axis, std::span<const Index> cells, std::span<double> values) const override {
-        files_[static_cast<std::size_t>(axis)].read_some(cells, {reinterpret_cast<char*>(values.data()), values.size_bytes()});
-    }
-    void write(std::size_t axis, std::uint64_t first, const std::vector<double>& values) {
-        files_[axis].write(first, records_of(values));
-    }
-
-private:
-    std::size_t count_;
-    std::array<SpillFile, 3> files_;
-};
-
 }  // namespace
-
-void PointFlags::resize(std::size_t points) {
-    words_.resize((points + 63) / 64);
-}
-
-std::uint64_t PointFlags::count() {
-    std::uint64_t count = 0;
-    before_.clear();
-    for (const std::uint64_t word : words_) {
-        before_.push_back(count);
-        count += static_cast<std::uint64_t>(std::popcount(word));
-    }
-    return count;
-}
-
-std::uint64_t PointFlags::count_before(Index p) const {
-    const std::uint64_t lower = (std::uint64_t{1} << p % 64) - 1;
-    return before_[p / 64] + static_cast<std::uint64_t>(std::popcount(words_[p / 64] & lower));
-}
-
-CornersOfCells::CornersOfCells(std::span<const std::array<Index, 8>> cells) {
-    if (cells.empty()) return;
-    Index last = 0;
-    first_ = kNone;
-    for (const auto& cell : cells) {
-        for (const Index p : cell) {
-            first_ = std::min(first_, p);
-            last = std::max(last, p);
-        }
-    }
-    words_.resize((last - first_) / 64 + 1);
-    for (const auto& cell : cells) {
-        for (const Index p : cell) words_[(p - first_) / 64] |= std::uint64_t{1} << (p - first_) % 64;
-    }
-    for (std::size_t w = 0; w < words_.size(); ++w) {
-        before_.push_back(static_cast<Index>(points_.size()));
-        for (std::uint64_t word = words_[w]; word != 0; word &= word - 1) {
-            points_.push_back(static_cast<Index>(first_ + 64 * w + static_cast<std::size_t>(std::countr_zero(word))));
-        }
-    }
-}
-
-Index CornersOfCells::place(Index p) const {
-    const Index at = p - first_;
-    const std::uint64_t lower = (std::uint64_t{1} << at % 64) - 1;
-    return before_[at / 64] + static_cast<Index>(std::popcount(words_[at / 64] & lower));
-}
 
 PieceTables::PieceTables(const std::filesystem::path& folder)
     : coordinates(folder, sizeof(Vec3)), corners(folder, sizeof(std::array<Index, 8>)) {
@@ -572,39 +340,6 @@ std::unique_ptr<PieceTables> tables_of_pieces(const PartFiles& files, const std:
                                               Progress* progress, std::string& why) {
     why.clear();
     return Maker(files, list, folder, options, progress, why).run();
-}
-
-std::unique_ptr<CellCenters> centers_of(PieceTables& tables, const std::filesystem::path& folder, Progress* progress) {
-    auto centers = std::make_unique<SpilledCenters>(tables.cells, folder);
-    std::atomic<std::size_t> turned = 0, folded = 0;
-    std::vector<std::array<Index, 8>> cells;
-    std::vector<Vec3> points;
-    std::array<std::vector<double>, 3> of_axis;
-    for (std::uint64_t begin = 0; begin < tables.cells; begin += kChunk) {
-        report_progress(progress, "measure", static_cast<double>(begin) / static_cast<double>(tables.cells));
-        cells.resize(std::min<std::uint64_t>(kChunk, tables.cells - begin));
-        tables.corners.read(begin, records_of(cells));
-        const CornersOfCells corners(cells);
-        points.resize(corners.points().size());
-        tables.coordinates.read_some(corners.points(), records_of(points));
-        for (auto& values : of_axis) values.resize(cells.size());
-        parallel_each(cells.size(), [&](std::size_t c) {
-            std::array<Vec3, 8> x;
-            for (std::size_t k = 0; k < 8; ++k) x[k] = points[corners.place(cells[c][k])];
-            if (cell_volume(x) < 0) {
-                std::swap_ranges(x.begin(), x.begin() + 4, x.begin() + 4);
-                ++turned;
-            }
-            if (is_folded(x)) ++folded;
-            Vec3 sum(0.0);
-            for (const Vec3& corner : x) sum += corner;
-            for (int axis = 0; axis < 3; ++axis) of_axis[static_cast<std::size_t>(axis)][c] = sum[axis] / 8.0;
-        });
-        for (std::size_t axis = 0; axis < 3; ++axis) centers->write(axis, begin, of_axis[axis]);
-    }
-    if (turned > 0) tables.warnings.push_back(cells_turned(turned, tables.cells));
-    if (folded > 0) tables.warnings.push_back(cells_folded(folded, tables.cells));
-    return centers;
 }
 
 }  // namespace subvol::detail

@@ -1,50 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "brick_shapes.h"
 #include "collection.h"
+#include "point_flags.h"
 #include "spill_file.h"
 #include "subvol/mesh_io.h"
+#include "subvol/progress.h"
 
 namespace subvol::detail {
-
-/// A flag for each point, and how many are set before one.
-class PointFlags {
-public:
-    void resize(std::size_t points);
-    void set(Index p) { words_[p / 64] |= std::uint64_t{1} << p % 64; }
-    [[nodiscard]] bool operator[](Index p) const { return (words_[p / 64] >> p % 64 & 1) != 0; }
-
-    /// After the last one was set, for `count_before`. Returns how many there are.
-    std::uint64_t count();
-    [[nodiscard]] std::uint64_t count_before(Index p) const;
-
-private:
-    std::vector<std::uint64_t> words_;
-    std::vector<std::uint64_t> before_;  // of each word
-};
-
-/// The different corners of some cells, ascending, and the place of each among them.
-class CornersOfCells {
-public:
-    explicit CornersOfCells(std::span<const std::array<Index, 8>> cells);
-    [[nodiscard]] const std::vector<Index>& points() const { return points_; }
-    [[nodiscard]] Index place(Index p) const;
-
-private:
-    Index first_ = 0;
-    std::vector<std::uint64_t> words_;
-    std::vector<Index> before_;
-    std::vector<Index> points_;
-};
 
 /// A mesh in pieces as tables in files, joined as `join_pieces` does: points and cells have the same order, and the same
 /// values.
@@ -79,9 +48,5 @@ struct PieceTables {
 [[nodiscard]] std::unique_ptr<PieceTables> tables_of_pieces(const PartFiles& files, const std::string& list,
                                                             const std::filesystem::path& folder, const ReadOptions& options,
                                                             Progress* progress, std::string& why);
-
-/// The centres of the cells of such tables, in files. Adds the warnings of left-handed and folded cells.
-[[nodiscard]] std::unique_ptr<CellCenters> centers_of(PieceTables& tables, const std::filesystem::path& folder,
-                                                      Progress* progress);
 
 }  // namespace subvol::detail

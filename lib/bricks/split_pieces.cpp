@@ -7,6 +7,7 @@
 #include "brick_file.h"
 #include "brick_folder.h"
 #include "brick_layers.h"
+#include "piece_centers.h"
 #include "piece_tables.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"

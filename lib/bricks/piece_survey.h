@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "assemble.h"
+#include "collection.h"
+#include "join_pieces.h"
+#include "piece_numbers.h"
+#include "subvol/progress.h"
+#include "subvol/vec.h"
+
+namespace subvol::detail {
+
+/// Reads the pieces of a mesh one after the other, as often as they are needed.
+class PieceStream {
+public:
+    /// All are kept by reference.
+    PieceStream(const PartFiles& files, const ReadOptions& options, Progress* progress)
+        : files_(files), options_(options), progress_(progress) {}
+
+    /// part: of the progress that is done before, in halves
+    void begin(double part);
+    /// The next piece that is not empty; nothing after the last one.
+    [[nodiscard]] std::optional<MeshFile> next();
+    /// The file of the last piece.
+    [[nodiscard]] const ListedFile& file() const { return files_.files[at_ - 1]; }
+
+private:
+    const PartFiles& files_;
+    const ReadOptions& options_;
+    Progress* progress_;
+    std::size_t at_ = 0;  // the next file
+    double part_ = 0;
+};
+
+/// Calls call(place in the list, number in the file, whether it is a ghost) for each hexahedron of a piece.
+template <class Call>
+void each_cell(const MeshFile& piece, const Call& call) {
+    const FileArray* ghosts = find_array(piece, kGhostArray, true, 1);
+    for (std::size_t c = 0; c < piece.hexes.corners.size(); ++c) {
+        const std::size_t number = piece.hexes.numbers.empty() ? c : piece.hexes.numbers[c];
+        call(c, number, ghosts && leaves_out_cell(ghosts->values[number]));
+    }
+}
+
+/// Of all that was read of a piece.
+[[nodiscard]] std::uint64_t hash_of(const MeshFile& piece);
+
+/// What the pieces of a mesh have in common, and the numbers of their points and cells.
+///
+/// hashes:     of the pieces that are not empty; first_cells: how many cells the pieces before have
+/// with_cells: how many pieces have any
+/// arrays:     each with the number of pieces that have it
+struct PieceSurvey {
+    /// An array that may number points or cells. parts: how many pieces have it; whole: whether its numbers are
+    struct Numbers {
+        std::string_view name;
+        std::size_t parts = 0;
+        bool whole = true;
+        RanksOfNumbers ranks;
+    };
+
+    std::vector<std::uint64_t> hashes;
+    std::vector<std::size_t> first_cells;
+    std::size_t cells = 0, with_cells = 0;
+    Box box;
+    std::vector<std::pair<FileArray, std::size_t>> arrays;
+    std::vector<Numbers> point_numbers, cell_numbers;
+    const Numbers* order = nullptr;  // of the cells; null: that of the files
+    std::vector<std::string> warnings;
+
+    [[nodiscard]] std::size_t pieces() const { return hashes.size(); }
+    /// Not the ghosts, nor the numbers that are the order of the cells.
+    [[nodiscard]] bool is_field(const FileArray& array) const;
+};
+
+/// Reads all pieces once.
+///
+/// list:    the name of the list of pieces, for messages
+/// returns: nothing if the pieces cannot be joined one by one; `why` is then a reason such as "it has tetrahedra"
+/// throws:  Error(InvalidInput) if there are no hexahedra, or too many
+[[nodiscard]] std::optional<PieceSurvey> survey_pieces(PieceStream& stream, const std::string& list, std::string& why);
+
+}  // namespace subvol::detail
