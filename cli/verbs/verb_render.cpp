@@ -66,9 +66,8 @@ public:
         app()
             .add_option("--method", method_,
                         "splat (kernels, the default), sheets (the same by OpenGL sheet buffers), "
-                        "footprints (kernels coloured first, as Westover did), "
-                        "tets (rays through tetrahedra), pt (the same tetrahedra projected by OpenGL), "
-                        "dense (rays through the dense grids of the limit) or "
+                        "footprints (kernels coloured first), tets (rays through tetrahedra), "
+                        "pt (the same tetrahedra projected by OpenGL), dense (rays through the limit's cells) or "
                         "grid (rays through a .vdb file's voxels)")
             ->type_name("NAME")
             ->check(offered({"splat", "sheets", "footprints", "tets", "pt", "dense", "grid"}));
