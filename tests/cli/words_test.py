@@ -58,7 +58,7 @@ class Slips(InFolder):
         for arguments, code, parts in (
             (["render", "model:ball", "-o", "a.png", "--leves", "2"], 2, {"where": "--leves", "allowed": "see subvol render --help"}),
             (["render", "model:ball", "-o", "a.png", "--method", "tetz"], 2,
-             {"what": "'tetz' is unknown: did you mean tets?", "where": "--method", "allowed": "supported: splat, sheets, tets, pt, dense, grid"}),
+             {"what": "'tetz' is unknown: did you mean tets?", "where": "--method", "allowed": "supported: splat, sheets, footprints, tets, pt, dense, grid"}),
             (["info", "gone.mesh"], 2, {"where": "gone.mesh"}),
             (["subdivide", "model:twist", "-o", "a.vtu", "--levels", "8"], 3, {"where": "--levels"}),
         ):
