@@ -6,9 +6,9 @@
 
 namespace subvol::detail {
 
-/// Splatting as in [westover1990]: each kernel gets its colour and extinction first, from the value at its centre; its footprint, the
-/// integral of its weight along each ray, gives it an opacity; kernels are composited one by one, in the order of the depths of
-/// their centres. For comparison: no sheets, and no boundary, beyond which footprints reach.
+/// Splatting as in [westover1990]: each kernel gets its colour and extinction first, from the value at its centre; its
+/// footprint, the integral of its weight along each ray, gives it an opacity; kernels are composited one by one, in the order
+/// of the depths of their centres. For comparison: no sheets, and no boundary, beyond which footprints reach.
 ///
 /// Sums of weights are not divided by: a weight is divided by the kernel's integral over a lattice of its own instead.
 class Footprints {

@@ -17,7 +17,8 @@ namespace subvol {
 /// Gl:     the same by OpenGL compute shaders
 /// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, also by software: the method of the EuroVis 2007
 ///         paper, for comparison
-/// Footprints: the method of [westover1990], for comparison: kernels are coloured first, by the value at their centre, and composited
+/// Footprints: the method of [westover1990], for comparison: kernels are coloured first, by the value at their centre, and
+/// composited
 ///         one by one by the integrals of their weights along rays. Another picture: blurred, and not cut off at the boundary.
 ///         By the CPU, for radial kernels, without cuts and shadows
 enum class SplatMethod { Auto, Cpu, Gl, Sheets, Footprints };
