@@ -66,8 +66,8 @@ struct LimitSamples {
 [[nodiscard]] LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries,
                                           const LimitOptions& options = {});
 
-/// `evaluate_limit` for many calls: the mesh's topology and the tables of the neighbourhoods that were met are kept between
-/// them.
+/// `evaluate_limit` for many calls: the mesh's topology, the tables of the neighbourhoods that were met, and up to 256 MB of
+/// cells that had to be refined are kept between them.
 class LimitEvaluator {
 public:
     /// The mesh is copied.
