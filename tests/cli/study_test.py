@@ -186,6 +186,15 @@ class Study(StudyFolder):
         self.assertEqual(first.returncode, 0)
         self.assertEqual(subvol("study", "s.json", "-o", "out", "--json", folder=self.folder).json()["studies"][0]["ran"], 0)
 
+    def test_footprints_lie_behind_splats(self):
+        few = {"cameras": ["iso"], "methods": [{"method": "splat"}, {"method": "footprints", "per_edge": [1, 2]}], "metrics": ["psnr"],
+               "tables": [{"rows": ["label", "per_edge"], "columns": ["psnr"]}], "pictures": False}
+        self.write(SMALL | few)
+        self.run_ok("study", "s.json", "-o", "out")
+        rows = list(csv.DictReader(self.results().decode().splitlines()))
+        splat, coarse, fine = (float(row["psnr"]) for row in sorted(rows, key=lambda row: (row["method"] != "splat", row["per_edge"])))
+        self.assertTrue(15 < coarse < fine < splat, rows)
+
     def test_kernels_as_a_whole_field(self):
         methods = [{"method": "volume", "label": "{correction} {per_edge}", "correction": ["none", "second"], "per_edge": [1, 2],
                     "places": 5000, "resolution": 24}]
