@@ -86,10 +86,11 @@ BricksWriter::BricksWriter(fs::path folder, std::uint64_t id, int halo_layers)
     save_progress();
 }
 
-void BricksWriter::save_progress() const {
+void BricksWriter::save_progress() {
     Bricks all = done_;
     sum_up(all);
     write_text_file(work_ / kProgress, bricks_to_json(all));
+    saved_ = done_.bricks.size();
 }
 
 bool BricksWriter::keeps(std::size_t k) {
@@ -114,7 +115,8 @@ void BricksWriter::write(std::size_t k, const BrickMesh& brick) {
     ++result_.written;
     result_.bytes += written.bytes;
     done_.bricks.push_back(std::move(about));
-    save_progress();
+    // Each time all bricks are written down: of many, a killed run may lose one in a hundred.
+    if (done_.bricks.size() > saved_ + saved_ / 128) save_progress();
 }
 
 SplitResult BricksWriter::finish() {
@@ -126,7 +128,7 @@ SplitResult BricksWriter::finish() {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(work_, error)) {  // what killed runs have left behind
         const std::string name = entry.path().filename().string();
-        const bool ours = name == kBricksIndex || std::ranges::find(done_.bricks, name, &Brick::file) != done_.bricks.end();
+        const bool ours = name == kBricksIndex || std::ranges::binary_search(done_.bricks, name, {}, &Brick::file);
         std::error_code ignored;
         if (!ours) fs::remove(entry.path(), ignored);
     }

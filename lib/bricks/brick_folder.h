@@ -28,10 +28,11 @@ public:
     SplitResult finish();
 
 private:
-    void save_progress() const;
+    void save_progress();
 
     std::filesystem::path folder_, work_;
-    Bricks done_;  // in the order in which they were finished
+    Bricks done_;            // in the order in which they were finished
+    std::size_t saved_ = 0;  // bricks, when the progress was written last
     SplitResult result_;
 };
 
