@@ -202,7 +202,6 @@ class RanksOfBricks(WithRanks):
         said = [line for line in run.communicate(timeout=600)[1].splitlines() if line.startswith("subvol:")]
         self.assertLessEqual(len(said), 1, said)
         wait_for_end(ranks)
-        self.assertEqual(self.files(), ["b.bricks", "t.bricks"])
 
     def test_what_cannot_be_written_is_one_sentence(self):
         """By rank 0, which writes; and by any rank, whose kernels wait in files until they are drawn."""
