@@ -14,6 +14,7 @@
 #include <new>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "choices.h"
 #include "help.h"
@@ -90,29 +91,45 @@ int run_naming_input(subvol::cli::Verb& verb, subvol::cli::Report& report) {
     }
 }
 
-/// Runs a verb in all processes together: they end together, and if one fails, all fail with its error.
+/// The exception that is being handled as an error, and the program's exit code for it.
+std::pair<Error, int> error_at_hand() {
+    try {
+        throw;
+    } catch (const Error& error) {
+        return {error, exit_code(error.code())};
+    } catch (const std::bad_alloc&) {
+        return {Error(ErrorCode::MissingCapability, "not enough memory for this; try a lower resolution or fewer levels"),
+                kEnvironment};
+    } catch (const std::filesystem::filesystem_error& error) {
+        return {Error(ErrorCode::InvalidInput, error.what()), kBadInput};
+    } catch (const std::exception& error) {  // thrown unexpectedly by a library
+        return {Error(ErrorCode::InvalidInput, error.what()), kEnvironment};
+    }
+}
+
+/// An error that has been said. code: to exit with
+struct Said {
+    int code;
+};
+
+/// Runs a verb in all processes together: they end together, and if one fails, all fail with its error. It is said before any
+/// of them ends, as mpirun ends the others when one has failed.
 int run_in_ranks(subvol::cli::Verb& verb, subvol::cli::Report& report, subvol::cli::Ranks& ranks) {
-    const auto fail = [&](const Error& error) {
-        if (!ranks.agreed()) ranks.agree(&error);
-    };
     int code = 0;
     try {
-        try {
-            code = run_naming_input(verb, report);
-            subvol::cli::report_ranks(ranks, report);
-        } catch (const Error& error) {
-            fail(error);
-            throw;
-        } catch (const std::bad_alloc&) {
-            fail(Error(ErrorCode::MissingCapability, "not enough memory for this; try a lower resolution or more processes"));
-            throw;
-        } catch (const std::exception& error) {
-            fail(Error(ErrorCode::InvalidInput, error.what()));
-            throw;
-        }
+        code = run_naming_input(verb, report);
+        subvol::cli::report_ranks(ranks, report);
     } catch (...) {
+        auto [error, wrong] = error_at_hand();
+        try {
+            if (!ranks.agreed()) ranks.agree(&error);
+        } catch (const Error& of_all) {
+            error = of_all;
+            wrong = exit_code(of_all.code());
+        }
+        complain(error, wrong, verb.common().json);
         ranks.finish();
-        throw;
+        throw Said{wrong};
     }
     ranks.finish();
     return code;
@@ -220,20 +237,14 @@ int main(int argc, char** argv) {
     CLI::App program(kDescription, "subvol");
     const std::vector<std::string> arguments = asked(argc, argv);
     const bool json = std::ranges::find(arguments, "--json") != arguments.end();
-    const auto fail = [json](const std::string& what, int code) {
-        return complain(Error(ErrorCode::InvalidInput, what), code, json);
-    };
     try {
         return run(program, arguments);
     } catch (const CLI::Success& wanted) {  // --help, --version
         return speaks() ? program.exit(wanted) : 0;
-    } catch (const Error& error) {
-        return complain(error, exit_code(error.code()), json);
-    } catch (const std::bad_alloc&) {
-        return fail("not enough memory for this; try a lower resolution or fewer levels", kEnvironment);
-    } catch (const std::filesystem::filesystem_error& error) {
-        return fail(error.what(), kBadInput);
-    } catch (const std::exception& error) {  // thrown unexpectedly by a library
-        return fail(error.what(), kEnvironment);
+    } catch (const Said& error) {
+        return error.code;
+    } catch (...) {
+        const auto [error, code] = error_at_hand();
+        return complain(error, code, json);
     }
 }

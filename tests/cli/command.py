@@ -103,14 +103,25 @@ def subvol_measured(*arguments, folder=None, max_seconds=None, max_mib=None):
 
 def children(pid):
     """The processes that a process has started and that still run."""
-    tasks = Path(f"/proc/{pid}/task").glob("*/children")
-    return [int(child) for task in tasks for child in task.read_text().split()]
+    try:
+        tasks = Path(f"/proc/{pid}/task").glob("*/children")
+        return [int(child) for task in tasks for child in task.read_text().split()]
+    except OSError:  # it ends just now
+        return []
 
 
 def wait_for_end(pids):
     """Returns when none of these processes runs any longer; they need not be children of this one."""
-    while any(Path(f"/proc/{pid}").exists() and "\nState:\tZ" not in Path(f"/proc/{pid}/status").read_text() for pid in pids):
+    while not all(has_ended(pid) for pid in pids):
         time.sleep(0.01)
+
+
+def has_ended(pid):
+    """Whether a process is gone, or waits for its parent to take note."""
+    try:
+        return "\nState:\tZ" in Path(f"/proc/{pid}/status").read_text()
+    except OSError:
+        return True
 
 
 def start_and_wait_for_progress(*arguments, folder):

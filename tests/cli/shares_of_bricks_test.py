@@ -9,8 +9,8 @@ import subprocess
 import time
 import unittest
 
-from command import COMMAND, children, wait_for_end
-from shares import AS_ROOT, BALL, COUNTS, PICTURE, Shared, WithRanks, in_ranks, rank_of, without_times
+from command import COMMAND, children
+from shares import AS_ROOT, BALL, COUNTS, PICTURE, Shared, WithRanks, end_of, in_ranks, rank_of, run_in_ranks, without_times
 
 
 class PartsOfBricks(Shared):
@@ -182,8 +182,8 @@ class RanksOfBricks(WithRanks):
             self.assertIsNone(run.poll(), "ended before it could be killed")
             time.sleep(0.1)  # anywhere in its work
             os.kill(next(pid for pid in ranks if rank_of(pid) == 1), signal.SIGKILL)
-            self.assertNotEqual(run.wait(timeout=600), 0, verb)
-            wait_for_end(ranks)
+            end_of(run, ranks)
+            self.assertNotEqual(run.returncode, 0, verb)
             self.assertEqual(self.files(), ["b.bricks", "t.bricks"], verb)
             # The same command again is not disturbed by what was killed.
             self.ranks(3, verb, "t.bricks", "-o", name, *options)
@@ -199,9 +199,8 @@ class RanksOfBricks(WithRanks):
             ranks = [pid for pid in children(run.pid) if rank_of(pid) is not None]
         time.sleep(0.5)  # anywhere in its work
         run.send_signal(signal.SIGTERM)
-        said = [line for line in run.communicate(timeout=600)[1].splitlines() if line.startswith("subvol:")]
+        said = [line for line in end_of(run, ranks)[1].splitlines() if line.startswith("subvol:")]
         self.assertLessEqual(len(said), 1, said)
-        wait_for_end(ranks)
 
     def test_what_cannot_be_written_is_one_sentence(self):
         """By rank 0, which writes; and by any rank, whose kernels wait in files until they are drawn."""
@@ -210,8 +209,7 @@ class RanksOfBricks(WithRanks):
             done = self.mpirun(3, verb, "b.bricks", "-o", name, *options, folder=self.folder)
             self.assert_said("a." if verb != "vdb" else "vdb", done)
         line = 'if [ $OMPI_COMM_WORLD_RANK = 1 ]; then export TMPDIR=/nowhere; fi; exec "$@"'
-        done = subprocess.run(in_ranks(3, "sh", "-c", line, "sh", COMMAND, "render", "b.bricks", "-o", "b.exr", *PICTURE),
-                              cwd=self.folder, capture_output=True, text=True, timeout=600, env=AS_ROOT)
+        done = run_in_ranks(self.folder, 3, "sh", "-c", line, "sh", COMMAND, "render", "b.bricks", "-o", "b.exr", *PICTURE)
         self.assert_said("TMPDIR names the folder", done)
         self.assertEqual(self.files(), ["a.exr", "a.ply", "a.vdb", "b.bricks"])
 
