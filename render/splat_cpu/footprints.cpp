@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
+#include <utility>
 
 #include "kernel_axes.h"
 #include "subvol/detail/parallel_each.h"
@@ -23,7 +25,7 @@ constexpr float kLeastTransmittance = 1e-6F;  // below it a ray ends
 /// Light on a kernel from its gradient (eye space), on either side: that of values inside the volume.
 BoundaryLight light_on(const Shading& shading, const Vec3& gradient, const Vec3& to_eye, double least) {
     const double square = glm::dot(gradient, gradient);
-    if (!(square > 0)) return {static_cast<float>(1), 0};
+    if (!(square > 0)) return {};
     const Vec3 normal = gradient / std::sqrt(square), key = glm::normalize(shading.key);
     const double head = std::abs(glm::dot(normal, to_eye)), side = std::abs(glm::dot(normal, key));
     const double halfway = std::abs(glm::dot(normal, glm::normalize(key + to_eye)));
@@ -73,7 +75,7 @@ std::vector<Footprints::Kernel> Footprints::kernels_of(const SplatFrame& frame) 
     const View& view = *frame.view;
     const auto& [right, up, forward] = view.axes();
     const double least = static_cast<double>(kLeastChange) / scene_.diagonal;
-    const double cells = PreintegratedTable::kCells / (frame.classification->table.max - frame.classification->table.min);
+    const double range = frame.classification->table.max - frame.classification->table.min;
     std::vector<Kernel> kernels(volume.size());
     parallel_each(kernels.size(), [&](std::size_t i) {
         const EyeSplat& splat = frame.kernels.splats[i];
@@ -83,7 +85,7 @@ std::vector<Footprints::Kernel> Footprints::kernels_of(const SplatFrame& frame) 
         if (scene_.color_channel) color = frame.classification->color_at(frame.kernels.colors[i].value);
         if (scene_.shading) {
             const auto& g = channel.gradients[i];
-            const Vec3 world = (cells / PreintegratedTable::kCells) * Vec3(g[0], g[1], g[2]);
+            const Vec3 world = Vec3(g[0], g[1], g[2]) / range;
             const Vec3 gradient(glm::dot(right, world), glm::dot(up, world), glm::dot(forward, world));
             const Vec3 to_eye = view.perspective() ? -glm::normalize(view.to_eye(volume.centers[i])) : Vec3(0, 0, -1);
             const BoundaryLight lit = light_on(*scene_.shading, gradient, to_eye, least);
@@ -97,63 +99,80 @@ std::vector<Footprints::Kernel> Footprints::kernels_of(const SplatFrame& frame) 
 Drawn Footprints::draw(SplatFrame& frame, const View& view, const Classification& classification, Progress* progress) const {
     prepare_kernels(frame, scene_, view, classification, 0, progress);
     const std::vector<Kernel> kernels = kernels_of(frame);
-    const TileFinder finder(frame);
     Drawn drawn{Image(view.width(), view.height()), {}};
     drawn.depth.assign(drawn.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
-    tbb::parallel_for(std::size_t{0}, frame.tile_offsets.size() - 1, [&](std::size_t tile) {
-        const auto first = frame.tile_splats.begin() + static_cast<std::ptrdiff_t>(frame.tile_offsets[tile]);
-        const auto last = frame.tile_splats.begin() + static_cast<std::ptrdiff_t>(frame.tile_offsets[tile + 1]);
-        std::vector<std::uint32_t> order(first, last);
-        std::erase_if(order,
-                      [&](std::uint32_t i) { return !(kernels[i].extinction > 0) || kernels[i].depth < frame.sheets.near; });
-        std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-            return kernels[a].depth < kernels[b].depth || (kernels[a].depth == kernels[b].depth && a < b);
-        });
-        constexpr int kTile = SplatFrame::kTile_px;
-        const int x0 = static_cast<int>(tile) % frame.tiles_x * kTile, y0 = static_cast<int>(tile) / frame.tiles_x * kTile;
-        const int x1 = std::min(x0 + kTile, view.width()), y1 = std::min(y0 + kTile, view.height());
-        std::vector<Ray> rays;
-        std::vector<float> left(kTile * kTile, 1.0F), depths(kTile * kTile, 0.0F);  // transmittance
-        for (int y = y0; y < y1; ++y) {
-            for (int x = x0; x < x0 + kTile; ++x) rays.push_back(view.ray(x + 0.5, y + 0.5));
-        }
-        for (const std::uint32_t i : order) {
-            const Kernel& kernel = kernels[i];
-            const PixelBox box = finder.pixels_of(frame.kernels.splats[i]);
-            for (int y = std::max(y0, box.y0); y < std::min(y1, box.y1 + 1); ++y) {
-                for (int x = std::max(x0, box.x0); x < std::min(x1, box.x1 + 1); ++x) {
-                    const auto at = static_cast<std::size_t>((y - y0) * kTile + x - x0);
-                    if (left[at] < kLeastTransmittance) continue;
-                    const Vec3 a = kernel.root * (rays[at].origin - kernel.center), b = kernel.root * rays[at].direction;
-                    const double along = glm::dot(b, b), middle = glm::dot(a, b);
-                    const auto e = static_cast<float>(glm::dot(a, a) - middle * middle / along);
-                    if (!(e < 1)) continue;
-                    const float place = std::max(e, 0.0F) * kCells;
-                    const auto row = static_cast<std::size_t>(place);
-                    const float s = place - static_cast<float>(row);
-                    const float weight = (1 - s) * table_[row] + s * table_[row + 1];
-                    const float alpha = -std::expm1(-kernel.extinction * weight / static_cast<float>(std::sqrt(along)));
-                    const auto pixel = drawn.image.pixel(x, y);
-                    for (std::size_t c = 0; c < 3; ++c) pixel[c] += left[at] * alpha * kernel.color[c];
-                    depths[at] += left[at] * alpha * kernel.depth;
-                    left[at] *= 1 - alpha;
-                }
-            }
-        }
-        for (int y = y0; y < y1; ++y) {
-            for (int x = x0; x < x1; ++x) {
-                const auto at = static_cast<std::size_t>((y - y0) * kTile + x - x0);
-                const float opacity = 1 - left[at];
-                drawn.image.pixel(x, y)[3] = opacity;
-                if (!(opacity > 0)) continue;
-                drawn
-                    .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x)] =
-                    frame.sheets.middle + depths[at] / opacity;
-            }
-        }
+    const std::size_t tiles = frame.tile_offsets.size() - 1;
+    std::mutex reporting;
+    std::size_t done = 0;
+    report_progress(progress, "splat", 0);
+    tbb::parallel_for(std::size_t{0}, tiles, [&](std::size_t tile) {
+        draw_tile(frame, kernels, tile, drawn);
+        if (!progress) return;
+        const std::lock_guard lock(reporting);
+        report_progress(progress, "splat", static_cast<double>(++done) / static_cast<double>(tiles));
     });
-    report_progress(progress, "draw", 1);
     return drawn;
+}
+
+/// The kernels of a tile that are seen, from front to back.
+std::vector<std::uint32_t> Footprints::order_of(const SplatFrame& frame, const std::vector<Kernel>& kernels, std::size_t tile) {
+    const auto begin = frame.tile_splats.begin();
+    std::vector<std::uint32_t> order(begin + static_cast<std::ptrdiff_t>(frame.tile_offsets[tile]),
+                                     begin + static_cast<std::ptrdiff_t>(frame.tile_offsets[tile + 1]));
+    std::erase_if(order, [&](std::uint32_t i) { return !(kernels[i].extinction > 0) || kernels[i].depth < frame.sheets.near; });
+    std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(kernels[i].depth, i); });
+    return order;
+}
+
+void Footprints::draw_tile(const SplatFrame& frame, const std::vector<Kernel>& kernels, std::size_t tile, Drawn& drawn) const {
+    constexpr int kTile = SplatFrame::kTile_px;
+    const View& view = *frame.view;
+    const TileFinder finder(frame);
+    const int x0 = static_cast<int>(tile) % frame.tiles_x * kTile, y0 = static_cast<int>(tile) / frame.tiles_x * kTile;
+    const int x1 = std::min(x0 + kTile, view.width()), y1 = std::min(y0 + kTile, view.height());
+    std::vector<Ray> rays;
+    std::vector<float> left(kTile * kTile, 1.0F), depths(kTile * kTile, 0.0F);  // transmittance
+    const auto place_of = [&](int x, int y) { return static_cast<std::size_t>((y - y0) * kTile + x - x0); };
+    for (int y = y0; y < y1; ++y) {
+        for (int x = x0; x < x0 + kTile; ++x) rays.push_back(view.ray(x + 0.5, y + 0.5));
+    }
+    for (const std::uint32_t i : order_of(frame, kernels, tile)) {
+        const Kernel& kernel = kernels[i];
+        const PixelBox box = finder.pixels_of(frame.kernels.splats[i]);
+        for (int y = std::max(y0, box.y0); y < std::min(y1, box.y1 + 1); ++y) {
+            for (int x = std::max(x0, box.x0); x < std::min(x1, box.x1 + 1); ++x) {
+                const std::size_t at = place_of(x, y);
+                if (left[at] < kLeastTransmittance) continue;
+                const float alpha = -std::expm1(-kernel.extinction * footprint(kernel, rays[at]));
+                const auto pixel = drawn.image.pixel(x, y);
+                for (std::size_t c = 0; c < 3; ++c) pixel[c] += left[at] * alpha * kernel.color[c];
+                depths[at] += left[at] * alpha * kernel.depth;
+                left[at] *= 1 - alpha;
+            }
+        }
+    }
+    for (int y = y0; y < y1; ++y) {
+        for (int x = x0; x < x1; ++x) {
+            const std::size_t at = place_of(x, y);
+            const float opacity = 1 - left[at];
+            drawn.image.pixel(x, y)[3] = opacity;
+            if (!(opacity > 0)) continue;
+            drawn.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x)] =
+                frame.sheets.middle + depths[at] / opacity;
+        }
+    }
+}
+
+/// The integral of a kernel's weight along a ray (world length).
+float Footprints::footprint(const Kernel& kernel, const Ray& ray) const {
+    const Vec3 a = kernel.root * (ray.origin - kernel.center), b = kernel.root * ray.direction;
+    const double along = glm::dot(b, b), middle = glm::dot(a, b);
+    const auto e = static_cast<float>(glm::dot(a, a) - middle * middle / along);
+    if (!(e < 1)) return 0;
+    const float place = std::max(e, 0.0F) * kCells;
+    const auto row = static_cast<std::size_t>(place);
+    const float s = place - static_cast<float>(row);
+    return ((1 - s) * table_[row] + s * table_[row + 1]) / static_cast<float>(std::sqrt(along));
 }
 
 }  // namespace subvol::detail

@@ -25,6 +25,10 @@ public:
 private:
     struct Kernel;
     [[nodiscard]] std::vector<Kernel> kernels_of(const SplatFrame& frame) const;
+    [[nodiscard]] static std::vector<std::uint32_t> order_of(const SplatFrame& frame, const std::vector<Kernel>& kernels,
+                                                             std::size_t tile);
+    void draw_tile(const SplatFrame& frame, const std::vector<Kernel>& kernels, std::size_t tile, Drawn& drawn) const;
+    [[nodiscard]] float footprint(const Kernel& kernel, const Ray& ray) const;
 
     const SplatScene& scene_;
     std::vector<float> table_;  // of the integral of the weight, in radii, over e in [0, 1]
