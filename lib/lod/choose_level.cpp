@@ -127,6 +127,19 @@ KernelCut choose_cut(const KernelHierarchy& hierarchy, double error, std::size_t
     return checked_cut(hierarchy, nullptr, {.error = error, .channel = channel});
 }
 
+KernelCut level_cut(const KernelHierarchy& hierarchy, std::size_t most) {
+    KernelCut cut;
+    const std::size_t nodes = hierarchy.nodes.size();  // 2ⁿ − 1
+    if (nodes == 0) return cut;
+    std::size_t first = nodes / 2;
+    while (first + 1 > most && first > 0) first /= 2;
+    cut.nodes.resize(first + 1);
+    std::iota(cut.nodes.begin(), cut.nodes.end(), static_cast<Index>(first));
+    for (const Index node : cut.nodes)
+        for (const std::vector<float>& errors : hierarchy.errors) cut.error = std::max(cut.error, double(errors[node]));
+    return cut;
+}
+
 RbfVolume kernels_of_cut(const KernelHierarchy& hierarchy, const RbfVolume& volume, const KernelCut& cut) {
     const RbfVolume& nodes = hierarchy.nodes;
     if (volume.size() != hierarchy.order.size() || volume.channels.size() != nodes.channels.size()) {

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "few_kernels.h"
 #include "picture_overlays.h"
 #include "subvol/boundary_shading.h"
 #include "subvol/boundary_values.h"
@@ -31,21 +32,23 @@ struct PictureDrawer::State {
     std::optional<SampleTables> kernel_tables{};  // likewise
     std::optional<BoundaryValues> skin{};
     std::optional<RbfVolume> volume{};
+    std::unique_ptr<FewKernels> few{};  // of the volume, for coarse pictures
     std::optional<TetsRenderer> tets{};
     std::optional<ProjectedRenderer> projected{};
 
-    /// A splatter for each way of drawing: samples, light, sheet buffers.
-    using SplatterKey = std::tuple<int, bool, bool>;
+    /// A splatter for each way of drawing: samples, light, sheet buffers, whether of few kernels.
+    using SplatterKey = std::tuple<int, bool, bool, bool>;
     std::vector<std::pair<SplatterKey, Splatter>> splatters{};
 
     void take(const std::shared_ptr<const ViewBody>& next) {
         if (body == next) return;
+        splatters.clear();  // they refer to the kernels
+        few.reset();        // so does this
         if (body && body->shape != next->shape) {
             tables.reset();
             kernel_tables.reset();
         }
         body = next;
-        splatters.clear();  // they refer to the volume
         skin.reset();
         volume.reset();
         tets.reset();
@@ -98,7 +101,10 @@ struct PictureDrawer::State {
     }
 
     Splatter& splatter(int samples, bool lit, bool sheets, Progress* progress, DrawnPicture& picture) {
-        const SplatterKey key{samples, lit, sheets};
+        const RbfVolume& all = volume_of(progress, picture);
+        if (picture.scale > 1 && !few && !body->moved) few = std::make_unique<FewKernels>(all);  // a moved body's soon change
+        const RbfVolume* merged = picture.scale > 1 && few ? few->ready() : nullptr;
+        const SplatterKey key{samples, lit, sheets, merged != nullptr};
         for (auto& [of, one] : splatters) {
             if (of == key) return one;
         }
@@ -108,7 +114,7 @@ struct PictureDrawer::State {
         if (sheets) options.method = SplatMethod::Sheets;
         if (lit) options.shading = Shading{};
         options.progress = nullptr;
-        return splatters.emplace_back(key, Splatter(volume_of(progress, picture), options)).second;
+        return splatters.emplace_back(key, Splatter(merged != nullptr ? *merged : all, options)).second;
     }
 
     [[nodiscard]] bool paints(const ViewState& state) const {

@@ -254,6 +254,26 @@ TEST(KernelHierarchy, AnyPointsAreMerged) {
     EXPECT_EQ(choose_level(build_kernel_hierarchy(none), none, View({}, 8, 8)).size(), 0U);
 }
 
+TEST(KernelHierarchy, ALevelHasEachKernelOnce) {
+    const RbfVolume volume = ball();
+    const KernelHierarchy h = build_kernel_hierarchy(volume);
+    std::size_t before = 0;
+    for (const std::size_t most : {1, 2, 3, 100, 1000, 1'000'000}) {
+        const KernelCut cut = level_cut(h, most);
+        EXPECT_LE(cut.size(), most);
+        EXPECT_GE(cut.size(), before);
+        before = cut.size();
+        std::vector<int> counts(volume.size());
+        for (const Index node : cut.nodes)
+            for (const Index kernel : kernels_below(h, node)) ++counts[kernel];
+        EXPECT_EQ(counts, std::vector<int>(volume.size(), 1));
+        EXPECT_NO_THROW(validate(kernels_of_cut(h, volume, cut)));
+    }
+    EXPECT_GE(8 * before, volume.size()) << "the last level has at most eight kernels a node";
+    EXPECT_EQ(level_cut(h, 0).size(), 1U);
+    EXPECT_EQ(level_cut({}, 5).size(), 0U);
+}
+
 TEST(KernelHierarchy, MistakesHaveASentence) {
     const RbfVolume volume = ball(1);
     const KernelHierarchy h = build_kernel_hierarchy(volume);

@@ -83,6 +83,10 @@ struct KernelCut {
 /// throws: Error(InvalidInput) as for a view
 [[nodiscard]] KernelCut choose_cut(const KernelHierarchy& hierarchy, double error, std::size_t channel = 0);
 
+/// All nodes of one level of the tree: the lowest that has at most `most` nodes, or the root. Few kernels for a quick picture,
+/// whatever the view and the field; the same for all views.
+[[nodiscard]] KernelCut level_cut(const KernelHierarchy& hierarchy, std::size_t most);
+
 /// The kernels of a cut, with the boundary of the volume: first those of the volume, in their order, then those of nodes. If
 /// the cut has no nodes, this is the volume.
 ///
