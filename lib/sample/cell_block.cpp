@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cell_block.h"
 
-#include <limits>
+#include <algorithm>
+#include <numeric>
+#include <span>
 
-#include "subvol/cell.h"
+#include "subvol/dense_cells.h"
 
 namespace subvol::detail {
 
@@ -65,67 +67,25 @@ struct SampleStencil {
     }
 };
 
-/// Where a node of the 5×5×5 block is in the twice refined mesh: at a corner of one of the 64 descendants of its cell.
-struct NodePlace {
-    std::uint8_t descendant, corner;
-};
-
-constexpr std::array<NodePlace, 125> make_node_places() {
-    std::array<NodePlace, 125> places{};
-    for (std::size_t child = 0; child < 8; ++child) {
-        for (std::size_t grandchild = 0; grandchild < 8; ++grandchild) {
-            for (std::size_t k = 0; k < 8; ++k) {
-                std::size_t node = 0, stride = 1;
-                for (std::size_t a = 0; a < 3; ++a, stride *= 5) {
-                    node += stride * static_cast<std::size_t>(2 * kCornerParameters[child][a] +
-                                                              kCornerParameters[grandchild][a] + kCornerParameters[k][a]);
-                }
-                places[node] = {static_cast<std::uint8_t>(8 * child + grandchild), static_cast<std::uint8_t>(k)};
-            }
-        }
-    }
-    return places;
-}
-
-constexpr auto kNodePlaces = make_node_places();
-
 }  // namespace
 
-CellBlocks::CellBlocks(const HexMesh& twice_refined) : mesh_(twice_refined) {
-    for (std::size_t a = 0; a < mesh_.attributes.size(); ++a) {
-        for (std::size_t c = 0; c < static_cast<std::size_t>(mesh_.attributes[a].channels); ++c) source_.emplace_back(a, c);
-    }
-    channels_ = source_.size();
+CellBlocks::CellBlocks(const HexMesh& control, const SchemeOptions& scheme, Progress* progress) {
+    for (const Attribute& attribute : control.attributes) channels_ += static_cast<std::size_t>(attribute.channels);
     row_ = (3 + channels_ + 3) / 4 * 4;
-}
-
-CellBlocks::Nodes::Nodes(const CellBlocks& blocks) : blocks_(blocks), rows_(kCells * 125 * blocks.row_) {
-    cells_.fill(std::numeric_limits<std::size_t>::max());
-}
-
-const double* CellBlocks::Nodes::of(std::size_t cell) {
-    const std::size_t slot = cell % kCells;
-    double* first = &rows_[slot * 125 * blocks_.row_];
-    if (cells_[slot] == cell) return first;
-    cells_[slot] = cell;
-    for (std::size_t n = 0; n < 125; ++n) {
-        double* row = first + n * blocks_.row_;
-        const Index p = blocks_.point(cell, n);
-        for (int a = 0; a < 3; ++a) row[a] = blocks_.mesh_.points[p][a];
-        for (std::size_t c = 0; c < blocks_.channels_; ++c) row[3 + c] = blocks_.channel_value(p, c);
-    }
-    return first;
-}
-
-Index CellBlocks::point(std::size_t cell, std::size_t node) const {
-    const auto [descendant, corner] = kNodePlaces[node];
-    return mesh_.cells[64 * cell + descendant][corner];
-}
-
-double CellBlocks::channel_value(Index point, std::size_t channel) const {
-    const auto [attribute, c] = source_[channel];
-    const auto& values = mesh_.attributes[attribute];
-    return values.values[point * static_cast<std::size_t>(values.channels) + c];
+    rows_.resize(control.cells.size() * kNodes * row_);
+    std::vector<Index> cells(control.cells.size());
+    std::iota(cells.begin(), cells.end(), Index{0});
+    const DenseCells limit(control, {.scheme = scheme, .levels = 2, .progress = progress}, true, DenseBits::ToRounding);
+    limit.for_each(cells, [&](const DenseCell& cell) {
+        double* row = &rows_[cell.cell * kNodes * row_];
+        for (std::size_t n = 0; n < kNodes; ++n, row += row_) {
+            double* next = std::copy_n(&cell.points[n].x, 3, row);
+            for (const std::span<const double> values : cell.values) {
+                const std::size_t channels = values.size() / kNodes;
+                next = std::copy_n(&values[n * channels], channels, next);
+            }
+        }
+    });
 }
 
 void CellBlocks::evaluate(const double* nodes, const std::array<double, 3>& uvw, const std::array<double, 3>& step,

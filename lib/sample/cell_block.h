@@ -5,17 +5,21 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/progress.h"
+#include "subvol/scheme.h"
 
 namespace subvol::detail {
 
-/// Geometry and channels of a twice refined mesh by its control cells: each is a block of 5×5×5 points, interpolated by
-/// quartics along each axis. Neighbouring blocks agree in positions and values where they meet.
+/// Geometry and channels of the limit by control cells: each is a block of 5×5×5 points, those of its second level, and
+/// interpolated by quartics along each axis. Neighbouring blocks agree in positions and values where they meet, up to rounding.
 class CellBlocks {
 public:
-    static constexpr int kLevels = 2;
+    static constexpr std::size_t kNodes = 125;  // of a block
 
-    /// twice_refined: what `refine` makes of the control mesh in two levels; kept by reference
-    explicit CellBlocks(const HexMesh& twice_refined);
+    /// Creases have been tagged.
+    ///
+    /// throws: Error(Cancelled)
+    CellBlocks(const HexMesh& control, const SchemeOptions& scheme, Progress* progress);
 
     /// Values, derivatives and second differences per sample interval at a point of a cell. Channels are those of all
     /// attributes, one after the other.
@@ -28,19 +32,10 @@ public:
         std::vector<std::array<double, 3>> mixed_value;
     };
 
-    /// The nodes of the cells that were looked at last: position and channels of each, side by side. Each thread has its own.
-    class Nodes {
-    public:
-        explicit Nodes(const CellBlocks& blocks);
-        /// The rows of a cell's 125 nodes, u fastest.
-        [[nodiscard]] const double* of(std::size_t cell);
-
-    private:
-        static constexpr std::size_t kCells = 16;  // as many as meet at most points
-        const CellBlocks& blocks_;
-        std::array<std::size_t, kCells> cells_;
-        std::vector<double> rows_;
-    };
+    /// The rows of a cell's nodes, u fastest: position and channels of each, side by side.
+    [[nodiscard]] const double* nodes(std::size_t cell) const { return &rows_[cell * kNodes * row_]; }
+    /// How many numbers a node has.
+    [[nodiscard]] std::size_t row() const { return row_; }
 
     /// nodes: of the cell; step: the sample interval along u, v, w. `evaluate` leaves the mixed derivatives as they are,
     /// `evaluate_mixed` all else.
@@ -51,14 +46,9 @@ public:
     [[nodiscard]] std::size_t channels() const { return channels_; }
 
 private:
-    /// Point `node` of a cell's 125, u fastest.
-    [[nodiscard]] Index point(std::size_t cell, std::size_t node) const;
-    [[nodiscard]] double channel_value(Index point, std::size_t channel) const;
-
-    const HexMesh& mesh_;
     std::size_t channels_ = 0;
-    std::size_t row_ = 4;                                      // numbers of a node: a multiple of 4
-    std::vector<std::pair<std::size_t, std::size_t>> source_;  // channel → attribute, channel of it
+    std::size_t row_ = 4;  // a multiple of 4
+    std::vector<double> rows_;
 };
 
 }  // namespace subvol::detail

@@ -72,7 +72,7 @@ std::optional<int> level_of_samples(const SampleOptions& options) {
 }
 
 /// known:     the control mesh's topology, or a flag for each of its points: whether it is on the hull
-/// intervals: the most that an edge has
+/// intervals: of an edge
 template <class Known>
 Surface boundary_of(const HexMesh& control, const Known& known, int intervals, const SampleOptions& options) {
     const auto half_an_interval = static_cast<int>(std::bit_width(static_cast<unsigned>(intervals)));
@@ -153,22 +153,35 @@ SampleResult sample_level(HexMesh control, int number, const SampleOptions& opti
     return result;
 }
 
+/// The intervals that set the level of the boundary where they differ: the root of their mean square over the hull's edges. The
+/// most of any edge would make millions of triangles for a few long cells among many.
+int intervals_of_hull(const Topology& topology, const std::vector<int>& intervals) {
+    double squares = 0, edges = 0;
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
+        for (const Index e : topology.face_edges[f]) {
+            squares += double(intervals[e]) * double(intervals[e]);
+            ++edges;
+        }
+    }
+    constexpr double kSlack = 1e-9;  // of a root that is whole
+    return std::max(1, static_cast<int>(std::ceil(std::sqrt(squares / std::max(edges, 1.0)) - kSlack)));
+}
+
 /// Samples at counts that differ from edge to edge, or with values that are not the scheme's.
 SampleResult sample_graded(const HexMesh& control, const SampleOptions& options) {
     const Topology topology = build_topology(control);
-    detail::RefinedPoints refined = detail::refine_points(control, topology, refinement(options, 2));
-    refined.mesh.cells = detail::child_cells(refined.parent);
-    const HexMesh twice = on_limit(std::move(refined.mesh), options.scheme.kind);
+    const detail::CellBlocks blocks(control, refinement(options, 2).scheme, options.progress);
     SampleResult result;
-    int most = 1;
+    int on_hull = 1;
     if (options.tolerance > 0) {
-        result = detail::sample_to_tolerance(control, twice, topology, options);
+        result = detail::sample_to_tolerance(control, blocks, topology, options);
     } else {
         std::vector<int> intervals = detail::edge_intervals(control, topology, options);
-        most = std::ranges::max(intervals);
-        result = detail::sample_in_cells(control, twice, topology, std::move(intervals), options);
+        on_hull = intervals_of_hull(topology, intervals);
+        result = detail::sample_in_cells(control, blocks, topology, std::move(intervals), options);
     }
-    result.volume.boundary = boundary_of(control, topology, most, options);
+    result.volume.boundary = boundary_of(control, topology, on_hull, options);
     return result;
 }
 

@@ -9,8 +9,8 @@
 //    ●───○───○───●
 //
 // Every cell about a point gives position and field there with their derivatives along u, v and w, per sample interval: by
-// quartics through the 5×5×5 points of the twice refined cell (cell_block.h). Positions and values of neighbouring cells agree;
-// their derivatives and intervals need not. One kernel follows from all of them (docs/adr/0004, docs/adr/0009):
+// quartics through the 5×5×5 points of the cell's second level (cell_block.h). Positions and values of neighbouring cells
+// agree; their derivatives and intervals need not. One kernel follows from all of them (docs/adr/0004, docs/adr/0009):
 //
 //    frame       S = R² mean Σ J_a J_aᵀ, J_a the derivative of the position along axis a
 //    gradient    the least-squares solution g of J_aᵀ g = ∂_a f
@@ -67,7 +67,6 @@ public:
                  std::span<const ChannelView> control, const SampleOptions& options, double diagonal, RbfVolume& volume)
         : counts_(counts),
           blocks_(blocks),
-          nodes_(blocks),
           options_(options),
           volume_(volume),
           sums_(options, diagonal, volume),
@@ -84,7 +83,7 @@ public:
     void add_cell(std::size_t cell, const std::array<double, 3>& uvw) {
         const std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
                                          1.0 / counts_.near(cell, 2, uvw)};
-        const double* nodes = nodes_.of(cell);
+        const double* nodes = blocks_.nodes(cell);
         blocks_.evaluate(nodes, uvw, step, jet_);
         if (cells_++ == 0) {
             volume_.centers[point_] = jet_.position;
@@ -150,7 +149,6 @@ private:
 
     const SampleCounts& counts_;
     const CellBlocks& blocks_;
-    CellBlocks::Nodes nodes_;
     const SampleOptions& options_;
     RbfVolume& volume_;
     DirectionSums sums_;
@@ -165,12 +163,12 @@ private:
 /// Samples all entities of a mesh.
 class Sampler {
 public:
-    Sampler(const HexMesh& mesh, const HexMesh& twice_refined, const Topology& topology, std::vector<int> intervals,
+    Sampler(const HexMesh& mesh, const CellBlocks& blocks, const Topology& topology, std::vector<int> intervals,
             const SampleOptions& options)
         : options_(options),
           topology_(topology),
           counts_(topology, std::move(intervals)),
-          blocks_(twice_refined),
+          blocks_(blocks),
           control_(channels_of(mesh)),
           point_cells_(cells_of_points(topology_)),
           diagonal_(bounds(mesh).diagonal()) {}
@@ -287,7 +285,7 @@ private:
     const SampleOptions& options_;
     const Topology& topology_;
     SampleCounts counts_;
-    CellBlocks blocks_;
+    const CellBlocks& blocks_;
     std::vector<ChannelView> control_;
     Buckets<std::pair<Index, Index>> point_cells_;
     double diagonal_;  // of the mesh's bounding box
@@ -296,9 +294,9 @@ private:
 
 }  // namespace
 
-SampleResult sample_in_cells(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
+SampleResult sample_in_cells(const HexMesh& control, const CellBlocks& blocks, const Topology& topology,
                              std::vector<int> intervals, const SampleOptions& options) {
-    return Sampler(control, twice_refined, topology, std::move(intervals), options).run(control);
+    return Sampler(control, blocks, topology, std::move(intervals), options).run(control);
 }
 
 }  // namespace subvol::detail

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "sample_ways.h"
-#include "subvol/detail/bucket_sort.h"
+#include "subvol/detail/parallel_each.h"
 #include "subvol/rbf_field.h"
 
 namespace subvol::detail {
@@ -13,43 +13,44 @@ namespace {
 constexpr int kMostRounds = 6;
 constexpr int kMostIntervals = 64;
 
-/// The exact values of the first channel, and the difference of the largest from the smallest.
-class ExactValues {
-public:
-    explicit ExactValues(const HexMesh& twice)
-        : values_(twice.attributes.front().values), channels_(static_cast<std::size_t>(twice.attributes.front().channels)) {
-        double low = at(0), high = at(0);
-        for (std::size_t p = 1; p < twice.points.size(); ++p) {
-            low = std::min(low, at(static_cast<Index>(p)));
-            high = std::max(high, at(static_cast<Index>(p)));
+/// The largest difference of two values of the first channel at the nodes.
+double range_of(const CellBlocks& blocks, std::size_t cells) {
+    double low = blocks.nodes(0)[3], high = low;
+    for (std::size_t c = 0; c < cells; ++c) {
+        for (std::size_t n = 0; n < CellBlocks::kNodes; ++n) {
+            const double value = blocks.nodes(c)[n * blocks.row() + 3];
+            low = std::min(low, value);
+            high = std::max(high, value);
         }
-        range_ = high - low;
     }
+    return high - low;
+}
 
-    [[nodiscard]] double at(Index p) const { return values_[p * channels_]; }
-
-    /// The error of a value. A place that no kernel covers shows what lies outside instead of the field: it is as wrong as a
-    /// value of the field can be, and at least as wrong as the value 0.
-    [[nodiscard]] double error(Index p, double value) const {
-        return std::isnan(value) ? std::max(range_, std::abs(at(p))) : std::abs(value - at(p));
-    }
-
-private:
-    const std::vector<double>& values_;
-    std::size_t channels_;
-    double range_ = 0;
-};
-
-/// The largest error in each control cell, over the points of its 64 descendants.
-std::vector<double> errors_of_cells(const RbfVolume& volume, const HexMesh& twice, std::size_t cells) {
-    const std::vector<double> values = RbfField(volume, {.channel = 0, .least_weight = 0}).evaluate(twice.points);
-    const ExactValues exact(twice);
+/// The largest error of the first channel in each control cell, over its nodes. A place that no kernel covers shows what lies
+/// outside instead of the field: it is as wrong as a value of the field can be, and at least as wrong as the value 0.
+std::vector<double> errors_of_cells(const RbfVolume& volume, const CellBlocks& blocks, std::size_t cells) {
+    constexpr std::size_t kBatch = 4096;  // cells: half a million places
+    const RbfField field(volume, {.channel = 0, .least_weight = 0});
+    const double range = range_of(blocks, cells);
     std::vector<double> errors(cells, 0);
-    parallel_each(cells, [&](std::size_t c) {
-        for (std::size_t descendant = 64 * c; descendant < 64 * (c + 1); ++descendant) {
-            for (const Index p : twice.cells[descendant]) errors[c] = std::max(errors[c], exact.error(p, values[p]));
-        }
-    });
+    std::vector<Vec3> places;
+    for (std::size_t first = 0; first < cells; first += kBatch) {
+        const std::size_t count = std::min(kBatch, cells - first);
+        places.resize(count * CellBlocks::kNodes);
+        parallel_each(places.size(), [&](std::size_t i) {
+            const double* node = blocks.nodes(first) + i * blocks.row();
+            places[i] = Vec3(node[0], node[1], node[2]);
+        });
+        const std::vector<double> values = field.evaluate(places);
+        parallel_each(count, [&](std::size_t c) {
+            const double* node = blocks.nodes(first + c);
+            for (std::size_t i = c * CellBlocks::kNodes; i < (c + 1) * CellBlocks::kNodes; ++i, node += blocks.row()) {
+                const double exact = node[3];
+                const double error = std::isnan(values[i]) ? std::max(range, std::abs(exact)) : std::abs(values[i] - exact);
+                errors[first + c] = std::max(errors[first + c], error);
+            }
+        });
+    }
     return errors;
 }
 
@@ -75,12 +76,12 @@ bool refine_intervals(const Topology& topology, const std::vector<double>& error
 
 }  // namespace
 
-SampleResult sample_to_tolerance(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
+SampleResult sample_to_tolerance(const HexMesh& control, const CellBlocks& blocks, const Topology& topology,
                                  const SampleOptions& options) {
     std::vector<int> intervals(topology.edges.size(), 1);
     for (int round = 1;; ++round) {
-        SampleResult result = sample_in_cells(control, twice_refined, topology, intervals, options);
-        const auto errors = errors_of_cells(result.volume, twice_refined, control.cells.size());
+        SampleResult result = sample_in_cells(control, blocks, topology, intervals, options);
+        const auto errors = errors_of_cells(result.volume, blocks, control.cells.size());
         result.report.largest_error = *std::max_element(errors.begin(), errors.end());
         if (round == kMostRounds || !refine_intervals(topology, errors, options.tolerance, intervals)) return result;
     }

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "cell_block.h"
 #include "point_lines.h"
 #include "subvol/sample.h"
 #include "subvol/topology.h"
@@ -18,16 +19,16 @@ namespace subvol::detail {
                                             const SampleOptions& options, std::optional<double> diagonal = {});
 
 /// Kernels at any number of intervals on each edge, entity by entity. Values and derivatives are those of quartics through the
-/// cells of the twice refined mesh, whose points must lie on the limit.
+/// blocks of the cells.
 ///
-/// topology:  of `control`
-/// intervals: of each edge of the topology
-[[nodiscard]] SampleResult sample_in_cells(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
+/// blocks, topology: of `control`
+/// intervals:        of each edge of the topology
+[[nodiscard]] SampleResult sample_in_cells(const HexMesh& control, const CellBlocks& blocks, const Topology& topology,
                                            std::vector<int> intervals, const SampleOptions& options);
 
 /// Increases the intervals, in at most six rounds, until the error of the first channel is below options.tolerance at every
-/// point of the twice refined mesh, or the edges where it is not have 64 intervals.
-[[nodiscard]] SampleResult sample_to_tolerance(const HexMesh& control, const HexMesh& twice_refined, const Topology& topology,
+/// node of the blocks, or the edges where it is not have 64 intervals.
+[[nodiscard]] SampleResult sample_to_tolerance(const HexMesh& control, const CellBlocks& blocks, const Topology& topology,
                                                const SampleOptions& options);
 
 }  // namespace subvol::detail

@@ -43,8 +43,8 @@ struct Footprint {
 ///                  range, or the value there if that is larger
 /// values:          how values between control points are found; gradients and moments are those of the scheme
 /// value_kernel:    of the rule `Paper`; its weights must be positive in sum wherever there is a sample
-/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide,
-///                  at most 4
+/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide, at
+///                  most 4; where intervals differ, that is the root of their mean square on the boundary
 struct SampleOptions {
     SchemeOptions scheme{};
     int per_edge = 1;
