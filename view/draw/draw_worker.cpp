@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
@@ -20,6 +21,7 @@ using namespace detail;
 namespace {
 
 constexpr double kCoarse_s = 0.05;  // within this time of a motion there should be a picture
+constexpr std::chrono::milliseconds kPause{20};  // of a motion, before the full picture is begun
 constexpr int kFinest = 2, kCoarsest = 16;
 
 /// Ends the drawing of a picture that nobody waits for any longer.
@@ -72,6 +74,7 @@ struct DrawWorker::State {
             taken.draw = coarse.seconds_draw;
             adapt(taken.first - before - coarse.seconds_build);
             publish(std::move(coarse), taken, request.serial);
+            if (moves_on()) return;
             auto whole = drawer.draw(request.state, request.body, 1, &when_newer);
             taken.kernels += whole.seconds_kernels;
             taken.full = request.since.seconds();
@@ -81,6 +84,12 @@ struct DrawWorker::State {
         } catch (const std::exception& thrown) {
             fail(thrown.what());
         }
+    }
+
+    /// Whether the next request comes at once, as while something is dragged: a full picture would be given up, which takes time.
+    [[nodiscard]] bool moves_on() {
+        std::unique_lock lock(mutex);
+        return changed.wait_for(lock, kPause, [&] { return next.has_value() || quit; });
     }
 
     /// Coarse pictures get coarser while they take too long, and finer while there is much time left.
@@ -139,6 +148,7 @@ DrawWorker::~DrawWorker() {
         const std::scoped_lock lock(state_->mutex);
         state_->next.reset();
         state_->abandon = state_->quit = true;
+        state_->changed.notify_all();
     }
     state_->thread.request_stop();
     state_->thread.join();
