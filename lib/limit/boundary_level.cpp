@@ -300,10 +300,16 @@ BoundaryValues BoundaryTables::apply(const HexMesh& mesh) const {
     return boundary;
 }
 
+int detail::sensible_levels(std::size_t triangles, int levels) {
+    constexpr std::size_t kMostTriangles = 8'000'000;
+    while (levels > 0 && triangles > kMostTriangles >> (2 * levels)) --levels;
+    return levels;
+}
+
 int detail::picture_levels(std::size_t triangles, std::optional<int> most) {
     constexpr std::size_t kManyTriangles = 8000;
     if (most) return std::min(2, *most);
-    return triangles > kManyTriangles ? 1 : 2;
+    return sensible_levels(triangles, triangles > kManyTriangles ? 1 : 2);
 }
 
 int picture_levels(const HexMesh& mesh, std::optional<int> most) {

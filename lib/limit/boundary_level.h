@@ -33,6 +33,9 @@ namespace subvol::detail {
 [[nodiscard]] BoundaryValues boundary_values_of_hull(HexMesh mesh, std::vector<std::uint8_t> on_hull,
                                                      const RefineOptions& options);
 
+/// `levels`, or fewer if a boundary of so many triangles would get more than eight million: they are finer than any picture.
+[[nodiscard]] int sensible_levels(std::size_t triangles, int levels);
+
 /// `picture_levels` for a boundary of so many triangles.
 [[nodiscard]] int picture_levels(std::size_t triangles, std::optional<int> most);
 

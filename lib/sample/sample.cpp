@@ -71,12 +71,25 @@ std::optional<int> level_of_samples(const SampleOptions& options) {
     return std::countr_zero(intervals);
 }
 
+std::size_t hull_triangles(const Topology& topology) {
+    std::size_t quads = 0;
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) quads += topology.face_on_hull(static_cast<Index>(f)) ? 1 : 0;
+    return 2 * quads;
+}
+
+/// A closed surface of quads has about as many points as quads.
+std::size_t hull_triangles(const std::vector<std::uint8_t>& on_hull) {
+    return 2 * static_cast<std::size_t>(std::ranges::count_if(on_hull, [](std::uint8_t on) { return on != 0; }));
+}
+
 /// known:     the control mesh's topology, or a flag for each of its points: whether it is on the hull
 /// intervals: of an edge
 template <class Known>
 Surface boundary_of(const HexMesh& control, const Known& known, int intervals, const SampleOptions& options) {
     const auto half_an_interval = static_cast<int>(std::bit_width(static_cast<unsigned>(intervals)));
-    const int levels = options.boundary_levels.value_or(std::min(half_an_interval, kMostDefaultBoundaryLevels));
+    const int fine = std::min(half_an_interval, kMostDefaultBoundaryLevels);
+    const int levels =
+        options.boundary_levels ? *options.boundary_levels : detail::sensible_levels(hull_triangles(known), fine);
     const RefineOptions refine_options = refinement(options, levels);
     if (levels == 1 && interpolates(options.scheme.kind)) return detail::boundary_of_child(control, known, options.scheme);
     if constexpr (std::is_same_v<Known, Topology>) {
