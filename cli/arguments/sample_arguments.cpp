@@ -50,6 +50,9 @@ void SampleArguments::add_to(CLI::App& app) {
         ->check(CLI::PositiveNumber)
         ->excludes(edges)
         ->excludes(world);
+    app.add_flag("--centers", centers,
+                 "also a kernel in the middle of each small cell between the samples: twice as many kernels, about a third "
+                 "of the error");
     app.add_option("--footprint", footprint,
                    "instead: samples at most 1.5 pixels apart as this camera sees them (numbers, a JSON file, or a side)")
         ->type_name("CAMERA")
@@ -94,6 +97,7 @@ SampleOptions SampleArguments::options(const Box& box, const RefineOptions& refi
             .spacing_world = spacing_voxels > 0 ? spacing_voxels * voxel : spacing_world,
             .footprint = footprint.empty() ? std::nullopt : std::optional(footprint_of(box)),
             .tolerance = tolerance,
+            .centers = centers,
             .correction = correction_named(correction),
             .values = rule_named(values),
             .kernel = kernel_from(kernel, "compact"),

@@ -17,6 +17,7 @@ namespace subvol::cli {
 /// The options of sampling a mesh into radial basis functions, for `points` and `render --method splat`.
 struct SampleArguments {
     int per_edge = 1;
+    bool centers = false;
     double spacing_world = 0;
     double spacing_voxels = 0;
     double tolerance = 0;

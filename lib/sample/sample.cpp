@@ -66,7 +66,7 @@ RefineOptions refinement(const SampleOptions& options, int levels) {
 /// The level whose points are exactly the samples, if there is one.
 std::optional<int> level_of_samples(const SampleOptions& options) {
     const auto intervals = static_cast<unsigned>(options.per_edge);
-    const bool graded = options.spacing_world > 0 || options.footprint || options.tolerance > 0;
+    const bool graded = options.spacing_world > 0 || options.footprint || options.tolerance > 0 || options.centers;
     if (graded || options.values != ValueRule::Scheme || !std::has_single_bit(intervals)) return std::nullopt;
     return std::countr_zero(intervals);
 }

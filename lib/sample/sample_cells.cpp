@@ -12,6 +12,9 @@
 // quartics through the 5×5×5 points of the cell's second level (cell_block.h). Positions and values of neighbouring cells
 // agree; their derivatives and intervals need not. One kernel follows from all of them (docs/adr/0004, docs/adr/0009):
 //
+// With `centers` there is one more point in the middle of each small cell, and the interval is the edge of a cube that holds
+// one point.
+//
 //    frame       S = R² mean Σ J_a J_aᵀ, J_a the derivative of the position along axis a
 //    gradient    the least-squares solution g of J_aᵀ g = ∂_a f
 //    moment      R²/6 mean Σ (∂²_a f − g·∂²_a x)
@@ -35,6 +38,8 @@
 namespace subvol::detail {
 
 namespace {
+
+constexpr double kCenteredInterval = 0.79370052598409973738;  // ∛½: two points for each small cell
 
 Buckets<std::pair<Index, Index>> cells_of_points(const Topology& topology) {
     return bucket_sort<std::pair<Index, Index>>(
@@ -81,8 +86,11 @@ public:
     }
 
     void add_cell(std::size_t cell, const std::array<double, 3>& uvw) {
-        const std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
-                                         1.0 / counts_.near(cell, 2, uvw)};
+        std::array<double, 3> step{1.0 / counts_.near(cell, 0, uvw), 1.0 / counts_.near(cell, 1, uvw),
+                                   1.0 / counts_.near(cell, 2, uvw)};
+        if (options_.centers) {
+            for (double& s : step) s /= 2;  // from a centre a whole interval would reach out of the cell
+        }
         const double* nodes = blocks_.nodes(cell);
         blocks_.evaluate(nodes, uvw, step, jet_);
         if (cells_++ == 0) {
@@ -90,6 +98,7 @@ public:
             write_values(static_cast<Index>(cell), uvw);
         }
         for (std::size_t a = 0; a < 3; ++a) {
+            if (options_.centers) stretch(a, 2 * kCenteredInterval);
             for (std::size_t c = 0; c < jet_.value.size(); ++c) {
                 d_[c] = jet_.d_value[c][a];
                 dd_[c] = jet_.dd_value[c][a];
@@ -120,6 +129,16 @@ public:
     }
 
 private:
+    /// Derivatives along an axis per another interval.
+    void stretch(std::size_t axis, double factor) {
+        jet_.d_position[axis] *= factor;
+        jet_.dd_position[axis] *= factor * factor;
+        for (std::size_t c = 0; c < jet_.value.size(); ++c) {
+            jet_.d_value[c][axis] *= factor;
+            jet_.dd_value[c][axis] *= factor * factor;
+        }
+    }
+
     /// J⁻ᵀ (∂²f − g·∂²x) J⁻¹; 0 where the cell is flat.
     [[nodiscard]] static Mat3 hessian_in(const CellBlocks::Jet& jet, std::size_t channel, const Vec3& g) {
         const Mat3 jacobian(jet.d_position[0], jet.d_position[1], jet.d_position[2]);
@@ -182,7 +201,8 @@ public:
         });
         const auto first_cell = prefix(first_face.back(), topology_.cells.size(), [&](std::size_t c) {
             const auto n = counts_.cell(c);
-            return std::size_t(n[0] - 1) * std::size_t(n[1] - 1) * std::size_t(n[2] - 1);
+            const auto inside = std::size_t(n[0] - 1) * std::size_t(n[1] - 1) * std::size_t(n[2] - 1);
+            return inside + (options_.centers ? std::size_t(n[0]) * std::size_t(n[1]) * std::size_t(n[2]) : 0);
         });
         auto& report = result_.report;
         report.at_vertices = topology_.point_count;
@@ -267,14 +287,19 @@ private:
     }
 
     std::size_t sample_cell(std::size_t c, std::size_t first, KernelWriter& writer) const {
+        const std::size_t flat = sample_inside(c, 1, 0, first, writer);
+        return flat + (options_.centers ? sample_inside(c, 0, 0.5, first, writer) : 0);
+    }
+
+    /// The samples (i + shift) / n of a cell, from i = start; `next` goes on.
+    std::size_t sample_inside(std::size_t c, int start, double shift, std::size_t& next, KernelWriter& writer) const {
         const auto n = counts_.cell(c);
         std::size_t flat = 0;
-        if (n[0] == 1 || n[1] == 1 || n[2] == 1) return flat;
-        for (int k = 1; k < n[2]; ++k) {
-            for (int j = 1; j < n[1]; ++j) {
-                for (int i = 1; i < n[0]; ++i) {
-                    writer.begin(first++);
-                    writer.add_cell(c, {double(i) / n[0], double(j) / n[1], double(k) / n[2]});
+        for (int k = start; k < n[2]; ++k) {
+            for (int j = start; j < n[1]; ++j) {
+                for (int i = start; i < n[0]; ++i) {
+                    writer.begin(next++);
+                    writer.add_cell(c, {(i + shift) / n[0], (j + shift) / n[1], (k + shift) / n[2]});
                     flat += writer.finish();
                 }
             }
