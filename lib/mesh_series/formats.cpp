@@ -12,6 +12,7 @@
 #include "text_readers.h"
 #include "text_scanner.h"
 #include "vtkhdf/vtkhdf_io.h"
+#include "wavelet_format.h"
 
 namespace subvol::detail {
 
@@ -30,7 +31,7 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-constexpr std::array<MeshFormat, 21> kFormats{{
+constexpr std::array<MeshFormat, 22> kFormats{{
     {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
     {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
@@ -61,6 +62,7 @@ constexpr std::array<MeshFormat, 21> kFormats{{
     {{".case"}, "EnSight Gold", read_ensight, nullptr, false, true, ensight_times},
     {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times, true},
     {{".inp"}, "Abaqus", read_inp, nullptr, false, true},
+    {{".svw"}, "wavelets", read_file<read_wavelets>, nullptr},
 }};
 
 }  // namespace
