@@ -81,7 +81,7 @@ public:
         app()
             .add_option("--wavelet-point-tolerance", wavelet_point_tolerance_,
                         "the same for the points, in parts of the mesh's longest side (default: a tenth of "
-                        "--wavelet-tolerance)")
+                        "--wavelet-tolerance, and less where cells would be inverted)")
             ->type_name("T");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");

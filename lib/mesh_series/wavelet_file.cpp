@@ -116,13 +116,41 @@ double range_of(std::span<const double> values, std::size_t channels, std::span<
     return most;
 }
 
+/// How often the tolerance of points is divided by 3 to keep cells from being inverted.
+constexpr int kMostAttempts = 8;
+
+std::vector<double> coordinates(const std::vector<Vec3>& points) {
+    std::vector<double> values;
+    values.reserve(3 * points.size());
+    for (const Vec3& p : points) values.insert(values.end(), {p.x, p.y, p.z});
+    return values;
+}
+
+std::size_t kept_numbers(const QuantizedWavelets& numbers) {
+    const auto kept = [](const std::vector<std::int64_t>& of) {
+        return of.size() - static_cast<std::size_t>(std::count(of.begin(), of.end(), 0));
+    };
+    std::size_t sum = kept(numbers.coarse);
+    for (const auto& details : numbers.details) sum += kept(details);
+    return sum;
+}
+
+std::size_t inverted_cells_of(const MeshHierarchy& hierarchy, const WaveletBasis& basis, std::span<const double> places) {
+    HexMesh mesh;
+    mesh.points.reserve(places.size() / 3);
+    for (std::size_t i = 0; i < places.size(); i += 3) mesh.points.emplace_back(places[i], places[i + 1], places[i + 2]);
+    for (std::size_t c = 0; c < basis.cells.size(); ++c) {
+        if (hierarchy.cells[c] != kNone) mesh.cells.push_back(basis.cells[c]);
+    }
+    return measure_cells(mesh).inverted_cells;
+}
+
 }  // namespace
 
 WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const HexMesh& mesh,
                                      const WaveletFileOptions& options) {
     check_part(options.tolerance, "tolerance");
-    const double point_tolerance = options.point_tolerance.value_or(options.tolerance / 10);
-    check_part(point_tolerance, "tolerance of points");
+    check_part(options.point_tolerance.value_or(options.tolerance), "tolerance of points");
     report_progress(options.progress, "find the coarser mesh", 0);
     const MeshHierarchy hierarchy = find_hierarchy(mesh, {.levels = options.levels});
     const Topology topology = build_topology(hierarchy.coarse);
@@ -144,39 +172,42 @@ WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const He
     put_mesh(hierarchy.coarse, out);
     put_cells(hierarchy, out);
     out.number(mesh.attributes.size() + 1);
-    HexMesh restored;
-    const auto put = [&](std::string_view name, std::span<const double> given, std::size_t channels, double tolerance) {
+    report.inverted_cells_before = measure_cells(mesh).inverted_cells;
+    const auto report_array = [&] {
         report_progress(options.progress, "wavelets",
                         static_cast<double>(report.arrays.size()) / static_cast<double>(mesh.attributes.size() + 1));
-        const std::vector<double> values = in_hierarchy(hierarchy, given, channels);
-        const double range = range_of(values, channels, counted);
-        const double scale = range > 0 ? range : 1;
-        const QuantizedWavelets numbers = quantize_within(basis, values, channels, tolerance * scale, counted);
-        put_array(numbers, name, out);
-        std::vector<double> again = synthesize(basis, restore(basis, numbers));
-        const WaveletError error = difference(again, values, channels, counted);
-        WaveletArrayReport array{std::string(name), values.size(), 0, error.rms / scale, error.max / scale};
-        const auto count = [&](const std::vector<std::int64_t>& of) {
-            array.kept += of.size() - static_cast<std::size_t>(std::count(of.begin(), of.end(), 0));
-        };
-        count(numbers.coarse);
-        for (const auto& details : numbers.details) count(details);
-        report.arrays.push_back(std::move(array));
-        return again;
     };
-    std::vector<double> places;
-    places.reserve(3 * mesh.points.size());
-    for (const Vec3& p : mesh.points) places.insert(places.end(), {p.x, p.y, p.z});
-    const std::vector<double> moved = put("", places, 3, point_tolerance);
+    const auto put = [&](std::string name, std::span<const double> values, const QuantizedWavelets& numbers,
+                         std::span<const double> restored, double scale) {
+        put_array(numbers, name, out);
+        const WaveletError error = difference(restored, values, numbers.channels, counted);
+        report.arrays.push_back({std::move(name), values.size(), kept_numbers(numbers), error.rms / scale, error.max / scale});
+    };
+    report_array();
+    {
+        const std::vector<double> values = in_hierarchy(hierarchy, coordinates(mesh.points), 3);
+        const double scale = range_of(values, 3, counted);
+        double tolerance = options.point_tolerance.value_or(options.tolerance / 10);
+        QuantizedWavelets numbers;
+        std::vector<double> restored;
+        for (int attempt = 0;; ++attempt) {
+            numbers = quantize_within(basis, values, 3, tolerance * scale, counted);
+            restored = synthesize(basis, restore(basis, numbers));
+            report.inverted_cells = inverted_cells_of(hierarchy, basis, restored);
+            const bool sound = report.inverted_cells <= report.inverted_cells_before;
+            if (sound || options.point_tolerance || attempt == kMostAttempts) break;
+            tolerance /= 3;
+        }
+        put("", values, numbers, restored, scale);
+    }
     for (const Attribute& a : mesh.attributes) {
-        put(a.name, a.values, static_cast<std::size_t>(a.channels), options.tolerance);
+        report_array();
+        const auto channels = static_cast<std::size_t>(a.channels);
+        const std::vector<double> values = in_hierarchy(hierarchy, a.values, channels);
+        const double range = range_of(values, channels, counted), scale = range > 0 ? range : 1;
+        const QuantizedWavelets numbers = quantize_within(basis, values, channels, options.tolerance * scale, counted);
+        put(a.name, values, numbers, synthesize(basis, restore(basis, numbers)), scale);
     }
-    for (std::size_t i = 0; i < moved.size(); i += 3) restored.points.emplace_back(moved[i], moved[i + 1], moved[i + 2]);
-    for (std::size_t c = 0; c < basis.cells.size(); ++c) {
-        if (hierarchy.cells[c] != kNone) restored.cells.push_back(basis.cells[c]);
-    }
-    report.inverted_cells_before = measure_cells(mesh).inverted_cells;
-    report.inverted_cells = measure_cells(restored).inverted_cells;
 
     const std::string packed = compressed_numbers(out.all());
     std::string length;

@@ -17,7 +17,7 @@ namespace subvol {
 ///                  (0,1]
 /// point_tolerance: most root mean square distance of the points from where they were, in parts of the longest side of the
 /// mesh;
-///                  a tenth of `tolerance` if not given
+///                  if not given a tenth of `tolerance`, and less where cells would be inverted
 /// levels:          the most levels of wavelets, 1 to 10
 struct WaveletFileOptions {
     SchemeOptions scheme{};
