@@ -22,7 +22,8 @@ namespace {
 constexpr double kSmallestOwn = 1e-3;
 
 void find_stars(const Topology& topology, WaveletStep& step) {
-    auto& [offsets, values] = step.star;
+    auto& offsets = step.star.offsets;
+    auto& values = step.star.values;
     offsets.assign(topology.point_count + 1, 0);
     parallel_each(topology.point_count, [&](std::size_t v) {
         thread_local std::vector<Index> star;
