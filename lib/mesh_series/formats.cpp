@@ -3,6 +3,7 @@
 #include "format_table.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "abaqus/inp_io.h"
 #include "cgns/cgns_io.h"
@@ -29,6 +30,22 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     const std::string grid_text = read_text(path), flow_file = flow.string();
     const std::string flow_text = std::filesystem::exists(flow) ? read_text(flow) : std::string();
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
+}
+
+ReadResult read_wavelets(std::string_view text, std::string_view file, const ReadOptions&) {
+    ReadResult result{.mesh = read_wavelet_mesh(text, std::string(file)), .fields = {}, .warnings = {}};
+    for (const Attribute& a : result.mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(a.channels);
+        FieldInfo& field = result.fields.emplace_back(FieldInfo{a.name, "point", a.channels});
+        for (std::size_t i = 0; i < a.values.size(); i += channels) {
+            double square = 0;
+            for (std::size_t k = i; k < i + channels; ++k) square += a.values[k] * a.values[k];
+            const double value = channels == 1 ? a.values[i] : std::sqrt(square);
+            field.min = i == 0 ? value : std::min(field.min, value);
+            field.max = i == 0 ? value : std::max(field.max, value);
+        }
+    }
+    return result;
 }
 
 constexpr std::array<MeshFormat, 22> kFormats{{

@@ -217,31 +217,18 @@ HexMesh mesh_of_wavelets(std::string_view contents, const std::string& file) {
     }
 }
 
-ReadResult read_wavelets(std::string_view text, std::string_view file, const ReadOptions&) {
-    const std::string name(file);
+HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
     const std::size_t head = kWaveletMagic.size() + 8;
     if (text.size() < head || !text.starts_with(kWaveletMagic)) {
-        throw Error(ErrorCode::InvalidInput, "not a file of wavelets", name, "it begins with subvol-wavelets-1");
+        throw Error(ErrorCode::InvalidInput, "not a file of wavelets", file, "it begins with subvol-wavelets-1");
     }
     std::uint64_t length = 0;
     for (std::size_t k = 0; k < 8; ++k) {
         length |= std::uint64_t{static_cast<unsigned char>(text[kWaveletMagic.size() + k])} << 8 * k;
     }
     const auto contents = decompressed(Compressor::Lzma, text.substr(head), length);
-    if (!contents) throw Error(ErrorCode::InvalidInput, "the compressed contents are damaged", name);
-    ReadResult result{.mesh = mesh_of_wavelets(*contents, name), .fields = {}, .warnings = {}};
-    for (const Attribute& a : result.mesh.attributes) {
-        FieldInfo info{a.name, "point", a.channels};
-        for (std::size_t i = 0; i < a.values.size(); i += static_cast<std::size_t>(a.channels)) {
-            double square = 0;
-            for (std::size_t k = i; k < i + static_cast<std::size_t>(a.channels); ++k) square += a.values[k] * a.values[k];
-            const double value = a.channels == 1 ? a.values[i] : std::sqrt(square);
-            info.min = i == 0 ? value : std::min(info.min, value);
-            info.max = i == 0 ? value : std::max(info.max, value);
-        }
-        result.fields.push_back(std::move(info));
-    }
-    return result;
+    if (!contents) throw Error(ErrorCode::InvalidInput, "the compressed contents are damaged", file);
+    return mesh_of_wavelets(*contents, file);
 }
 
 }  // namespace subvol::detail

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "subvol/hex_mesh.h"
-#include "subvol/mesh_io.h"
 
 namespace subvol::detail {
 
@@ -38,6 +37,9 @@ inline constexpr std::string_view kWaveletMagic = "subvol-wavelets-1\n";
 /// throws: Error(InvalidInput) if they are not right; `file` is named
 [[nodiscard]] HexMesh mesh_of_wavelets(std::string_view contents, const std::string& file);
 
-[[nodiscard]] ReadResult read_wavelets(std::string_view text, std::string_view file, const ReadOptions& options);
+/// The mesh of a file with this text.
+///
+/// throws: as mesh_of_wavelets
+[[nodiscard]] HexMesh read_wavelet_mesh(std::string_view text, const std::string& file);
 
 }  // namespace subvol::detail

@@ -121,8 +121,8 @@ struct DroppedDetails {
 /// throws:    Error(InvalidInput) if the field is not of this basis or the tolerance is not positive and finite
 DroppedDetails drop_details(const WaveletBasis& basis, WaveletField& field, double tolerance);
 
-/// A field as whole numbers. A detail is its number times step / √measure of its point, a control value its number times a quarter
-/// of step / √(mean measure).
+/// A field as whole numbers. A detail is its number times step / √measure of its point, a control value its number times a
+/// quarter of step / √(mean measure).
 struct QuantizedWavelets {
     std::size_t channels = 1;
     double step = 0;
