@@ -10,7 +10,11 @@
 #include "lib/mesh_io/vtu_texts.h"
 #include "subvol/mesh_io.h"
 #include "subvol/points_io.h"
+#include "subvol/refine.h"
 #include "subvol/sample.h"
+#include "subvol/wavelet_file.h"
+#include "vtu_bytes.h"
+#include "wavelet_format.h"
 #ifdef SUBVOL_FUZZ_EXODUS
 #include "lib/mesh_io/exodus_texts.h"
 #endif
@@ -185,6 +189,21 @@ void add_results(Seeds& seeds, const HexMesh& mesh) {
               "</Grid></Domain></Xdmf>");
 }
 
+/// Without the compression.
+void add_wavelets(Seeds& seeds, const HexMesh& mesh) {
+    for (const int levels : {1, 2}) {
+        const std::filesystem::path file = seeds.path("wavelets", ".svw");
+        write_wavelet_file(file, refine(mesh, {.levels = levels}), {.tolerance = .01});
+        std::ifstream in(file, std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+        std::size_t length = 0, head = detail::kWaveletMagic.size();
+        for (int k = 0; k < 8; ++k) length |= std::size_t{static_cast<unsigned char>(bytes[head++])} << 8 * k;
+        seeds.add("wavelets",
+                  detail::decompressed(detail::Compressor::Lzma, std::string_view(bytes).substr(head), length).value());
+        std::filesystem::remove(file);
+    }
+}
+
 void add_plot3d(Seeds& seeds, const HexMesh& mesh) {
     seeds.add("plot3d", "2 2 2\n" + point_lines(mesh));
     seeds.add("plot3d", "2\n2 2 2 2 2 2\n" + point_lines(mesh) + point_lines(mesh) + "1 1 1 1 0 1 1 1\n1 1 1 1 1 1 1 1\n");
@@ -215,6 +234,7 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
                           "$ElementData\n1\n\"e\"\n0\n3\n0\n1\n1\n1 5\n$EndElementData\n");
     add_binary_meshes(seeds, mesh);
     add_plot3d(seeds, mesh);
+    add_wavelets(seeds, mesh);
     add_vtkhdf(seeds);
     add_cgns(seeds);
     add_decks(seeds);

@@ -27,6 +27,7 @@
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_points.h"
+#include "subvol/wavelet_file.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
@@ -45,10 +46,14 @@ public:
                "  subvol points run.exo -o 'run_####.ply' --step all\n"
                "  subvol points smoke.vdb -o smoke.ply --threshold 0   one kernel per voxel\n"
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
+               "  subvol points fine.vtu -o fine.svw --wavelet-tolerance 1e-3   compressed\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
-        app().add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb)")->type_name("FILE")->required();
+        app()
+            .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb; .svw with --wavelet-tolerance)")
+            ->type_name("FILE")
+            ->required();
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
         app().add_flag("--splats", splats_,
                        ".ply: also for viewers of Gaussian splats; the boundary is then in a file beside it");
@@ -67,6 +72,17 @@ public:
                         "field's unit: few kernels where the field is smooth")
             ->type_name("ERROR")
             ->check(CLI::PositiveNumber);
+        app()
+            .add_option(
+                "--wavelet-tolerance", wavelet_tolerance_,
+                "write control values and wavelet details (.svw) instead of kernels, with a root mean square error of at "
+                "most T, in parts of the field's range: for refined meshes and structured grids")
+            ->type_name("T");
+        app()
+            .add_option("--wavelet-point-tolerance", wavelet_point_tolerance_,
+                        "the same for the points, in parts of the mesh's longest side (default: a tenth of "
+                        "--wavelet-tolerance, and less where cells would be inverted)")
+            ->type_name("T");
         refine_.add_to(app(), "sample the refined mesh of this level instead of the limit");
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
@@ -74,12 +90,20 @@ public:
         group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
                                     "--footprint-size", "--threshold", "--tf", "--reduce", "--refine", "--merge"});
         group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction", "--error"});
+        group("Wavelets", {"--wavelet-tolerance", "--wavelet-point-tolerance"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
 
     [[nodiscard]] bool works_in_ranks() const override { return true; }
 
     int run(Report& report) override {
+        if (wavelet_tolerance_) return write_wavelets(report);
+        if (wavelet_point_tolerance_) {
+            throw Error(ErrorCode::InvalidInput, "needs --wavelet-tolerance", "--wavelet-point-tolerance");
+        }
+        if (output_.ends_with(".svw")) {
+            throw Error(ErrorCode::InvalidInput, "wavelets need a tolerance", output_, "--wavelet-tolerance 1e-3");
+        }
         check_output(output_, {".ply", ".vtp", ".vdb"});
         const std::string extension = std::filesystem::path(output_).extension().string();
         if (extension != ".ply" && (ascii_ || splats_)) {
@@ -125,6 +149,68 @@ public:
     }
 
 private:
+    /// A mesh instead of kernels: details have signs and no mean, so that a normalised sum of kernels cannot add them.
+    int write_wavelets(Report& report) {
+        check_output(output_, {".svw"});
+        refuse_options(app(), {"--ascii",     "--splats",       "--up",
+                               "--per-edge",  "--spacing",      "--spacing-voxels",
+                               "--tolerance", "--footprint",    "--footprint-size",
+                               "--threshold", "--tf",           "--reduce",
+                               "--refine",    "--merge",        "--values",
+                               "--kernel",    "--value-kernel", "--correction",
+                               "--clamp",     "--error",        "--part"},
+                       "makes kernels; --wavelet-tolerance writes a mesh, of which `subvol points` then makes kernels");
+        refuse_options(app(), {"--crease-angle"}, "tags edges of a control mesh; here it is found, with the tags of the mesh");
+        if (is_bricks_input(input_) || is_vdb_file(input_) || asks_for_steps(common()) || ranks() != nullptr) {
+            throw Error(ErrorCode::InvalidInput, "wavelets need one mesh in memory", input_,
+                        "a mesh file and one of its steps");
+        }
+        const RefineOptions refine = refine_.options(1, report);
+        if (app().count("--levels") > 0 && (refine.levels < 1 || refine.levels > 10)) {
+            throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(refine.levels), "--levels",
+                        "1 to 10");
+        }
+        WaveletFileOptions options{.scheme = refine.scheme,
+                                   .tolerance = part(*wavelet_tolerance_, "--wavelet-tolerance"),
+                                   .progress = report.progress()};
+        if (wavelet_point_tolerance_) {
+            options.point_tolerance = part(*wavelet_point_tolerance_, "--wavelet-point-tolerance");
+        }
+        if (app().count("--levels") > 0) options.levels = refine.levels;
+        const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
+        const WaveletFileReport written = report.timed("wavelets", [&] { return write_wavelet_file(output_, mesh, options); });
+        std::size_t coefficients = 0, kept = 0;
+        for (const WaveletArrayReport& array : written.arrays) {
+            coefficients += array.coefficients;
+            kept += array.kept;
+        }
+        const WaveletArrayReport &points = written.arrays.front(), &field = written.arrays.back();
+        report["points"] = mesh.points.size();
+        report["cells"] = written.cells;
+        report["levels"] = written.levels;
+        report["coarse_cells"] = written.coarse_cells;
+        if (written.added_cells > 0) report["added_cells"] = written.added_cells;
+        report["coefficients"] = coefficients;
+        report["coefficients_kept"] = kept;
+        report["bytes"] = written.bytes;
+        report["rms"] = field.rms;
+        report["max"] = field.max;
+        report["point_rms"] = points.rms;
+        report["point_max"] = points.max;
+        report["inverted_cells"] = written.inverted_cells;
+        report["output"] = output_;
+        if (written.inverted_cells > written.inverted_cells_before) {
+            report.warn(text(count_text(written.inverted_cells - written.inverted_cells_before),
+                             " cells are inverted after rounding; a smaller --wavelet-point-tolerance keeps their shapes"));
+        }
+        return 0;
+    }
+
+    static double part(double tolerance, const std::string& option) {
+        if (tolerance > 0 && tolerance <= 1) return tolerance;
+        throw Error(ErrorCode::InvalidInput, "is not a part of the range", option, "greater than 0, at most 1");
+    }
+
     void write(const std::string& path, const RbfVolume& volume, Report& report) const {
         report.timed("write", [&] {
             if (path.ends_with(".vdb")) {
@@ -264,7 +350,7 @@ private:
     std::string output_;
     bool ascii_ = false;
     bool splats_ = false, clamp_ = false, error_ = false;
-    std::optional<double> merge_error_;
+    std::optional<double> merge_error_, wavelet_tolerance_, wavelet_point_tolerance_;
     std::string up_ = "z", transfer_function_;
     std::string note_;  // of a share
     ShareArgument share_;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <new>
 
 #include "subvol/detail/text_codes.h"
 
@@ -135,6 +136,23 @@ std::optional<std::string> decompressed(Compressor compressor, std::string_view 
                       : compressor == Compressor::Lzma ? unpack_lzma(bytes, result)
                                                        : unpack_lz4(bytes, result);
     if (!good) return std::nullopt;
+    return result;
+}
+
+std::string compressed_numbers(std::string_view bytes) {
+    lzma_options_lzma options{};
+    lzma_lzma_preset(&options, 9);
+    options.dict_size = static_cast<std::uint32_t>(std::clamp<std::size_t>(bytes.size(), 1 << 16, 1 << 26));
+    options.lc = 0;  // a number says little about the next one
+    options.pb = 0;
+    std::array<lzma_filter, 2> filters{{{LZMA_FILTER_LZMA2, &options}, {LZMA_VLI_UNKNOWN, nullptr}}};
+    std::string result(lzma_stream_buffer_bound(bytes.size()), '\0');
+    std::size_t written = 0;
+    const auto done = lzma_stream_buffer_encode(filters.data(), LZMA_CHECK_CRC64, nullptr,
+                                                reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(),
+                                                reinterpret_cast<std::uint8_t*>(result.data()), &written, result.size());
+    if (done != LZMA_OK) throw std::bad_alloc();  // the only reason with these options
+    result.resize(written);
     return result;
 }
 

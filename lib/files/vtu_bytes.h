@@ -41,4 +41,7 @@ enum class Compressor { None, Zlib, Lzma, Lz4 };
 /// Decompresses a block. Nothing if the bytes are damaged or if their decompressed size is not `size`.
 [[nodiscard]] std::optional<std::string> decompressed(Compressor compressor, std::string_view bytes, std::size_t size);
 
+/// Bytes that `decompressed` with Compressor::Lzma turns back, with a checksum: small numbers, most of them 0, become smallest.
+[[nodiscard]] std::string compressed_numbers(std::string_view bytes);
+
 }  // namespace subvol::detail

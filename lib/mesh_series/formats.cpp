@@ -3,6 +3,7 @@
 #include "format_table.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "abaqus/inp_io.h"
 #include "cgns/cgns_io.h"
@@ -12,6 +13,7 @@
 #include "text_readers.h"
 #include "text_scanner.h"
 #include "vtkhdf/vtkhdf_io.h"
+#include "wavelet_format.h"
 
 namespace subvol::detail {
 
@@ -30,7 +32,23 @@ ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptio
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
-constexpr std::array<MeshFormat, 21> kFormats{{
+ReadResult read_wavelets(std::string_view text, std::string_view file, const ReadOptions&) {
+    ReadResult result{.mesh = read_wavelet_mesh(text, std::string(file)), .fields = {}, .warnings = {}};
+    for (const Attribute& a : result.mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(a.channels);
+        FieldInfo& field = result.fields.emplace_back(FieldInfo{a.name, "point", a.channels});
+        for (std::size_t i = 0; i < a.values.size(); i += channels) {
+            double square = 0;
+            for (std::size_t k = i; k < i + channels; ++k) square += a.values[k] * a.values[k];
+            const double value = channels == 1 ? a.values[i] : std::sqrt(square);
+            field.min = i == 0 ? value : std::min(field.min, value);
+            field.max = i == 0 ? value : std::max(field.max, value);
+        }
+    }
+    return result;
+}
+
+constexpr std::array<MeshFormat, 22> kFormats{{
     {{".mesh"}, "MEDIT", read_file<read_medit>, write_medit, true},
     {{".meshb"}, "MEDIT", read_file<read_meshb>, nullptr, true},
     {{".vtk"}, "legacy VTK", read_file<read_legacy_vtk>, nullptr},
@@ -61,6 +79,7 @@ constexpr std::array<MeshFormat, 21> kFormats{{
     {{".case"}, "EnSight Gold", read_ensight, nullptr, false, true, ensight_times},
     {{".foam", ".openfoam"}, "OpenFOAM", read_foam, nullptr, false, false, foam_times, true},
     {{".inp"}, "Abaqus", read_inp, nullptr, false, true},
+    {{".svw"}, "wavelets", read_file<read_wavelets>, nullptr},
 }};
 
 }  // namespace

@@ -27,6 +27,7 @@
 #include "subvol/field_samples.h"
 #include "subvol/fit_kernel.h"
 #include "subvol/hex_mesh.h"
+#include "subvol/hierarchy.h"
 #include "subvol/image.h"
 #include "subvol/index.h"
 #include "subvol/kernel.h"
@@ -71,3 +72,5 @@
 #include "subvol/version.h"
 #include "subvol/visible_points.h"
 #include "subvol/voxels.h"
+#include "subvol/wavelet.h"
+#include "subvol/wavelet_file.h"

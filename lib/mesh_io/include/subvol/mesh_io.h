@@ -89,6 +89,7 @@ struct ReadResult {
 ///   .case                  EnSight Gold
 ///   .frd                   CalculiX's results
 ///   .foam, .inp            an OpenFOAM case, as its folder; Abaqus and CalculiX decks
+///   .svw                   wavelets, as `write_wavelet_file` writes them
 ///
 /// Cells of lower dimension are left out; curved hexahedra are split as ReadOptions says, and of other curved cells only the
 /// corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that it looks like, and left out

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: Apache-2.0
+// In a refined mesh the corners of each cell are an old point, three points of edges, three of faces and, across from the old
+// one, the point of a cell. Which corner of one cell is the old point decides it for the cells next to it, and so for all that
+// hang together by faces: there are eight ways to try. The right one has eight cells at every point of a cell.
+#include "coarsen.h"
+
+#include <algorithm>
+#include <map>
+
+#include "incident.h"
+#include "subvol/cell.h"
+#include "subvol/error.h"
+
+namespace subvol::detail {
+
+namespace {
+
+using Corner = std::uint8_t;
+constexpr Corner kUnknown = 255;
+
+/// Corners as numbers with a bit for each axis, and back: the same map.
+constexpr std::size_t swapped(std::size_t corner) {
+    return corner ^ ((corner >> 1) & 1);
+}
+constexpr std::size_t flip(std::size_t corner, std::size_t axis) {
+    return swapped(swapped(corner) ^ (std::size_t{1} << axis));
+}
+constexpr std::size_t across(std::size_t corner) {
+    return swapped(swapped(corner) ^ 7);
+}
+constexpr std::size_t side_of(std::size_t corner, std::size_t axis) {
+    return swapped(corner) >> axis & 1;
+}
+
+enum Kind : std::uint8_t { OldPoint, EdgePoint, FacePoint, CellPoint, NoPoint };
+
+Kind kind_of(std::size_t corner, std::size_t old_corner) {
+    const std::size_t differing = swapped(corner) ^ swapped(old_corner);
+    return static_cast<Kind>((differing & 1) + (differing >> 1 & 1) + (differing >> 2 & 1));
+}
+
+class Coarsener {
+public:
+    Coarsener(const HexMesh& fine, const Topology& topology)
+        : fine_(fine), t_(topology), old_corner_(fine.cells.size(), kUnknown), kind_(topology.point_count, NoPoint) {}
+
+    std::optional<CoarserMesh> run(std::string& why) {
+        for (std::size_t c = 0; c < t_.cells.size(); ++c) {
+            if (old_corner_[c] == kUnknown && !choose_part(static_cast<Index>(c), why)) return std::nullopt;
+        }
+        if (!make_cells(why) || !coarsen_tags(why)) return std::nullopt;
+        return std::move(coarse_);
+    }
+
+private:
+    /// Decides the cells that hang together with one.
+    bool choose_part(Index first, std::string& why) {
+        for (Corner k = 0; k < 8; ++k) {
+            std::string reason;
+            if (spread(first, k, reason) && complete(reason)) return true;
+            if (k == 0 || why.empty()) why = reason;
+            for (const Index c : part_) old_corner_[c] = kUnknown;
+            for (const Index p : marked_) kind_[p] = NoPoint;
+        }
+        return false;
+    }
+
+    bool mark(Index cell, std::string& why) {
+        for (std::size_t k = 0; k < 8; ++k) {
+            const Index p = t_.cells[cell][k];
+            const Kind kind = kind_of(k, old_corner_[cell]);
+            if (kind_[p] == NoPoint) {
+                kind_[p] = kind;
+                marked_.push_back(p);
+            } else if (kind_[p] != kind) {
+                why = "around point " + std::to_string(p) + " the cells do not alternate";
+                return false;
+            }
+        }
+        return true;
+    }
+
+    bool spread(Index first, Corner corner, std::string& why) {
+        part_.assign(1, first);
+        marked_.clear();
+        old_corner_[first] = corner;
+        if (!mark(first, why)) return false;
+        for (std::size_t next = 0; next < part_.size(); ++next) {
+            const Index c = part_[next];
+            for (const Index f : t_.cell_faces[c]) {
+                const auto& [a, b] = t_.face_cells[f];
+                const Index other = a == c ? b : a;
+                if (other == kNone || old_corner_[other] != kUnknown) continue;
+                old_corner_[other] = corner_across(c, f, other);
+                part_.push_back(other);
+                if (!mark(other, why)) return false;
+            }
+        }
+        return true;
+    }
+
+    /// A face of a small cell has either its old point or the point of a cell.
+    [[nodiscard]] Corner corner_across(Index cell, Index face, Index other) const {
+        const Index old_point = t_.cells[cell][old_corner_[cell]];
+        const auto& quad = t_.faces[face];
+        if (std::find(quad.begin(), quad.end(), old_point) != quad.end()) {
+            return static_cast<Corner>(slot_of(t_.cells[other], old_point));
+        }
+        return static_cast<Corner>(across(slot_of(t_.cells[other], t_.cells[cell][across(old_corner_[cell])])));
+    }
+
+    bool complete(std::string& why) const {
+        std::vector<Index> centers;
+        for (const Index c : part_) centers.push_back(t_.cells[c][across(old_corner_[c])]);
+        std::sort(centers.begin(), centers.end());
+        for (std::size_t i = 0; i < centers.size();) {
+            std::size_t n = 1;
+            while (i + n < centers.size() && centers[i + n] == centers[i]) ++n;
+            if (n != 8) {
+                why = "point " + std::to_string(centers[i]) + " would be the middle of " + std::to_string(n) +
+                      (n == 1 ? " cell" : " cells") + " instead of 8: a row of cells has an odd number";
+                return false;
+            }
+            i += n;
+        }
+        return true;
+    }
+
+    bool make_cells(std::string& why) {
+        std::vector<Index> number(t_.point_count, kNone);
+        for (std::size_t p = 0; p < t_.point_count; ++p) {
+            if (kind_[p] != OldPoint) continue;
+            number[p] = static_cast<Index>(coarse_.points.size());
+            coarse_.points.push_back(static_cast<Index>(p));
+            coarse_.mesh.points.push_back(fine_.points[p]);
+        }
+        std::vector<Index> group(t_.point_count, kNone);
+        std::vector<std::array<Index, 8>> groups;  // in the order of their first cells
+        std::vector<std::uint8_t> sizes;
+        for (std::size_t c = 0; c < t_.cells.size(); ++c) {
+            Index& g = group[t_.cells[c][across(old_corner_[c])]];
+            if (g == kNone) {
+                g = static_cast<Index>(groups.size());
+                groups.emplace_back();
+                sizes.push_back(0);
+            }
+            groups[g][sizes[g]++] = static_cast<Index>(c);
+        }
+        for (const auto& cells : groups) {
+            if (!make_cell(cells, number)) {
+                why = "the eight cells at point " + std::to_string(t_.cells[cells[0]][across(old_corner_[cells[0]])]) +
+                      " are not those of a hexahedron";
+                return false;
+            }
+        }
+        return true;
+    }
+
+    /// The point of a face that the middle of a coarse cell has as its neighbour in one of its small cells, along an axis of
+    /// that.
+    [[nodiscard]] Index face_point(Index cell, std::size_t axis) const {
+        return t_.cells[cell][flip(across(old_corner_[cell]), axis)];
+    }
+
+    bool make_cell(const std::array<Index, 8>& cells, std::span<const Index> number) {
+        // The first small cell gives the axes. Opposite face points never belong to one small cell.
+        std::array<std::array<Index, 2>, 3> ends;
+        for (std::size_t a = 0; a < 3; ++a) {
+            const Index own = face_point(cells[0], a);
+            Index opposite = kNone;
+            for (const Index c : cells) {
+                for (std::size_t b = 0; b < 3; ++b) {
+                    const Index p = face_point(c, b);
+                    if (p != own && !together(cells, own, p)) {
+                        if (opposite != kNone && opposite != p) return false;
+                        opposite = p;
+                    }
+                }
+            }
+            if (opposite == kNone) return false;
+            const std::size_t side = side_of(old_corner_[cells[0]], a);
+            ends[a][side] = own;
+            ends[a][1 - side] = opposite;
+        }
+        std::array<Index, 8> corners, children;
+        std::array<std::array<Corner, 8>, 8> turned{};
+        corners.fill(kNone);
+        for (const Index c : cells) {
+            std::size_t bits = 0;
+            std::array<std::size_t, 3> local{3, 3, 3};  // the small cell's axis along each axis of the coarse cell
+            for (std::size_t b = 0; b < 3; ++b) {
+                const Index p = face_point(c, b);
+                for (std::size_t a = 0; a < 3; ++a) {
+                    for (std::size_t side = 0; side < 2; ++side) {
+                        if (ends[a][side] != p) continue;
+                        local[a] = b;
+                        bits |= side << a;
+                    }
+                }
+            }
+            if (std::find(local.begin(), local.end(), 3) != local.end()) return false;
+            const std::size_t k = swapped(bits);
+            if (corners[k] != kNone) return false;
+            corners[k] = number[t_.cells[c][old_corner_[c]]];
+            children[k] = c;
+            for (std::size_t q = 0; q < 8; ++q) {
+                std::size_t corner = old_corner_[c];
+                for (std::size_t a = 0; a < 3; ++a) {
+                    if (side_of(q, a) != side_of(k, a)) corner = flip(corner, local[a]);
+                }
+                turned[k][q] = static_cast<Corner>(corner);
+            }
+        }
+        for (std::size_t k = 0; k < 8; ++k) {
+            if (std::count(corners.begin(), corners.end(), corners[k]) != 1) return false;
+        }
+        coarse_.mesh.cells.push_back(corners);
+        coarse_.children.push_back(children);
+        coarse_.corners.push_back(turned);
+        return true;
+    }
+
+    [[nodiscard]] bool together(const std::array<Index, 8>& cells, Index p, Index q) const {
+        return std::any_of(cells.begin(), cells.end(), [&](Index c) {
+            bool has_p = false, has_q = false;
+            for (std::size_t a = 0; a < 3; ++a) {
+                has_p = has_p || face_point(c, a) == p;
+                has_q = has_q || face_point(c, a) == q;
+            }
+            return has_p && has_q;
+        });
+    }
+
+    /// A crease is one of the coarse mesh if both of its halves are; a sharp face if its quarters are.
+    bool coarsen_tags(std::string& why) {
+        std::vector<Index> number(t_.point_count, kNone);
+        for (std::size_t i = 0; i < coarse_.points.size(); ++i) number[coarse_.points[i]] = static_cast<Index>(i);
+        std::map<Index, std::vector<Index>> halves;
+        for (const auto& [a, b] : fine_.creases) {
+            const bool a_old = kind_[a] == OldPoint;
+            const Index old_point = a_old ? a : b, middle = a_old ? b : a;
+            if (kind_[old_point] != OldPoint || kind_[middle] != EdgePoint) return refuse_tags(why);
+            halves[middle].push_back(number[old_point]);
+        }
+        for (const auto& [middle, ends] : halves) {
+            if (ends.size() != 2) return refuse_tags(why);
+            coarse_.mesh.creases.push_back({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
+        }
+        std::sort(coarse_.mesh.creases.begin(), coarse_.mesh.creases.end());
+        std::map<Index, std::vector<std::array<Index, 3>>> quarters;  // old point, then the edge points beside it
+        for (const auto& quad : fine_.sharp_faces) {
+            const auto middle = std::find_if(quad.begin(), quad.end(), [&](Index p) { return kind_[p] == FacePoint; });
+            if (middle == quad.end()) return refuse_tags(why);
+            const auto k = static_cast<std::size_t>(middle - quad.begin());
+            const Index old_point = quad[(k + 2) % 4];
+            if (kind_[old_point] != OldPoint) return refuse_tags(why);
+            quarters[*middle].push_back({number[old_point], quad[(k + 1) % 4], quad[(k + 3) % 4]});
+        }
+        for (auto& [middle, parts] : quarters) {
+            if (parts.size() != 4) return refuse_tags(why);
+            std::array<Index, 4> face{parts[0][0]};
+            Index edge = parts[0][1];
+            std::array<bool, 4> used{true};
+            for (std::size_t i = 1; i < 4; ++i) {
+                std::size_t next = 4;
+                for (std::size_t j = 1; j < 4; ++j) {
+                    if (!used[j] && (parts[j][1] == edge || parts[j][2] == edge)) next = j;
+                }
+                if (next == 4) return refuse_tags(why);
+                used[next] = true;
+                face[i] = parts[next][0];
+                edge = parts[next][1] == edge ? parts[next][2] : parts[next][1];
+            }
+            coarse_.mesh.sharp_faces.push_back(face);
+        }
+        return true;
+    }
+
+    static bool refuse_tags(std::string& why) {
+        why = "creases or sharp faces end inside of a coarser cell's edge or face";
+        return false;
+    }
+
+    const HexMesh& fine_;
+    const Topology& t_;
+    std::vector<Corner> old_corner_;  // of each cell
+    std::vector<Kind> kind_;          // of each point
+    std::vector<Index> part_, marked_;
+    CoarserMesh coarse_;
+};
+
+}  // namespace
+
+std::optional<CoarserMesh> coarser_mesh(const HexMesh& fine, std::string& why) {
+    why.clear();
+    if (fine.cells.size() % 8 != 0) {
+        why = std::to_string(fine.cells.size()) + " cells are not a multiple of 8";
+        return std::nullopt;
+    }
+    return Coarsener(fine, build_topology(fine)).run(why);
+}
+
+std::optional<CellGrid> cell_grid(const Topology& t) {
+    const std::size_t n = t.cells.size();
+    using Place = std::array<std::int64_t, 3>;
+    std::vector<std::array<Corner, 8>> corners(n);
+    std::vector<Place> place(n);
+    std::vector<std::uint8_t> seen(n, 0);
+    std::vector<Index> order{0};
+    seen[0] = 1;
+    for (Corner k = 0; k < 8; ++k) corners[0][k] = k;
+    for (std::size_t next = 0; next < order.size(); ++next) {
+        const Index c = order[next];
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (std::size_t side = 0; side < 2; ++side) {
+                // The corners of this side, in the grid's orientation, are those of the other side of the next cell.
+                std::array<Index, 4> quad;
+                std::array<std::size_t, 4> on_side;
+                std::size_t count = 0;
+                for (std::size_t k = 0; k < 8; ++k) {
+                    if (side_of(k, a) != side) continue;
+                    on_side[count] = k;
+                    quad[count++] = t.cells[c][corners[c][k]];
+                }
+                Index other = kNone;
+                for (const Index f : t.cell_faces[c]) {
+                    const auto& face = t.faces[f];
+                    const bool same = std::all_of(quad.begin(), quad.end(), [&](Index p) {
+                        return std::find(face.begin(), face.end(), p) != face.end();
+                    });
+                    if (same) other = t.face_cells[f][0] == c ? t.face_cells[f][1] : t.face_cells[f][0];
+                }
+                if (other == kNone) continue;
+                std::array<Corner, 8> turned{};
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const std::size_t near = slot_of(t.cells[other], quad[i]);
+                    turned[flip(on_side[i], a)] = static_cast<Corner>(near);
+                    for (std::size_t b = 0; b < 3; ++b) {  // its neighbour that is not on the face
+                        const Index p = t.cells[other][flip(near, b)];
+                        if (std::find(quad.begin(), quad.end(), p) == quad.end()) {
+                            turned[on_side[i]] = static_cast<Corner>(flip(near, b));
+                        }
+                    }
+                }
+                Place at = place[c];
+                at[a] += side == 1 ? 1 : -1;
+                if (seen[other] != 0) {
+                    if (place[other] != at || corners[other] != turned) return std::nullopt;
+                    continue;
+                }
+                seen[other] = 1;
+                place[other] = at;
+                corners[other] = turned;
+                order.push_back(other);
+            }
+        }
+    }
+    if (order.size() != n) return std::nullopt;
+    Place low = place[0], high = place[0];
+    for (const Place& p : place) {
+        for (std::size_t a = 0; a < 3; ++a) {
+            low[a] = std::min(low[a], p[a]);
+            high[a] = std::max(high[a], p[a]);
+        }
+    }
+    CellGrid grid;
+    std::size_t total = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+        grid.counts[a] = static_cast<std::size_t>(high[a] - low[a]) + 1;
+        if (grid.counts[a] > n / total) return std::nullopt;  // gaps
+        total *= grid.counts[a];
+    }
+    if (total != n) return std::nullopt;
+    grid.cells.assign(n, kNone);
+    grid.corners.resize(n);
+    for (std::size_t c = 0; c < n; ++c) {
+        const auto at = [&](std::size_t a) { return static_cast<std::size_t>(place[c][a] - low[a]); };
+        const std::size_t i = at(0) + grid.counts[0] * (at(1) + grid.counts[1] * at(2));
+        if (grid.cells[i] != kNone) return std::nullopt;
+        grid.cells[i] = static_cast<Index>(c);
+        grid.corners[i] = corners[c];
+    }
+    return grid;
+}
+
+}  // namespace subvol::detail

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// One level up.
+///
+/// points:   for each coarse point the finer point that it is
+/// children: for each coarse cell and each of its corners the finer cell there
+/// corners:  of that finer cell, for each corner of a cell in the coarse cell's orientation, the corner as the finer cell has
+/// it
+struct CoarserMesh {
+    HexMesh mesh;
+    std::vector<Index> points;
+    std::vector<std::array<Index, 8>> children;
+    std::vector<std::array<std::array<std::uint8_t, 8>, 8>> corners;
+};
+
+/// The mesh whose eightfold split has these cells. Nothing if there is none; then `why` says what is in the way.
+[[nodiscard]] std::optional<CoarserMesh> coarser_mesh(const HexMesh& fine, std::string& why);
+
+/// A structured grid that a mesh is: its cells, u fastest, and how each lies.
+///
+/// corners: for each corner of a cell in the grid's orientation, the corner as the mesh has it
+struct CellGrid {
+    std::array<std::size_t, 3> counts{};
+    std::vector<Index> cells;
+    std::vector<std::array<std::uint8_t, 8>> corners;
+};
+
+/// Nothing if the mesh is not one block of nx × ny × nz cells.
+[[nodiscard]] std::optional<CellGrid> cell_grid(const Topology& topology);
+
+}  // namespace subvol::detail

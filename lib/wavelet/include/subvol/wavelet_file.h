@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+#include "subvol/progress.h"
+#include "subvol/scheme.h"
+
+namespace subvol {
+
+/// tolerance:       most root mean square error of each field, in parts of its range (of vectors: of the box of their values);
+///                  (0,1]
+/// point_tolerance: most root mean square distance of the points from where they were, in parts of the longest side of the
+/// mesh;
+///                  if not given a tenth of `tolerance`, and less where cells would be inverted
+/// levels:          the most levels of wavelets, 1 to 10
+struct WaveletFileOptions {
+    SchemeOptions scheme{};
+    double tolerance = 1e-3;
+    std::optional<double> point_tolerance{};
+    int levels = 6;
+    Progress* progress = nullptr;
+};
+
+/// What was kept of an array. name: empty for the points; rms and max: in the parts that the tolerance is in
+struct WaveletArrayReport {
+    std::string name;
+    std::size_t coefficients = 0;
+    std::size_t kept = 0;
+    double rms = 0;
+    double max = 0;
+};
+
+/// arrays: the points, then the fields
+/// added_cells: those with which a grid was filled up; they are not in the mesh that is read
+/// inverted_cells: of the mesh that is read, as `inspect` counts them
+struct WaveletFileReport {
+    int levels = 0;
+    std::size_t coarse_cells = 0;
+    std::size_t cells = 0;
+    std::size_t added_cells = 0;
+    std::vector<WaveletArrayReport> arrays;
+    std::uint64_t bytes = 0;
+    std::size_t inverted_cells_before = 0;
+    std::size_t inverted_cells = 0;
+};
+
+/// Writes a mesh as control values and wavelet details (`.svw`), rounded as far as the tolerance allows. `read_mesh` reads it.
+/// Points and cells are then in the order of `refine`.
+///
+/// throws: Error(InvalidInput) as `find_hierarchy`: the mesh must be the refinement of a coarser one, or a structured grid; if
+/// a
+///         tolerance is not in (0,1]; Error(Io)
+/// cost:   about 15 analyses and syntheses of each field
+WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const HexMesh& mesh,
+                                     const WaveletFileOptions& options = {});
+
+}  // namespace subvol

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subvol/wavelet_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "output_file.h"
+#include "subvol/error.h"
+#include "subvol/hierarchy.h"
+#include "subvol/mesh_report.h"
+#include "subvol/wavelet.h"
+#include "vtu_bytes.h"
+#include "wavelet_format.h"
+
+namespace subvol {
+
+using namespace detail;
+
+namespace {
+
+class Bytes {
+public:
+    void number(std::uint64_t n) {
+        for (; n >= 128; n >>= 7) text_ += static_cast<char>((n & 127) | 128);
+        text_ += static_cast<char>(n);
+    }
+    void byte(std::uint64_t n) { text_ += static_cast<char>(n); }
+    void real(double x) {
+        const auto bits = std::bit_cast<std::uint64_t>(x);
+        for (int k = 0; k < 8; ++k) byte(bits >> 8 * k & 255);
+    }
+    void text(std::string_view t) {
+        number(t.size());
+        text_ += t;
+    }
+    [[nodiscard]] const std::string& all() const { return text_; }
+
+private:
+    std::string text_;
+};
+
+void check_part(double tolerance, const std::string& what) {
+    if (!(tolerance > 0 && tolerance <= 1)) {
+        throw Error(ErrorCode::InvalidInput, "the " + what + " is " + std::to_string(tolerance), "wavelets",
+                    "greater than 0, at most 1");
+    }
+}
+
+void put_mesh(const HexMesh& mesh, Bytes& out) {
+    out.number(mesh.points.size());
+    out.number(mesh.cells.size());
+    std::array<Index, 8> before{};
+    for (const auto& cell : mesh.cells) {
+        for (std::size_t k = 0; k < 8; ++k) {
+            out.number(folded(static_cast<std::int64_t>(cell[k]) - static_cast<std::int64_t>(before[k])));
+        }
+        before = cell;
+    }
+    out.number(mesh.creases.size());
+    for (const auto& crease : mesh.creases) {
+        for (const Index p : crease) out.number(p);
+    }
+    out.number(mesh.sharp_faces.size());
+    for (const auto& face : mesh.sharp_faces) {
+        for (const Index p : face) out.number(p);
+    }
+}
+
+void put_cells(const MeshHierarchy& hierarchy, Bytes& out) {
+    const bool all = std::find(hierarchy.cells.begin(), hierarchy.cells.end(), kNone) == hierarchy.cells.end();
+    out.number(all ? 0 : 1);
+    if (all) return;
+    for (std::size_t c = 0; c < hierarchy.cells.size(); c += 8) {  // refined at least once
+        std::uint64_t bits = 0;
+        for (std::size_t k = 0; k < 8; ++k) bits |= std::uint64_t{hierarchy.cells[c + k] != kNone} << k;
+        out.byte(bits);
+    }
+}
+
+void put_array(const QuantizedWavelets& numbers, std::string_view name, Bytes& out) {
+    out.text(name);
+    out.number(numbers.channels);
+    out.real(numbers.step);
+    constexpr std::uint64_t kMore = 255;
+    for (std::size_t k = 0; k < numbers.channels; ++k) {
+        std::int64_t before = 0;
+        for (std::size_t i = k; i < numbers.coarse.size(); i += numbers.channels) {
+            out.number(folded(numbers.coarse[i] - before));
+            before = numbers.coarse[i];
+        }
+        std::vector<std::uint64_t> rest;
+        for (const auto& details : numbers.details) {
+            for (std::size_t i = k; i < details.size(); i += numbers.channels) {
+                const std::uint64_t n = folded(details[i]);
+                out.byte(std::min(n, kMore));
+                if (n >= kMore) rest.push_back(n - kMore);
+            }
+        }
+        for (const std::uint64_t n : rest) out.number(n);
+    }
+}
+
+/// The longest side of the box of the values that count: of a scalar its range.
+double range_of(std::span<const double> values, std::size_t channels, std::span<const std::uint8_t> counted) {
+    double most = 0;
+    for (std::size_t k = 0; k < channels; ++k) {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t p = 0; p < counted.size(); ++p) {
+            if (counted[p] == 0) continue;
+            low = std::min(low, values[p * channels + k]);
+            high = std::max(high, values[p * channels + k]);
+        }
+        most = std::max(most, high - low);
+    }
+    return most;
+}
+
+/// How often the tolerance of points is divided by 3 to keep cells from being inverted.
+constexpr int kMostAttempts = 8;
+
+std::vector<double> coordinates(const std::vector<Vec3>& points) {
+    std::vector<double> values;
+    values.reserve(3 * points.size());
+    for (const Vec3& p : points) values.insert(values.end(), {p.x, p.y, p.z});
+    return values;
+}
+
+std::size_t kept_numbers(const QuantizedWavelets& numbers) {
+    const auto kept = [](const std::vector<std::int64_t>& of) {
+        return of.size() - static_cast<std::size_t>(std::count(of.begin(), of.end(), 0));
+    };
+    std::size_t sum = kept(numbers.coarse);
+    for (const auto& details : numbers.details) sum += kept(details);
+    return sum;
+}
+
+std::size_t inverted_cells_of(const MeshHierarchy& hierarchy, const WaveletBasis& basis, std::span<const double> places) {
+    HexMesh mesh;
+    mesh.points.reserve(places.size() / 3);
+    for (std::size_t i = 0; i < places.size(); i += 3) mesh.points.emplace_back(places[i], places[i + 1], places[i + 2]);
+    for (std::size_t c = 0; c < basis.cells.size(); ++c) {
+        if (hierarchy.cells[c] != kNone) mesh.cells.push_back(basis.cells[c]);
+    }
+    return measure_cells(mesh).inverted_cells;
+}
+
+}  // namespace
+
+WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const HexMesh& mesh,
+                                     const WaveletFileOptions& options) {
+    check_part(options.tolerance, "tolerance");
+    check_part(options.point_tolerance.value_or(options.tolerance), "tolerance of points");
+    report_progress(options.progress, "find the coarser mesh", 0);
+    const MeshHierarchy hierarchy = find_hierarchy(mesh, {.levels = options.levels});
+    const Topology topology = build_topology(hierarchy.coarse);
+    const WaveletBasis basis =
+        wavelet_basis(topology, {.scheme = options.scheme, .levels = hierarchy.levels, .progress = options.progress});
+    // Added points are in the order of the hierarchy, and do not count.
+    std::vector<std::uint8_t> counted;
+    for (const Index p : hierarchy.points) counted.push_back(p < mesh.points.size() ? 1 : 0);
+
+    WaveletFileReport report;
+    report.levels = hierarchy.levels;
+    report.coarse_cells = hierarchy.coarse.cells.size();
+    report.cells = mesh.cells.size();
+    report.added_cells = hierarchy.cells.size() - mesh.cells.size();
+    Bytes out;
+    out.number(static_cast<std::uint64_t>(options.scheme.kind));
+    out.real(options.scheme.tension);
+    out.number(static_cast<std::uint64_t>(hierarchy.levels));
+    put_mesh(hierarchy.coarse, out);
+    put_cells(hierarchy, out);
+    out.number(mesh.attributes.size() + 1);
+    report.inverted_cells_before = measure_cells(mesh).inverted_cells;
+    const auto report_array = [&] {
+        report_progress(options.progress, "wavelets",
+                        static_cast<double>(report.arrays.size()) / static_cast<double>(mesh.attributes.size() + 1));
+    };
+    const auto put = [&](std::string name, std::span<const double> values, const QuantizedWavelets& numbers,
+                         std::span<const double> restored, double scale) {
+        put_array(numbers, name, out);
+        const WaveletError error = difference(restored, values, numbers.channels, counted);
+        report.arrays.push_back({std::move(name), values.size(), kept_numbers(numbers), error.rms / scale, error.max / scale});
+    };
+    report_array();
+    {
+        const std::vector<double> values = in_hierarchy(hierarchy, coordinates(mesh.points), 3);
+        const double scale = range_of(values, 3, counted);
+        double tolerance = options.point_tolerance.value_or(options.tolerance / 10);
+        QuantizedWavelets numbers;
+        std::vector<double> restored;
+        for (int attempt = 0;; ++attempt) {
+            numbers = quantize_within(basis, values, 3, tolerance * scale, counted);
+            restored = synthesize(basis, restore(basis, numbers));
+            report.inverted_cells = inverted_cells_of(hierarchy, basis, restored);
+            const bool sound = report.inverted_cells <= report.inverted_cells_before;
+            if (sound || options.point_tolerance || attempt == kMostAttempts) break;
+            tolerance /= 3;
+        }
+        put("", values, numbers, restored, scale);
+    }
+    for (const Attribute& a : mesh.attributes) {
+        report_array();
+        const auto channels = static_cast<std::size_t>(a.channels);
+        const std::vector<double> values = in_hierarchy(hierarchy, a.values, channels);
+        const double range = range_of(values, channels, counted), scale = range > 0 ? range : 1;
+        const QuantizedWavelets numbers = quantize_within(basis, values, channels, options.tolerance * scale, counted);
+        put(a.name, values, numbers, synthesize(basis, restore(basis, numbers)), scale);
+    }
+
+    const std::string packed = compressed_numbers(out.all());
+    std::string length;
+    for (int k = 0; k < 8; ++k) length += static_cast<char>(out.all().size() >> 8 * k & 255);
+    OutputFile file(path);
+    file.write(kWaveletMagic);
+    file.write(length);
+    file.write(packed);
+    report.bytes = file.position();
+    file.commit();
+    return report;
+}
+
+}  // namespace subvol

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "child_topology.h"
+#include "subvol/error.h"
+#include "subvol/wavelet.h"
+#include "vtu_bytes.h"
+#include "wavelet_format.h"
+
+namespace subvol::detail {
+
+namespace {
+
+class Contents {
+public:
+    Contents(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+
+    [[noreturn]] void fail(const std::string& what, const std::string& allowed = {}) const {
+        throw Error(ErrorCode::InvalidInput, what, file_, allowed);
+    }
+
+    std::uint64_t byte() {
+        if (bytes_.empty()) fail("the contents end too early");
+        const auto b = static_cast<unsigned char>(bytes_.front());
+        bytes_.remove_prefix(1);
+        return b;
+    }
+
+    std::uint64_t number() {
+        std::uint64_t n = 0;
+        for (int shift = 0; shift < 64; shift += 7) {
+            const std::uint64_t b = byte();
+            if (shift == 63 && b > 1) break;
+            n |= (b & 127) << shift;
+            if (b < 128) return n;
+        }
+        fail("a number has more than 64 bits");
+    }
+
+    std::int64_t signed_number() { return unfolded(number()); }
+
+    /// How many things follow, each of at least so many bytes.
+    std::size_t count(const char* of, std::size_t bytes_each) {
+        const std::uint64_t n = number();
+        if (n > bytes_.size() / bytes_each) fail(std::to_string(n) + " " + of + " do not fit into the file");
+        return n;
+    }
+
+    double real() {
+        std::uint64_t bits = 0;
+        for (int k = 0; k < 8; ++k) bits |= byte() << 8 * k;
+        return std::bit_cast<double>(bits);
+    }
+
+    std::string text() {
+        const std::size_t n = count("bytes of a name", 1);
+        std::string t(bytes_.substr(0, n));
+        bytes_.remove_prefix(n);
+        return t;
+    }
+
+    Index point(std::size_t points) {
+        const std::uint64_t n = number();
+        if (n >= points) fail("point " + std::to_string(n) + " is named", "there are " + std::to_string(points));
+        return static_cast<Index>(n);
+    }
+
+    [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+
+private:
+    std::string_view bytes_;
+    const std::string& file_;
+};
+
+SchemeOptions read_scheme(Contents& in) {
+    const std::uint64_t kind = in.number();
+    if (kind > static_cast<std::uint64_t>(Scheme::Linear)) in.fail("there is no scheme " + std::to_string(kind), "0 to 3");
+    SchemeOptions scheme{.kind = static_cast<Scheme>(kind), .tension = in.real()};
+    if (!std::isfinite(scheme.tension)) in.fail("the tension is not a finite number");
+    return scheme;
+}
+
+/// The control mesh; its points are all at the origin.
+HexMesh read_control_mesh(Contents& in) {
+    HexMesh mesh;
+    const std::size_t points = in.count("points", 3);
+    const std::size_t cells = in.count("cells", 8);
+    mesh.points.assign(points, Vec3(0));
+    std::array<std::int64_t, 8> corners{};
+    for (std::size_t c = 0; c < cells; ++c) {
+        auto& cell = mesh.cells.emplace_back();
+        for (std::size_t k = 0; k < 8; ++k) {
+            const std::int64_t change = in.signed_number();
+            const auto most = static_cast<std::int64_t>(points);
+            if (change < -corners[k] || change >= most - corners[k]) {
+                in.fail("a corner of cell " + std::to_string(c) + " is not a point", "there are " + std::to_string(points));
+            }
+            corners[k] += change;
+            cell[k] = static_cast<Index>(corners[k]);
+        }
+    }
+    mesh.creases.resize(in.count("creases", 2));
+    for (auto& crease : mesh.creases) {
+        for (Index& p : crease) p = in.point(points);
+    }
+    mesh.sharp_faces.resize(in.count("sharp faces", 4));
+    for (auto& face : mesh.sharp_faces) {
+        for (Index& p : face) p = in.point(points);
+    }
+    return mesh;
+}
+
+int read_levels(Contents& in) {
+    const std::uint64_t levels = in.number();
+    if (levels < 1 || levels > 10) in.fail("the number of levels is " + std::to_string(levels), "1 to 10");
+    return static_cast<int>(levels);
+}
+
+/// Refuses levels with more points than there are bytes, before memory is taken for them.
+void check_size(const Topology& topology, int levels, const Contents& in) {
+    EntityCounts counts{topology.point_count, topology.edges.size(), topology.faces.size(), topology.cells.size()};
+    for (int l = 0; l < levels; ++l) {
+        check_child(counts);
+        counts = child_counts(counts);
+        if (counts.points - topology.point_count > in.left()) {
+            in.fail(std::to_string(levels) + " levels of " + std::to_string(topology.cells.size()) +
+                    " cells have more points than the file has details");
+        }
+    }
+}
+
+std::vector<double> read_array(const WaveletBasis& basis, std::size_t channels, Contents& in) {
+    QuantizedWavelets numbers{.channels = channels, .step = in.real(), .coarse = {}, .details = {}};
+    if (!(numbers.step > 0) || !std::isfinite(numbers.step)) in.fail("the step of an array is not a positive number");
+    if (channels == 0 || channels > in.left() / basis.points()) {
+        in.fail("an array of " + std::to_string(channels) + " channels does not fit into the file");
+    }
+    numbers.coarse.resize(basis.control_points * channels);
+    for (const WaveletStep& step : basis.steps) numbers.details.emplace_back(step.new_points() * channels);
+    constexpr std::uint64_t kMore = 255;
+    for (std::size_t k = 0; k < channels; ++k) {
+        std::uint64_t before = 0;  // without a sign, whose overflow is defined
+        for (std::size_t i = k; i < numbers.coarse.size(); i += channels) {
+            before += static_cast<std::uint64_t>(in.signed_number());
+            numbers.coarse[i] = static_cast<std::int64_t>(before);
+        }
+        std::vector<std::int64_t*> long_ones;
+        for (auto& details : numbers.details) {
+            for (std::size_t i = k; i < details.size(); i += channels) {
+                const std::uint64_t n = in.byte();
+                details[i] = unfolded(n);
+                if (n == kMore) long_ones.push_back(&details[i]);
+            }
+        }
+        for (std::int64_t* n : long_ones) *n = unfolded(in.number() + kMore);
+    }
+    return synthesize(basis, restore(basis, numbers));
+}
+
+/// The points and fields of all levels; cells are still those of the finest level.
+HexMesh read_arrays(const WaveletBasis& basis, Contents& in) {
+    HexMesh mesh;
+    const std::size_t arrays = in.count("arrays", basis.points());
+    if (arrays == 0) in.fail("there are no points");
+    for (std::size_t a = 0; a < arrays; ++a) {
+        const std::string name = in.text();
+        const std::size_t channels = in.number();
+        if (a == 0 && channels != 3) in.fail("points have " + std::to_string(channels) + " coordinates", "3");
+        if (channels > 1000) in.fail("an array has " + std::to_string(channels) + " channels", "at most 1000");
+        std::vector<double> values = read_array(basis, channels, in);
+        if (a > 0) {
+            mesh.attributes.push_back({name, static_cast<int>(channels), std::move(values)});
+            continue;
+        }
+        for (std::size_t i = 0; i < values.size(); i += 3) mesh.points.emplace_back(values[i], values[i + 1], values[i + 2]);
+    }
+    if (in.left() > 0) in.fail(std::to_string(in.left()) + " bytes follow the last array");
+    return mesh;
+}
+
+}  // namespace
+
+HexMesh mesh_of_wavelets(std::string_view contents, const std::string& file) {
+    Contents in(contents, file);
+    const SchemeOptions scheme = read_scheme(in);
+    const int levels = read_levels(in);
+    try {
+        const HexMesh control = read_control_mesh(in);
+        validate(control);
+        const Topology topology = build_topology(control);
+        check_size(topology, levels, in);
+        std::size_t fine_cells = topology.cells.size();
+        for (int l = 0; l < levels; ++l) fine_cells *= 8;
+        std::vector<std::uint8_t> there;
+        if (in.number() != 0) {
+            if (fine_cells / 8 > in.left()) in.fail("the list of cells ends too early");
+            there.resize(fine_cells / 8);
+            for (auto& bits : there) bits = static_cast<std::uint8_t>(in.byte());
+        }
+        WaveletBasis basis = wavelet_basis(topology, {.scheme = scheme, .levels = levels});
+        HexMesh mesh = read_arrays(basis, in);
+        if (there.empty()) {
+            mesh.cells = std::move(basis.cells);
+            mesh.creases = std::move(basis.creases);
+            mesh.sharp_faces = std::move(basis.sharp_faces);
+        } else {
+            for (std::size_t c = 0; c < basis.cells.size(); ++c) {
+                if (there[c / 8] >> c % 8 & 1) mesh.cells.push_back(basis.cells[c]);
+            }
+        }
+        validate(mesh);
+        return without_unused_points(std::move(mesh));
+    } catch (const Error& error) {
+        if (error.where() == file) throw;
+        throw Error(error.code(), error.message(), file, error.allowed());
+    }
+}
+
+HexMesh read_wavelet_mesh(std::string_view text, const std::string& file) {
+    const std::size_t head = kWaveletMagic.size() + 8;
+    if (text.size() < head || !text.starts_with(kWaveletMagic)) {
+        throw Error(ErrorCode::InvalidInput, "not a file of wavelets", file, "it begins with subvol-wavelets-1");
+    }
+    std::uint64_t length = 0;
+    for (std::size_t k = 0; k < 8; ++k) {
+        length |= std::uint64_t{static_cast<unsigned char>(text[kWaveletMagic.size() + k])} << 8 * k;
+    }
+    const auto contents = decompressed(Compressor::Lzma, text.substr(head), length);
+    if (!contents) throw Error(ErrorCode::InvalidInput, "the compressed contents are damaged", file);
+    return mesh_of_wavelets(*contents, file);
+}
+
+}  // namespace subvol::detail
