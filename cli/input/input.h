@@ -25,7 +25,16 @@ namespace subvol::cli {
 [[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);
 
 /// `read_input` without the unused points; --density becomes the first attribute.
-[[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
+///
+/// sheets: gets the sheets and curves; null: a warning says that they are left out
+[[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report,
+                                Sheets* sheets = nullptr);
+
+/// Says that sheets and curves are left out, if there are any.
+void warn_of_sheets(const Sheets& sheets, Report& report);
+
+/// The sheets with the fields that the mesh has, which were selected from the same ones.
+[[nodiscard]] Sheets with_fields_of(Sheets sheets, const HexMesh& mesh);
 
 /// A mesh that was read, without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh used_mesh(HexMesh read, const CommonOptions& options);

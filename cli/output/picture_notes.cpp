@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sheet_scene.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
 
@@ -31,9 +32,13 @@ Picture widened(const Picture& from, int width) {
 }  // namespace
 
 void PictureNotes::draw_over(Picture& picture, const View& view) const {
+    if (sheets) sheets->draw_into(picture, view);
     if (edges != nullptr) {
         const double scale = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
         draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6});
+        if (sheets) {
+            draw_edges(picture.image, picture.depth, view, sheets->control, {.width_px = scale, .color = ink, .alpha = 0.6});
+        }
     }
     if (axes) draw_axes(picture.image, view, ink);
 }

@@ -132,6 +132,12 @@ private:
             if (about.counts.inverted_cells > 0) about.inverted = inverted_cells(read.mesh, kCellsNamed);
         }
         put_mesh_report(report, about.counts);
+        if (!read.sheets.empty()) {
+            const SheetReport sheets = inspect(read.sheets);
+            report["sheets"] = {{"quads", sheets.quads},           {"lines", sheets.lines},
+                                {"points", sheets.points},         {"attached_points", sheets.attached},
+                                {"free_edges", sheets.free_edges}, {"nonmanifold_edges", sheets.nonmanifold_edges}};
+        }
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
             report["fields"].push_back({{"name", field.name},

@@ -73,6 +73,19 @@ void ring_of_spokes(const Topology& topology, Index point, Index start, std::vec
     } while (edge != start && ring.size() <= topology.point_edges[point].size());
 }
 
+bool is_touching_point(const Topology& topology, Index point) {
+    Index start = kNone;
+    for (const Index e : topology.point_edges[point]) {
+        if (!topology.edge_on_boundary[e]) continue;
+        if (topology.boundary_faces_at(e) != 2) return false;
+        if (start == kNone) start = e;
+    }
+    if (start == kNone) return false;
+    thread_local std::vector<Index> ring;
+    ring_of_spokes(topology, point, start, ring);
+    return ring.size() != boundary_edges_at(topology, point);
+}
+
 std::vector<PointKind> classify_points(const Topology& topology) {
     std::vector<PointKind> kinds(topology.point_count);
     parallel_each(kinds.size(), [&](std::size_t p) { kinds[p] = classify(topology, static_cast<Index>(p)); });

@@ -15,6 +15,9 @@ enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
 /// corner. A point where several fans of boundary faces touch is a corner too.
 std::vector<PointKind> classify_points(const Topology& topology);
 
+/// Whether several fans of boundary faces touch in a boundary point alone: its boundary edges all have two faces.
+[[nodiscard]] bool is_touching_point(const Topology& topology, Index point);
+
 /// A flag for each point: whether it is inside, with six edges of four cells each.
 std::vector<std::uint8_t> regular_points(const Topology& topology);
 

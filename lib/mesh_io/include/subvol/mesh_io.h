@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/sheets.h"
 
 namespace subvol {
 
@@ -64,6 +65,8 @@ struct MeshBlock {
 /// blocks:     the parts that were read, of formats that have such parts
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
+/// sheets:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
+///             edges of the hexahedra
 struct ReadResult {
     HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
     std::vector<FieldInfo> fields;
@@ -71,6 +74,7 @@ struct ReadResult {
     std::vector<MeshBlock> blocks = {};
     std::vector<Attribute> cell_means = {};
     std::vector<Index> cell_parts = {};
+    Sheets sheets = {};
 };
 
 /// Reads a mesh. The extension of the file name decides the format:
@@ -90,10 +94,10 @@ struct ReadResult {
 ///   .frd                   CalculiX's results
 ///   .foam, .inp            an OpenFOAM case, as its folder; Abaqus and CalculiX decks
 ///
-/// Cells of lower dimension are left out; curved hexahedra are split as ReadOptions says, and of other curved cells only the
-/// corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that it looks like, and left out
-/// if it has no volume. All give a warning. Memory is
-/// never allocated by a number in the file that the file is too short for.
+/// Cells of lower dimension are left out, but for ReadResult::sheets; curved hexahedra are split as ReadOptions says, and of
+/// other curved cells only the corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that
+/// it looks like, and left out if it has no volume. All give a warning. Memory is never allocated by a number in the file that
+/// the file is too short for.
 ///
 /// throws: Error(Io) if the file cannot be opened;
 ///         Error(InvalidInput) if it is malformed, naming the line, and the cell or point as the file counts them;
@@ -111,6 +115,12 @@ struct ReadResult {
 /// returns: warnings, for example about attributes that the format cannot hold
 /// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if the file cannot be written
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh);
+
+/// The same with sheets and curves, as quads and lines after the cells; their points that are none of the mesh come after its
+/// points. `.vtu` only.
+///
+/// throws: also Error(InvalidInput) as `validate`, or for another extension if there are sheets or curves
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Sheets& sheets);
 
 /// The extensions of the files that `read_mesh` reads and `write_mesh` writes, such as ".vtu".
 [[nodiscard]] std::vector<std::string> readable_mesh_extensions();
