@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "quantities.h"
 #include "steps.h"
 #include "subvol/bricks.h"
 #include "subvol/error.h"

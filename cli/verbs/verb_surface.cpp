@@ -103,7 +103,7 @@ public:
         if (!sheets.empty()) {
             sheets = with_fields_of(std::move(sheets), chosen);
             report.timed("sheets", [&] {
-                const int level = std::clamp(surface.report.level, 1, 4);
+                const int level = std::clamp(surface.report.level, 3, 4);  // a flat body may carry a bent sheet
                 add_sheets(surface, limit_sheets(chosen, sheets, {.scheme = options.scheme, .levels = level}));
             });
             report["sheet_triangles"] = surface.surface.triangles.size() - of_volume;
