@@ -85,7 +85,7 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
             .cell_values = cell_values(options)};
 }
 
-ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
+ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report, SheetsAlone alone) {
     report["input"] = input;
     if (is_bricks(input)) {
         throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which this command does not take yet", input,
@@ -96,19 +96,27 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = report.timed("read", [&] {
-        return model ? generate(input.substr(kModelPrefix.size())) : read_mesh(input, read_options(input, options));
+        if (model) return generate(input.substr(kModelPrefix.size()));
+        ReadOptions how = read_options(input, options);
+        how.sheets_alone = alone == SheetsAlone::Take;
+        return read_mesh(input, how);
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;
 }
 
-HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report, Sheets* sheets) {
-    ReadResult read = read_input(input, options, report);
+HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report, Sheets* sheets, SheetsAlone alone) {
+    ReadResult read = read_input(input, options, report, alone);
     if (sheets != nullptr) {
         *sheets = std::move(read.sheets);
         if (options.density && !sheets->empty()) put_density_first(*sheets, *options.density);
     } else {
         warn_of_sheets(read.sheets, report);
+    }
+    if (read.mesh.cells.empty()) {
+        read.mesh.points = sheets->points;
+        read.mesh.attributes = sheets->attributes;
+        return std::move(read.mesh);
     }
     return used_mesh(std::move(read.mesh), options);
 }

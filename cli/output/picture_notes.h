@@ -31,7 +31,9 @@ struct PictureNotes {
     std::optional<LegendOptions> legend{};
     int legend_px = 0;  // its width
 
-    /// Draws sheets and curves, axes and edges.
+    /// Draws sheets and curves, which come first.
+    void draw_sheets(Picture& picture, const View& view) const;
+    /// Draws axes and edges.
     void draw_over(Picture& picture, const View& view) const;
     /// Makes room at the right for the legend, and draws it.
     void add_legend(Picture& picture) const;

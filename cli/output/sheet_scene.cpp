@@ -42,9 +42,13 @@ std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Sh
         const std::vector<double>& values = fine.attributes.back().values;
         for (const Index p : drawn.sources) colored.values.push_back(values[p]);
         colored.surface = std::move(drawn.surface);
-        refine.levels = picture_levels(mesh, levels);
+        Surface boundary;
+        if (!mesh.cells.empty()) {
+            refine.levels = picture_levels(mesh, levels);
+            boundary = boundary_values(mesh, refine).surface;
+        }
         return std::make_shared<const SheetScene>(
-            SheetScene{std::move(colored), boundary_values(mesh, refine).surface, control, optics, std::max(1, samples), clip});
+            SheetScene{std::move(colored), std::move(boundary), control, optics, std::max(1, samples), clip});
     });
 }
 

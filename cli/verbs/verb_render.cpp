@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -35,7 +36,9 @@ namespace {
 
 constexpr int kTetsLevel = 1;
 
-void check_coordinates(const HexMesh& mesh) {
+/// mesh: or sheets
+template <class Points>
+void check_coordinates(const Points& mesh) {
     constexpr double kMost_world = 1e18;  // as of splats; far beyond it, squares and volumes overflow
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         const Vec3 x = glm::abs(mesh.points[p]);
@@ -161,11 +164,16 @@ private:
     }
 
     /// sheets: gets those of the mesh, with all their fields
-    [[nodiscard]] HexMesh shown_mesh(const CommonOptions& options, Report& report, Sheets& sheets) const {
+    /// alone:  Take: of sheets without cells the mesh has points alone
+    [[nodiscard]] HexMesh shown_mesh(const CommonOptions& options, Report& report, Sheets& sheets,
+                                     SheetsAlone alone = SheetsAlone::Refuse) const {
         Sheets* const wanted = tets_.asked() ? nullptr : &sheets;  // tetrahedra are refined by other rules
-        HexMesh mesh = with_selected_field(load_mesh(input_, options, report, wanted), options, report, splat_.color_field);
+        if (tets_.asked()) alone = SheetsAlone::Refuse;
+        HexMesh mesh =
+            with_selected_field(load_mesh(input_, options, report, wanted, alone), options, report, splat_.color_field);
         mesh = tets_.hexes(std::move(mesh), is_of_splats(method_) ? 1 : 2, report);
         check_coordinates(mesh);
+        check_coordinates(sheets);
         return mesh;
     }
 
@@ -221,8 +229,11 @@ private:
 
     void draw_mesh(PictureOutput& output, Report& report) {
         Sheets sheets;
-        const HexMesh mesh = shown_mesh(common(), report, sheets);
-        const Box box = bounds(mesh);
+        const HexMesh mesh = shown_mesh(common(), report, sheets, SheetsAlone::Take);
+        Box box = bounds(mesh);
+        if (mesh.cells.empty()) {
+            for (const Vec3& p : mesh.points) box.add(p);
+        }
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
         const Optics optics = picture_.make_optics(box, range, colors);
         const LegendOptions legend =
@@ -232,11 +243,22 @@ private:
         output.set_notes(std::move(notes));
         Box seen = box;
         for (const Vec3& p : sheets.points) seen.add(p);
-        std::vector<Vec3> framed = picture_.framed_points(mesh, optics);
-        if (!framed.empty()) framed.insert(framed.end(), sheets.points.begin(), sheets.points.end());
-        draw(mesh, picture_.make_views(seen, framed), optics, output, report);
+        if (mesh.cells.empty()) {
+            output.write(picture_.make_views(seen, sheets.points), empty_picture, report);
+        } else {
+            std::vector<Vec3> framed = picture_.framed_points(mesh, optics);
+            if (!framed.empty()) framed.insert(framed.end(), sheets.points.begin(), sheets.points.end());
+            draw(mesh, picture_.make_views(seen, framed), optics, output, report);
+        }
         output.set_notes({});
         if (speaks()) picture_.write_legend(optics, legend, report);
+    }
+
+    /// Where sheets without cells are drawn.
+    static Picture empty_picture(const View& view, Progress*) {
+        Picture picture{Image(view.width(), view.height()), {}};
+        picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+        return picture;
     }
 
     [[nodiscard]] std::shared_ptr<const SheetScene> sheet_scene(const HexMesh& mesh, const Sheets& sheets, const Optics& optics,

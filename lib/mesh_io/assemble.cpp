@@ -346,7 +346,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     drop_ghosts(found);
     if (options.weld) {
         weld_points(found, *options.weld, file, names_in_file);
-        const auto [quads, lines] = drop_parts_of_cells(found);
+        const auto [quads, lines] = drop_parts_of_cells(found, options.sheets_alone);
         if (quads + lines > 0) found.warnings.push_back(list_of_sheets(quads, lines) + " ignored: parts of cells");
     }
     EntityNames names = names_in_file;
@@ -374,8 +374,9 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish();
         if (!result.cell_means.empty()) result.cell_parts = std::move(origin.cell_numbers);
-        validate(result.mesh);
         take_sheets(found, result, origin, moved);
+        const bool alone = options.sheets_alone && result.mesh.cells.empty() && !result.sheets.empty();
+        if (!alone) validate(result.mesh);
         if (!found.sharp.empty()) {
             add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);
         }

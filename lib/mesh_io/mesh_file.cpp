@@ -17,7 +17,7 @@ void add_point(MeshFile& file, const Vec3& point, std::size_t position) {
 }
 
 void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file) {
-    bool has_cells = false;
+    bool has_cells = !found.quads.corners.empty() || !found.lines.corners.empty();  // sheets that are wanted
     each_kind(found, [&](const auto& cells) { has_cells = has_cells || !cells.corners.empty(); });
     if (!has_cells) {
         throw Error(ErrorCode::InvalidInput, "no hexahedra" + (list.empty() ? "" : ", but " + list + ", which are ignored"),
@@ -44,10 +44,10 @@ std::size_t drop_where(FileCells<N>& cells, const std::vector<std::uint8_t>& dro
 
 }  // namespace
 
-std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found) {
+std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone) {
     if (found.quads.corners.empty() && found.lines.corners.empty()) return {0, 0};
     const bool others = !found.tets.corners.empty() || !found.prisms.corners.empty() || !found.pyramids.corners.empty();
-    if (others || found.curved.size() > 0 || found.hexes.corners.empty()) {
+    if (others || found.curved.size() > 0 || (found.hexes.corners.empty() && !alone)) {
         const std::array all{found.quads.corners.size(), found.lines.corners.size()};
         found.quads = {};
         found.lines = {};

@@ -133,10 +133,11 @@ void read_point(Numbers& in, MeshFile& file, const EntityNames& names, std::size
 void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file);
 
 /// Leaves out the quads that are faces of hexahedra and the lines that are edges of them, and all of them if there are other
-/// cells or curved ones.
+/// cells or curved ones, or no cells.
 ///
+/// alone: keeps them if there are no cells
 /// returns: the numbers of quads and of lines that were left out
-std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found);
+std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone);
 
 /// A flag for each point: whether a cell uses it.
 [[nodiscard]] std::vector<std::uint8_t> used_points(const MeshFile& found);

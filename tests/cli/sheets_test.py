@@ -4,7 +4,7 @@
 import unittest
 from pathlib import Path
 
-from command import InFolder
+from command import InFolder, subvol
 
 TOP = Path(__file__).resolve().parents[2]
 BRACKET = TOP / "docs/schemes/bracket.vtk"  # 48 hexahedra, 12 quads, 5 lines
@@ -81,6 +81,25 @@ class Sheets(InFolder):
             self.assertGreater(told["max"], .3, method)  # the fin is there
             self.assertLess(told["rmse"], .5, method)    # and so is the block
         self.run_ok("render", "with.vtk", "-o", "with.png", "--edges", "--look", "volume", "--scheme", "cc", *VIEW)
+
+    def test_sheets_alone_are_drawn_and_counted(self):
+        text = (TOP / "docs/schemes/bracket.vtk").read_text().splitlines()
+        at = next(i for i, line in enumerate(text) if line.startswith("CELLS"))
+        data = next(i for i, line in enumerate(text) if line.startswith("POINT_DATA"))
+        flat = [line for line in text[at:data] if line.startswith(("4 ", "2 "))]
+        kept = text[:at] + [f"CELLS {len(flat)} {12 * 5 + 5 * 3}", *flat, f"CELL_TYPES {len(flat)}"]
+        (self.folder / "flat.vtk").write_text("\n".join(kept + ["9"] * 12 + ["3"] * 5 + text[data:]) + "\n")
+        told = self.json("info", "flat.vtk")
+        self.assertEqual((told["cells"], told["sheets"]["quads"], told["sheets"]["attached_points"]), (0, 12, 0))
+        for options in [], ["--method", "dense", "--look", "volume"], ["--edges", "--views", "4"]:
+            done = self.run_ok("render", "flat.vtk", "-o", "flat.png", "--size", "96x72", *options)
+            self.assertNotIn("blank", done.err)
+        self.run_ok("render", "without.vtk", "-o", "without.png", "--size", "96x72", "--views", 4)
+        self.assertGreater(self.run_ok("compare", "flat.png", "without.png", "--json").json()["rmse"], .05)
+        for verb in ["vdb", "-o", "a.vdb"], ["points", "-o", "a.ply"], ["subdivide", "-o", "a.vtu"], ["surface", "-o", "a.ply"]:
+            done = subvol(verb[0], "flat.vtk", *verb[1:], folder=self.folder)
+            self.assertEqual(done.code, 2)
+            self.assertIn("no hexahedra, but 5 lines (VTK type 3), 12 quads (VTK type 9)", done.err)
 
 
 if __name__ == "__main__":

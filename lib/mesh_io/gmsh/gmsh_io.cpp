@@ -382,7 +382,7 @@ private:
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
         }
-        const auto [quads, lines] = drop_parts_of_cells(found_);
+        const auto [quads, lines] = drop_parts_of_cells(found_, options_.sheets_alone);
         leave_out(kGmshElements.at(3), quads);
         leave_out(kGmshElements.at(1), lines);
         std::string list;

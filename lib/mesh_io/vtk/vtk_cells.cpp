@@ -129,7 +129,7 @@ void VtkCellSorter::report(std::optional<std::string_view> file) {
                                   " more points than corners: only the corners are used");
     }
     if (!file) take_no_sheets();
-    const auto [quads, lines] = drop_parts_of_cells(found_);
+    const auto [quads, lines] = drop_parts_of_cells(found_, options_.sheets_alone);
     if (quads > 0) left_out_[kQuad] += quads;
     if (lines > 0) left_out_[kLine] += lines;
     std::string list;

@@ -17,6 +17,10 @@ using testing::HasSubstr;
 
 class SheetsIo : public MeshFiles {};
 
+std::string replaced_once(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
 /// A cell with four more points: a fin of two quads on its edge 4-5, whose points are 8 to 11, and a rod to point 12.
 HexMesh cell_and_points() {
     HexMesh mesh = make_box(1, 1, 1);
@@ -140,6 +144,12 @@ TEST_F(SheetsIo, MalformedOnesAreRefused) {
         "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
         "0 0 0 1 0 0 1 1 0 0 1 0\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n9\n";
     EXPECT_THAT(read_error("c.vtk", alone), HasSubstr("no hexahedra, but 1 quad (VTK type 9), which are ignored"));
+    const ReadResult wanted = read("c.vtk", alone, {.sheets_alone = true});
+    EXPECT_TRUE(wanted.mesh.cells.empty());
+    EXPECT_EQ(wanted.sheets.quads.size(), 1u);
+    EXPECT_TRUE(wanted.warnings.empty());
+    alone = replaced_once(alone, "4 0 1 2 3", "4 0 1 2 2");  // none of them can be used
+    EXPECT_THAT(error_of([&] { static_cast<void>(read("d.vtk", alone, {.sheets_alone = true})); }), HasSubstr("the mesh has no hexahedra"));
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ enum class CellValues { Auto, Mean, Fit };
 ///       corners are used
 /// step: of a series (`open_series`), from 0. Nothing: the last one
 /// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
+/// sheets_alone: a file of sheets and curves without any cell is read too. Its mesh has no cells, so most calls refuse it
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
     std::optional<double> weld = {};
@@ -54,6 +55,7 @@ struct ReadOptions {
     std::optional<std::size_t> step = {};
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
+    bool sheets_alone = false;
 };
 
 /// A named part of a mesh. cells: of all kinds, as the file has them
