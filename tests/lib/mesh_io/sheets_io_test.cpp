@@ -149,7 +149,8 @@ TEST_F(SheetsIo, MalformedOnesAreRefused) {
     EXPECT_EQ(wanted.sheets.quads.size(), 1u);
     EXPECT_TRUE(wanted.warnings.empty());
     alone = replaced_once(alone, "4 0 1 2 3", "4 0 1 2 2");  // none of them can be used
-    EXPECT_THAT(error_of([&] { static_cast<void>(read("d.vtk", alone, {.sheets_alone = true})); }), HasSubstr("the mesh has no hexahedra"));
+    EXPECT_THAT(error_of([&] { static_cast<void>(read("d.vtk", alone, {.sheets_alone = true})); }),
+                HasSubstr("the mesh has no hexahedra"));
 }
 
 }  // namespace
