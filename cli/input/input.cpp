@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "quantities.h"
 #include "steps.h"
 #include "subvol/bricks.h"
 #include "subvol/error.h"
@@ -20,9 +21,11 @@ OtherCells other_cells(const std::string& name) {
     return name == "ignore" ? OtherCells::Ignore : name == "refuse" ? OtherCells::Refuse : OtherCells::Split;
 }
 
-void put_density_first(HexMesh& mesh, const std::string& expression) {
-    std::erase_if(mesh.attributes, [](const Attribute& a) { return a.name == "density"; });
-    mesh.attributes.insert(mesh.attributes.begin(), Attribute{"density", 1, evaluate_expression(expression, mesh.points)});
+/// to: a mesh or sheets
+template <class Points>
+void put_density_first(Points& to, const std::string& expression) {
+    std::erase_if(to.attributes, [](const Attribute& a) { return a.name == "density"; });
+    to.attributes.insert(to.attributes.begin(), Attribute{"density", 1, evaluate_expression(expression, to.points)});
 }
 
 /// description: "NAME" or "NAME:RESOLUTION"
@@ -82,7 +85,7 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
             .cell_values = cell_values(options)};
 }
 
-ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report) {
+ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report, SheetsAlone alone) {
     report["input"] = input;
     if (is_bricks(input)) {
         throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which this command does not take yet", input,
@@ -93,14 +96,53 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
     if (model && (options.step || options.time)) throw Error(ErrorCode::InvalidInput, "a model has no steps", "--step, --time");
     if (model && !options.blocks.empty()) throw Error(ErrorCode::InvalidInput, "a model has no blocks", "--blocks");
     ReadResult read = report.timed("read", [&] {
-        return model ? generate(input.substr(kModelPrefix.size())) : read_mesh(input, read_options(input, options));
+        if (model) return generate(input.substr(kModelPrefix.size()));
+        ReadOptions how = read_options(input, options);
+        how.sheets_alone = alone == SheetsAlone::Take;
+        return read_mesh(input, how);
     });
     for (const std::string& warning : read.warnings) report.warn(warning);
     return read;
 }
 
-HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report) {
-    return used_mesh(read_input(input, options, report).mesh, options);
+HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report, Sheets* sheets, SheetsAlone alone) {
+    ReadResult read = read_input(input, options, report, alone);
+    if (sheets != nullptr) {
+        *sheets = std::move(read.sheets);
+        if (options.density && !sheets->empty()) put_density_first(*sheets, *options.density);
+    } else {
+        warn_of_sheets(read.sheets, report);
+    }
+    if (read.mesh.cells.empty()) {
+        read.mesh.points = sheets->points;
+        read.mesh.attributes = sheets->attributes;
+        return std::move(read.mesh);
+    }
+    return used_mesh(std::move(read.mesh), options);
+}
+
+void warn_of_sheets(const Sheets& sheets, Report& report) {
+    if (sheets.empty()) return;
+    const std::string quads = sheets.quads.empty() ? "" : counted(sheets.quads.size(), "quad");
+    const std::string lines = sheets.lines.empty() ? "" : counted(sheets.lines.size(), "line");
+    report.warn(text(quads, quads.empty() || lines.empty() ? "" : " and ", lines,
+                     " of sheets and curves left out: render, surface, subdivide and info take them"));
+}
+
+Sheets with_fields_of(Sheets sheets, const HexMesh& mesh) {
+    HexMesh points;
+    points.points = sheets.points;
+    points.attributes = std::move(sheets.attributes);
+    sheets.attributes.clear();
+    for (const Attribute& wanted : mesh.attributes) {
+        // Without a field the volume has density 1 everywhere, and so have they.
+        const bool made = wanted.name == "density" && points.find_attribute("density") == nullptr;
+        Attribute field = made ? Attribute{wanted.name, 1, std::vector<double>(points.points.size(), 1.0)}
+                               : select_field(points, wanted.name).scalar;
+        field.name = wanted.name;
+        sheets.attributes.push_back(std::move(field));
+    }
+    return sheets;
 }
 
 HexMesh used_mesh(HexMesh read, const CommonOptions& options) {

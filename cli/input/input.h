@@ -21,11 +21,25 @@ namespace subvol::cli {
 /// How a mesh file is to be read.
 [[nodiscard]] ReadOptions read_options(const std::string& input, const CommonOptions& options);
 
+/// Whether a file of sheets and curves without cells is an error.
+enum class SheetsAlone { Refuse, Take };
+
 /// Reads a mesh file, or generates "model:NAME[:RESOLUTION]". Puts "input" and the reader's warnings into the report.
-[[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report);
+[[nodiscard]] ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report,
+                                    SheetsAlone alone = SheetsAlone::Refuse);
 
 /// `read_input` without the unused points; --density becomes the first attribute.
-[[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report);
+///
+/// sheets: gets the sheets and curves; null: a warning says that they are left out
+/// alone:  Take: sheets without cells give a mesh of their points and fields without cells
+[[nodiscard]] HexMesh load_mesh(const std::string& input, const CommonOptions& options, Report& report,
+                                Sheets* sheets = nullptr, SheetsAlone alone = SheetsAlone::Refuse);
+
+/// Says that sheets and curves are left out, if there are any.
+void warn_of_sheets(const Sheets& sheets, Report& report);
+
+/// The sheets with the fields that the mesh has, which were selected from the same ones.
+[[nodiscard]] Sheets with_fields_of(Sheets sheets, const HexMesh& mesh);
 
 /// A mesh that was read, without the unused points; --density becomes the first attribute.
 [[nodiscard]] HexMesh used_mesh(HexMesh read, const CommonOptions& options);

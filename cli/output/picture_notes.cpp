@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "sheet_scene.h"
 #include "subvol/error.h"
 #include "subvol/overlay.h"
 
@@ -30,10 +31,18 @@ Picture widened(const Picture& from, int width) {
 
 }  // namespace
 
+void PictureNotes::draw_sheets(Picture& picture, const View& view) const {
+    if (sheets) sheets->draw_into(picture, view);
+}
+
 void PictureNotes::draw_over(Picture& picture, const View& view) const {
     if (edges != nullptr) {
         const double scale = std::max(1.0, std::min(view.width(), view.height()) / 512.0);
-        draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6});
+        if (!edges->cells.empty())
+            draw_edges(picture.image, picture.depth, view, *edges, {.width_px = scale, .color = ink, .alpha = 0.6});
+        if (sheets) {
+            draw_edges(picture.image, picture.depth, view, sheets->control, {.width_px = scale, .color = ink, .alpha = 0.6});
+        }
     }
     if (axes) draw_axes(picture.image, view, ink);
 }

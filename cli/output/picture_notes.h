@@ -19,15 +19,20 @@ struct Picture {
     std::vector<float> depth{};
 };
 
-/// What is drawn over the pictures of a run: axes, edges of the control mesh, a legend beside them.
+struct SheetScene;
+
+/// What is drawn over the pictures of a run: sheets and curves, axes, edges of the control mesh, a legend beside them.
 struct PictureNotes {
     bool axes = false;
     const HexMesh* edges = nullptr;  // of this mesh
+    std::shared_ptr<const SheetScene> sheets{};
     Vec3 ink{0.0};
     TransferFunction function{};
     std::optional<LegendOptions> legend{};
     int legend_px = 0;  // its width
 
+    /// Draws sheets and curves, which come first.
+    void draw_sheets(Picture& picture, const View& view) const;
     /// Draws axes and edges.
     void draw_over(Picture& picture, const View& view) const;
     /// Makes room at the right for the legend, and draws it.

@@ -97,6 +97,7 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictur
     float opacity = 0;
     for (std::size_t i = 0; i < views.size(); ++i) {
         Picture part = draw(views[i], report.progress());
+        notes_.draw_sheets(part, views[i]);
         opacity = std::max(opacity, most_opaque(part.image));
         notes_.draw_over(part, views[i]);
         const int left = static_cast<int>(i % 2) * width, top = static_cast<int>(i / 2) * height;
@@ -135,6 +136,7 @@ void PictureOutput::write(const std::vector<View>& views, const DrawPicture& dra
             ++written_;
             continue;
         }
+        notes_.draw_sheets(picture, view);
         opacity_ = std::max(opacity_, most_opaque(picture.image));
         if (written_ == 0 && path_.extension() == ".png") warn_if_blank(picture.image, background_, report);
         const detail::Stopwatch watch;

@@ -36,7 +36,7 @@ struct Count {
     const char* name;
     std::size_t MeshReport::*count;
 };
-constexpr std::array<Count, 11> kCounts{Count{"points", &MeshReport::points},
+constexpr std::array<Count, 12> kCounts{Count{"points", &MeshReport::points},
                                         Count{"points_used", &MeshReport::points_used},
                                         Count{"cells", &MeshReport::cells},
                                         Count{"edges", &MeshReport::edges},
@@ -46,7 +46,8 @@ constexpr std::array<Count, 11> kCounts{Count{"points", &MeshReport::points},
                                         Count{"singular_nodes", &MeshReport::singular_nodes},
                                         Count{"inverted_cells", &MeshReport::inverted_cells},
                                         Count{"degenerate_cells", &MeshReport::degenerate_cells},
-                                        Count{"nonmanifold_edges", &MeshReport::nonmanifold_edges}};
+                                        Count{"nonmanifold_edges", &MeshReport::nonmanifold_edges},
+                                        Count{"nonmanifold_points", &MeshReport::nonmanifold_points}};
 
 }  // namespace
 
@@ -66,6 +67,7 @@ void put_mesh_report(Report& report, const MeshReport& mesh) {
     report["degenerate_cells"] = mesh.degenerate_cells;
     report["min_scaled_jacobian"] = mesh.min_scaled_jacobian;
     report["nonmanifold_edges"] = mesh.nonmanifold_edges;
+    report["nonmanifold_points"] = mesh.nonmanifold_points;
     report["nonmanifold_faces"] = mesh.nonmanifold_faces;
     report["volume"] = mesh.volume;
     report["bounds"] = to_json(mesh.bounds);

@@ -74,12 +74,23 @@ std::string mesh_lines(const ReadResult& read, const MeshReport& mesh, const Jso
 std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, const Json& seconds) {
     const MeshReport& mesh = joined.counts;
     Lines lines;
-    const std::size_t unused = mesh.points - mesh.points_used;
+    const SheetReport sheets = inspect(read.sheets);
+    const std::size_t of_sheets = sheets.points - sheets.attached;
+    const std::size_t unused = mesh.points - std::min(mesh.points, mesh.points_used + of_sheets);
     lines.emplace_back("cells", count_text(mesh.cells));
     lines.emplace_back("points", count_text(mesh.points) + (unused > 0 ? ", " + count_text(unused) + " of them unused" : ""));
     lines.emplace_back("faces", count_text(mesh.faces) + ", " + count_text(mesh.boundary_faces) + " of them on the boundary");
     lines.emplace_back("edges",
                        count_text(mesh.edges) + ", " + count_text(mesh.interior_edges) + " of them inside" + valences(mesh));
+    if (!read.sheets.empty()) {
+        lines.emplace_back("sheets", counted(sheets.quads, "quad") + ", " +
+                                         counted(sheets.lines, "line of curves", "lines of curves") + "; " +
+                                         count_text(sheets.attached) + " of " + counted(sheets.points, "point") + " on cells");
+    }
+    if (mesh.nonmanifold_edges + mesh.nonmanifold_points > 0) {
+        lines.emplace_back("touching", counted(mesh.nonmanifold_edges, "edge") + " and " +
+                                           counted(mesh.nonmanifold_points, "point") + " where parts touch");
+    }
     if (mesh.singular_nodes > 0) lines.emplace_back("singular nodes", count_text(mesh.singular_nodes));
     const Vec3 size = mesh.bounds.size();
     for (int axis = 0; axis < 3; ++axis) {

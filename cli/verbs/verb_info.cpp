@@ -120,7 +120,8 @@ private:
 
     void describe_mesh(Report& report) {
         refuse_at("a mesh");
-        const ReadResult read = read_input(input_, common(), report);
+        const SheetsAlone alone = shares(share_) ? SheetsAlone::Refuse : SheetsAlone::Take;
+        const ReadResult read = read_input(input_, common(), report, alone);
         if (!is_model(input_)) put_steps(read, report);
         detail::MeshShare about;
         if (shares(share_)) {
@@ -128,10 +129,16 @@ private:
             about = joined(share, report, [&] { return detail::inspect_share(read.mesh, share.part, share.of, kCellsNamed); });
             if (!speaks()) return;
         } else {
-            about.counts = report.timed("inspect", [&] { return inspect(read.mesh); });
+            about.counts = report.timed("inspect", [&] { return figures_of(read); });
             if (about.counts.inverted_cells > 0) about.inverted = inverted_cells(read.mesh, kCellsNamed);
         }
         put_mesh_report(report, about.counts);
+        if (!read.sheets.empty()) {
+            const SheetReport sheets = inspect(read.sheets);
+            report["sheets"] = {{"quads", sheets.quads},           {"lines", sheets.lines},
+                                {"points", sheets.points},         {"attached_points", sheets.attached},
+                                {"free_edges", sheets.free_edges}, {"nonmanifold_edges", sheets.nonmanifold_edges}};
+        }
         report["fields"] = Json::array();
         for (const FieldInfo& field : read.fields) {
             report["fields"].push_back({{"name", field.name},
@@ -146,6 +153,15 @@ private:
         lines.pop_back();
         report.say(lines);
         report.all_said();
+    }
+
+    /// Of sheets without cells: their points and their box.
+    [[nodiscard]] static MeshReport figures_of(const ReadResult& read) {
+        if (!read.mesh.cells.empty()) return inspect(read.mesh);
+        MeshReport report;
+        report.points = read.mesh.points.size();
+        for (const Vec3& p : read.sheets.points) report.bounds.add(p);
+        return report;
     }
 
     void describe_bricks(Report& report) {

@@ -82,6 +82,7 @@ public:
             return 0;
         }
         ReadResult read = read_input(input_, common(), report);
+        warn_of_sheets(read.sheets, report);
         const HexMesh mesh = used_mesh(std::move(read.mesh), common());
         const HexMesh chosen = with_chosen_first(mesh, report);
         report["cells"] = mesh.cells.size();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "render_method.h"
 #include "sampled_points.h"
 #include "share.h"
+#include "sheet_scene.h"
 #include "splat_arguments.h"
 #include "splat_pictures.h"
 #include "steps.h"
@@ -34,7 +36,9 @@ namespace {
 
 constexpr int kTetsLevel = 1;
 
-void check_coordinates(const HexMesh& mesh) {
+/// mesh: or sheets
+template <class Points>
+void check_coordinates(const Points& mesh) {
     constexpr double kMost_world = 1e18;  // as of splats; far beyond it, squares and volumes overflow
     for (std::size_t p = 0; p < mesh.points.size(); ++p) {
         const Vec3 x = glm::abs(mesh.points[p]);
@@ -159,10 +163,17 @@ private:
                           "--tolerance-image", "--order", "--kbuffer", "--lod", "--memory", "--part"});
     }
 
-    [[nodiscard]] HexMesh shown_mesh(const CommonOptions& options, Report& report) const {
-        HexMesh mesh = with_selected_field(load_mesh(input_, options, report), options, report, splat_.color_field);
+    /// sheets: gets those of the mesh, with all their fields
+    /// alone:  Take: of sheets without cells the mesh has points alone
+    [[nodiscard]] HexMesh shown_mesh(const CommonOptions& options, Report& report, Sheets& sheets,
+                                     SheetsAlone alone = SheetsAlone::Refuse) const {
+        Sheets* const wanted = tets_.asked() ? nullptr : &sheets;  // tetrahedra are refined by other rules
+        if (tets_.asked()) alone = SheetsAlone::Refuse;
+        HexMesh mesh =
+            with_selected_field(load_mesh(input_, options, report, wanted, alone), options, report, splat_.color_field);
         mesh = tets_.hexes(std::move(mesh), is_of_splats(method_) ? 1 : 2, report);
         check_coordinates(mesh);
+        check_coordinates(sheets);
         return mesh;
     }
 
@@ -178,20 +189,23 @@ private:
         const FrameRange steps = chosen_steps(series, common());
         PictureOutput output(output_, steps.count(), picture_, steps.first);
         set_share(output, true);
-        Box box;
+        Box box, seen;
         Range range, colors;
         std::string field_name, color_name;
         for (int step = steps.first; step <= steps.last; ++step) {
-            const HexMesh mesh = shown_mesh(of_step(common(), step), report);
+            Sheets sheets;
+            const HexMesh mesh = shown_mesh(of_step(common(), step), report, sheets);
             const Range field = field_range(mesh, 0), color = field_range(mesh, mesh.attributes.size() - 1);
             const bool first = step == steps.first;
             range = first ? field : Range{std::min(range.min, field.min), std::max(range.max, field.max)};
             colors = first ? color : Range{std::min(colors.min, color.min), std::max(colors.max, color.max)};
             box.add(bounds(mesh));
+            for (const Vec3& p : sheets.points) seen.add(p);
             field_name = mesh.attributes.front().name;
             color_name = mesh.attributes.back().name;
         }
         const Optics optics = picture_.make_optics(box, range, colors);
+        seen.add(box);
         const LegendOptions legend = picture_.legend_options({field_name, range}, {color_name, colors});
         std::vector<View> views;
         for (int step = steps.first; step <= steps.last; ++step) {
@@ -199,9 +213,11 @@ private:
                 output.skip();
                 continue;
             }
-            const HexMesh mesh = shown_mesh(of_step(common(), step), report);
+            Sheets sheets;
+            const HexMesh mesh = shown_mesh(of_step(common(), step), report, sheets);
             PictureNotes notes = make_notes(picture_, optics, legend, &mesh);
-            if (views.empty()) views = picture_.make_views(box);
+            notes.sheets = sheet_scene(mesh, sheets, optics, report);
+            if (views.empty()) views = picture_.make_views(seen);
             output.set_notes(std::move(notes));
             draw(mesh, views, optics, output, report);
         }
@@ -212,16 +228,44 @@ private:
     }
 
     void draw_mesh(PictureOutput& output, Report& report) {
-        const HexMesh mesh = shown_mesh(common(), report);
-        const Box box = bounds(mesh);
+        Sheets sheets;
+        const HexMesh mesh = shown_mesh(common(), report, sheets, SheetsAlone::Take);
+        Box box = bounds(mesh);
+        if (mesh.cells.empty()) {
+            for (const Vec3& p : mesh.points) box.add(p);
+        }
         const Range range = field_range(mesh, 0), colors = field_range(mesh, mesh.attributes.size() - 1);
         const Optics optics = picture_.make_optics(box, range, colors);
         const LegendOptions legend =
             picture_.legend_options({mesh.attributes.front().name, range}, {mesh.attributes.back().name, colors});
-        output.set_notes(make_notes(picture_, optics, legend, &mesh));
-        draw(mesh, picture_.make_views(box, picture_.framed_points(mesh, optics)), optics, output, report);
+        PictureNotes notes = make_notes(picture_, optics, legend, &mesh);
+        notes.sheets = sheet_scene(mesh, sheets, optics, report);
+        output.set_notes(std::move(notes));
+        Box seen = box;
+        for (const Vec3& p : sheets.points) seen.add(p);
+        if (mesh.cells.empty()) {
+            output.write(picture_.make_views(seen, sheets.points), empty_picture, report);
+        } else {
+            std::vector<Vec3> framed = picture_.framed_points(mesh, optics);
+            if (!framed.empty()) framed.insert(framed.end(), sheets.points.begin(), sheets.points.end());
+            draw(mesh, picture_.make_views(seen, framed), optics, output, report);
+        }
         output.set_notes({});
         if (speaks()) picture_.write_legend(optics, legend, report);
+    }
+
+    /// Where sheets without cells are drawn.
+    static Picture empty_picture(const View& view, Progress*) {
+        Picture picture{Image(view.width(), view.height()), {}};
+        picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+        return picture;
+    }
+
+    [[nodiscard]] std::shared_ptr<const SheetScene> sheet_scene(const HexMesh& mesh, const Sheets& sheets, const Optics& optics,
+                                                                Report& report) const {
+        if (sheets.empty()) return nullptr;
+        return make_sheet_scene(mesh, sheets, refine_.options(0, report), refine_.levels, optics, reference_.samples,
+                                options_.clip, report);
     }
 
     void draw(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics, PictureOutput& output,

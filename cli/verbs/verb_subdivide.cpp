@@ -7,6 +7,7 @@
 #include "refine_arguments.h"
 #include "subvol/error.h"
 #include "subvol/field_range.h"
+#include "subvol/limit_sheets.h"
 #include "subvol/mesh_io.h"
 #include "subvol/mesh_report.h"
 #include "subvol/mixed_file.h"
@@ -42,10 +43,16 @@ public:
         const RefineOptions options = refine_.options(1, report);
         check_output(output_, {".vtu", ".mesh"});
         report.if_long("fewer --levels");
-        const HexMesh mesh = load_mesh(input_, common(), report);
+        Sheets sheets;
+        const HexMesh mesh = load_mesh(input_, common(), report, &sheets);
         HexMesh fine = refine_reported(mesh, options, on_limit_ ? Vertices::OnTheLimit : Vertices::OfTheLevel, report);
         keep_in_range(mesh, fine, report);
-        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine); }))
+        if (!sheets.empty() && output_.ends_with(".mesh")) {
+            report.warn("sheets and curves are not written to .mesh, but to .vtu");
+            sheets = {};
+        }
+        sheets = report.timed("sheets", [&] { return refined(mesh, sheets, options, report); });
+        for (const std::string& warning : report.timed("write", [&] { return write_mesh(output_, fine, sheets); }))
             report.warn(warning);
         put_shape(mesh, fine, report);
         report["output"] = output_;
@@ -65,6 +72,18 @@ private:
         report["output"] = output_;
         report["points"] = fine.points.size();
         report["cells"] = fine.cells();
+    }
+
+    [[nodiscard]] Sheets refined(const HexMesh& mesh, const Sheets& sheets, const RefineOptions& options,
+                                 Report& report) const {
+        if (sheets.empty()) return {};
+        Sheets fine = on_limit_ ? limit_sheets(mesh, sheets, options) : refine_sheets(mesh, sheets, options);
+        for (std::size_t f = 0; clamp_ && f < fine.attributes.size(); ++f) {
+            clamp_to(fine.attributes[f], range_of(mesh.attributes[f]));
+        }
+        report["quads"] = fine.quads.size();
+        report["lines"] = fine.lines.size();
+        return fine;
     }
 
     void keep_in_range(const HexMesh& control, HexMesh& fine, Report& report) const {

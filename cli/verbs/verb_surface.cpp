@@ -10,6 +10,7 @@
 #include "refine_arguments.h"
 #include "subvol/brick_surface.h"
 #include "subvol/error.h"
+#include "subvol/limit_sheets.h"
 #include "subvol/limit_surface.h"
 #include "tet_refinement.h"
 #include "text.h"
@@ -83,7 +84,9 @@ public:
             extract_from_bricks(options, report);
             return 0;
         }
-        const HexMesh mesh = tets.hexes(load_mesh(input_, common(), report), 2, report);
+        Sheets sheets;
+        const HexMesh mesh =
+            tets.hexes(load_mesh(input_, common(), report, options.boundary && !tets.asked() ? &sheets : nullptr), 2, report);
         HexMesh chosen = with_selected_field(mesh, common(), report);
         const std::string field = chosen.attributes.front().name;
         for (const Attribute& attribute : mesh.attributes) {
@@ -94,8 +97,18 @@ public:
             const std::size_t number = add_color_field(chosen);
             file = {number, find_transfer_function(function_, field_range(chosen, number))};
         }
-        const LimitSurface surface = report.timed("surface", [&] { return limit_surface(chosen, field, options); });
+        LimitSurface surface = report.timed("surface", [&] { return limit_surface(chosen, field, options); });
         if (surface.surface.triangles.empty()) throw nothing(field, field_range(chosen));
+        const std::size_t of_volume = surface.surface.triangles.size();
+        if (!sheets.empty()) {
+            sheets = with_fields_of(std::move(sheets), chosen);
+            report.timed("sheets", [&] {
+                const int level = std::clamp(surface.report.level, 3, 4);  // a flat body may carry a bent sheet
+                add_sheets(surface, limit_sheets(chosen, sheets, {.scheme = options.scheme, .levels = level}));
+            });
+            report["sheet_triangles"] = surface.surface.triangles.size() - of_volume;
+            if (!sheets.lines.empty()) report.warn("curves have no surface: they are not written");
+        }
         report.timed("write", [&] { write_limit_surface(output_, surface, file); });
         put(surface, report);
         return 0;

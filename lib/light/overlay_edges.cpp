@@ -70,9 +70,32 @@ private:
 
 }  // namespace
 
-void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh, const LineOptions& options) {
+namespace {
+
+void check_sizes(const Image& image, std::span<const float> depth, const View& view) {
     if (depth.size() != image.rgba.size() / 4 || view.width() != image.width || view.height() != image.height)
         throw Error(ErrorCode::InvalidInput, "the picture, its depths and the view are not of one size", "edges");
+}
+
+}  // namespace
+
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const Sheets& sheets,
+                const LineOptions& options) {
+    check_sizes(image, depth, view);
+    std::vector<std::array<Index, 2>> edges;
+    const auto add = [&](Index a, Index b) { edges.push_back({std::min(a, b), std::max(a, b)}); };
+    for (const auto& quad : sheets.quads) {
+        for (std::size_t k = 0; k < 4; ++k) add(quad[k], quad[(k + 1) % 4]);
+    }
+    for (const auto& [a, b] : sheets.lines) add(a, b);
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    EdgeDrawer drawer(image, depth, view, options);
+    for (const auto& [a, b] : edges) drawer.draw(sheets.points[a], sheets.points[b], true);
+}
+
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh, const LineOptions& options) {
+    check_sizes(image, depth, view);
     const Topology topology = build_topology(mesh);
     EdgeDrawer drawer(image, depth, view, options);
     for (std::size_t e = 0; e < topology.edges.size(); ++e) {

@@ -226,6 +226,87 @@ void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin
     result.warnings.push_back(warning + (hexes_too ? ", the hexahedra too so that all fit together" : ""));
 }
 
+/// Leaves out the quads or lines that repeat a point, or have one whose place or values are not finite.
+template <std::size_t N>
+std::size_t drop_unusable(FileCells<N>& cells, const HexMesh& mesh) {
+    const auto usable = [&](const std::array<Index, N>& corners) {
+        for (std::size_t k = 0; k < N; ++k) {
+            const Vec3& point = mesh.points[corners[k]];
+            if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) return false;
+            if (std::count(corners.begin(), corners.end(), corners[k]) > 1) return false;
+            for (const Attribute& attribute : mesh.attributes) {
+                const auto channels = static_cast<std::size_t>(attribute.channels);
+                for (std::size_t c = 0; c < channels; ++c) {
+                    if (!std::isfinite(attribute.values[corners[k] * channels + c])) return false;
+                }
+            }
+        }
+        return true;
+    };
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < cells.corners.size(); ++i) {
+        if (!usable(cells.corners[i])) continue;
+        cells.corners[kept] = cells.corners[i];
+        cells.numbers[kept++] = cells.numbers[i];
+    }
+    const std::size_t dropped = cells.corners.size() - kept;
+    cells.corners.resize(kept);
+    cells.numbers.resize(kept);
+    return dropped;
+}
+
+/// Values of an array of cells at the points of sheets that no cell uses: the mean over the quads and lines there.
+void set_means(HexMesh& mesh, std::size_t attribute, const FileArray& array, const MeshFile& found,
+               std::span<const std::uint8_t> used) {
+    const auto components = static_cast<std::size_t>(array.components);
+    std::vector<double>& values = mesh.attributes[attribute].values;
+    std::vector<std::size_t> counts(mesh.points.size() * components, 0);
+    const auto add = [&](const auto& cells) {
+        for (std::size_t i = 0; i < cells.corners.size(); ++i) {
+            for (std::size_t k = 0; k < components; ++k) {
+                const double value = array.values[cells.numbers[i] * components + k];
+                for (const Index p : cells.corners[i]) {
+                    if (used[p] || !std::isfinite(value)) continue;
+                    values[p * components + k] += value;
+                    ++counts[p * components + k];
+                }
+            }
+        }
+    };
+    add(found.quads);
+    add(found.lines);
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (counts[i] > 1) values[i] /= static_cast<double>(counts[i]);
+    }
+}
+
+std::string list_of_sheets(std::size_t quads, std::size_t lines) {
+    const std::string of_quads = quads > 0 ? counted(quads, "quad", "quads") : "";
+    const std::string of_lines = lines > 0 ? counted(lines, "line", "lines") : "";
+    return of_quads + (of_quads.empty() || of_lines.empty() ? "" : " and ") + of_lines;
+}
+
+/// After the mesh is complete. moved: whether its points are not those of the file
+void take_sheets(MeshFile& found, ReadResult& result, const Origin& origin, bool moved) {
+    std::size_t quads = found.quads.corners.size(), lines = found.lines.corners.size();
+    if (quads + lines == 0) return;
+    if (moved || origin.sources || !result.cell_means.empty()) {
+        result.warnings.push_back(list_of_sheets(quads, lines) +
+                                  " ignored: sheets and curves are read beside hexahedra that are not split");
+        return;
+    }
+    HexMesh with = result.mesh;
+    quads = drop_unusable(found.quads, with);
+    lines = drop_unusable(found.lines, with);
+    if (quads + lines > 0) {
+        result.warnings.push_back(list_of_sheets(quads, lines) + " ignored: they repeat a point, or its values are not finite");
+    }
+    for (std::size_t a = 0; a < found.arrays.size(); ++a) {
+        if (found.arrays[a].at_cells) set_means(with, a, found.arrays[a], found, origin.used);
+    }
+    result.sheets = make_sheets(with, found.quads.corners, found.lines.corners);
+}
+
 }  // namespace
 
 bool is_folded(const std::array<Vec3, 8>& x) {
@@ -263,9 +344,14 @@ ReadResult assemble(MeshFile&& found, const TextScanner& in, std::string_view fi
 
 ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& names_in_file, const ReadOptions& options) {
     drop_ghosts(found);
-    if (options.weld) weld_points(found, *options.weld, file, names_in_file);
+    if (options.weld) {
+        weld_points(found, *options.weld, file, names_in_file);
+        const auto [quads, lines] = drop_parts_of_cells(found, options.sheets_alone);
+        if (quads + lines > 0) found.warnings.push_back(list_of_sheets(quads, lines) + " ignored: parts of cells");
+    }
     EntityNames names = names_in_file;
-    if (options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names)) names.point_numbers = {};
+    const bool moved = options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names);
+    if (moved) names.point_numbers = {};
     found.curved = {};
     const bool cut = take_collapsed(found, options.other_cells, file, names) || found.cut;
     Origin origin{used_points(found), {}, {}};
@@ -288,7 +374,9 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
         for (auto& array : found.arrays) conversion.take(std::move(array));
         conversion.finish();
         if (!result.cell_means.empty()) result.cell_parts = std::move(origin.cell_numbers);
-        validate(result.mesh);
+        take_sheets(found, result, origin, moved);
+        const bool alone = options.sheets_alone && result.mesh.cells.empty() && !result.sheets.empty();
+        if (!alone) validate(result.mesh);
         if (!found.sharp.empty()) {
             add_sharp_tags(result.mesh, std::move(found.sharp), origin.sources ? &*origin.sources : nullptr, file, names);
         }

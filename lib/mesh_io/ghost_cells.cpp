@@ -38,6 +38,8 @@ template <class Keeps>
 std::size_t filter_all(MeshFile& found, const Keeps& keeps) {
     std::size_t dropped = 0;
     each_kind(found, [&](auto& cells) { dropped += filter(cells, keeps); });
+    filter(found.quads, keeps);
+    filter(found.lines, keeps);
     return dropped;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sheet_faces.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -16,13 +17,45 @@ void add_point(MeshFile& file, const Vec3& point, std::size_t position) {
 }
 
 void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file) {
-    bool has_cells = false;
+    bool has_cells = !found.quads.corners.empty() || !found.lines.corners.empty();  // sheets that are wanted
     each_kind(found, [&](const auto& cells) { has_cells = has_cells || !cells.corners.empty(); });
     if (!has_cells) {
         throw Error(ErrorCode::InvalidInput, "no hexahedra" + (list.empty() ? "" : ", but " + list + ", which are ignored"),
                     std::string(file));
     }
     if (!list.empty()) found.warnings.push_back(list + " ignored");
+}
+
+namespace {
+
+template <std::size_t N>
+std::size_t drop_where(FileCells<N>& cells, const std::vector<std::uint8_t>& drops) {
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < cells.corners.size(); ++c) {
+        if (drops[c]) continue;
+        cells.corners[kept] = cells.corners[c];
+        cells.numbers[kept++] = cells.numbers[c];
+    }
+    const std::size_t dropped = cells.corners.size() - kept;
+    cells.corners.resize(kept);
+    cells.numbers.resize(kept);
+    return dropped;
+}
+
+}  // namespace
+
+std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone) {
+    if (found.quads.corners.empty() && found.lines.corners.empty()) return {0, 0};
+    const bool others = !found.tets.corners.empty() || !found.prisms.corners.empty() || !found.pyramids.corners.empty();
+    if (others || found.curved.size() > 0 || (found.hexes.corners.empty() && !alone)) {
+        const std::array all{found.quads.corners.size(), found.lines.corners.size()};
+        found.quads = {};
+        found.lines = {};
+        return all;
+    }
+    const std::size_t points = found.points.size();
+    return {drop_where(found.quads, are_faces(found.quads.corners, found.hexes.corners, points)),
+            drop_where(found.lines, are_edges(found.lines.corners, found.hexes.corners, points))};
 }
 
 std::vector<std::uint8_t> used_points(const MeshFile& found) {

@@ -65,6 +65,7 @@ struct FileTags {
 /// The contents of a file as a reader found them; `assemble` makes a mesh of them.
 ///
 /// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
+/// quads, lines: of sheets and curves; they need numbers
 /// cut:        the cells fit together only if all are cut into tetrahedra
 /// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
 struct MeshFile {
@@ -77,6 +78,8 @@ struct MeshFile {
     FileCells<4> tets;
     FileCells<6> prisms;
     FileCells<5> pyramids;
+    FileCells<4> quads;
+    FileCells<2> lines;
     CurvedHexes curved;
     FileTags sharp;
     std::vector<FileArray> arrays;
@@ -86,7 +89,7 @@ struct MeshFile {
     bool cut = false;
 };
 
-/// Calls call(cells) for the FileCells of each kind.
+/// Calls call(cells) for the FileCells of each kind of cells with a volume.
 template <class File, class Call>
 void each_kind(File& file, const Call& call) {
     call(file.hexes);
@@ -128,6 +131,13 @@ void read_point(Numbers& in, MeshFile& file, const EntityNames& names, std::size
 ///
 /// list: their kinds and counts, such as "4 lines, 2 quads"; empty if there are none
 void add_left_out_warning(MeshFile& found, const std::string& list, std::string_view file);
+
+/// Leaves out the quads that are faces of hexahedra and the lines that are edges of them, and all of them if there are other
+/// cells or curved ones, or no cells.
+///
+/// alone: keeps them if there are no cells
+/// returns: the numbers of quads and of lines that were left out
+std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone);
 
 /// A flag for each point: whether a cell uses it.
 [[nodiscard]] std::vector<std::uint8_t> used_points(const MeshFile& found);

@@ -101,6 +101,18 @@ void weld_points(MeshFile& found, double tolerance, std::string_view file, const
         }
     });
     for (Index& p : found.curved.nodes) p = joined[p];
+    // The points of sheets come last, so that the cells have the points that they have without sheets.
+    const auto join_sheet = [&](auto& corners) {
+        for (Index& p : corners) {
+            if (joined[p] == kNone) {
+                joined[p] = welder.join(p);
+                welded += joined[p] != p;
+            }
+            p = joined[p];
+        }
+    };
+    std::ranges::for_each(found.quads.corners, join_sheet);
+    std::ranges::for_each(found.lines.corners, join_sheet);
     const auto join_tag = [&](auto& tag) {
         for (Index& p : tag) p = joined[p] == kNone ? p : joined[p];
     };

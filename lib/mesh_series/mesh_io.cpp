@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "format_table.h"
+#include "formats.h"
 #include "steps.h"
 #include "subvol/cell_means.h"
 #include "subvol/detail/number_text.h"
@@ -116,6 +117,16 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Hex
     if (!format || !format->write) refuse_format(path, "written", list_formats(true));
     validate(mesh);
     return format->write(path, mesh);
+}
+
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Sheets& sheets) {
+    if (sheets.empty()) return write_mesh(path, mesh);
+    if (path.extension() != ".vtu") {
+        throw Error(ErrorCode::InvalidInput, "sheets and curves cannot be written to such files", path.string(), ".vtu");
+    }
+    validate(mesh);
+    validate(sheets, mesh);
+    return write_vtu(path, mesh, sheets);
 }
 
 std::vector<std::string> readable_mesh_extensions() {

@@ -56,8 +56,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<SchemeRules> make_bsxw_rules(const Topology& topology) {
-    return std::make_unique<BsxwRules>(topology);
+std::unique_ptr<SchemeRules> make_bsxw_rules(const Topology& topology, std::vector<PointKind> kinds) {
+    return std::make_unique<BsxwRules>(topology, std::move(kinds));
 }
 
 }  // namespace subvol::detail

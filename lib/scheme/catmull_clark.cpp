@@ -55,8 +55,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<SchemeRules> make_catmull_clark_rules(const Topology& topology) {
-    return std::make_unique<CatmullClarkRules>(topology);
+std::unique_ptr<SchemeRules> make_catmull_clark_rules(const Topology& topology, std::vector<PointKind> kinds) {
+    return std::make_unique<CatmullClarkRules>(topology, std::move(kinds));
 }
 
 }  // namespace subvol::detail

@@ -25,8 +25,8 @@ namespace {
 
 class McqRules final : public SchemeRules {
 public:
-    McqRules(const Topology& topology, double tension)
-        : topology_(topology), omega_(tension), kinds_(classify_points(topology)), regular_(regular_points(topology)) {}
+    McqRules(const Topology& topology, double tension, std::vector<PointKind> kinds)
+        : topology_(topology), omega_(tension), kinds_(std::move(kinds)), regular_(regular_points(topology)) {}
 
     void edge_point(Index edge, StencilBuilder& row) const override {
         const auto [a, b] = topology_.edges[edge];
@@ -335,8 +335,8 @@ private:
 
 }  // namespace
 
-std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double tension) {
-    return std::make_unique<McqRules>(topology, tension);
+std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double tension, std::vector<PointKind> kinds) {
+    return std::make_unique<McqRules>(topology, tension, std::move(kinds));
 }
 
 }  // namespace subvol::detail

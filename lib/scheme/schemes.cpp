@@ -2,6 +2,7 @@
 #include "schemes.h"
 
 #include <cmath>
+#include <utility>
 
 #include "subvol/error.h"
 
@@ -14,16 +15,20 @@ bool interpolates(Scheme scheme) {
 namespace detail {
 
 std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme) {
+    return make_rules(topology, scheme, scheme.kind == Scheme::Linear ? std::vector<PointKind>{} : classify_points(topology));
+}
+
+std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme, std::vector<PointKind> kinds) {
     switch (scheme.kind) {
         case Scheme::Linear:
             return make_linear_rules(topology);
         case Scheme::Mcq:
             if (!std::isfinite(scheme.tension)) throw Error(ErrorCode::InvalidInput, "the tension is not a finite number");
-            return make_mcq_rules(topology, scheme.tension);
+            return make_mcq_rules(topology, scheme.tension, std::move(kinds));
         case Scheme::CatmullClark:
-            return make_catmull_clark_rules(topology);
+            return make_catmull_clark_rules(topology, std::move(kinds));
         case Scheme::Bsxw:
-            return make_bsxw_rules(topology);
+            return make_bsxw_rules(topology, std::move(kinds));
     }
     throw Error(ErrorCode::InvalidInput, "unknown subdivision scheme");
 }

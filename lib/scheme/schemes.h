@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
+#include "boundary_rings.h"
 #include "stencil_row.h"
 #include "subvol/scheme.h"
 #include "subvol/topology.h"
@@ -24,15 +26,19 @@ public:
     virtual void cell_point(Index cell, StencilBuilder& row) const = 0;
 };
 
-/// All keep a reference to the topology.
+/// All keep a reference to the topology. kinds: of its points
 std::unique_ptr<SchemeRules> make_linear_rules(const Topology& topology);
-std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double tension);
-std::unique_ptr<SchemeRules> make_catmull_clark_rules(const Topology& topology);
-std::unique_ptr<SchemeRules> make_bsxw_rules(const Topology& topology);
+std::unique_ptr<SchemeRules> make_mcq_rules(const Topology& topology, double tension, std::vector<PointKind> kinds);
+std::unique_ptr<SchemeRules> make_catmull_clark_rules(const Topology& topology, std::vector<PointKind> kinds);
+std::unique_ptr<SchemeRules> make_bsxw_rules(const Topology& topology, std::vector<PointKind> kinds);
 
 /// The rules of the scheme that the options choose.
 ///
 /// throws: Error(InvalidInput) if the tension is not finite
 [[nodiscard]] std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme);
+
+/// The same where the points are of other kinds than `classify_points` finds, as those of sheets and curves are.
+[[nodiscard]] std::unique_ptr<SchemeRules> make_rules(const Topology& topology, const SchemeOptions& scheme,
+                                                      std::vector<PointKind> kinds);
 
 }  // namespace subvol::detail

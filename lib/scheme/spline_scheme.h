@@ -10,9 +10,9 @@ namespace subvol::detail {
 /// rules at irregular points and edges.
 class SplineScheme : public SchemeRules {
 public:
-    /// Keeps a reference to the topology.
-    explicit SplineScheme(const Topology& topology)
-        : topology_(topology), regular_(regular_points(topology)), kinds_(classify_points(topology)) {}
+    /// Keeps a reference to the topology. kinds: of its points
+    SplineScheme(const Topology& topology, std::vector<PointKind> kinds)
+        : topology_(topology), regular_(regular_points(topology)), kinds_(std::move(kinds)) {}
 
     [[nodiscard]] bool interpolates() const final { return false; }
     void vertex_point(Index point, StencilBuilder& row) const final;

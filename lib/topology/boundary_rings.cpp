@@ -22,6 +22,27 @@ std::size_t boundary_edges_at(const Topology& topology, Index point) {
         std::count_if(edges.begin(), edges.end(), [&](Index e) { return topology.edge_on_boundary[e]; }));
 }
 
+/// Whether all boundary faces at a point lie in fans between its crease edges, as those about a curve do where bodies touch.
+bool are_fans_between_creases(const Topology& topology, Index point) {
+    std::size_t sides = 0, in_fans = 0;  // of faces: each has two edges at the point, and each fan is walked from both ends
+    for (const Index start : topology.point_edges[point]) {
+        if (!topology.edge_on_boundary[start]) continue;
+        sides += topology.boundary_faces_at(start);
+        if (!topology.edge_is_crease[start]) continue;
+        for (Index face : topology.edge_faces[start]) {
+            if (!topology.face_on_boundary(face)) continue;
+            Index edge = start;
+            while (true) {
+                ++in_fans;
+                edge = next_spoke(topology, face, point, edge);
+                if (topology.edge_is_crease[edge]) break;
+                face = other_boundary_face(topology, edge, face);
+            }
+        }
+    }
+    return in_fans == sides;
+}
+
 PointKind classify(const Topology& topology, Index point) {
     if (!topology.point_on_boundary[point]) return PointKind::Interior;
     int creases = 0;
@@ -35,7 +56,8 @@ PointKind classify(const Topology& topology, Index point) {
         rim |= topology.boundary_faces_at(e) != 2;
         if (start == kNone) start = e;
     }
-    if (!manifold || (creases != 0 && creases != 2)) return PointKind::Corner;
+    if (creases != 0 && creases != 2) return PointKind::Corner;
+    if (!manifold) return are_fans_between_creases(topology, point) ? PointKind::Crease : PointKind::Corner;
     if (rim) return creases == 2 ? PointKind::Crease : PointKind::Corner;  // where sharp faces end or meet the hull
     thread_local std::vector<Index> ring;
     ring_of_spokes(topology, point, start, ring);
@@ -71,6 +93,19 @@ void ring_of_spokes(const Topology& topology, Index point, Index start, std::vec
         edge = next_spoke(topology, face, point, edge);
         face = other_boundary_face(topology, edge, face);
     } while (edge != start && ring.size() <= topology.point_edges[point].size());
+}
+
+bool is_touching_point(const Topology& topology, Index point) {
+    Index start = kNone;
+    for (const Index e : topology.point_edges[point]) {
+        if (!topology.edge_on_boundary[e]) continue;
+        if (topology.boundary_faces_at(e) != 2) return false;
+        if (start == kNone) start = e;
+    }
+    if (start == kNone) return false;
+    thread_local std::vector<Index> ring;
+    ring_of_spokes(topology, point, start, ring);
+    return ring.size() != boundary_edges_at(topology, point);
 }
 
 std::vector<PointKind> classify_points(const Topology& topology) {

@@ -12,8 +12,12 @@ namespace subvol::detail {
 enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
 
 /// The kind of every point. On the boundary it is smooth without crease edges, on a crease with exactly two of them, else a
-/// corner. A point where several fans of boundary faces touch is a corner too.
+/// corner. A point where several fans of boundary faces touch is a corner too, unless all of them lie between the same two
+/// crease edges: bodies touch along a curve there.
 std::vector<PointKind> classify_points(const Topology& topology);
+
+/// Whether several fans of boundary faces touch in a boundary point alone: its boundary edges all have two faces.
+[[nodiscard]] bool is_touching_point(const Topology& topology, Index point);
 
 /// A flag for each point: whether it is inside, with six edges of four cells each.
 std::vector<std::uint8_t> regular_points(const Topology& topology);

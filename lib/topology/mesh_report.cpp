@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundary_rings.h"
 #include "mesh_parts.h"
 #include "subvol/cell.h"
 #include "subvol/detail/inspect_part.h"
@@ -81,7 +82,10 @@ void count_points(const detail::MeshPart& part, MeshReport& report) {
     for (std::size_t p = 0; p < topology.point_count; ++p) {
         if (!part.own[p]) continue;
         ++report.points_used;
-        if (topology.point_on_boundary[p]) continue;
+        if (topology.point_on_boundary[p]) {
+            report.nonmanifold_points += detail::is_touching_point(topology, static_cast<Index>(p));
+            continue;
+        }
         const auto irregular = std::ranges::count_if(topology.point_edges[p], [&](Index e) {
             return !topology.edge_on_boundary[e] && topology.edge_cells[e].size() != 4;
         });
@@ -237,6 +241,7 @@ detail::MeshShare detail::join_shares(std::span<const MeshShare> shares, std::si
         all.degenerate_cells += counts.degenerate_cells;
         all.min_scaled_jacobian = std::min(all.min_scaled_jacobian, counts.min_scaled_jacobian);
         all.nonmanifold_edges += counts.nonmanifold_edges;
+        all.nonmanifold_points += counts.nonmanifold_points;
         all.nonmanifold_faces += counts.nonmanifold_faces;
         for (const double volume : volumes) all.volume += volume;
         whole.inverted.insert(whole.inverted.end(), inverted.begin(), inverted.end());

@@ -91,6 +91,7 @@ py::dict figures_of(const HexMesh& mesh) {
     figures["degenerate_cells"] = report.degenerate_cells;
     figures["min_scaled_jacobian"] = report.min_scaled_jacobian;
     figures["nonmanifold_edges"] = report.nonmanifold_edges;
+    figures["nonmanifold_points"] = report.nonmanifold_points;
     figures["volume"] = report.volume;
     return figures;
 }
@@ -113,6 +114,7 @@ py::tuple read(const std::string& path, const std::string& other_cells, const st
         return read_mesh(
             path, {.other_cells = rule, .weld = weld, .sharp = sharp, .step = step, .blocks = blocks, .cell_values = means});
     }();
+    if (!result.sheets.empty()) result.warnings.emplace_back("quads and lines of sheets and curves left out");
     return py::make_tuple(std::move(result.mesh), result.warnings);
 }
 

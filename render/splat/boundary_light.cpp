@@ -53,17 +53,6 @@ double power(double x, double exponent) {
     return result;
 }
 
-/// arrives: the part of the key light, and of that from all around
-BoundaryLight light_on(const Shading& shading, const Vec3& normal, const Vec3& to_eye, const std::array<float, 2>& arrives) {
-    const Vec3 to_key = glm::normalize(shading.key);
-    const double from_key = static_cast<double>(arrives[0]), open = static_cast<double>(arrives[1]);
-    const double head = std::max(0.0, glm::dot(normal, to_eye)), side = from_key * std::max(0.0, glm::dot(normal, to_key));
-    const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
-    const double gloss = power(head, shading.shininess) + from_key * power(halfway, shading.shininess);
-    return {static_cast<float>(open * (shading.ambient + shading.diffuse * 0.5 * (head + side))),
-            static_cast<float>(open * (shading.specular * 0.5 * gloss))};
-}
-
 /// The light just before a surface: on it, the nodes of the light volume behind it would be dark. In eye space.
 std::array<float, 2> light_before(const LightVolume& light, const View& view, const Vec3& place, const Vec3& normal,
                                   const Shading& shading) {
@@ -105,7 +94,7 @@ public:
         const Vec3 to_eye = view_.perspective() ? -glm::normalize(place) : Vec3(0, 0, -1);
         std::array<float, 2> arrives{1, 1};
         if (lit_.light) arrives = light_before(*lit_.light, view_, place, normal / length, lit_.shading);
-        return light_on(lit_.shading, normal / length, to_eye, arrives);
+        return surface_light(lit_.shading, normal / length, to_eye, arrives);
     }
 
 private:
@@ -143,6 +132,17 @@ std::vector<BoundaryLight> lights_of(const PixelIntervals& intervals, const LitS
 }
 
 }  // namespace
+
+BoundaryLight surface_light(const Shading& shading, const Vec3& normal, const Vec3& to_eye,
+                            const std::array<float, 2>& arrives) {
+    const Vec3 to_key = glm::normalize(shading.key);
+    const double from_key = static_cast<double>(arrives[0]), open = static_cast<double>(arrives[1]);
+    const double head = std::max(0.0, glm::dot(normal, to_eye)), side = from_key * std::max(0.0, glm::dot(normal, to_key));
+    const double halfway = std::max(0.0, glm::dot(normal, glm::normalize(to_key + to_eye)));
+    const double gloss = power(head, shading.shininess) + from_key * power(halfway, shading.shininess);
+    return {static_cast<float>(open * (shading.ambient + shading.diffuse * 0.5 * (head + side))),
+            static_cast<float>(open * (shading.specular * 0.5 * gloss))};
+}
 
 std::vector<BoundaryLight> entry_lights(const PixelIntervals& intervals, const SplatScene& scene, const View& view) {
     const double middle = view.to_eye(scene.middle).z;

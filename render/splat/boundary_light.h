@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "boundary_intervals.h"
@@ -12,6 +13,11 @@ namespace subvol::detail {
 struct BoundaryLight {
     float diffuse = 1, specular = 0;
 };
+
+/// The light on a surface. normal, to_eye: of unit length, in eye space
+/// arrives: the part of the key light, and of that from all around
+[[nodiscard]] BoundaryLight surface_light(const Shading& shading, const Vec3& normal, const Vec3& to_eye,
+                                          const std::array<float, 2>& arrives = {1, 1});
 
 /// The light on the boundary where each interval is entered, by its normals there. Unlike surfaces inside the volume, the
 /// boundary has an outer side: the key light reaches that side only. Without effect where the eye is inside the volume.

@@ -322,10 +322,31 @@ private:
         if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, before, place);
         taken_.back() = 0;
         if (in_sharp_group_ && dimension_of(element) < 3) return take_tag(element, place);
+        if (element.shape == GmshShape::Quad && element.nodes == 4) return take_sheet(found_.quads, element, before, place);
+        if (element.shape == GmshShape::Line && element.nodes == 2) return take_sheet(found_.lines, element, before, place);
         for (std::size_t k = 0; k < element.nodes; ++k) values_.integer(place, number_type());
+        leave_out(element, 1);
+    }
+
+    void leave_out(const GmshElement& element, std::size_t how_many) {
+        if (how_many == 0) return;
         auto& [count, many] = left_out_[element.one];
-        ++count;
+        count += how_many;
         many = element.many;
+    }
+
+    // Reads a quad or a line; those with unknown nodes are left out, as they were never needed.
+    template <std::size_t N>
+    void take_sheet(FileCells<N>& into, const GmshElement& element, std::size_t number, const Place& place) {
+        std::array<Index, N> corners;
+        bool known = true;
+        for (Index& corner : corners) {
+            corner = nodes_.find(values_.integer(place, number_type()));
+            known = known && corner != kNone;
+        }
+        if (!known) return leave_out(element, 1);
+        into.corners.push_back(corners);
+        into.numbers.push_back(static_cast<Index>(number));
     }
 
     void take_tag(const GmshElement& element, const Place& place) {
@@ -361,6 +382,9 @@ private:
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
         }
+        const auto [quads, lines] = drop_parts_of_cells(found_, options_.sheets_alone);
+        leave_out(kGmshElements.at(3), quads);
+        leave_out(kGmshElements.at(1), lines);
         std::string list;
         for (const auto& [one, rest] : left_out_) {
             list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);

@@ -9,6 +9,8 @@ namespace subvol::detail {
 namespace {
 
 enum CellType : std::int64_t {
+    kLine = 3,
+    kQuad = 9,
     kTetrahedron = 10,
     kVoxel = 11,
     kHexahedron = 12,
@@ -74,6 +76,10 @@ void VtkCellSorter::take(std::int64_t type_in_file, std::span<const Index> corne
         take_as(found_.prisms, corners, position, "a wedge", is_curved(kOfCurvedWedges));
     } else if (type == kPyramid && others) {
         take_as(found_.pyramids, corners, position, "a pyramid", is_curved(kOfCurvedPyramids));
+    } else if (type == kQuad && corners.size() == 4) {
+        take_as(found_.quads, corners, position, "a quad", false);
+    } else if (type == kLine && corners.size() == 2) {
+        take_as(found_.lines, corners, position, "a line", false);
     } else {
         ++left_out_[type_in_file];
     }
@@ -105,6 +111,14 @@ void VtkCellSorter::take_as(FileCells<N>& into, std::span<const Index> corners, 
     into.numbers.push_back(static_cast<Index>(next_));
 }
 
+void VtkCellSorter::take_no_sheets() {
+    const std::size_t quads = found_.quads.corners.size(), lines = found_.lines.corners.size();
+    if (quads > 0) left_out_[kQuad] += quads;
+    if (lines > 0) left_out_[kLine] += lines;
+    found_.quads = {};
+    found_.lines = {};
+}
+
 void VtkCellSorter::report(std::optional<std::string_view> file) {
     if (mislabelled_ > 0) {
         found_.warnings.push_back(counted(mislabelled_, "cell", "cells") +
@@ -114,6 +128,10 @@ void VtkCellSorter::report(std::optional<std::string_view> file) {
         found_.warnings.push_back(counted(curved_, "cell has", "cells have") +
                                   " more points than corners: only the corners are used");
     }
+    if (!file) take_no_sheets();
+    const auto [quads, lines] = drop_parts_of_cells(found_, options_.sheets_alone);
+    if (quads > 0) left_out_[kQuad] += quads;
+    if (lines > 0) left_out_[kLine] += lines;
     std::string list;
     for (const auto& [type, count] : left_out_) {
         const auto names = kCellNames.find(type);

@@ -32,10 +32,12 @@ public:
 
     /// To be called after the last cell: appends warnings about cells that were left out or read as another kind.
     ///
-    /// file: refused if it has no cells that are taken; nothing: that is allowed
+    /// file: refused if it has no cells that are taken; nothing: that is allowed, and quads and lines are left out
     void report(std::optional<std::string_view> file);
 
 private:
+    /// Counts all quads and lines as left out: parts of a mesh have no sheets.
+    void take_no_sheets();
     /// Keeps all nodes of a curved hexahedron. returns: whether its shape is known
     bool keep_curved(std::int64_t type, std::span<const Index> nodes);
     /// Adds the cell to `into`, with its first N corners. curved: it may have more points

@@ -4,6 +4,7 @@
 /// All of subvol::render: splatters, projected tetrahedra, ray marchers.
 
 #include "subvol/boundary_shading.h"
+#include "subvol/draw_sheets.h"
 #include "subvol/gl_device.h"
 #include "subvol/progressive.h"
 #include "subvol/render_bricks.h"

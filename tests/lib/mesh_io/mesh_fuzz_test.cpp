@@ -23,6 +23,25 @@ TEST_F(MeshFuzz, VtkCountedCells) {
     expect_sound_or_refused(".vtk", text, 2);
 }
 
+TEST_F(MeshFuzz, QuadsAndLinesBesideHexahedra) {
+    HexMesh mesh = make_box(1, 1, 1);
+    for (const Vec3& p : {Vec3(0, 0, 2), Vec3(1, 0, 2), Vec3(2, 0, 3)}) mesh.points.push_back(p);
+    const std::string text = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 11 double\n" +
+                             point_lines(mesh) + "CELLS 4 22\n4 4 5 9 8\n" + cell_lines(mesh, 0, "8 ") +
+                             "2 9 10\n4 0 1 3 2\nCELL_TYPES 4\n9\n12\n3\n9\nPOINT_DATA 11\nSCALARS p double\n" +
+                             "LOOKUP_TABLE default\n0 1 2 3 4 5 6 7 8 9 10\nCELL_DATA 4\nVECTORS v float\n" +
+                             "1 2 3 4 5 6 7 8 9 1 2 3\n";
+    expect_sound_or_refused(".vtk", text, 43);
+    std::string gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n11\n";
+    for (std::size_t p = 0; p < 11; ++p) {
+        gmsh += std::to_string(p + 1) + " " + number(mesh.points[p].x) + " " + number(mesh.points[p].y) + " " +
+                number(mesh.points[p].z) + "\n";
+    }
+    gmsh += "$EndNodes\n$Elements\n3\n" + cell_lines(mesh, 1, "1 5 0 ") + "2 3 0 5 6 10 9\n3 1 0 10 11\n$EndElements\n" +
+            "$ElementData\n1\n\"e\"\n1\n0.0\n3\n0\n1\n2\n1 1.5\n2 2.5\n$EndElementData\n";
+    expect_sound_or_refused(".msh", gmsh, 44);
+}
+
 TEST_F(MeshFuzz, VtkOffsetsAndConnectivity) {
     const HexMesh mesh = make_box(2, 1, 1);
     const std::string text = "# vtk DataFile Version 5.1\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n" +

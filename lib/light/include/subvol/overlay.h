@@ -8,6 +8,7 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/legend.h"
+#include "subvol/sheets.h"
 #include "subvol/transfer_function.h"
 
 namespace subvol {
@@ -47,6 +48,10 @@ void draw_line(Image& image, const Vec2& from, const Vec2& to, const LineOptions
 /// depth:  of the picture as of `SplatResult`
 /// throws: Error(InvalidInput) if the sizes of picture, depth and view differ, or as `build_topology`
 void draw_edges(Image& image, std::span<const float> depth, const View& view, const HexMesh& mesh,
+                const LineOptions& options = {});
+
+/// The same for the edges of sheets and the lines of curves.
+void draw_edges(Image& image, std::span<const float> depth, const View& view, const Sheets& sheets,
                 const LineOptions& options = {});
 
 /// Draws the directions of the axes x, y, z in the lower left corner, red, green and blue, with their names.

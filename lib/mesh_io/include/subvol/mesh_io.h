@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/sheets.h"
 
 namespace subvol {
 
@@ -45,6 +46,7 @@ enum class CellValues { Auto, Mean, Fit };
 ///       corners are used
 /// step: of a series (`open_series`), from 0. Nothing: the last one
 /// blocks: the names of the parts of the mesh that are read (`ReadResult::blocks`). None: all
+/// sheets_alone: a file of sheets and curves without any cell is read too. Its mesh has no cells, so most calls refuse it
 struct ReadOptions {
     OtherCells other_cells = OtherCells::Split;
     std::optional<double> weld = {};
@@ -53,6 +55,7 @@ struct ReadOptions {
     std::optional<std::size_t> step = {};
     std::vector<std::string> blocks = {};
     CellValues cell_values = CellValues::Auto;
+    bool sheets_alone = false;
 };
 
 /// A named part of a mesh. cells: of all kinds, as the file has them
@@ -64,6 +67,8 @@ struct MeshBlock {
 /// blocks:     the parts that were read, of formats that have such parts
 /// cell_means: only if values at cells were fitted: the values of these fields in the file, for each cell of the mesh
 /// cell_parts: for each cell of the mesh the number of the file's cell that it is a part of; empty if there are no such fields
+/// sheets:     the quads and lines of VTK and Gmsh files beside hexahedra that were not split, but for those that are faces and
+///             edges of the hexahedra
 struct ReadResult {
     HexMesh mesh;  // validated; a cell array became a point array by the volume-weighted mean over incident cells
     std::vector<FieldInfo> fields;
@@ -71,6 +76,7 @@ struct ReadResult {
     std::vector<MeshBlock> blocks = {};
     std::vector<Attribute> cell_means = {};
     std::vector<Index> cell_parts = {};
+    Sheets sheets = {};
 };
 
 /// Reads a mesh. The extension of the file name decides the format:
@@ -91,10 +97,10 @@ struct ReadResult {
 ///   .foam, .inp            an OpenFOAM case, as its folder; Abaqus and CalculiX decks
 ///   .svw                   wavelets, as `write_wavelet_file` writes them
 ///
-/// Cells of lower dimension are left out; curved hexahedra are split as ReadOptions says, and of other curved cells only the
-/// corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that it looks like, and left out
-/// if it has no volume. All give a warning. Memory is
-/// never allocated by a number in the file that the file is too short for.
+/// Cells of lower dimension are left out, but for ReadResult::sheets; curved hexahedra are split as ReadOptions says, and of
+/// other curved cells only the corners are used. A cell that repeats points is taken as the prism, pyramid or tetrahedron that
+/// it looks like, and left out if it has no volume. All give a warning. Memory is never allocated by a number in the file that
+/// the file is too short for.
 ///
 /// throws: Error(Io) if the file cannot be opened;
 ///         Error(InvalidInput) if it is malformed, naming the line, and the cell or point as the file counts them;
@@ -112,6 +118,12 @@ struct ReadResult {
 /// returns: warnings, for example about attributes that the format cannot hold
 /// throws:  Error(InvalidInput) for an unknown extension, Error(Io) if the file cannot be written
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh);
+
+/// The same with sheets and curves, as quads and lines after the cells; their points that are none of the mesh come after its
+/// points. `.vtu` only.
+///
+/// throws: also Error(InvalidInput) as `validate`, or for another extension if there are sheets or curves
+std::vector<std::string> write_mesh(const std::filesystem::path& path, const HexMesh& mesh, const Sheets& sheets);
 
 /// The extensions of the files that `read_mesh` reads and `write_mesh` writes, such as ".vtu".
 [[nodiscard]] std::vector<std::string> readable_mesh_extensions();

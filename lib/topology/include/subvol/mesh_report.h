@@ -24,8 +24,9 @@ struct MeshReport {
     std::size_t degenerate_cells = 0;  // cells with zero volume, or with an edge of zero length
     double min_scaled_jacobian = 0;    // over the corners of all cells: det of the unit edge vectors
     std::size_t nonmanifold_edges = 0;
-    std::size_t nonmanifold_faces = 0;  // always 0: build_topology refuses other meshes
-    double volume = 0;                  // of the trilinear cells, exact, world³
+    std::size_t nonmanifold_points = 0;  // boundary points, away from such edges, where several fans of boundary faces touch
+    std::size_t nonmanifold_faces = 0;   // always 0: build_topology refuses other meshes
+    double volume = 0;                   // of the trilinear cells, exact, world³
     Box bounds;
 };
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sheet_scene.h"
+
+#include <algorithm>
+
+#include "input.h"
+#include "report.h"
+#include "subvol/boundary_values.h"
+#include "subvol/limit_sheets.h"
+
+namespace subvol::cli {
+namespace {
+
+constexpr double kTubeRadius = 0.004;        // of the diagonal
+constexpr std::size_t kMostQuads = 200'000;  // that a level more may make
+
+int levels_of(const Sheets& sheets, std::optional<int> most) {
+    int levels = 1;
+    for (std::size_t quads = 16 * sheets.quads.size() + 8 * sheets.lines.size(); levels < 4 && quads <= kMostQuads; quads *= 4)
+        ++levels;
+    return most ? std::min(levels, *most) : levels;
+}
+
+}  // namespace
+
+void SheetScene::draw_into(Picture& picture, const View& view) const {
+    draw_sheets(picture.image, picture.depth, drawn, boundary, view, optics, Shading{}, samples, clip);
+}
+
+std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Sheets& sheets, RefineOptions refine,
+                                                   std::optional<int> levels, const Optics& optics, int samples,
+                                                   const Clip& clip, Report& report) {
+    if (sheets.empty()) return nullptr;
+    const Sheets control = with_fields_of(sheets, mesh);
+    return report.timed("sheets", [&] {
+        refine.levels = levels_of(control, levels);
+        const Sheets fine = limit_sheets(mesh, control, refine);
+        Box box = bounds(mesh);
+        for (const Vec3& p : fine.points) box.add(p);
+        SheetSurface drawn = sheet_surface(fine, kTubeRadius * box.diagonal());
+        ColoredSurface colored;
+        const std::vector<double>& values = fine.attributes.back().values;
+        for (const Index p : drawn.sources) colored.values.push_back(values[p]);
+        colored.surface = std::move(drawn.surface);
+        Surface boundary;
+        if (!mesh.cells.empty()) {
+            refine.levels = picture_levels(mesh, levels);
+            boundary = boundary_values(mesh, refine).surface;
+        }
+        return std::make_shared<const SheetScene>(
+            SheetScene{std::move(colored), std::move(boundary), control, optics, std::max(1, samples), clip});
+    });
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "picture_notes.h"
+#include "subvol/clip.h"
+#include "subvol/draw_sheets.h"
+#include "subvol/refine.h"
+#include "subvol/sheets.h"
+
+namespace subvol::cli {
+
+/// The sheets and curves of a picture on the limit, and the boundary of the volume that may hide them.
+///
+/// control: as they were read, for --edges
+struct SheetScene {
+    ColoredSurface drawn;
+    Surface boundary;
+    Sheets control;
+    Optics optics;
+    int samples = 1;
+    Clip clip{};
+
+    void draw_into(Picture& picture, const View& view) const;
+};
+
+/// Puts sheets and curves on the limit. Null if there are none.
+///
+/// mesh:   with the field that is shown and, last, the one of the colours
+/// sheets: with the fields of their file, or with the same
+/// levels: no more than these, if given
+[[nodiscard]] std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Sheets& sheets,
+                                                                 RefineOptions refine, std::optional<int> levels,
+                                                                 const Optics& optics, int samples, const Clip& clip,
+                                                                 Report& report);
+
+}  // namespace subvol::cli

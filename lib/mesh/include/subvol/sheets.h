@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "subvol/hex_mesh.h"
+
+namespace subvol {
+
+/// A corner of a cell of a mesh. cell: kNone for none
+struct CellCorner {
+    Index cell = kNone;
+    std::uint8_t corner = 0;
+
+    bool operator==(const CellCorner&) const = default;
+};
+
+/// Sheets and curves: quads and lines that belong to no cell, beside a mesh of cells or alone. They have points of their own,
+/// so that the mesh is the same with them and without.
+///
+/// attributes: those of the mesh, in its order, with values at these points
+/// quads:      four points in cyclic order
+/// lines:      two points
+/// solid:      for each point a corner of the mesh's cells if it is a point of the mesh too. Numbers of corners stay when
+///             unused points of the mesh are left out, and child k of cell c has the number 8c + k at the next level
+struct Sheets {
+    std::vector<Vec3> points;
+    std::vector<Attribute> attributes;
+    std::vector<std::array<Index, 4>> quads;
+    std::vector<std::array<Index, 2>> lines;
+    std::vector<CellCorner> solid;
+
+    [[nodiscard]] bool empty() const { return quads.empty() && lines.empty(); }
+};
+
+/// The sheets and curves of some quads and lines over the points of a mesh, used by its cells or not. Quads and lines that
+/// occur twice are taken once.
+///
+/// returns: their points in the order of the mesh, with its attributes there
+/// throws:  Error(InvalidInput) if a quad or a line has a point that does not exist, or one twice
+[[nodiscard]] Sheets make_sheets(const HexMesh& mesh, std::span<const std::array<Index, 4>> quads,
+                                 std::span<const std::array<Index, 2>> lines);
+
+/// throws: Error(InvalidInput) if a point of a quad or a line does not exist or occurs twice in it, a point is not finite, a
+///         corner of a cell does not exist, or the attributes are not those of the mesh with one finite value for each point
+void validate(const Sheets& sheets, const HexMesh& mesh);
+
+/// How sheets and curves hang together, for `subvol info`.
+///
+/// attached:         points that are points of the mesh too
+/// free_edges:       edges of one quad whose ends are not both attached
+/// nonmanifold_edges: edges of more than two quads
+struct SheetReport {
+    std::size_t quads = 0, lines = 0, points = 0, attached = 0, free_edges = 0, nonmanifold_edges = 0;
+};
+[[nodiscard]] SheetReport inspect(const Sheets& sheets);
+
+}  // namespace subvol

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sheet_levels.h"
+
+#include <algorithm>
+#include <map>
+
+#include "refine_steps.h"
+#include "schemes.h"
+#include "subvol/cell.h"
+#include "subvol/error.h"
+
+namespace subvol {
+
+namespace detail {
+
+namespace {
+
+/// The edges and faces of cells whose points are all attached, by their sorted points of the solid, with the corner of a child
+/// that their new point is.
+struct SolidParts {
+    std::map<std::array<Index, 2>, CellCorner> edges;
+    std::map<std::array<Index, 4>, CellCorner> faces;
+};
+
+/// The children are those of `chosen` cells: child i of chosen[s] is 8s + i.
+SolidParts parts_of(const SheetLevel& level, std::span<const Index> chosen) {
+    SolidParts parts;
+    std::vector<std::uint8_t> attached(level.solid.points.size(), 0);
+    for (const Index p : level.at) {
+        if (p != kNone) attached[p] = 1;
+    }
+    for (std::size_t s = 0; s < chosen.size(); ++s) {
+        const auto& cell = level.solid.cells[chosen[s]];
+        const auto child = [&](int i, int corner) {
+            return CellCorner{static_cast<Index>(8 * s + static_cast<std::size_t>(i)), static_cast<std::uint8_t>(corner)};
+        };
+        const auto point = [&](int corner) { return cell[static_cast<std::size_t>(corner)]; };
+        for (const auto& [i, j] : kCellEdges) {
+            if (attached[point(i)] && attached[point(j)]) {
+                parts.edges.try_emplace({std::min(point(i), point(j)), std::max(point(i), point(j))}, child(i, j));
+            }
+        }
+        for (const auto& face : kCellFaces) {
+            std::array<Index, 4> key;
+            bool all = true;
+            for (std::size_t k = 0; k < 4; ++k) {
+                key[k] = point(face[k]);
+                all = all && attached[key[k]];
+            }
+            if (!all) continue;
+            std::sort(key.begin(), key.end());
+            parts.faces.try_emplace(key, child(face[0], face[2]));
+        }
+    }
+    return parts;
+}
+
+/// The cells within two layers of the attached points: those that the next level needs.
+std::vector<Index> cells_about(const SheetLevel& level) {
+    std::vector<std::uint8_t> marked(level.solid.points.size(), 0);
+    for (const Index p : level.at) {
+        if (p != kNone) marked[p] = 1;
+    }
+    std::vector<Index> cells;
+    for (int layer = 0; layer < 2; ++layer) {
+        cells.clear();
+        for (std::size_t c = 0; c < level.solid.cells.size(); ++c) {
+            const auto& cell = level.solid.cells[c];
+            if (std::ranges::any_of(cell, [&](Index p) { return marked[p] != 0; })) cells.push_back(static_cast<Index>(c));
+        }
+        for (const Index c : cells) {
+            for (const Index p : level.solid.cells[c]) marked[p] = 1;
+        }
+    }
+    return cells;
+}
+
+/// Points and values of a level that is being made.
+struct LevelData {
+    const SheetLevel& from;
+    Sheets& to;
+
+    void add(const StencilRuns& row) {
+        Vec3 place(0.0);
+        std::size_t next = 0;
+        for (const auto& run : row.runs) {
+            Vec3 sum(0.0);
+            for (std::uint32_t k = 0; k < run.count; ++k) sum += from.sheets.points[row.points[next++]];
+            place += run.weight * sum;
+        }
+        to.points.push_back(place);
+        to.solid.push_back({});
+        for (std::size_t a = 0; a < to.attributes.size(); ++a) {
+            const Attribute& attribute = from.sheets.attributes[a];
+            const auto channels = static_cast<std::size_t>(attribute.channels);
+            for (std::size_t c = 0; c < channels; ++c) {
+                double value = 0;
+                next = 0;
+                for (const auto& run : row.runs) {
+                    double sum = 0;
+                    for (std::uint32_t k = 0; k < run.count; ++k) sum += attribute.values[row.points[next++] * channels + c];
+                    value += run.weight * sum;
+                }
+                to.attributes[a].values.push_back(value);
+            }
+        }
+    }
+
+    /// Takes place and values from the refined cells.
+    void add(const HexMesh& solid, const CellCorner& corner, Index whole_cell, std::vector<Index>& at) {
+        const Index p = solid.cells[corner.cell][corner.corner];
+        to.points.push_back(solid.points[p]);
+        to.solid.push_back({whole_cell, corner.corner});
+        at[to.points.size() - 1] = p;
+        for (std::size_t a = 0; a < to.attributes.size(); ++a) {
+            const auto channels = static_cast<std::size_t>(to.attributes[a].channels);
+            const auto first = solid.attributes[a].values.begin() + static_cast<std::ptrdiff_t>(p * channels);
+            to.attributes[a].values.insert(to.attributes[a].values.end(), first, first + static_cast<std::ptrdiff_t>(channels));
+        }
+    }
+};
+
+SheetLevel next_level(const SheetLevel& level, const SchemeOptions& scheme) {
+    const Sheets& sheets = level.sheets;
+    const SheetComplex complex = complex_of(level);
+    const Topology &quads = complex.quads.topology, &lines = complex.lines.topology;
+    const auto of_quads = make_rules(quads, scheme, complex.quads.kinds);
+    const auto of_lines = make_rules(lines, scheme, complex.lines.kinds);
+
+    const std::size_t points = sheets.points.size();
+    const std::size_t first_face = points + quads.edges.size(), first_line = first_face + quads.faces.size();
+    const std::size_t count = first_line + lines.edges.size();
+    if (count >= kNone) {
+        throw Error(ErrorCode::InvalidInput, "the refined sheets need " + std::to_string(count) + " points", {},
+                    "at most " + std::to_string(kNone - 1) + ": use fewer levels");
+    }
+    SheetLevel next;
+    next.at.assign(count, kNone);
+    std::vector<Index> chosen;
+    std::vector<Index> place(level.solid.cells.size(), kNone);  // of a cell among the chosen
+    if (!level.solid.cells.empty()) {
+        chosen = cells_about(level);
+        next.solid = refine_cells(level.solid, chosen, {.scheme = scheme, .levels = 1});
+        for (std::size_t s = 0; s < chosen.size(); ++s) {
+            place[chosen[s]] = static_cast<Index>(s);
+            const std::size_t whole = level.cells.empty() ? chosen[s] : level.cells[chosen[s]];
+            for (std::size_t k = 0; k < 8; ++k) next.cells.push_back(static_cast<Index>(8 * whole + k));
+        }
+    }
+    const SolidParts parts = parts_of(level, chosen);
+    std::vector<CellCorner> corner_of(level.solid.points.size());  // the corner of a child at each attached point
+    for (std::size_t s = 0; s < chosen.size(); ++s) {
+        for (std::uint8_t k = 0; k < 8; ++k) {
+            CellCorner& corner = corner_of[level.solid.cells[chosen[s]][k]];
+            if (corner.cell == kNone) corner = {static_cast<Index>(8 * s + k), k};
+        }
+    }
+
+    Sheets& fine = next.sheets;
+    for (const Attribute& attribute : sheets.attributes) fine.attributes.push_back({attribute.name, attribute.channels, {}});
+    LevelData data{level, fine};
+    StencilBuilder row;
+    const auto from_solid = [&](const CellCorner& corner) { data.add(next.solid, corner, next.cells[corner.cell], next.at); };
+    const auto from_rules = [&](const auto& write) {
+        row.clear();
+        write();
+        data.add(row.finish());
+    };
+    const auto solid_edge = [&](const std::array<Index, 2>& edge) {
+        const Index a = level.at[edge[0]], b = level.at[edge[1]];
+        if (a == kNone || b == kNone) return parts.edges.end();
+        return parts.edges.find({std::min(a, b), std::max(a, b)});
+    };
+    for (Index p = 0; p < points; ++p) {
+        if (level.at[p] != kNone) {
+            from_solid(corner_of[level.at[p]]);
+        } else if (!quads.point_edges[p].empty()) {
+            from_rules([&] { of_quads->vertex_point(p, row); });
+        } else if (!lines.point_edges[p].empty()) {
+            from_rules([&] { of_lines->vertex_point(p, row); });
+        } else {
+            from_rules([&] { row.add(p, 1); });
+        }
+    }
+    for (Index e = 0; e < quads.edges.size(); ++e) {
+        const auto found = solid_edge(quads.edges[e]);
+        found != parts.edges.end() ? from_solid(found->second) : from_rules([&] { of_quads->edge_point(e, row); });
+    }
+    for (Index f = 0; f < quads.faces.size(); ++f) {
+        std::array<Index, 4> key;
+        for (std::size_t k = 0; k < 4; ++k) key[k] = level.at[quads.faces[f][k]];
+        std::sort(key.begin(), key.end());
+        const auto found = key[3] == kNone ? parts.faces.end() : parts.faces.find(key);
+        found != parts.faces.end() ? from_solid(found->second) : from_rules([&] { of_quads->face_point(f, row); });
+    }
+    for (Index e = 0; e < lines.edges.size(); ++e) {
+        const auto found = solid_edge(lines.edges[e]);
+        found != parts.edges.end() ? from_solid(found->second) : from_rules([&] { of_lines->edge_point(e, row); });
+    }
+
+    for (std::size_t f = 0; f < quads.faces.size(); ++f) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            fine.quads.push_back({quads.faces[f][k], static_cast<Index>(points + quads.face_edges[f][k]),
+                                  static_cast<Index>(first_face + f),
+                                  static_cast<Index>(points + quads.face_edges[f][(k + 3) % 4])});
+        }
+    }
+    for (const auto& [a, b] : sheets.lines) {
+        const auto in_sheet = quads.find_edge(a, b);
+        const auto middle = static_cast<Index>(in_sheet ? points + *in_sheet : first_line + *lines.find_edge(a, b));
+        fine.lines.push_back({a, middle});
+        fine.lines.push_back({middle, b});
+    }
+    return next;
+}
+
+}  // namespace
+
+SheetComplex complex_of(const SheetLevel& level) {
+    std::vector<Index> all(level.solid.cells.size());
+    for (std::size_t c = 0; c < all.size(); ++c) all[c] = static_cast<Index>(c);
+    const SolidParts parts = parts_of(level, all);
+    const auto on_solid = [&](Index p, Index q) {
+        const Index a = level.at[p], b = level.at[q];
+        return a != kNone && b != kNone && parts.edges.contains({std::min(a, b), std::max(a, b)});
+    };
+    SheetComplex complex;
+    complex.quads = topology_of_quads(level.sheets, on_solid);
+    complex.lines = topology_of_lines(level.sheets, complex.quads.topology);
+    return complex;
+}
+
+SheetLevel refine_sheet_level(const HexMesh& mesh, const Sheets& sheets, const RefineOptions& options) {
+    check_levels(options.levels);
+    validate(sheets, mesh);
+    SheetLevel level;
+    level.sheets = sheets;
+    level.at.assign(sheets.points.size(), kNone);
+    const bool attached = std::ranges::any_of(sheets.solid, [](const CellCorner& corner) { return corner.cell != kNone; });
+    if (attached) {
+        level.solid = control_mesh(mesh, options.scheme, options.levels);
+        for (std::size_t p = 0; p < sheets.points.size(); ++p) {
+            const auto& [cell, corner] = sheets.solid[p];
+            if (cell != kNone) level.at[p] = level.solid.cells[cell][corner];
+        }
+    }
+    SchemeOptions scheme = options.scheme;
+    scheme.crease_angle_deg.reset();  // they are found once, in the control mesh
+    for (int l = 0; l < options.levels; ++l) {
+        report_progress(options.progress, "sheets", static_cast<double>(l) / options.levels);
+        level = next_level(level, scheme);
+    }
+    return level;
+}
+
+}  // namespace detail
+
+Sheets refine_sheets(const HexMesh& mesh, const Sheets& sheets, const RefineOptions& options) {
+    return detail::refine_sheet_level(mesh, sheets, options).sheets;
+}
+
+}  // namespace subvol

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Quads and lines without cells as a Topology, for the rules of boundaries.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "boundary_rings.h"
+#include "subvol/sheets.h"
+#include "subvol/topology.h"
+
+namespace subvol::detail {
+
+/// kinds: of the points that have an edge here
+struct SheetTopology {
+    Topology topology;
+    std::vector<PointKind> kinds;
+};
+
+/// on_solid: whether an edge lies on an edge of a cell, by its points, the smaller first
+using OnSolid = std::function<bool(Index, Index)>;
+
+/// The quads of the sheets: all are boundary faces without cells, in the order of `sheets.quads`, with their points.
+[[nodiscard]] SheetTopology topology_of_quads(const Sheets& sheets, const OnSolid& on_solid);
+
+/// The lines that are no edges of quads: all are creases.
+[[nodiscard]] SheetTopology topology_of_lines(const Sheets& sheets, const Topology& quads);
+
+}  // namespace subvol::detail

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "subvol/camera.h"
+#include "subvol/clip.h"
+#include "subvol/image.h"
+#include "subvol/optics.h"
+#include "subvol/splat_options.h"
+#include "subvol/surface.h"
+
+namespace subvol {
+
+/// Triangles with a value at each point, such as those of `sheet_surface`.
+struct ColoredSurface {
+    Surface surface;
+    std::vector<double> values;
+};
+
+/// Draws opaque triangles, lit on either side, into the finished picture of a volume: before it or behind it. What lies within
+/// the volume, or between parts of it, is drawn behind it, as far as that is transparent; where the volume is opaque from its
+/// boundary on, that is exact.
+///
+/// depth:    of the picture as of `SplatResult`, which becomes that of the triangles where they are seen first; empty: none
+/// boundary: of the volume, closed, outward; empty: there is no volume
+/// samples:  those of the picture: n × n places in each pixel
+/// clip:     that of the picture, without its slices
+/// throws:   Error(InvalidInput) if there is not one value for each point, or the sizes of picture and view differ
+/// cost:     parallel; the same for any number of threads
+void draw_sheets(Image& image, std::span<float> depth, const ColoredSurface& sheets, const Surface& boundary, const View& view,
+                 const Optics& optics, const Shading& shading = {}, int samples = 1, const Clip& clip = {});
+
+}  // namespace subvol

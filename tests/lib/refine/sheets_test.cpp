@@ -1,0 +1,450 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lib/expect_error.h"
+#include "lib/test_meshes.h"
+#include "subvol/cell.h"
+#include "subvol/limit.h"
+#include "subvol/limit_sheets.h"
+#include "subvol/mesh_report.h"
+#include "subvol/topology.h"
+
+namespace subvol {
+namespace {
+
+using Quads = std::vector<std::array<Index, 4>>;
+using Lines = std::vector<std::array<Index, 2>>;
+
+constexpr double kRounding = 1e-13;  // sums of some ten terms of size 1, a few levels deep
+
+HexMesh with_field(HexMesh mesh) {
+    test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(3 * p.x + p.y) + p.z * p.z; });
+    return mesh;
+}
+
+/// A mesh of points alone, for sheets without cells.
+HexMesh of_points(std::vector<Vec3> points) {
+    HexMesh mesh;
+    mesh.points = std::move(points);
+    return mesh;
+}
+
+/// The hull of a mesh, and its edges with one cell, which are creases of the mesh.
+struct Hull {
+    Quads quads;
+    Lines creases;
+};
+Hull hull_of(const HexMesh& mesh) {
+    const Topology topology = build_topology(mesh);
+    Hull hull;
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+        if (topology.face_on_hull(static_cast<Index>(f))) hull.quads.push_back(topology.faces[f]);
+    }
+    for (std::size_t e = 0; e < topology.edges.size(); ++e) {
+        if (topology.edge_is_crease[e]) hull.creases.push_back(topology.edges[e]);
+    }
+    return hull;
+}
+
+Sheets detached(Sheets sheets) {
+    for (CellCorner& corner : sheets.solid) corner = {};
+    return sheets;
+}
+
+/// The places and values of the points of a mesh at the sheets' corners: the same bits.
+void expect_those_of(const Sheets& sheets, const HexMesh& mesh) {
+    for (std::size_t p = 0; p < sheets.points.size(); ++p) {
+        const auto& [cell, corner] = sheets.solid[p];
+        if (cell == kNone) continue;
+        const Index q = mesh.cells.at(cell)[corner];
+        ASSERT_EQ(sheets.points[p], mesh.points[q]);
+        for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+            ASSERT_EQ(sheets.attributes[a].values[p], mesh.attributes[a].values[q]);
+        }
+    }
+}
+
+void expect_near(const Sheets& a, const Sheets& b, double tolerance) {
+    EXPECT_EQ(a.quads, b.quads);
+    EXPECT_EQ(a.lines, b.lines);
+    ASSERT_EQ(a.points.size(), b.points.size());
+    ASSERT_EQ(a.attributes.size(), b.attributes.size());
+    for (std::size_t p = 0; p < a.points.size(); ++p) {
+        ASSERT_LE(glm::distance(a.points[p], b.points[p]), tolerance) << "point " << p;
+        for (std::size_t f = 0; f < a.attributes.size(); ++f) {
+            ASSERT_NEAR(a.attributes[f].values[p], b.attributes[f].values[p], tolerance);
+        }
+    }
+}
+
+/// A bent plate with a fin on it that leaves the plate, a rod from the fin, and all values of a field.
+struct Bracket {
+    HexMesh mesh;
+    Sheets sheets;
+};
+Bracket make_bracket() {
+    HexMesh mesh = test::make_box(4, 3, 2);
+    const auto id = [](Index i, Index j, Index k) { return i + 5 * (j + 4 * k); };
+    const auto above = static_cast<Index>(mesh.points.size());
+    for (Index k = 1; k <= 2; ++k) {
+        for (Index i = 0; i <= 4; ++i) mesh.points.emplace_back(i, 1.0 + .2 * k, 2.0 + k);
+    }
+    for (Index n = 1; n <= 3; ++n) mesh.points.emplace_back(4.0 + n, 1.4 + .1 * n * n, 4.0);
+    for (Vec3& p : mesh.points) p += Vec3(.1 * std::sin(p.y + p.z), .2 * std::sin(p.x), .1 * std::cos(p.x * p.y));
+    Quads quads;
+    for (Index i = 0; i < 4; ++i) {
+        quads.push_back({id(i, 1, 2), id(i + 1, 1, 2), above + i + 1, above + i});
+        quads.push_back({above + i, above + i + 1, above + i + 6, above + i + 5});
+    }
+    const Lines lines{{above + 9, above + 10}, {above + 10, above + 11}, {above + 11, above + 12}};
+    mesh = with_field(std::move(mesh));
+    return {mesh, make_sheets(mesh, quads, lines)};
+}
+
+class SheetsOfEveryScheme : public testing::TestWithParam<Scheme> {};
+INSTANTIATE_TEST_SUITE_P(Schemes, SheetsOfEveryScheme,
+                         testing::Values(Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear));
+
+TEST_P(SheetsOfEveryScheme, AreRefinedAsTheBoundaryOfCellsIs) {
+    for (const bool box : {true, false}) {
+        HexMesh mesh = with_field(box ? test::make_box(4, 3, 2) : test::make_nested_cubes(2));
+        test::jitter(mesh, .05, 3);
+        const Hull hull = hull_of(mesh);
+        const Sheets attached = make_sheets(mesh, hull.quads, hull.creases);
+        for (const int levels : {1, 2, 3}) {
+            const RefineOptions options{.scheme = {GetParam()}, .levels = levels};
+            const HexMesh fine = refine(mesh, options);
+            const Sheets with_cells = refine_sheets(mesh, attached, options);
+            expect_those_of(with_cells, fine);
+            expect_near(refine_sheets(mesh, detached(attached), options), with_cells, kRounding);
+            const Sheets limit = limit_sheets(mesh, attached, options);
+            expect_near(limit_sheets(mesh, detached(attached), options), limit, 1e-12);  // eigenvectors are found to 1e-13
+        }
+    }
+}
+
+TEST_P(SheetsOfEveryScheme, FollowTheCellsThatTheyAreAttachedTo) {
+    const auto& [mesh, sheets] = make_bracket();
+    const RefineOptions options{.scheme = {GetParam()}, .levels = 3};
+    const Sheets fine = refine_sheets(mesh, sheets, options), limit = limit_sheets(mesh, sheets, options);
+    const HexMesh cells = refine(mesh, options);
+    expect_those_of(fine, cells);
+    const HexMesh limit_of_cells = on_limit(cells, GetParam());
+    std::size_t attached = 0;
+    for (std::size_t p = 0; p < limit.points.size(); ++p) {
+        const auto& [cell, corner] = limit.solid[p];
+        if (cell == kNone) continue;
+        ++attached;
+        EXPECT_LE(glm::distance(limit.points[p], limit_of_cells.points[limit_of_cells.cells[cell][corner]]), kRounding);
+    }
+    EXPECT_EQ(attached, 4u * 8 + 1);  // four edges of the plate
+    EXPECT_EQ(fine.quads.size(), 8u * 64);
+    EXPECT_EQ(fine.lines.size(), 3u * 8);
+}
+
+TEST_P(SheetsOfEveryScheme, OneLevelAfterTheOtherIsBothAtOnce) {
+    const auto& [mesh, sheets] = make_bracket();
+    const RefineOptions one{.scheme = {GetParam()}, .levels = 1}, two{.scheme = {GetParam()}, .levels = 2};
+    expect_near(refine_sheets(refine(mesh, one), refine_sheets(mesh, sheets, one), one), refine_sheets(mesh, sheets, two),
+                kRounding);
+}
+
+TEST_P(SheetsOfEveryScheme, CommuteWithAffineMaps) {
+    const auto& [mesh, sheets] = make_bracket();
+    const auto map = [](const Vec3& p) { return Vec3(2 * p.x - p.y + 1, .5 * p.y + p.z, p.z - .3 * p.x - 2); };
+    const RefineOptions options{.scheme = {GetParam()}, .levels = 2};
+    HexMesh moved_mesh = mesh;
+    Sheets moved = sheets, expected = limit_sheets(mesh, sheets, options);
+    for (auto* points : {&moved_mesh.points, &moved.points, &expected.points}) {
+        for (Vec3& p : *points) p = map(p);
+    }
+    expect_near(limit_sheets(moved_mesh, moved, options), expected, 1e-12);
+}
+
+TEST_P(SheetsOfEveryScheme, AKinkedCrossingIsHeldTogetherByItsCrease) {
+    // Four half planes about a bent line, a bundle: the line is a curve of its own.
+    std::vector<Vec3> points;
+    for (int side = -1; side < 4; ++side) {
+        for (int i = 0; i < 5; ++i) {
+            const Vec3 on_line(i, .1 * i * i, .2 * i);
+            const double angle = 1.4 * side;
+            points.push_back(side < 0 ? on_line : on_line + Vec3(0, std::cos(angle), std::sin(angle)));
+        }
+    }
+    Quads quads;
+    for (Index side = 1; side < 5; ++side) {
+        for (Index i = 0; i < 4; ++i) quads.push_back({i, i + 1, 5 * side + i + 1, 5 * side + i});
+    }
+    const HexMesh none = of_points(points);
+    const RefineOptions options{.scheme = {GetParam()}, .levels = 2};
+    const Sheets bundle = limit_sheets(none, make_sheets(none, quads, {}), options);
+    const HexMesh alone = of_points({points.begin(), points.begin() + 5});
+    const Sheets curve = limit_sheets(alone, make_sheets(alone, {}, Lines{{0, 1}, {1, 2}, {2, 3}, {3, 4}}), options);
+    for (const Vec3& p : curve.points) {
+        double nearest = 1;
+        for (const Vec3& q : bundle.points) nearest = std::min(nearest, glm::distance(p, q));
+        EXPECT_LE(nearest, kRounding);
+    }
+}
+
+TEST(Sheets, AClosedOneHasTheLimitOfCatmullClark) {
+    const HexMesh cube = test::make_box(1, 1, 1);
+    Quads quads;
+    for (const auto& face : kCellFaces) {
+        quads.push_back({});
+        for (std::size_t k = 0; k < 4; ++k) quads.back()[k] = cube.cells[0][static_cast<std::size_t>(face[k])];
+    }
+    HexMesh points = of_points(cube.points);
+    const Sheets sheets = make_sheets(points, quads, {});
+    // The mask (n v + 4 mean of edges + mean of faces)/(n + 5) with n = 3, of the corner at the origin: along each axis
+    // (3·0 + 4·1/3 + 2/3)/8 = 1/4.
+    for (const int levels : {0, 1, 2, 4}) {
+        const Sheets limit = limit_sheets(points, sheets, {.scheme = {Scheme::CatmullClark}, .levels = levels});
+        EXPECT_LE(glm::distance(limit.points[0], Vec3(.25)), kRounding);
+        EXPECT_LE(glm::distance(limit.points[7], Vec3(.75)), kRounding);
+    }
+}
+
+TEST(Sheets, ACurveIsACubicSpline) {
+    const HexMesh points = of_points({{0, 0, 0}, {1, 2, 0}, {2, -1, 1}, {3, 0, 2}, {5, 1, 0}});
+    const Sheets curve = make_sheets(points, {}, Lines{{0, 1}, {1, 2}, {2, 3}, {3, 4}});
+    for (const Scheme scheme : {Scheme::CatmullClark, Scheme::Bsxw}) {
+        for (const int levels : {0, 1, 3}) {
+            const Sheets limit = limit_sheets(points, curve, {.scheme = {scheme}, .levels = levels});
+            EXPECT_EQ(limit.points[0], points.points[0]);  // ends stay
+            for (std::size_t i = 1; i < 4; ++i) {
+                const Vec3 expected = (points.points[i - 1] + 4.0 * points.points[i] + points.points[i + 1]) / 6.0;
+                EXPECT_LE(glm::distance(limit.points[i], expected), kRounding);
+            }
+        }
+        // The middle of a segment of a cubic B-spline: (1, 23, 23, 1)/48.
+        const Sheets once = limit_sheets(points, curve, {.scheme = {scheme}, .levels = 1});
+        const auto& p = points.points;
+        EXPECT_LE(glm::distance(once.points[5 + 1], (p[0] + 23.0 * p[1] + 23.0 * p[2] + p[3]) / 48.0), kRounding);
+    }
+}
+
+TEST(Sheets, FourPointCurvesReproduceCubicsInsideAndQuadraticsToTheEnds) {
+    for (const int degree : {2, 3}) {
+        std::vector<Vec3> on_curve;
+        Lines lines;
+        for (int i = 0; i < 8; ++i) {
+            on_curve.emplace_back(i, std::pow(i, degree), 0);
+            if (i > 0) lines.push_back({static_cast<Index>(i - 1), static_cast<Index>(i)});
+        }
+        const HexMesh points = of_points(on_curve);
+        const Sheets fine = refine_sheets(points, make_sheets(points, {}, lines), {.levels = 1});
+        for (const Vec3& p : fine.points) {
+            const bool at_end = p.x < 1 || p.x > 6;
+            if (degree == 3 && at_end) continue;
+            EXPECT_NEAR(p.y, std::pow(p.x, degree), 1e-11);  // values up to 343
+        }
+    }
+}
+
+TEST(Sheets, CornersOfAFreeSheetStayAndItsRimIsACurveOfItsOwn) {
+    HexMesh points = of_points({});
+    Quads quads;
+    const auto id = [](Index i, Index j) { return i + 4 * j; };
+    for (Index j = 0; j < 4; ++j) {
+        for (Index i = 0; i < 4; ++i) points.points.emplace_back(i, j, .3 * i * j - .1 * j * j);
+    }
+    for (Index j = 0; j < 3; ++j) {
+        for (Index i = 0; i < 3; ++i) quads.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)});
+    }
+    const RefineOptions options{.scheme = {Scheme::CatmullClark}, .levels = 2};
+    const Sheets limit = limit_sheets(points, make_sheets(points, quads, {}), options);
+    for (const Index corner : {id(0, 0), id(3, 0), id(0, 3), id(3, 3)}) {
+        EXPECT_EQ(limit.points[corner], points.points[corner]);
+    }
+    const Vec3 expected = (points.points[id(0, 0)] + 4.0 * points.points[id(1, 0)] + points.points[id(2, 0)]) / 6.0;
+    EXPECT_LE(glm::distance(limit.points[id(1, 0)], expected), kRounding);
+    const SheetReport report = inspect(make_sheets(points, quads, {}));
+    EXPECT_EQ(report.free_edges, 12u);
+    EXPECT_EQ(report.nonmanifold_edges, 0u);
+}
+
+TEST(Sheets, TwoThatTouchInAPointAreHeldThere) {
+    HexMesh points = of_points({});
+    Quads quads;
+    const auto add = [&](const Vec3& u, const Vec3& v) {  // four quads about the origin, which is point 0
+        std::array<Index, 9> at{};
+        for (int j = -1; j <= 1; ++j) {
+            for (int i = -1; i <= 1; ++i) {
+                const auto n = static_cast<std::size_t>(3 * (j + 1) + i + 1);
+                if (i == 0 && j == 0 && !points.points.empty() && !quads.empty()) continue;
+                at[n] = static_cast<Index>(points.points.size());
+                points.points.push_back(double(i) * u + double(j) * v);
+            }
+        }
+        const Index center = quads.empty() ? at[4] : quads[0][2];
+        at[4] = center;
+        for (const auto& [a, b, c, d] : {std::array<std::size_t, 4>{0, 1, 4, 3}, {1, 2, 5, 4}, {3, 4, 7, 6}, {4, 5, 8, 7}}) {
+            quads.push_back({at[a], at[b], at[c], at[d]});
+        }
+    };
+    add({1, 0, 0}, {0, 1, 0});
+    add({0, 1, 1}, {1, 0, 2});
+    points.points[quads[0][2]] = Vec3(0, 0, .5);
+    const Sheets limit = limit_sheets(points, make_sheets(points, quads, {}), {.scheme = {Scheme::CatmullClark}, .levels = 2});
+    double nearest = 1;
+    for (const Vec3& p : limit.points) nearest = std::min(nearest, glm::distance(p, Vec3(0, 0, .5)));
+    EXPECT_EQ(nearest, 0);
+}
+
+TEST(Sheets, LeaveTheTrianglesAndTubesThatArePromised) {
+    const auto& [mesh, sheets] = make_bracket();
+    const SheetSurface plain = sheet_surface(sheets, 0), tubes = sheet_surface(sheets, .05);
+    EXPECT_EQ(plain.surface.triangles.size(), 2 * sheets.quads.size());
+    EXPECT_EQ(tubes.sheet_triangles, plain.surface.triangles.size());
+    ASSERT_EQ(tubes.sources.size(), tubes.surface.points.size());
+    for (std::size_t p = sheets.points.size(); p < tubes.sources.size(); ++p) {
+        EXPECT_NEAR(glm::distance(tubes.surface.points[p], sheets.points[tubes.sources[p]]), .05, 1e-14);
+    }
+    test::expect_error(ErrorCode::InvalidInput, "radius", [&] { (void)sheet_surface(sheets, -1); });
+}
+
+TEST(Sheets, RefuseWhatIsMalformed) {
+    const auto& [mesh, sheets] = make_bracket();
+    const auto refuses = [&](const std::string& part, const auto& change) {
+        Sheets bad = sheets;
+        change(bad);
+        test::expect_error(ErrorCode::InvalidInput, part, [&] { (void)refine_sheets(mesh, bad); });
+    };
+    refuses("there is no point 99", [](Sheets& s) { s.quads[0][2] = 99; });
+    refuses("twice", [](Sheets& s) { s.lines[0][0] = s.lines[0][1]; });
+    refuses("not finite", [](Sheets& s) { s.points[3].y = std::numeric_limits<double>::quiet_NaN(); });
+    refuses("corners of cells", [](Sheets& s) { s.solid.pop_back(); });
+    refuses("there is no corner", [](Sheets& s) { s.solid[0] = {24, 0}; });
+    refuses("there is no corner", [](Sheets& s) { s.solid[0] = {0, 8}; });
+    refuses("attributes", [](Sheets& s) { s.attributes.clear(); });
+    refuses("attributes", [](Sheets& s) { s.attributes[0].values[0] = std::numeric_limits<double>::infinity(); });
+    test::expect_error(ErrorCode::InvalidInput, "levels", [&] { (void)refine_sheets(mesh, sheets, {.levels = 11}); });
+    test::expect_error(ErrorCode::InvalidInput, "there is no point", [&] {
+        (void)make_sheets(mesh, Quads{{0, 1, 2, 1000}}, {});
+    });
+}
+
+// Volumes whose cells touch in edges and points alone.
+
+/// The positions and values of both parts of a mesh are those of each part refined alone.
+void expect_parts_alone(const HexMesh& both, std::size_t cells_of_first, const RefineOptions& options) {
+    const auto limit = [&](const HexMesh& mesh) { return on_limit(refine(mesh, options), options.scheme.kind); };
+    const HexMesh together = limit(both);
+    HexMesh first = both, second = both;
+    const auto split = static_cast<std::ptrdiff_t>(cells_of_first);
+    first.cells.erase(first.cells.begin() + split, first.cells.end());
+    second.cells.erase(second.cells.begin(), second.cells.begin() + split);
+    std::size_t c = 0;
+    for (const HexMesh& part : {limit(first), limit(second)}) {
+        for (const auto& cell : part.cells) {
+            for (std::size_t k = 0; k < 8; ++k) {
+                const Index p = together.cells[c][k];
+                ASSERT_LE(glm::distance(together.points[p], part.points[cell[k]]), 1e-12);
+                ASSERT_NEAR(together.attributes[0].values[p], part.attributes[0].values[cell[k]], 1e-12);
+            }
+            ++c;
+        }
+    }
+    EXPECT_EQ(c, together.cells.size());
+}
+
+/// Two boxes of n cells each way, the second moved, with their common points joined.
+HexMesh two_boxes(Index n, const Vec3& step) {
+    HexMesh mesh = test::make_box(n, n, n);
+    const HexMesh other = mesh;
+    std::vector<Index> number;
+    for (const Vec3& p : other.points) {
+        const auto found = std::ranges::find(mesh.points, p + step);
+        number.push_back(static_cast<Index>(found - mesh.points.begin()));
+        if (found == mesh.points.end()) mesh.points.push_back(p + step);
+    }
+    for (auto cell : other.cells) {
+        for (Index& p : cell) p = number[p];
+        mesh.cells.push_back(cell);
+    }
+    return with_field(std::move(mesh));
+}
+
+TEST_P(SheetsOfEveryScheme, BodiesThatTouchInAnEdgeOrAPointRefineAsEachAlone) {
+    for (const Index n : {1u, 2u}) {
+        const auto size = double(n);
+        const HexMesh at_point = two_boxes(n, Vec3(size));
+        const MeshReport report = inspect(at_point);
+        EXPECT_EQ(report.nonmanifold_points, 1u);
+        EXPECT_EQ(report.nonmanifold_edges, 0u);
+        for (const int levels : {1, 2}) {
+            expect_parts_alone(at_point, n * n * n, {.scheme = {GetParam()}, .levels = levels});
+        }
+    }
+    for (const Index n : {1u, 2u, 3u}) {  // the common edge has n segments, along which the field is not linear
+        HexMesh at_edge = two_boxes(n, {double(n), double(n), 0});
+        EXPECT_EQ(inspect(at_edge).nonmanifold_edges, n);
+        EXPECT_EQ(inspect(at_edge).nonmanifold_points, 0u);
+        test::jitter(at_edge, .05, 5);
+        for (const int levels : {1, 2}) expect_parts_alone(at_edge, n * n * n, {.scheme = {GetParam()}, .levels = levels});
+    }
+}
+
+TEST_P(SheetsOfEveryScheme, AnEdgeOfManyFansIsACurve) {
+    // Three stacks of two cells about a common edge of two segments.
+    HexMesh mesh;
+    for (int k = 0; k <= 2; ++k) mesh.points.emplace_back(0, .2 * k * k, k);
+    for (int fan = 0; fan < 3; ++fan) {
+        const double angle = 2.1 * fan;
+        const Vec3 u(std::cos(angle), std::sin(angle), 0), v(std::cos(angle + .9), std::sin(angle + .9), 0);
+        const auto first = static_cast<Index>(mesh.points.size());
+        for (Index k = 0; k <= 2; ++k) {
+            for (const Vec3& step : {u, u + v, v}) mesh.points.push_back(mesh.points[k] + step);
+        }
+        for (Index k = 0; k < 2; ++k) {
+            const Index a = first + 3 * k, b = a + 3;
+            mesh.cells.push_back({k, a, a + 1, a + 2, k + 1, b, b + 1, b + 2});
+        }
+    }
+    mesh = with_field(std::move(mesh));
+    EXPECT_EQ(inspect(mesh).nonmanifold_edges, 2u);
+    const HexMesh fine = on_limit(refine(mesh, {.scheme = {GetParam()}, .levels = 3}), GetParam());
+    EXPECT_EQ(inspect(fine).nonmanifold_edges, 16u);
+    const auto& p = mesh.points;
+    const Vec3 middle = interpolates(GetParam()) ? p[1] : (p[0] + 4.0 * p[1] + p[2]) / 6.0;
+    EXPECT_LE(glm::distance(fine.points[0], p[0]), kRounding);
+    EXPECT_LE(glm::distance(fine.points[1], middle), 1e-12);  // eigenvectors are found to 1e-13
+    EXPECT_LE(glm::distance(fine.points[2], p[2]), kRounding);
+    EXPECT_EQ(inspect(fine).inverted_cells, 0u);
+}
+
+TEST(NonManifold, APointOnATouchingCurveIsACornerIfAnotherBodyTouchesItThere) {
+    HexMesh mesh = two_boxes(2, {2, 2, 0});  // along x = y = 2; a third body at (2, 2, 1)
+    const auto at = static_cast<Index>(std::ranges::find(mesh.points, Vec3(2, 2, 1)) - mesh.points.begin());
+    const auto first = static_cast<Index>(mesh.points.size());
+    const HexMesh third = test::make_box(1, 1, 1);
+    std::array<Index, 8> cell{};
+    for (std::size_t k = 0; k < 8; ++k) {
+        const Index c = third.cells[0][k];
+        cell[k] = c == 0 ? at : static_cast<Index>(first + c - 1);
+    }
+    for (std::size_t c = 1; c < 8; ++c) {
+        const Vec3& x = third.points[c];
+        mesh.points.emplace_back(2 + .3 * (x.x + x.y), 2 - 1.2 * x.x + .3 * x.y, 1 + .4 * x.z);
+    }
+    mesh.cells.push_back(cell);
+    mesh.attributes.clear();
+    const HexMesh limit = on_limit(refine(mesh, {.scheme = {Scheme::CatmullClark}, .levels = 2}), Scheme::CatmullClark);
+    EXPECT_EQ(limit.points[at], mesh.points[at]);
+}
+
+TEST(NonManifold, AFaceOfThreeCellsIsRefused) {
+    HexMesh mesh = test::make_box(2, 1, 1);
+    const auto first = static_cast<Index>(mesh.points.size());
+    for (const Vec3& p : {Vec3(2, 0, 1), Vec3(2, 1, 1), Vec3(2, 0, 2), Vec3(2, 1, 2)}) mesh.points.push_back(p);
+    mesh.cells.push_back({1, first, first + 1, 4, 7, first + 2, first + 3, 10});
+    test::expect_error(ErrorCode::InvalidInput, "at most two cells share a face", [&] { (void)refine(mesh); });
+}
+
+}  // namespace
+}  // namespace subvol
