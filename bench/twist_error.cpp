@@ -91,14 +91,20 @@ int main(int argc, char** argv) {
             keep("dense_" + std::to_string(levels), dense.image);
         }
         for (const int per_edge : {1, 2}) {
-            for (const Correction correction : {Correction::None, Correction::Gradient, Correction::Second, Correction::Full}) {
-                const auto points = sample_rbf_points(mesh, {.per_edge = per_edge, .correction = correction});
-                const double start = cpu_seconds();
-                const auto splat = render_splats(points.volume, view, optics, {.method = SplatMethod::Cpu, .sheets = sheets});
-                const std::string detail = "n=" + std::to_string(per_edge) + " " + name(correction);
-                print("splat", detail, sharp, splat.image, exact, cpu_seconds() - start,
-                      splat.report.seconds_prepare + splat.report.seconds_draw);
-                keep("splat_" + std::to_string(per_edge) + "_" + name(correction), splat.image);
+            for (const bool centers : {false, true}) {
+                for (const Correction correction :
+                     {Correction::None, Correction::Gradient, Correction::Second, Correction::Full}) {
+                    const auto points =
+                        sample_rbf_points(mesh, {.per_edge = per_edge, .centers = centers, .correction = correction});
+                    const double start = cpu_seconds();
+                    const auto splat =
+                        render_splats(points.volume, view, optics, {.method = SplatMethod::Cpu, .sheets = sheets});
+                    const std::string detail =
+                        "n=" + std::to_string(per_edge) + (centers ? " centres " : " ") + name(correction);
+                    print("splat", detail, sharp, splat.image, exact, cpu_seconds() - start,
+                          splat.report.seconds_prepare + splat.report.seconds_draw);
+                    keep("splat_" + std::to_string(per_edge) + (centers ? "c_" : "_") + name(correction), splat.image);
+                }
             }
         }
     }

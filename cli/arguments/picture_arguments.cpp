@@ -173,8 +173,8 @@ Vec3 PictureArguments::background_color() const {
 
 bool PictureArguments::paints_boundary(const CLI::App& app, const RefineArguments& refine) const {
     if (look != Look::Solid || opacity || opacity_unit_world || refine.levels) return false;
-    for (const char* name : {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--values",
-                             "--kernel", "--threshold", "--correction", "--reduce", "--plain-sums", "--sheets"}) {
+    for (const char* name : {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
+                             "--values", "--kernel", "--threshold", "--correction", "--reduce", "--plain-sums", "--sheets"}) {
         const CLI::Option* option = app.get_option_no_throw(name);
         if (option != nullptr && option->count() > 0) return false;
     }

@@ -83,7 +83,8 @@ void SampleArguments::add_to(CLI::App& app) {
         ->excludes(world)
         ->excludes("--spacing-voxels")
         ->excludes("--tolerance")
-        ->excludes("--footprint");
+        ->excludes("--footprint")
+        ->excludes("--centers");
     app.add_flag("--refine", move_kernels,
                  "with --reduce: also move and resize the kernels: about half as many, ten times as slow")
         ->needs(reduce);

@@ -14,10 +14,11 @@ namespace subvol::cli {
 namespace {
 
 constexpr std::initializer_list<const char*> kOfMeshes{
-    "--density", "--other-cells",   "--curved",       "--cell-values",  "--step",      "--time",           "--blocks",
-    "--weld",    "--weld-distance", "--sharp",        "--per-edge",     "--spacing",   "--spacing-voxels", "--correction",
-    "--scheme",  "--tension",       "--levels",       "--crease-angle", "--tolerance", "--footprint",      "--footprint-size",
-    "--values",  "--kernel",        "--value-kernel", "--threshold",    "--reduce",    "--refine",         "--seconds"};
+    "--density",      "--other-cells",    "--curved",        "--cell-values",    "--step",     "--time",
+    "--blocks",       "--weld",           "--weld-distance", "--sharp",          "--per-edge", "--centers",
+    "--spacing",      "--spacing-voxels", "--correction",    "--scheme",         "--tension",  "--levels",
+    "--crease-angle", "--tolerance",      "--footprint",     "--footprint-size", "--values",   "--kernel",
+    "--value-kernel", "--threshold",      "--reduce",        "--refine",         "--seconds"};
 
 }  // namespace
 

@@ -13,9 +13,10 @@ namespace subvol::cli {
 namespace {
 
 constexpr std::initializer_list<const char*> kOfMeshesOnly{
-    "--density",        "--other-cells", "--curved",       "--cell-values", "--step",         "--time",      "--blocks",
-    "--per-edge",       "--scheme",      "--tension",      "--levels",      "--crease-angle", "--tolerance", "--footprint",
-    "--footprint-size", "--values",      "--value-kernel", "--reduce",      "--refine",       "--seconds",   "--color-field"};
+    "--density",      "--other-cells", "--curved",    "--cell-values",    "--step",    "--time",
+    "--blocks",       "--per-edge",    "--centers",   "--scheme",         "--tension", "--levels",
+    "--crease-angle", "--tolerance",   "--footprint", "--footprint-size", "--values",  "--value-kernel",
+    "--reduce",       "--refine",      "--seconds",   "--color-field"};
 
 RbfVolume without_invisible(RbfVolume volume, const SampleArguments& arguments, const std::optional<TransferFunction>& seen,
                             Report& report) {
@@ -92,8 +93,8 @@ RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const 
 RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
                                const std::optional<TransferFunction>& seen, Report& report) {
     const SampleOptions options = arguments.options(bounds(mesh), {});
-    const bool placed = options.per_edge != 1 || options.spacing_world > 0 || options.footprint || options.tolerance > 0 ||
-                        arguments.reduce_rmse > 0 || options.values != ValueRule::Scheme;
+    const bool placed = options.per_edge != 1 || options.centers || options.spacing_world > 0 || options.footprint ||
+                        options.tolerance > 0 || arguments.reduce_rmse > 0 || options.values != ValueRule::Scheme;
     if (placed) {
         throw Error(ErrorCode::InvalidInput, "the schemes of tetrahedra have one kernel at each point of a level", "--scheme",
                     "--levels makes more of them");

@@ -30,6 +30,7 @@ SampleOptions study_sampling(const StudyCase& of, const HexMesh& mesh) {
     SampleArguments arguments;
     arguments.per_edge = std::max(of.whole("per_edge"), 1);
     arguments.spacing_voxels = of.number("spacing_voxels");
+    arguments.centers = of.flag("centers");
     if (of.has("correction")) arguments.correction = of.text("correction");
     if (of.has("kernel")) arguments.kernel = of.text("kernel");
     SampleOptions options = arguments.options(bounds(mesh), {});

@@ -55,8 +55,9 @@ public:
                         "--per-edge", "--title", "--json"});
         group("Camera", {"--size", "--camera", "--view", "--ortho"});
         group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--unit"});
-        group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
-                          "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
+        group("Kernels",
+              {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
+               "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
     }
 

@@ -87,7 +87,7 @@ public:
         share_.add_to(app(), "a range of the points in their order, of bricks, or of the steps");
         set_essentials({"--output", "--field", "--per-edge", "--spacing", "--tolerance", "--footprint", "--threshold",
                         "--reduce", "--levels", "--scheme"});
-        group("Where kernels are", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
+        group("Where kernels are", {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint",
                                     "--footprint-size", "--threshold", "--tf", "--reduce", "--refine", "--merge"});
         group("What kernels are", {"--values", "--kernel", "--value-kernel", "--correction", "--error"});
         group("Wavelets", {"--wavelet-tolerance", "--wavelet-point-tolerance"});
@@ -152,13 +152,28 @@ private:
     /// A mesh instead of kernels: details have signs and no mean, so that a normalised sum of kernels cannot add them.
     int write_wavelets(Report& report) {
         check_output(output_, {".svw"});
-        refuse_options(app(), {"--ascii",     "--splats",       "--up",
-                               "--per-edge",  "--spacing",      "--spacing-voxels",
-                               "--tolerance", "--footprint",    "--footprint-size",
-                               "--threshold", "--tf",           "--reduce",
-                               "--refine",    "--merge",        "--values",
-                               "--kernel",    "--value-kernel", "--correction",
-                               "--clamp",     "--error",        "--part"},
+        refuse_options(app(), {"--ascii",
+                               "--splats",
+                               "--up",
+                               "--per-edge",
+                               "--centers",
+                               "--spacing",
+                               "--spacing-voxels",
+                               "--tolerance",
+                               "--footprint",
+                               "--footprint-size",
+                               "--threshold",
+                               "--tf",
+                               "--reduce",
+                               "--refine",
+                               "--merge",
+                               "--values",
+                               "--kernel",
+                               "--value-kernel",
+                               "--correction",
+                               "--clamp",
+                               "--error",
+                               "--part"},
                        "makes kernels; --wavelet-tolerance writes a mesh, of which `subvol points` then makes kernels");
         refuse_options(app(), {"--crease-angle"}, "tags edges of a control mesh; here it is found, with the tags of the mesh");
         if (is_bricks_input(input_) || is_vdb_file(input_) || asks_for_steps(common()) || ranks() != nullptr) {

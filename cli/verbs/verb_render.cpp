@@ -156,8 +156,9 @@ private:
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});
         group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--legend", "--background",
                                     "--shade", "--shadows", "--ambient-occlusion", "--color-field"});
-        group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
-                          "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
+        group("Kernels",
+              {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--footprint", "--footprint-size",
+               "--values", "--kernel", "--value-kernel", "--threshold", "--correction", "--reduce", "--refine"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
         group("Methods", {"--method", "--samples", "--seconds", "--backend", "--device", "--sheets", "--plain-sums",
                           "--tolerance-image", "--order", "--kbuffer", "--lod", "--memory", "--part"});

@@ -83,7 +83,7 @@ public:
                         "--background", "--size", "--view", "--camera", "--method", "--levels", "--json"});
         group("Camera", {"--size", "--camera", "--view", "--fit", "--ortho"});
         group("Colours and light", {"--look", "--tf", "--tf-range", "--opacity", "--opacity-unit", "--background", "--clamp"});
-        group("Kernels", {"--per-edge", "--spacing", "--spacing-voxels", "--tolerance", "--values", "--kernel",
+        group("Kernels", {"--per-edge", "--centers", "--spacing", "--spacing-voxels", "--tolerance", "--values", "--kernel",
                           "--value-kernel", "--correction"});
         group("The limit", {"--scheme", "--tension", "--levels", "--crease-angle"});
         group("Cuts", {"--clip", "--clip-box", "--slice", "--around"});

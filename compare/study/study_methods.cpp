@@ -43,7 +43,7 @@ Key kernel(const std::optional<std::string>& fallback = {}) {
 std::vector<StudyMethod> make_methods() {
     const Key samples = whole("samples", 1, 16, 1.0), repeat = whole("repeat", 1, 100, 1.0);
     const Key level = whole("levels", 0, 6, 1.0), resolution = whole("resolution", 2, 2000, 200.0), half = flag("half");
-    const Keys kernels{whole("per_edge", 1, 64, 1.0), number("spacing_voxels", 0, 200), kernel("compact"),
+    const Keys kernels{whole("per_edge", 1, 64, 1.0), number("spacing_voxels", 0, 200), flag("centers"), kernel("compact"),
                        choice("correction", {"second", "none", "gradient", "full"})};
     const Keys splats =
         kernels + Keys{whole("sheets", 2, 65536, 200.0), whole("boundary_levels", 0, 6), flag("visible_only"), repeat};

@@ -97,13 +97,15 @@ ValueRule rule_named(const std::string& name) {
 }
 
 py::tuple sample(const HexMesh& mesh, const std::string& scheme, double tension, const std::optional<double>& crease_angle,
-                 int per_edge, double spacing_world, double tolerance, const std::string& correction, const std::string& values,
-                 const std::string& kernel, const std::optional<int>& boundary_levels, const std::optional<Camera>& footprint,
-                 const std::pair<int, int>& footprint_size, const py::object& progress) {
+                 int per_edge, bool centers, double spacing_world, double tolerance, const std::string& correction,
+                 const std::string& values, const std::string& kernel, const std::optional<int>& boundary_levels,
+                 const std::optional<Camera>& footprint, const std::pair<int, int>& footprint_size,
+                 const py::object& progress) {
     SampleOptions options{.scheme = refine_options(scheme, 0, tension, crease_angle).scheme,
                           .per_edge = per_edge,
                           .spacing_world = spacing_world,
                           .tolerance = tolerance,
+                          .centers = centers,
                           .correction = correction_named(correction),
                           .values = rule_named(values),
                           .kernel = kernel_from_json(kernel),
@@ -225,9 +227,9 @@ void bind_points(py::module_& module) {
                 return volume;
             }));
     module.def("sample", &sample, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),
-               py::arg("per_edge"), py::arg("spacing_world"), py::arg("tolerance"), py::arg("correction"), py::arg("values"),
-               py::arg("kernel"), py::arg("boundary_levels"), py::arg("footprint"), py::arg("footprint_size"),
-               py::arg("progress"));
+               py::arg("per_edge"), py::arg("centers"), py::arg("spacing_world"), py::arg("tolerance"), py::arg("correction"),
+               py::arg("values"), py::arg("kernel"), py::arg("boundary_levels"), py::arg("footprint"),
+               py::arg("footprint_size"), py::arg("progress"));
     module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("rmse"), py::arg("kernel"), py::arg("overlap"),
                py::arg("max_points"), py::arg("move"), py::arg("scheme"), py::arg("progress"));
     module.def(

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "lib/expect_error.h"
+#include "lib/sample/limit_places.h"
 #include "lib/test_meshes.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
@@ -22,28 +23,6 @@ namespace {
 void put_wave(HexMesh& mesh) {
     mesh.attributes.clear();
     test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(2 * p.x) * std::cos(1.5 * p.y) + .5 * p.z * p.z; });
-}
-
-double rmse_at(const RbfVolume& volume, const LimitSamples& limit) {
-    const auto values = RbfField(volume).evaluate(limit.positions);
-    double sum = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        EXPECT_FALSE(std::isnan(values[i]));
-        sum += std::pow(values[i] - limit.attributes[0].values[i], 2);
-    }
-    return std::sqrt(sum / static_cast<double>(values.size()));
-}
-
-/// Three random places per cell.
-std::vector<LimitQuery> places(std::size_t cells) {
-    std::mt19937 random(5);
-    const auto unit = [&] { return static_cast<double>(random()) * 0x1p-32; };
-    std::vector<LimitQuery> queries;
-    for (std::size_t c = 0; c < 3 * cells; ++c) {
-        const double u = unit(), v = unit(), w = unit();
-        queries.push_back({static_cast<Index>(c / 3), Vec3(u, v, w)});
-    }
-    return queries;
 }
 
 TEST(SampleWays, RefinedPointsAreTheRefinedMeshAndItsFieldIsTheLimits) {
@@ -190,14 +169,14 @@ TEST(SampleWays, FullCorrectionIsOfThirdOrderWhereTheMomentAloneIsOfSecond) {
     for (Vec3& p : mesh.points) p = .15 * Vec3(p.x + .02 * p.y * p.y, p.y - .01 * p.x * p.z, p.z) - Vec3(1);
     put_wave(mesh);
     std::vector<LimitQuery> inside;  // three cells from the boundary, where steps are one-sided
-    for (const LimitQuery& query : places(mesh.cells.size())) {
+    for (const LimitQuery& query : test::places(mesh.cells.size())) {
         const Index c = query.cell;
         if (c % 12 > 2 && c % 12 < 9 && c / 12 % 12 > 2 && c / 12 % 12 < 9 && c / 144 > 2 && c / 144 < 9)
             inside.push_back(query);
     }
     const LimitSamples limit = evaluate_limit(mesh, inside, {.tolerance = 1e-8});
     const auto rmse = [&](int per_edge, Correction correction) {
-        return rmse_at(sample_rbf_points(mesh, {.per_edge = per_edge, .correction = correction}).volume, limit);
+        return test::rmse_at(sample_rbf_points(mesh, {.per_edge = per_edge, .correction = correction}).volume, limit);
     };
     const double second = rmse(1, Correction::Second), second_half = rmse(2, Correction::Second);
     const double full = rmse(1, Correction::Full), full_half = rmse(2, Correction::Full);
@@ -255,7 +234,7 @@ TEST(SampleWays, ToleranceIsMetWithFewerSamplesThanEverywhere) {
     constexpr double kTolerance = .004;
     const auto result = sample_rbf_points(mesh, {.tolerance = kTolerance});
     EXPECT_LE(result.report.largest_error, kTolerance);
-    const LimitSamples limit = evaluate_limit(mesh, places(mesh.cells.size()));
+    const LimitSamples limit = evaluate_limit(mesh, test::places(mesh.cells.size()));
     const auto values = RbfField(result.volume).evaluate(limit.positions);
     for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_NEAR(values[i], limit.attributes[0].values[i], 2 * kTolerance);  // it holds at 125 places per cell, not at these
