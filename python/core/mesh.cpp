@@ -8,6 +8,7 @@
 #include "subvol/model.h"
 #include "subvol/surface.h"
 #include "subvol/topology.h"
+#include "subvol/wavelet_file.h"
 
 namespace subvol::python {
 namespace {
@@ -133,6 +134,35 @@ SurfaceArrays boundary_of(const HexMesh& mesh) {
     return {owned(std::move(surface.points)), owned(std::move(corners), {triangles, 3})};
 }
 
+py::dict write_wavelets(const std::string& path, const HexMesh& mesh, double tolerance,
+                        const std::optional<double>& point_tolerance, const std::string& scheme, int levels,
+                        const py::object& progress) {
+    const WaveletFileReport report = result_of(progress, [&](Progress* listener) {
+        return write_wavelet_file(path, mesh,
+                                  {.scheme = refine_options(scheme, 0, SchemeOptions{}.tension, {}).scheme,
+                                   .tolerance = tolerance,
+                                   .point_tolerance = point_tolerance,
+                                   .levels = levels,
+                                   .progress = listener});
+    });
+    py::dict figures, arrays;
+    for (const WaveletArrayReport& array : report.arrays) {
+        py::dict kept;
+        kept["coefficients"] = array.coefficients;
+        kept["kept"] = array.kept;
+        kept["rms"] = array.rms;
+        kept["max"] = array.max;
+        arrays[py::str(array.name)] = kept;
+    }
+    figures["levels"] = report.levels;
+    figures["coarse_cells"] = report.coarse_cells;
+    figures["cells"] = report.cells;
+    figures["bytes"] = report.bytes;
+    figures["inverted_cells"] = report.inverted_cells;
+    figures["arrays"] = arrays;
+    return figures;
+}
+
 }  // namespace
 
 void bind_mesh(py::module_& module) {
@@ -199,6 +229,8 @@ void bind_mesh(py::module_& module) {
             return write_mesh(path, mesh);
         },
         py::arg("path"), py::arg("mesh"));
+    module.def("write_wavelets", &write_wavelets, py::arg("path"), py::arg("mesh"), py::arg("tolerance"),
+               py::arg("point_tolerance"), py::arg("scheme"), py::arg("levels"), py::arg("progress"));
     module.def("select_field", &selected, py::arg("mesh"), py::arg("name"));
     module.def(
         "make_model",

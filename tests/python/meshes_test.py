@@ -171,6 +171,18 @@ def test_files_keep_every_bit(tmp_path, ball):
         subvol.write_mesh(ball, tmp_path / "ball.obj")
 
 
+def test_wavelets_keep_a_mesh_within_the_tolerance(tmp_path, ball):
+    fine = subvol.subdivide(ball, 2)
+    report = subvol.write_wavelets(fine, tmp_path / "ball.svw", 1e-3)
+    assert report["levels"] >= 2 and report["cells"] == len(fine.cells)
+    again = subvol.read_mesh(tmp_path / "ball.svw")
+    assert len(again.points) == len(fine.points) and len(again.cells) == len(fine.cells)
+    assert 0 < report["arrays"]["density"]["rms"] <= 1e-3
+    assert report["bytes"] == (tmp_path / "ball.svw").stat().st_size < fine.fields["density"].nbytes
+    with pytest.raises(subvol.InvalidInput):
+        subvol.write_wavelets(fine, tmp_path / "ball.svw", 0)
+
+
 def test_vectors_and_wide_fields(cube):
     wide = np.random.default_rng(2).random((64, 5))
     mesh = subvol.HexMesh(cube.points, cube.cells, {"v": cube.points, "w": wide, "s": wide[:, 0]})

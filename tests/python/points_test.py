@@ -29,6 +29,7 @@ def test_more_samples_per_edge(cube):
     assert len(subvol.sample(cube, per_edge=2)) == 7 ** 3
     assert len(subvol.sample(cube, spacing=1 / 6 + 1e-9)) == 7 ** 3
     assert len(subvol.sample(cube, levels=1)) == 7 ** 3
+    assert len(subvol.sample(cube, centers=True)) == 4 ** 3 + 3 ** 3
     for wrong in ({"per_edge": 0}, {"per_edge": 65}, {"spacing": -1}, {"kernel": "box"}, {"kernel": {"type": "box"}}):
         with pytest.raises(subvol.InvalidInput):
             subvol.sample(cube, **wrong)

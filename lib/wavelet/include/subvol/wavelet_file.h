@@ -15,9 +15,8 @@ namespace subvol {
 
 /// tolerance:       most root mean square error of each field, in parts of its range (of vectors: of the box of their values);
 ///                  (0,1]
-/// point_tolerance: most root mean square distance of the points from where they were, in parts of the longest side of the
-/// mesh;
-///                  if not given a tenth of `tolerance`, and less where cells would be inverted
+/// point_tolerance: most root mean square distance of the points from where they were, in parts of the mesh's longest side; if not
+///                  given a tenth of `tolerance`, and less where cells would be inverted
 /// levels:          the most levels of wavelets, 1 to 10
 struct WaveletFileOptions {
     SchemeOptions scheme{};
@@ -53,8 +52,7 @@ struct WaveletFileReport {
 /// Writes a mesh as control values and wavelet details (`.svw`), rounded as far as the tolerance allows. `read_mesh` reads it.
 /// Points and cells are then in the order of `refine`.
 ///
-/// throws: Error(InvalidInput) as `find_hierarchy`: the mesh must be the refinement of a coarser one, or a structured grid; if
-/// a
+/// throws: Error(InvalidInput) as `find_hierarchy`: the mesh must be the refinement of a coarser one, or a structured grid; if a
 ///         tolerance is not in (0,1]; Error(Io)
 /// cost:   about 15 analyses and syntheses of each field
 WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const HexMesh& mesh,
