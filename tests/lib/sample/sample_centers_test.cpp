@@ -60,8 +60,8 @@ TEST(SampleCenters, HaveFramesAndMomentsOfCubesThatHoldOneOfThem) {
         for (std::size_t i = 0; i < volume.size(); ++i) {
             if (largest(volume.centers[i] - center) > kSize) continue;  // the rules at the boundary are others
             const Symmetric3& s = volume.frames[i];
-            EXPECT_NEAR(s.xx, diagonal, kFloatTol);
-            EXPECT_NEAR(s.yz, 0, kFloatTol);
+            EXPECT_NEAR(s[0], diagonal, kFloatTol);
+            EXPECT_NEAR(s[4], 0, kFloatTol);
             EXPECT_NEAR(volume.channels[0].moments[i], diagonal / 6 * 2, kFloatTol) << "the second derivatives are 2, 0 and 0";
             EXPECT_NEAR(volume.channels[0].gradients[i][0], 2 * volume.centers[i].x, 1e-5);
         }
