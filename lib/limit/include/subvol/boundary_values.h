@@ -46,8 +46,8 @@ private:
     std::unique_ptr<State> state_;
 };
 
-/// The levels of boundary_values that a picture of the body needs: 2, but 1 for a boundary of more than 8,000 triangles, and 0 for
-/// one of more than two million.
+/// The levels of boundary_values that a picture of the body needs: 2, but 1 for a boundary of more than 8,000 triangles, and
+/// 0 for one of more than two million.
 ///
 /// most: no more than these, if given
 [[nodiscard]] int picture_levels(const HexMesh& mesh, std::optional<int> most = {});
