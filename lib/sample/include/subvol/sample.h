@@ -45,8 +45,8 @@ struct Footprint {
 ///                  kernels, with about a third of the error; the first of the steps of slow growth [pas2002]
 /// values:          how values between control points are found; gradients and moments are those of the scheme
 /// value_kernel:    of the rule `Paper`; its weights must be positive in sum wherever there is a sample
-/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide, at
-///                  most 4 and no more than make eight million triangles; where intervals differ, that is the root of their
+/// boundary_levels: refinements of the boundary surface, 0 to 6; none: as many as make its quads half a sample interval wide,
+///                  at most 4 and no more than make eight million triangles; where intervals differ, that is the root of their
 ///                  mean square on the boundary
 struct SampleOptions {
     SchemeOptions scheme{};

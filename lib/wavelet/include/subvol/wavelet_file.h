@@ -15,8 +15,8 @@ namespace subvol {
 
 /// tolerance:       most root mean square error of each field, in parts of its range (of vectors: of the box of their values);
 ///                  (0,1]
-/// point_tolerance: most root mean square distance of the points from where they were, in parts of the mesh's longest side; if not
-///                  given a tenth of `tolerance`, and less where cells would be inverted
+/// point_tolerance: most root mean square distance of the points from where they were, in parts of the mesh's longest side; if
+///                  not given a tenth of `tolerance`, and less where cells would be inverted
 /// levels:          the most levels of wavelets, 1 to 10
 struct WaveletFileOptions {
     SchemeOptions scheme{};
