@@ -20,7 +20,7 @@ using namespace detail;
 
 namespace {
 
-constexpr double kCoarse_s = 0.05;  // within this time of a motion there should be a picture
+constexpr double kCoarse_s = 0.05;               // within this time of a motion there should be a picture
 constexpr std::chrono::milliseconds kPause{20};  // of a motion, before the full picture is begun
 constexpr int kFinest = 2, kCoarsest = 16;
 
@@ -86,7 +86,8 @@ struct DrawWorker::State {
         }
     }
 
-    /// Whether the next request comes at once, as while something is dragged: a full picture would be given up, which takes time.
+    /// Whether the next request comes at once, as while something is dragged: a full picture would be given up, which takes
+    /// time.
     [[nodiscard]] bool moves_on() {
         std::unique_lock lock(mutex);
         return changed.wait_for(lock, kPause, [&] { return next.has_value() || quit; });

@@ -52,8 +52,8 @@ struct WaveletFileReport {
 /// Writes a mesh as control values and wavelet details (`.svw`), rounded as far as the tolerance allows. `read_mesh` reads it.
 /// Points and cells are then in the order of `refine`.
 ///
-/// throws: Error(InvalidInput) as `find_hierarchy`: the mesh must be the refinement of a coarser one, or a structured grid; if a
-///         tolerance is not in (0,1]; Error(Io)
+/// throws: Error(InvalidInput) as `find_hierarchy`: the mesh must be the refinement of a coarser one, or a structured grid; if
+///         a tolerance is not in (0,1]; Error(Io)
 /// cost:   about 15 analyses and syntheses of each field
 WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const HexMesh& mesh,
                                      const WaveletFileOptions& options = {});
