@@ -106,6 +106,9 @@ public:
             sums_.add(1, jet_.d_position[a], jet_.dd_position[a], d_.data(), dd_.data());
         }
         if (options_.correction != Correction::Full) return;
+        if (options_.centers) {
+            for (double& s : step) s *= 2 * kCenteredInterval;
+        }
         blocks_.evaluate_mixed(nodes, uvw, step, jet_);
         jets_.push_back(jet_);
     }

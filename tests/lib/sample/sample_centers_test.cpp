@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "lib/sample/limit_places.h"
 #include "lib/test_meshes.h"
@@ -65,6 +66,19 @@ TEST(SampleCenters, HaveFramesAndMomentsOfCubesThatHoldOneOfThem) {
             EXPECT_NEAR(volume.channels[0].moments[i], diagonal / 6 * 2, kFloatTol) << "the second derivatives are 2, 0 and 0";
             EXPECT_NEAR(volume.channels[0].gradients[i][0], 2 * volume.centers[i].x, 1e-5);
         }
+    }
+}
+
+TEST(SampleCenters, WholeHessiansReproduceQuadraticFields) {
+    const HexMesh mesh = block_with_squares(8, 0.5);
+    const Vec3 center = bounds(mesh).center();
+    const RbfVolume volume = sample_rbf_points(mesh, {.centers = true, .correction = Correction::Full}).volume;
+    std::vector<Vec3> places;
+    for (int i = 0; i < 60; ++i) places.push_back(center + 0.4 * Vec3(std::sin(i), std::sin(2.3 * i), std::cos(1.7 * i)));
+    const auto values = RbfField(volume).evaluate(places);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Vec3& p = places[i];
+        EXPECT_NEAR(values[i], p.x * p.x + p.y * p.z, 2e-5);
     }
 }
 
