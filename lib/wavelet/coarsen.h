@@ -24,16 +24,4 @@ struct CoarserMesh {
 /// The mesh whose eightfold split has these cells. Nothing if there is none; then `why` says what is in the way.
 [[nodiscard]] std::optional<CoarserMesh> coarser_mesh(const HexMesh& fine, std::string& why);
 
-/// A structured grid that a mesh is: its cells, u fastest, and how each lies.
-///
-/// corners: for each corner of a cell in the grid's orientation, the corner as the mesh has it
-struct CellGrid {
-    std::array<std::size_t, 3> counts{};
-    std::vector<Index> cells;
-    std::vector<std::array<std::uint8_t, 8>> corners;
-};
-
-/// Nothing if the mesh is not one block of nx × ny × nz cells.
-[[nodiscard]] std::optional<CellGrid> cell_grid(const Topology& topology);
-
 }  // namespace subvol::detail

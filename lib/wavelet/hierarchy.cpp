@@ -5,6 +5,7 @@
 
 #include "child_topology.h"
 #include "coarsen.h"
+#include "structured_cells.h"
 #include "subvol/error.h"
 #include "subvol/refine.h"
 
@@ -86,7 +87,7 @@ struct PaddedGrid {
     std::vector<PaddedPoint> padded;
 };
 
-PaddedGrid pad_grid(const HexMesh& mesh, const CellGrid& grid, std::size_t multiple) {
+PaddedGrid pad_grid(const HexMesh& mesh, const StructuredCells& grid, std::size_t multiple) {
     PaddedGrid result;
     std::array<std::size_t, 3> counts{};
     for (std::size_t a = 0; a < 3; ++a) counts[a] = (grid.counts[a] + multiple - 1) / multiple * multiple;
@@ -167,7 +168,7 @@ MeshHierarchy find_hierarchy(const HexMesh& mesh, const HierarchyOptions& option
     MeshHierarchy found = hierarchy_of(mesh, options.levels, why);
     if (found.levels >= std::min(2, options.levels)) return found;
     if (options.pad && mesh.creases.empty() && mesh.sharp_faces.empty()) {
-        if (const auto grid = cell_grid(build_topology(mesh))) {
+        if (const auto grid = structured_cells(build_topology(mesh))) {
             const std::size_t multiple = best_multiple(grid->counts, options.levels);
             if (multiple > std::size_t{1} << found.levels) {
                 PaddedGrid padded = pad_grid(mesh, *grid, multiple);

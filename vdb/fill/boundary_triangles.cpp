@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "fill_block.h"
-#include "refined_cells.h"
+#include "refined_grids.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
@@ -264,7 +264,7 @@ std::vector<VoxelTriangle> boundary_triangles(const CellRequest& request, const 
     // Unless the scheme interpolates, the limit of one vertex, computed at two levels, differs in its last bits.
     const bool as_tables = request.tables || !interpolates(request.refine.scheme.kind);
     const int levels = as_tables ? request.levels() : request.refine.levels;
-    RefinedCells(without_fields).for_each(numbers, levels, [&](const DenseCell& dense) {
+    RefinedGrids(without_fields).for_each(numbers, levels, [&](const DenseCell& dense) {
         const BoundaryCell& cell = cells[slots[dense.cell]];
         for (std::size_t k = 0; k < cell.sides.size(); ++k) {
             const auto stride = (static_cast<int>(dense.side) - 1) / steps;

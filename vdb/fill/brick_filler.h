@@ -7,7 +7,7 @@
 
 #include "cell_request.h"
 #include "fill_block.h"
-#include "refined_cells.h"
+#include "refined_grids.h"
 #include "surface_columns.h"
 #include "voxel_bricks.h"
 
@@ -48,7 +48,7 @@ private:
     [[nodiscard]] bool refines() const { return request_.refines(); }
 
     CellRequest request_;
-    RefinedCells refined_;
+    RefinedGrids refined_;
     std::size_t channels_ = 0;            // of all fields
     double orientation_ = 1;              // -1 for a mesh of left-handed cells
     std::vector<std::uint8_t> boundary_;  // of curved cells: which sides

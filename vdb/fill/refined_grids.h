@@ -16,11 +16,11 @@ namespace subvol::detail {
 
 /// The refined nodes of a mesh's cells, with the request's fields: computed cell by cell as in `for_each_dense_cell`, or from
 /// tables, which give the same bits.
-class RefinedCells {
+class RefinedGrids {
 public:
     /// bits:   without tables
     /// throws: Error(InvalidInput) if the tables belong to another mesh or another level
-    explicit RefinedCells(const CellRequest& request, DenseBits bits = DenseBits::OfRefine);
+    explicit RefinedGrids(const CellRequest& request, DenseBits bits = DenseBits::OfRefine);
 
     /// levels: of refinement; ignored with tables, which have one level
     /// visit:  called from several threads at once, in no order; its spans are valid during the call only

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "refined_cells.h"
+#include "refined_grids.h"
 
 #include <tbb/parallel_for.h>
 
@@ -45,7 +45,7 @@ RefinementTables tables_of(const HexMesh& mesh, const RefineOptions& refine, boo
     return tables;
 }
 
-RefinedCells::RefinedCells(const CellRequest& request, DenseBits bits)
+RefinedGrids::RefinedGrids(const CellRequest& request, DenseBits bits)
     : levels_(request.levels()), tables_(request.refines() ? request.tables : nullptr) {
     if (!request.refines() || request.pieces) return;
     const HexMesh& mesh = *request.mesh;
@@ -66,7 +66,7 @@ RefinedCells::RefinedCells(const CellRequest& request, DenseBits bits)
     }
 }
 
-void RefinedCells::refine_whole(const RefinementTables& tables) {
+void RefinedGrids::refine_whole(const RefinementTables& tables) {
     std::vector<double> points;
     for (const Vec3& p : mesh_.points) points.insert(points.end(), {p.x, p.y, p.z});
     points = applied(tables, points, 3);
@@ -92,7 +92,7 @@ void RefinedCells::refine_whole(const RefinementTables& tables) {
     }
 }
 
-void RefinedCells::for_each(std::span<const Index> cells, int levels,
+void RefinedGrids::for_each(std::span<const Index> cells, int levels,
                             const std::function<void(const DenseCell&)>& visit) const {
     if (dense_) {
         dense_->for_each(cells, levels, visit);
@@ -115,7 +115,7 @@ void RefinedCells::for_each(std::span<const Index> cells, int levels,
     });
 }
 
-void RefinedCells::gather(Index cell, DenseCell& dense, std::vector<Vec3>& points,
+void RefinedGrids::gather(Index cell, DenseCell& dense, std::vector<Vec3>& points,
                           std::vector<std::vector<double>>& values) const {
     dense.cell = cell;
     const std::size_t first = static_cast<std::size_t>(cell) << (3 * levels_);
