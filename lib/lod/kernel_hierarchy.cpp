@@ -36,9 +36,11 @@ public:
         report_progress(progress_, "sort kernels", 0);
         h_.order = detail::median_order(volume_.centers, leaves);
         allocate(volume_.size() == 0 ? 0 : 2 * leaves - 1);
-        report_progress(progress_, "merge kernels", 0);
-        if (volume_.size() > 0) {
-            detail::parallel_each(leaves, [&](std::size_t leaf) { merge_kernels(leaves - 1 + leaf); });
+        constexpr std::size_t kTurn = 1 << 14;  // leaves between two reports of progress
+        for (std::size_t first = 0; first < leaves && volume_.size() > 0; first += kTurn) {
+            report_progress(progress_, "merge kernels", 0.5 * static_cast<double>(first) / static_cast<double>(leaves));
+            const std::size_t count = std::min(kTurn, leaves - first);
+            detail::parallel_each(count, [&](std::size_t leaf) { merge_kernels(leaves - 1 + first + leaf); });
         }
         for (std::size_t width = leaves / 2; width > 0; width /= 2) {
             report_progress(progress_, "merge kernels", 1 - static_cast<double>(width) / static_cast<double>(leaves));

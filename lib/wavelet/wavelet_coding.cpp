@@ -176,10 +176,11 @@ WaveletField restore(const WaveletBasis& basis, const QuantizedWavelets& numbers
 }
 
 QuantizedWavelets quantize_within(const WaveletBasis& basis, std::span<const double> values, std::size_t channels,
-                                  double tolerance, std::span<const std::uint8_t> counted) {
+                                  double tolerance, std::span<const std::uint8_t> counted, const Progress* progress) {
     check_tolerance(tolerance);
     const WaveletField field = analyze(basis, values, channels);
     const auto error = [&](double step) {
+        if (progress != nullptr && progress->cancelled()) throw Error(ErrorCode::Cancelled, "stopped in wavelets");
         return difference(synthesize(basis, restore(basis, quantize(basis, field, step))), values, channels, counted).rms;
     };
     return quantize(basis, field, largest_within(tolerance, error));

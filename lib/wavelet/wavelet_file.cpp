@@ -191,7 +191,7 @@ WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const He
         QuantizedWavelets numbers;
         std::vector<double> restored;
         for (int attempt = 0;; ++attempt) {
-            numbers = quantize_within(basis, values, 3, tolerance * scale, counted);
+            numbers = quantize_within(basis, values, 3, tolerance * scale, counted, options.progress);
             restored = synthesize(basis, restore(basis, numbers));
             report.inverted_cells = inverted_cells_of(hierarchy, basis, restored);
             const bool sound = report.inverted_cells <= report.inverted_cells_before;
@@ -205,7 +205,8 @@ WaveletFileReport write_wavelet_file(const std::filesystem::path& path, const He
         const auto channels = static_cast<std::size_t>(a.channels);
         const std::vector<double> values = in_hierarchy(hierarchy, a.values, channels);
         const double range = range_of(values, channels, counted), scale = range > 0 ? range : 1;
-        const QuantizedWavelets numbers = quantize_within(basis, values, channels, options.tolerance * scale, counted);
+        const QuantizedWavelets numbers =
+            quantize_within(basis, values, channels, options.tolerance * scale, counted, options.progress);
         put(a.name, values, numbers, synthesize(basis, restore(basis, numbers)), scale);
     }
 

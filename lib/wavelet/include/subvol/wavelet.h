@@ -137,8 +137,9 @@ struct QuantizedWavelets {
 /// The numbers with the largest step whose root mean square error is within the tolerance, found by bisection.
 ///
 /// counted: as in `difference`
-/// throws:  as `drop_details` and `quantize`
+/// throws:  as `drop_details` and `quantize`; Error(Cancelled), which progress is asked for at each step
 [[nodiscard]] QuantizedWavelets quantize_within(const WaveletBasis& basis, std::span<const double> values, std::size_t channels,
-                                                double tolerance, std::span<const std::uint8_t> counted = {});
+                                                double tolerance, std::span<const std::uint8_t> counted = {},
+                                                const Progress* progress = nullptr);
 
 }  // namespace subvol
