@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <string>
 
 #include "subvol/error.h"
@@ -79,15 +78,19 @@ private:
 
 /// The lines that are no edges of quads.
 std::vector<std::array<Index, 2>> lines_alone(const Sheets& sheets) {
-    std::set<std::array<Index, 2>> edges;
+    std::vector<std::array<Index, 2>> edges, lines;
+    if (sheets.lines.empty()) return lines;
+    edges.reserve(4 * sheets.quads.size());
     for (const auto& quad : sheets.quads) {
         for (std::size_t k = 0; k < 4; ++k) {
-            edges.insert({std::min(quad[k], quad[(k + 1) % 4]), std::max(quad[k], quad[(k + 1) % 4])});
+            const auto [low, high] = std::minmax({quad[k], quad[(k + 1) % 4]});
+            edges.push_back({low, high});
         }
     }
-    std::vector<std::array<Index, 2>> lines;
-    for (const auto& [a, b] : sheets.lines) {
-        if (!edges.contains({std::min(a, b), std::max(a, b)})) lines.push_back({a, b});
+    std::ranges::sort(edges);
+    for (const auto& line : sheets.lines) {
+        if (!std::ranges::binary_search(edges, std::array{std::min(line[0], line[1]), std::max(line[0], line[1])}))
+            lines.push_back(line);
     }
     return lines;
 }

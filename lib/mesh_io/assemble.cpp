@@ -243,16 +243,7 @@ std::size_t drop_unusable(FileCells<N>& cells, const HexMesh& mesh) {
         }
         return true;
     };
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < cells.corners.size(); ++i) {
-        if (!usable(cells.corners[i])) continue;
-        cells.corners[kept] = cells.corners[i];
-        cells.numbers[kept++] = cells.numbers[i];
-    }
-    const std::size_t dropped = cells.corners.size() - kept;
-    cells.corners.resize(kept);
-    cells.numbers.resize(kept);
-    return dropped;
+    return drop_where(cells, [&](std::size_t c) { return !usable(cells.corners[c]); });
 }
 
 /// Values of an array of cells at the points of sheets that no cell uses: the mean over the quads and lines there.

@@ -26,24 +26,6 @@ void add_left_out_warning(MeshFile& found, const std::string& list, std::string_
     if (!list.empty()) found.warnings.push_back(list + " ignored");
 }
 
-namespace {
-
-template <std::size_t N>
-std::size_t drop_where(FileCells<N>& cells, const std::vector<std::uint8_t>& drops) {
-    std::size_t kept = 0;
-    for (std::size_t c = 0; c < cells.corners.size(); ++c) {
-        if (drops[c]) continue;
-        cells.corners[kept] = cells.corners[c];
-        cells.numbers[kept++] = cells.numbers[c];
-    }
-    const std::size_t dropped = cells.corners.size() - kept;
-    cells.corners.resize(kept);
-    cells.numbers.resize(kept);
-    return dropped;
-}
-
-}  // namespace
-
 std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone) {
     if (found.quads.corners.empty() && found.lines.corners.empty()) return {0, 0};
     const bool others = !found.tets.corners.empty() || !found.prisms.corners.empty() || !found.pyramids.corners.empty();
@@ -54,8 +36,11 @@ std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone) {
         return all;
     }
     const std::size_t points = found.points.size();
-    return {drop_where(found.quads, are_faces(found.quads.corners, found.hexes.corners, points)),
-            drop_where(found.lines, are_edges(found.lines.corners, found.hexes.corners, points))};
+    const auto of_cells = [](auto& cells, const std::vector<std::uint8_t>& flags) {
+        return drop_where(cells, [&](std::size_t c) { return flags[c] != 0; });
+    };
+    return {of_cells(found.quads, are_faces(found.quads.corners, found.hexes.corners, points)),
+            of_cells(found.lines, are_edges(found.lines.corners, found.hexes.corners, points))};
 }
 
 std::vector<std::uint8_t> used_points(const MeshFile& found) {

@@ -139,6 +139,21 @@ void add_left_out_warning(MeshFile& found, const std::string& list, std::string_
 /// returns: the numbers of quads and of lines that were left out
 std::array<std::size_t, 2> drop_parts_of_cells(MeshFile& found, bool alone);
 
+/// Leaves out the cells for which drops(number in the list) is true. Returns how many.
+template <std::size_t N, class Drops>
+std::size_t drop_where(FileCells<N>& cells, const Drops& drops) {
+    std::size_t kept = 0;
+    for (std::size_t c = 0; c < cells.corners.size(); ++c) {
+        if (drops(c)) continue;
+        cells.corners[kept] = cells.corners[c];
+        cells.numbers[kept++] = cells.numbers[c];
+    }
+    const std::size_t dropped = cells.corners.size() - kept;
+    cells.corners.resize(kept);
+    cells.numbers.resize(kept);
+    return dropped;
+}
+
 /// A flag for each point: whether a cell uses it.
 [[nodiscard]] std::vector<std::uint8_t> used_points(const MeshFile& found);
 

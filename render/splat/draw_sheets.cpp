@@ -8,11 +8,13 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "boundary_intervals.h"
 #include "boundary_light.h"
 #include "clip_intervals.h"
 #include "clip_triangle.h"
+#include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
 namespace subvol {
@@ -32,19 +34,25 @@ using Corners = std::array<Vec3, 3>;
 /// are turned.
 std::vector<Corners> two_sided_normals(const Surface& surface) {
     std::vector<Vec3> flat(surface.triangles.size());
-    std::vector<std::vector<std::uint32_t>> at(surface.points.size());
-    for (std::size_t i = 0; i < flat.size(); ++i) {
+    parallel_each(flat.size(), [&](std::size_t i) {
         const auto& [a, b, c] = surface.triangles[i];
-        const Vec3 normal = glm::cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]);
-        flat[i] = normal;
-        for (const Index p : surface.triangles[i]) at[p].push_back(static_cast<std::uint32_t>(i));
-    }
+        flat[i] = glm::cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]);
+    });
+    using AtPoint = std::pair<Index, Index>;  // a point and a triangle there
+    const Buckets<AtPoint> at = bucket_sort<AtPoint>(
+        flat.size(), surface.points.size(),
+        [&](std::size_t i, const auto& sink) {
+            for (const Index p : surface.triangles[i]) sink({p, static_cast<Index>(i)});
+        },
+        [](const AtPoint& record) { return record.first; });
     std::vector<Corners> normals(flat.size());
     tbb::parallel_for(std::size_t{0}, flat.size(), [&](std::size_t i) {
         const double length = glm::length(flat[i]);
         for (std::size_t k = 0; k < 3; ++k) {
             Vec3 sum(0.0);
-            for (const std::uint32_t j : at[surface.triangles[i][k]]) {
+            const Index p = surface.triangles[i][k];
+            for (std::size_t n = at.offsets[p]; n < at.offsets[p + 1]; ++n) {
+                const Index j = at.records[n].second;
                 const double cosine = glm::dot(flat[i], flat[j]);
                 if (std::abs(cosine) >= kSmoothCosine * length * glm::length(flat[j])) sum += cosine < 0 ? -flat[j] : flat[j];
             }
