@@ -11,6 +11,7 @@
 #include <thread>
 #include <utility>
 
+#include "cancel_flag.h"
 #include "subvol/detail/stopwatch.h"
 #include "subvol/error.h"
 
@@ -23,17 +24,6 @@ namespace {
 constexpr double kCoarse_s = 0.05;               // within this time of a motion there should be a picture
 constexpr std::chrono::milliseconds kPause{20};  // of a motion, before the full picture is begun
 constexpr int kFinest = 2, kCoarsest = 16;
-
-/// Ends the drawing of a picture that nobody waits for any longer.
-class Cancel : public Progress {
-public:
-    explicit Cancel(const std::atomic<bool>& wanted) : wanted_(wanted) {}
-    void report(std::string_view, double) override {}
-    [[nodiscard]] bool cancelled() const override { return wanted_; }
-
-private:
-    const std::atomic<bool>& wanted_;
-};
 
 }  // namespace
 
@@ -63,7 +53,7 @@ struct DrawWorker::State {
     }
 
     void run(const Request& request) {
-        Cancel at_end(quit), when_newer(abandon);
+        CancelFlag at_end(quit), when_newer(abandon);
         try {
             DrawTimes taken{.coarse_scale = coarse_scale};
             const double before = request.since.seconds();
