@@ -27,13 +27,36 @@
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_points.h"
-#include "subvol/wavelet_file.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
+#include "wavelet_output.h"
 
 namespace subvol::cli {
 namespace {
+
+constexpr std::initializer_list<const char*> kOfKernels{"--ascii",
+                                                        "--splats",
+                                                        "--up",
+                                                        "--per-edge",
+                                                        "--centers",
+                                                        "--spacing",
+                                                        "--spacing-voxels",
+                                                        "--tolerance",
+                                                        "--footprint",
+                                                        "--footprint-size",
+                                                        "--threshold",
+                                                        "--tf",
+                                                        "--reduce",
+                                                        "--refine",
+                                                        "--merge",
+                                                        "--values",
+                                                        "--kernel",
+                                                        "--value-kernel",
+                                                        "--correction",
+                                                        "--clamp",
+                                                        "--error",
+                                                        "--part"};
 
 class PointsVerb : public Verb {
 public:
@@ -152,28 +175,7 @@ private:
     /// A mesh instead of kernels: details have signs and no mean, so that a normalised sum of kernels cannot add them.
     int write_wavelets(Report& report) {
         check_output(output_, {".svw"});
-        refuse_options(app(), {"--ascii",
-                               "--splats",
-                               "--up",
-                               "--per-edge",
-                               "--centers",
-                               "--spacing",
-                               "--spacing-voxels",
-                               "--tolerance",
-                               "--footprint",
-                               "--footprint-size",
-                               "--threshold",
-                               "--tf",
-                               "--reduce",
-                               "--refine",
-                               "--merge",
-                               "--values",
-                               "--kernel",
-                               "--value-kernel",
-                               "--correction",
-                               "--clamp",
-                               "--error",
-                               "--part"},
+        refuse_options(app(), kOfKernels,
                        "makes kernels; --wavelet-tolerance writes a mesh, of which `subvol points` then makes kernels");
         refuse_options(app(), {"--crease-angle"}, "tags edges of a control mesh; here it is found, with the tags of the mesh");
         if (is_bricks_input(input_) || is_vdb_file(input_) || asks_for_steps(common()) || ranks() != nullptr) {
@@ -193,31 +195,7 @@ private:
         }
         if (app().count("--levels") > 0) options.levels = refine.levels;
         const HexMesh mesh = with_selected_field(load_mesh(input_, common(), report), common(), report);
-        const WaveletFileReport written = report.timed("wavelets", [&] { return write_wavelet_file(output_, mesh, options); });
-        std::size_t coefficients = 0, kept = 0;
-        for (const WaveletArrayReport& array : written.arrays) {
-            coefficients += array.coefficients;
-            kept += array.kept;
-        }
-        const WaveletArrayReport &points = written.arrays.front(), &field = written.arrays.back();
-        report["points"] = mesh.points.size();
-        report["cells"] = written.cells;
-        report["levels"] = written.levels;
-        report["coarse_cells"] = written.coarse_cells;
-        if (written.added_cells > 0) report["added_cells"] = written.added_cells;
-        report["coefficients"] = coefficients;
-        report["coefficients_kept"] = kept;
-        report["bytes"] = written.bytes;
-        report["rms"] = field.rms;
-        report["max"] = field.max;
-        report["point_rms"] = points.rms;
-        report["point_max"] = points.max;
-        report["inverted_cells"] = written.inverted_cells;
-        report["output"] = output_;
-        if (written.inverted_cells > written.inverted_cells_before) {
-            report.warn(text(count_text(written.inverted_cells - written.inverted_cells_before),
-                             " cells are inverted after rounding; a smaller --wavelet-point-tolerance keeps their shapes"));
-        }
+        write_wavelets_reported(output_, mesh, options, report);
         return 0;
     }
 
