@@ -11,6 +11,13 @@
 
 namespace subvol::test {
 
+/// A mesh of points alone.
+inline HexMesh only_points(std::vector<Vec3> points) {
+    HexMesh mesh;
+    mesh.points = std::move(points);
+    return mesh;
+}
+
 /// A box of nx × ny × nz cells of size 1 from the origin; point i + (nx+1)(j + (ny+1)k).
 inline HexMesh make_box(Index nx, Index ny, Index nz) {
     HexMesh mesh;

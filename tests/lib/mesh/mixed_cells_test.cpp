@@ -19,12 +19,6 @@ namespace {
 
 constexpr double kRounding = 1e-13;  // sums of some hundred exact terms of order one
 
-HexMesh only_points(std::vector<Vec3> points) {
-    HexMesh mesh;
-    mesh.points = std::move(points);
-    return mesh;
-}
-
 struct Mixed {
     HexMesh hexes;
     MixedCells others;
