@@ -193,21 +193,17 @@ BrickMesh merged(std::vector<BrickMesh> parts) {
 }
 
 std::vector<std::uint8_t> hull_points_of_owned(const BrickMesh& part) {
-    Topology topology;  // its faces only
-    topology.point_count = part.mesh.points.size();
-    topology.cells = part.mesh.cells;
-    build_faces(topology);
     std::vector<std::uint8_t> of_owned(part.mesh.points.size(), 0), on_hull(part.mesh.points.size(), 0);
     for (std::size_t c = 0; c < part.mesh.cells.size(); ++c) {
         if (!part.owned_cells[c]) continue;
         for (const Index p : part.mesh.cells[c]) of_owned[p] = 1;
     }
     // All cells at a point of an owned cell are here, so a face with such a point that has one cell here has no other.
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
-        if (std::ranges::any_of(topology.faces[f], [&](Index p) { return of_owned[p] != 0; })) {
-            for (const Index p : topology.faces[f]) on_hull[p] = 1;
-        }
+    const auto at_owned = [&](const auto& face) {
+        return std::ranges::any_of(face, [&](Index p) { return of_owned[p] != 0; });
+    };
+    for (const auto& quad : hull_quads(part.mesh, at_owned)) {
+        for (const Index p : quad) on_hull[p] = 1;
     }
     return on_hull;
 }

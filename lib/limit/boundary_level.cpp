@@ -28,14 +28,9 @@ namespace {
 using HullFlags = std::vector<std::uint8_t>;  // for each point: whether it is on the hull
 
 HullFlags hull_points(const HexMesh& mesh) {
-    Topology topology;  // its faces only
-    topology.point_count = mesh.points.size();
-    topology.cells = mesh.cells;
-    build_faces(topology);
     HullFlags on_hull(mesh.points.size(), 0);
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        if (!topology.face_on_hull(static_cast<Index>(f))) continue;
-        for (const Index p : topology.faces[f]) on_hull[p] = 1;
+    for (const auto& quad : hull_quads(mesh)) {
+        for (const Index p : quad) on_hull[p] = 1;
     }
     return on_hull;
 }
@@ -141,8 +136,19 @@ HexMesh hull_at_level(HexMesh mesh, const RefineOptions& options, HullFlags& on_
         mesh = std::move(child.mesh);
         mesh.cells = child_cells(child.parent);
     }
-    return on_limit(std::move(mesh), options.scheme.kind);
+    HullCells last(mesh, on_hull, true);
+    on_hull = std::move(last.on_hull);
+    mesh = {};
+    return on_limit(std::move(last.mesh), options.scheme.kind);
 }
+
+/// Whether a face of these cells may be one of the hull.
+struct OnHull {
+    const HullFlags& flags;
+    bool operator()(const std::array<Index, 4>& face) const {
+        return std::ranges::all_of(face, [&](Index p) { return flags[p] != 0; });
+    }
+};
 
 }  // namespace
 
@@ -154,7 +160,7 @@ Surface boundary_at_level(HexMesh mesh, const RefineOptions& options) {
 Surface boundary_at_level(HexMesh mesh, std::vector<std::uint8_t> on_hull, const RefineOptions& options) {
     mesh.attributes.clear();
     mesh = hull_at_level(std::move(mesh), options, on_hull);
-    return boundary_surface_where(mesh, [&](const auto& face) { return on_hull[face[0]] != 0; });
+    return boundary_surface_where(mesh, OnHull{on_hull});
 }
 
 }  // namespace subvol::detail
@@ -199,7 +205,7 @@ BoundaryValues detail::boundary_values_of_hull(HexMesh mesh, std::vector<std::ui
     const std::vector<Vec3> points = std::move(mesh.points);
     std::vector<Attribute> fields = std::move(mesh.attributes);
     mesh.points.resize(points.size());
-    Surface names = boundary_surface_where(numbered(std::move(mesh)), [&](const auto& face) { return on_hull[face[0]] != 0; });
+    Surface names = boundary_surface_where(numbered(std::move(mesh)), OnHull{on_hull});
     boundary.surface.triangles = std::move(names.triangles);
     const std::vector<Index> used = numbers_in(names.points);
     for (const Index p : used) boundary.surface.points.push_back(points[p]);
@@ -273,8 +279,7 @@ BoundaryTables::BoundaryTables(const HexMesh& whole, const RefineOptions& option
         mesh.sharp_faces = std::move(tables.sharp_faces);
     }
     if (!interpolates(options.scheme.kind)) state_->limit = limit_stencils(build_topology(mesh), options.scheme.kind);
-    const Surface surface =
-        boundary_surface_where(numbered(std::move(mesh)), [&](const auto& face) { return on_hull[face[0]] != 0; });
+    const Surface surface = boundary_surface_where(numbered(std::move(mesh)), OnHull{on_hull});
     state_->on_surface = numbers_in(surface.points);
     state_->triangles = surface.triangles;
 }

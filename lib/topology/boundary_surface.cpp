@@ -8,11 +8,8 @@ namespace subvol {
 
 std::array<Index, 4> detail::outward_quad(const Topology& topology, Index cell, Index face) {
     const auto& sides = topology.cell_faces[cell];
-    const auto side = static_cast<std::size_t>(std::find(sides.begin(), sides.end(), face) - sides.begin());
-    std::array<Index, 4> quad;
-    for (std::size_t k = 0; k < 4; ++k) quad[k] = topology.cells[cell][static_cast<std::size_t>(kCellFaces[side][k])];
-    std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
-    return quad;
+    return outward_quad(topology.cells[cell],
+                        static_cast<std::size_t>(std::find(sides.begin(), sides.end(), face) - sides.begin()));
 }
 
 Surface boundary_surface(const HexMesh& mesh) {
@@ -20,16 +17,8 @@ Surface boundary_surface(const HexMesh& mesh) {
 }
 
 Surface detail::boundary_surface_where(const HexMesh& mesh, const std::function<bool(const std::array<Index, 4>&)>& where) {
-    Topology topology;  // only its faces are built
-    topology.point_count = mesh.points.size();
-    topology.cells = mesh.cells;
-    detail::build_faces(topology);
     SurfaceBuilder builder(mesh.points.size());
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-        const auto face = static_cast<Index>(f);
-        if (!topology.face_on_hull(face) || !where(topology.faces[f])) continue;
-        builder.add(outward_quad(topology, topology.face_cells[f][0], face));
-    }
+    for (const auto& quad : hull_quads(mesh, where)) builder.add(quad);
     return builder.finish([&](Index p) { return mesh.points[p]; });
 }
 

@@ -13,7 +13,7 @@ namespace subvol::detail {
 /// The quad of a cell's side, counter-clockwise seen from outside, its smallest id first.
 [[nodiscard]] std::array<Index, 4> outward_quad(const Topology& topology, Index cell, Index face);
 
-/// `boundary_surface` of the faces for whose points `where` is true.
+/// `boundary_surface` of the faces for whose points, in any order, `where` is true. The others are not looked at.
 [[nodiscard]] Surface boundary_surface_where(const HexMesh& mesh,
                                              const std::function<bool(const std::array<Index, 4>&)>& where);
 

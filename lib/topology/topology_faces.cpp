@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
@@ -21,25 +22,40 @@ struct FaceRecord {
 };
 
 Quad canonical_quad(const std::array<Index, 8>& cell, std::size_t side) {
-    Quad quad;
-    for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
-    std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
+    Quad quad = outward_quad(cell, side);
     if (quad[1] > quad[3]) std::swap(quad[1], quad[3]);
     return quad;
 }
 
-std::string name_cells(const Topology& topology, Index a, Index b) {
-    auto corners_a = topology.cells[a], corners_b = topology.cells[b];
+/// Sorts the faces of cells for whose points `where` is true. Those of two cells follow each other.
+template <class Cells, class Where>
+FlatArray<FaceRecord> sorted_faces(const Cells& cells, std::size_t point_count, const Where& where) {
+    auto sorted = bucket_sort<FaceRecord>(
+        cells.size(), point_count,
+        [&](std::size_t c, const auto& sink) {
+            for (std::size_t side = 0; side < 6; ++side) {
+                const Quad points = canonical_quad(cells[c], side);
+                if (where(points)) sink({points, static_cast<Index>(c), static_cast<std::uint8_t>(side)});
+            }
+        },
+        [](const FaceRecord& record) { return record.points[0]; });
+    return std::move(sorted.records);
+}
+
+template <class Cells>
+std::string name_cells(const Cells& cells, Index a, Index b) {
+    auto corners_a = cells[a], corners_b = cells[b];
     std::sort(corners_a.begin(), corners_a.end());
     std::sort(corners_b.begin(), corners_b.end());
     if (corners_a != corners_b) return {};
     return "cells " + std::to_string(a) + " and " + std::to_string(b) + " have the same corners (cells counted from 0)";
 }
 
-[[noreturn]] void refuse_face(const Topology& topology, std::span<const FaceRecord> sharing) {
+template <class Cells>
+[[noreturn]] void refuse_face(const Cells& all, std::span<const FaceRecord> sharing) {
     for (std::size_t i = 0; i < sharing.size(); ++i) {
         for (std::size_t j = i + 1; j < sharing.size(); ++j) {
-            const auto text = name_cells(topology, sharing[i].cell, sharing[j].cell);
+            const auto text = name_cells(all, sharing[i].cell, sharing[j].cell);
             if (!text.empty()) throw Error(ErrorCode::InvalidInput, text, {}, "each cell may be listed once");
         }
     }
@@ -58,7 +74,8 @@ void refuse_twins(const Topology& topology) {
         const auto first = topology.face_cells[sides[0]];
         if (first[1] == kNone) continue;
         if (std::all_of(sides.begin(), sides.end(), [&](Index f) { return topology.face_cells[f] == first; })) {
-            throw Error(ErrorCode::InvalidInput, name_cells(topology, first[0], first[1]), {}, "each cell may be listed once");
+            throw Error(ErrorCode::InvalidInput, name_cells(topology.cells, first[0], first[1]), {},
+                        "each cell may be listed once");
         }
     }
 }
@@ -72,22 +89,14 @@ void check_count(std::size_t count, std::string_view kind) {
 }
 
 void build_faces(Topology& topology) {
-    const auto sorted = bucket_sort<FaceRecord>(
-        topology.cells.size(), topology.point_count,
-        [&](std::size_t c, const auto& sink) {
-            for (std::size_t side = 0; side < 6; ++side) {
-                sink({canonical_quad(topology.cells[c], side), static_cast<Index>(c), static_cast<std::uint8_t>(side)});
-            }
-        },
-        [](const FaceRecord& record) { return record.points[0]; });
-    const auto& records = sorted.records;
+    const auto records = sorted_faces(topology.cells, topology.point_count, [](const Quad&) { return true; });
     const auto starts = group_starts(records, [](const auto& a, const auto& b) { return a.points == b.points; });
 
     const std::size_t count = starts.size() - 1;
     check_count(count, "faces");
     for (std::size_t f = 0; f < count; ++f) {
         if (starts[f + 1] - starts[f] > 2)
-            refuse_face(topology, std::span(records).subspan(starts[f], starts[f + 1] - starts[f]));
+            refuse_face(topology.cells, std::span(records).subspan(starts[f], starts[f + 1] - starts[f]));
     }
     topology.faces.resize(count);
     topology.face_cells.resize(count);
@@ -101,6 +110,25 @@ void build_faces(Topology& topology) {
         }
     });
     refuse_twins(topology);
+}
+
+std::vector<Quad> hull_quads(const HexMesh& mesh, const std::function<bool(const Quad&)>& where) {
+    const auto records = sorted_faces(mesh.cells, mesh.points.size(), where);
+    std::vector<Quad> quads;
+    for (std::size_t first = 0, end = 0; first < records.size(); first = end) {
+        const FaceRecord& record = records[first];
+        for (end = first + 1; end < records.size() && records[end].points == record.points;) ++end;
+        if (end - first > 2) refuse_face(mesh.cells, std::span(records).subspan(first, end - first));
+        if (end - first == 1) quads.push_back(outward_quad(mesh.cells[record.cell], record.side));
+    }
+    return quads;
+}
+
+std::array<Index, 4> outward_quad(const std::array<Index, 8>& cell, std::size_t side) {
+    Quad quad;
+    for (std::size_t k = 0; k < 4; ++k) quad[k] = cell[static_cast<std::size_t>(kCellFaces[side][k])];
+    std::rotate(quad.begin(), std::min_element(quad.begin(), quad.end()), quad.end());
+    return quad;
 }
 
 }  // namespace subvol::detail

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,6 +15,16 @@ namespace subvol::detail {
 ///
 /// throws: Error(InvalidInput) if more than two cells share a face, or two cells have the same corners
 void build_faces(Topology& topology);
+
+/// The quad of a cell's side, counter-clockwise seen from outside, its smallest id first.
+[[nodiscard]] std::array<Index, 4> outward_quad(const std::array<Index, 8>& cell, std::size_t side);
+
+/// The outward quads of the faces that one cell has, in the order of the faces of a topology, without building one.
+///
+/// where:  chooses among all faces, by their points in any order; called in parallel
+/// throws: Error(InvalidInput) if more than two cells share a face that is chosen
+[[nodiscard]] std::vector<std::array<Index, 4>> hull_quads(
+    const HexMesh& mesh, const std::function<bool(const std::array<Index, 4>&)>& where = [](const auto&) { return true; });
 
 /// throws: Error(InvalidInput) if there are more entities of a kind than an Index can count. kind: "faces"
 void check_count(std::size_t count, std::string_view kind);

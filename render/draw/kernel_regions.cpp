@@ -19,10 +19,10 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostAcross = 8;             // regions
+constexpr int kMostAcross = 16;            // regions: files, each of which is opened once
 constexpr int kTile_px = 32;               // of the splatter: a tile lies in one region
 constexpr double kMargin_px = 3;           // more than the splatter adds for rounding
-constexpr std::size_t kWaiting = 1 << 18;  // bytes before they are written
+constexpr std::size_t kWaiting = 1 << 16;  // bytes before they are written
 
 /// What a file has of a kernel, apart from its Hessian.
 struct Record {

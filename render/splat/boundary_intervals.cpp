@@ -37,14 +37,20 @@ struct SnappedPoint {
     std::int64_t x, y;
 };
 
-/// A triangle in the picture, with its plane in eye space.
+/// A triangle in the picture, with its plane in eye space. Those near no pixel's centre are left out, which
+/// are most where the surface is finer than the pixels.
 struct ScreenTriangle {
-    std::array<SnappedPoint, 3> corners;  // ordered so that the area is positive
-    std::int8_t sign;                     // +1 where a ray enters the solid
+    std::array<std::array<std::int32_t, 2>, 3> snapped;  // corners, ordered so that the area is positive
+    std::int32_t sign;                                   // +1 where a ray enters the solid
+    std::uint32_t id;
     Vec3 normal;
     double offset, z_min, z_max;
-    std::uint32_t id;
+
+    [[nodiscard]] std::array<SnappedPoint, 3> corners() const {
+        return {{{snapped[0][0], snapped[0][1]}, {snapped[1][0], snapped[1][1]}, {snapped[2][0], snapped[2][1]}}};
+    }
 };
+static_assert(kGuard_px * kSnap < 2147483647.0, "corners have 32 bits");
 
 /// A crossing of the surface by the ray of a pixel; pixels are numbered within the band.
 struct Hit {
@@ -85,6 +91,27 @@ bool is_outside(const ClipPlane& plane, const Vec3& p) {
     return glm::dot(plane.normal, p) + plane.offset < 0;
 }
 
+int first_pixel(std::int64_t snapped) {
+    return static_cast<int>(std::ceil(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
+}
+int last_pixel(std::int64_t snapped) {
+    return static_cast<int>(std::floor(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
+}
+
+/// The pixels whose centres are in the box around a triangle, and in some rows of the picture.
+struct PixelBlock {
+    int x0, x1, y0, y1;  // the last ones included
+
+    [[nodiscard]] bool empty() const { return x0 > x1 || y0 > y1; }
+};
+
+PixelBlock pixels_near(const std::array<SnappedPoint, 3>& t, const View& view, int y_begin, int y_end) {
+    const auto [x_low, x_high] = std::minmax({t[0].x, t[1].x, t[2].x});
+    const auto [y_low, y_high] = std::minmax({t[0].y, t[1].y, t[2].y});
+    return {std::max(0, first_pixel(x_low)), std::min(view.width() - 1, last_pixel(x_high)),
+            std::max(y_begin, first_pixel(y_low)), std::min(y_end - 1, last_pixel(y_high))};
+}
+
 class TriangleSetup {
 public:
     TriangleSetup(const View& view, double near) : view_(view), planes_(clip_planes(view, near)) {}
@@ -106,14 +133,15 @@ private:
         ScreenTriangle t;
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec2 px = view_.to_pixels(part[k]);
-            t.corners[k] = {snap(px.x), snap(px.y)};
+            t.snapped[k] = {static_cast<std::int32_t>(snap(px.x)), static_cast<std::int32_t>(snap(px.y))};
         }
-        const std::int64_t twice_area = area(t.corners[0], t.corners[1], t.corners[2]);
-        if (twice_area == 0) return;
+        const auto corners = t.corners();
+        const std::int64_t twice_area = area(corners[0], corners[1], corners[2]);
+        if (twice_area == 0 || pixels_near(corners, view_, 0, view_.height()).empty()) return;
         // Triangles are counter-clockwise as seen from outside. As rows run downwards, the area is negative where they face the
         // eye.
         t.sign = twice_area < 0 ? 1 : -1;
-        if (twice_area < 0) std::swap(t.corners[1], t.corners[2]);
+        if (twice_area < 0) std::swap(t.snapped[1], t.snapped[2]);
         t.normal = normal;
         t.offset = glm::dot(normal, eye[0]);
         t.z_min = std::min({part[0].z, part[1].z, part[2].z});
@@ -135,13 +163,6 @@ double depth_at(const ScreenTriangle& t, const View& view, double x_px, double y
     return std::isfinite(z) ? std::clamp(z, t.z_min, t.z_max) : t.z_min;  // seen edge-on
 }
 
-int first_pixel(std::int64_t snapped) {
-    return static_cast<int>(std::ceil(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
-}
-int last_pixel(std::int64_t snapped) {
-    return static_cast<int>(std::floor(static_cast<double>(snapped) / static_cast<double>(kSnap) - 0.5));
-}
-
 /// The edge function of one side of a triangle, updated from pixel to pixel; 0 or more inside.
 struct Edge {
     std::int64_t right, down, at_row;
@@ -153,20 +174,20 @@ struct Edge {
 };
 
 void rasterize(const ScreenTriangle& t, const View& view, double middle, int y_begin, int y_end, std::vector<Hit>& hits) {
-    const auto [x_low, x_high] = std::minmax({t.corners[0].x, t.corners[1].x, t.corners[2].x});
-    const auto [y_low, y_high] = std::minmax({t.corners[0].y, t.corners[1].y, t.corners[2].y});
-    const int x0 = std::max(0, first_pixel(x_low)), x1 = std::min(view.width() - 1, last_pixel(x_high));
-    const int y0 = std::max(y_begin, first_pixel(y_low)), y1 = std::min(y_end - 1, last_pixel(y_high));
-    if (x0 > x1 || y0 > y1) return;
-    std::array<Edge, 3> edges{Edge(t.corners[0], t.corners[1], x0, y0), Edge(t.corners[1], t.corners[2], x0, y0),
-                              Edge(t.corners[2], t.corners[0], x0, y0)};
+    const auto corners = t.corners();
+    const PixelBlock block = pixels_near(corners, view, y_begin, y_end);
+    if (block.empty()) return;
+    const auto [x0, x1, y0, y1] = block;
+    std::array<Edge, 3> edges{Edge(corners[0], corners[1], x0, y0), Edge(corners[1], corners[2], x0, y0),
+                              Edge(corners[2], corners[0], x0, y0)};
     for (int y = y0; y <= y1; ++y) {
         std::int64_t a = edges[0].at_row, b = edges[1].at_row, c = edges[2].at_row;
         for (int x = x0; x <= x1; ++x) {
             if ((a | b | c) >= 0) {
                 const auto pixel = static_cast<std::uint32_t>(y - y_begin) * static_cast<std::uint32_t>(view.width()) +
                                    static_cast<std::uint32_t>(x);
-                hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5) - middle), t.sign, t.id});
+                hits.push_back({pixel, static_cast<float>(depth_at(t, view, x + 0.5, y + 0.5) - middle),
+                                static_cast<std::int8_t>(t.sign), t.id});
             }
             a += edges[0].right;
             b += edges[1].right;
@@ -256,9 +277,8 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
     std::vector<std::vector<const ScreenTriangle*>> of_band(static_cast<std::size_t>(band_count));
     for (const auto& chunk : chunks) {
         for (const auto& t : chunk) {
-            const auto [low, high] = std::minmax({t.corners[0].y, t.corners[1].y, t.corners[2].y});
-            const int first = std::max(0, first_pixel(low)), last = std::min(view.height() - 1, last_pixel(high));
-            for (int band = first / kBandRows; first <= last && band <= last / kBandRows; ++band) {
+            const PixelBlock block = pixels_near(t.corners(), view, 0, view.height());
+            for (int band = block.y0 / kBandRows; band <= block.y1 / kBandRows; ++band) {
                 of_band[static_cast<std::size_t>(band)].push_back(&t);
             }
         }
