@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tet_refinement.h"
 
+#include "subvol/error.h"
 #include "text.h"
 
 namespace subvol::cli {
@@ -23,6 +24,12 @@ TetRefinement::TetRefinement(RefineArguments& arguments) {
     arguments.scheme = "linear";
     arguments.levels.reset();
     arguments.crease_angle_deg.reset();
+}
+
+void TetRefinement::refuse_bricks(const std::string& bricks) const {
+    if (!asked()) return;
+    throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which is not refined by \"" + name() + "\"", bricks,
+                "another --scheme");
 }
 
 MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Report& report) const {

@@ -23,6 +23,9 @@ public:
     /// "tetoct" or "boxspline"; only if asked.
     [[nodiscard]] std::string name() const { return *scheme_ == TetScheme::Tetoct ? "tetoct" : "boxspline"; }
 
+    /// throws: Error(InvalidInput) if asked; bricks: the folder
+    void refuse_bricks(const std::string& bricks) const;
+
     /// The refined mesh; timed and with its cells in the report. On the limit: the one that passes through the points and
     /// values of the mesh, since values of a file are those at its points; else the level of the mesh as it is.
     [[nodiscard]] MixedMesh refined(const HexMesh& mesh, int default_levels, Vertices vertices, Report& report) const;

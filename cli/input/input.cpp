@@ -89,7 +89,7 @@ ReadResult read_input(const std::string& input, const CommonOptions& options, Re
     report["input"] = input;
     if (is_bricks(input)) {
         throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which this command does not take yet", input,
-                    "info, points, vdb, render, surface and probe do; each .vtu file in it is a mesh");
+                    "info, points, vdb, render, surface, slice and probe do; each .vtu file in it is a mesh");
     }
     const bool model = is_model(input);
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");

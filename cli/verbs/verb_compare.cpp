@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iomanip>
 
+#include "bricks_input.h"
 #include "field_comparison.h"
 #include "field_input.h"
 #include "picture_comparison.h"
@@ -45,6 +46,7 @@ public:
     }
 
     int run(Report& report) override {
+        for (const std::string& input : {a_, b_}) refuse_bricks(input, "compare", "grids of `subvol vdb` can be compared");
         const InputKind a = kind_of(a_), b = kind_of(b_);
         const bool pictures = b == InputKind::Picture;
         if ((a == InputKind::Picture) != pictures) {

@@ -2,11 +2,13 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
+#include "bricks_input.h"
 #include "input.h"
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "places_input.h"
 #include "refine_arguments.h"
+#include "subvol/brick_slice.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"
@@ -68,16 +70,7 @@ public:
         std::vector<double> plane;
         if (!plane_.empty()) plane = parse_numbers("--plane", plane_, 6, "0,0,0,0,0,1");
         report.if_long("a lower --resolution");
-        const TetRefinement tets(scheme_);
-        const HexMesh mesh = tets.hexes(with_selected_field(load_mesh(input_, common(), report), common(), report), 2, report);
-        const Vec3 center = bounds(mesh).center();
-        if (plane.empty()) plane = {center.x, center.y, center.z, 0, 0, 1};
-        const LimitSlice slice = report.timed("slice", [&] {
-            return slice_limit(mesh, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]},
-                               {.resolution = resolution_,
-                                .limit = {.scheme = scheme_.options(0, report).scheme, .progress = report.progress()},
-                                .progress = report.progress()});
-        });
+        const LimitSlice slice = is_bricks_input(input_) ? slice_of_bricks(plane, report) : slice_of_mesh(plane, report);
         std::vector<double> values;
         for (int c = 0; c < contours_; ++c) values.push_back(slice.min + (slice.max - slice.min) * (c + 1) / (contours_ + 1));
         const auto lines = contour_lines(slice, values);
@@ -100,6 +93,38 @@ public:
     }
 
 private:
+    [[nodiscard]] SliceOptions options(Report& report) const {
+        return {.resolution = resolution_,
+                .limit = {.scheme = scheme_.options(0, report).scheme, .progress = report.progress()},
+                .progress = report.progress()};
+    }
+
+    /// plane: a point and a normal, or empty; becomes that of the box's centre and z
+    static void choose_plane(const Box& box, std::vector<double>& plane) {
+        const Vec3 center = box.center();
+        if (plane.empty()) plane = {center.x, center.y, center.z, 0, 0, 1};
+    }
+
+    [[nodiscard]] LimitSlice slice_of_mesh(std::vector<double>& plane, Report& report) {
+        const TetRefinement tets(scheme_);
+        const HexMesh mesh = tets.hexes(with_selected_field(load_mesh(input_, common(), report), common(), report), 2, report);
+        choose_plane(bounds(mesh), plane);
+        return report.timed("slice", [&] {
+            return slice_limit(mesh, {}, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report));
+        });
+    }
+
+    [[nodiscard]] LimitSlice slice_of_bricks(std::vector<double>& plane, Report& report) {
+        TetRefinement(scheme_).refuse_bricks(input_);
+        const Bricks bricks = open_bricks_input(input_, app(), report);
+        const StreamedField field = select_brick_field(bricks, common(), report);
+        choose_plane(bricks.bounds, plane);
+        return report.timed("slice", [&] {
+            return slice_limit(bricks, {plane[0], plane[1], plane[2]}, {plane[3], plane[4], plane[5]}, options(report),
+                               [&](HexMesh brick) { return with_brick_fields(std::move(brick), {field}); });
+        });
+    }
+
     void write_picture(const LimitSlice& slice, const std::vector<ContourLine>& lines, const Range& range,
                        const Vec3& background, Report& report) const {
         TransferFunction function = find_transfer_function(function_, range);

@@ -77,10 +77,7 @@ public:
                                .improve = !keep_slivers_,
                                .progress = report.progress()};
         if (is_bricks_input(input_)) {
-            if (tets.asked()) {
-                throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which is not refined by \"" + tets.name() + "\"",
-                            input_, "another --scheme");
-            }
+            tets.refuse_bricks(input_);
             extract_from_bricks(options, report);
             return 0;
         }

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "bricks_input.h"
 #include "choices.h"
 #include "clip_arguments.h"
 #include "grid_input.h"
@@ -92,6 +93,7 @@ public:
 
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
+        refuse_bricks(input_, "view", "`subvol render` draws it, and each .vtu file in it is a mesh");
         const bool voxels = !holds_points(input_) && is_vdb_file(input_);
         const bool points = voxels || holds_points(input_);
         picture_.settle_look(!points);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "brick_layers.h"
+#include "subvol/detail/median_tree.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
@@ -22,12 +23,19 @@ bool contains(const Box& box, const Vec3& x) {
 /// The owned cells of a brick that a place may lie in, with the halo that their limit needs.
 BrickMesh about_places(BrickMesh brick, const std::vector<Vec3>& places, int layers) {
     const CellReaches reaches(brick.mesh);
-    Box all;
-    for (const Vec3& x : places) all.add(x);
+    const MedianTree<Box> tree(places, 16, [&](Index p) { return Box{places[p], places[p]}; });
+    const auto has_place = [&](const Box& box) {
+        bool found = false;
+        tree.visit_leaves([&](const Box& of_node) { return touch(box, of_node); },
+                          [&](std::size_t first, std::size_t last) {
+                              for (; first < last && !found; ++first) found = contains(box, places[tree.item(first)]);
+                              return found;
+                          });
+        return found;
+    };
     parallel_each(brick.owned_cells.size(), [&](std::size_t c) {
         auto& wanted = brick.owned_cells[c];
-        const Box box = wanted ? reaches(c) : Box{};
-        wanted = wanted && touch(box, all) && std::ranges::any_of(places, [&](const Vec3& x) { return contains(box, x); });
+        wanted = wanted && !places.empty() && has_place(reaches(c));
     });
     std::vector<std::uint8_t> kept = brick.owned_cells;
     grow(brick.mesh, kept, layers);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "output_file.h"
+#include "slice_part.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
@@ -198,22 +199,21 @@ void write_vtp(detail::OutputFile& out, const LimitSlice& slice, std::span<const
 
 }  // namespace
 
-LimitSlice slice_limit(const HexMesh& mesh, std::string_view field, const Vec3& point, const Vec3& normal,
-                       const SliceOptions& options) {
+void detail::check_plane(const Vec3& point, const Vec3& normal, const SliceOptions& options) {
     if (!is_finite(point) || !is_finite(normal) || !(glm::length(normal) > 0)) {
         throw Error(ErrorCode::InvalidInput, "the plane has no place or no direction", "slice", "a point and a normal");
     }
     if (options.resolution < 2 || options.resolution > 20000) {
         throw Error(ErrorCode::InvalidInput, "the resolution is " + std::to_string(options.resolution), "slice", "2 to 20,000");
     }
-    validate(mesh);
+}
+
+LimitSlice detail::empty_slice(const Box& box, const Vec3& point, const Vec3& normal, const SliceOptions& options) {
+    check_plane(point, normal, options);
     LimitSlice slice;
-    HexMesh chosen = with_scalar_field(mesh, field);
-    slice.field = chosen.attributes.front().name;
-    const LimitProbe probe(std::move(chosen), {.limit = options.limit});
     const Vec3 facing = glm::normalize(normal);
     const auto [right, down] = axes_of(facing);
-    const Part part = cut_box(probe.box(), point, facing, right, down);
+    const Part part = cut_box(box, point, facing, right, down);
     if (!(part.lower.x <= part.upper.x)) {
         throw Error(ErrorCode::InvalidInput, "the plane misses the volume", "slice", "a point within its box");
     }
@@ -227,17 +227,25 @@ LimitSlice slice_limit(const HexMesh& mesh, std::string_view field, const Vec3& 
     const Vec2 middle = 0.5 * (part.lower + part.upper);
     slice.origin = point + middle.x * right + middle.y * down - 0.5 * (slice.width - 1) * slice.right -
                    0.5 * (slice.height - 1) * slice.down;
+    return slice;
+}
+
+std::vector<Vec3> detail::places_of(const LimitSlice& slice) {
     std::vector<Vec3> places;
+    places.reserve(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(slice.height));
     for (int row = 0; row < slice.height; ++row) {
         for (int column = 0; column < slice.width; ++column) places.push_back(slice.place(column, row));
     }
-    ProbeResult found = probe.at(places, options.progress);
+    return places;
+}
+
+void detail::take_found(LimitSlice& slice, ProbeResult found) {
     slice.values = std::move(found.fields[0].values);
     slice.gradients = std::move(found.fields[0].gradients);
     slice.cells = std::move(found.cells);
     slice.min = std::numeric_limits<double>::infinity();
     slice.max = -slice.min;
-    for (std::size_t p = 0; p < places.size(); ++p) {
+    for (std::size_t p = 0; p < slice.values.size(); ++p) {
         if (slice.cells[p] == kNone) {
             slice.values[p] = std::numeric_limits<double>::quiet_NaN();
             continue;
@@ -250,6 +258,18 @@ LimitSlice slice_limit(const HexMesh& mesh, std::string_view field, const Vec3& 
         throw Error(ErrorCode::InvalidInput, "no place on the plane is in the volume", "slice",
                     "another plane, or a higher resolution");
     }
+}
+
+LimitSlice slice_limit(const HexMesh& mesh, std::string_view field, const Vec3& point, const Vec3& normal,
+                       const SliceOptions& options) {
+    detail::check_plane(point, normal, options);
+    validate(mesh);
+    HexMesh chosen = with_scalar_field(mesh, field);
+    std::string name = chosen.attributes.front().name;
+    const LimitProbe probe(std::move(chosen), {.limit = options.limit});
+    LimitSlice slice = detail::empty_slice(probe.box(), point, normal, options);
+    slice.field = std::move(name);
+    detail::take_found(slice, probe.at(detail::places_of(slice), options.progress));
     return slice;
 }
 

@@ -98,6 +98,24 @@ class SameAsTheWhole(InFolder):
                 if b["inside"]:
                     self.assertAlmostEqual(a["value"], b["value"], delta=1e-9)
 
+    def test_slices(self):
+        plane = ["--plane", "0,0,0.01,0.2,0.1,1", "--resolution", 40]
+        whole = self.run_ok("slice", BALL, "-o", "whole.csv", *plane, "--json").json()
+        for cut in self.cuts():
+            parts = self.run_ok("slice", "b.bricks", "-o", "b.csv", *plane, "--json").json()
+            self.assertEqual(parts["bricks"], int(cut.split()[0]))
+            # The frame is the box of the control points, not that of the limit.
+            self.assertAlmostEqual(parts["step"], whole["step"], delta=0.1 * whole["step"])
+            for key in ("min", "max"):
+                self.assertAlmostEqual(parts[key], whole[key], delta=0.05)
+            rows = [line.split(",") for line in (self.folder / "b.csv").read_text().splitlines()[1:]]
+            self.assertEqual(len(rows), parts["inside"])
+            at = rows[len(rows) // 2]
+            there = self.run_ok("probe", BALL, f"--at={','.join(at[:3])}", "--json").json()["values"][0]
+            self.assertAlmostEqual(float(at[6]), there["value"], delta=1e-9)
+        self.assert_said("misses the volume", "slice", "b.bricks", "-o", "a.png", "--plane", "0,0,9,0,0,1")
+        self.assert_said("which is not refined by", "slice", "b.bricks", "-o", "a.png", "--scheme", "tetoct")
+
     def test_statistics(self):
         whole = self.run_ok("probe", "model:twist:4", "--stats", "--json").json()["stats"]["whole"]
         self.run_ok("split", "model:twist:4", "-o", "b.bricks", "--bricks", 2, "--quiet")
@@ -177,7 +195,8 @@ class WhatGoesWrong(InFolder):
 
     def test_what_cannot_be_done_by_bricks(self):
         said = "is a folder of bricks, which this command does not take yet"
-        self.assert_said(said, "slice", "t.bricks", "-o", "a.png", "--plane", "0,0,0,0,0,1")
+        for verb, *more in (("view", "--screenshot", "a.png"), ("page", "-o", "a.html"), ("compare", "t.bricks")):
+            self.assert_said(f"which `subvol {verb}` does not take", verb, "t.bricks", *more)
         self.assert_said(said, "subdivide", "t.bricks", "-o", "a.vtu")
         self.assert_said("whole mesh in memory", "vdb", "t.bricks", "-o", "a.vdb", "--sdf")
         self.assert_said("whole mesh in memory", "points", "t.bricks", "-o", "a.ply", "--levels", 1)

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slices of a mesh in bricks have the values of the mesh, wherever it is cut into bricks.
+#include "subvol/brick_slice.h"
+
+#include <gmock/gmock.h>
+
+#include "../temp_folder.h"
+#include "../test_meshes.h"
+#include "subvol/model.h"
+#include "subvol/split.h"
+
+namespace subvol {
+namespace {
+
+using test::error_of;
+using testing::HasSubstr;
+
+class BrickSlice : public test::TempFolder {};
+
+TEST_F(BrickSlice, ALinearFieldHasItsValues) {
+    HexMesh mesh = test::make_box(6, 5, 4);
+    test::add_field(mesh, "f", [](const Vec3& x) { return 2 * x.x - x.y + 0.5 * x.z; });
+    for (const BrickShape shape : {BrickShape::Blocks, BrickShape::Slabs, BrickShape::Random}) {
+        const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 4, .shape = shape}).bricks;
+        const LimitSlice slice = slice_limit(bricks, {3, 2, 1.5}, {0, 0, 1}, {.resolution = 30});
+        EXPECT_EQ(slice.field, "f");
+        EXPECT_EQ(slice.width, 30);
+        EXPECT_EQ(slice.height, 25);
+        ASSERT_EQ(slice.inside, 750U);
+        for (int row = 0; row < slice.height; ++row) {
+            for (int column = 0; column < slice.width; ++column) {
+                const Vec3 x = slice.place(column, row);
+                const auto p = static_cast<std::size_t>(row * slice.width + column);
+                EXPECT_NEAR(x.z, 1.5, 1e-12);
+                EXPECT_NEAR(slice.values[p], 2 * x.x - x.y + 0.75, 1e-9);
+                EXPECT_NEAR(glm::distance(slice.gradients[p], Vec3(2, -1, 0.5)), 0, 1e-6);
+            }
+        }
+    }
+}
+
+TEST_F(BrickSlice, IsThatOfTheWholeWhereFramesAreTheSame) {
+    // A slice of the whole has the box of the limit; with a linear limit that is the box of the control points.
+    HexMesh mesh = make_model("ball", 3);
+    mesh.attributes.clear();
+    test::add_field(mesh, "f", [](const Vec3& x) { return x.x * x.x + x.y * x.z; });
+    const SliceOptions options{.resolution = 33, .limit = {.scheme = {.kind = Scheme::Linear}}};
+    const LimitSlice whole = slice_limit(mesh, "f", {0.02, 0.01, 0.03}, {0.3, 0.2, 1}, options);
+    const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 5}).bricks;
+    const LimitSlice found = slice_limit(bricks, {0.02, 0.01, 0.03}, {0.3, 0.2, 1}, options);
+    // The pieces' boxes are of floats.
+    const double near = 1e-5 * bounds(mesh).diagonal();
+    ASSERT_EQ(found.width, whole.width);
+    ASSERT_EQ(found.height, whole.height);
+    EXPECT_LT(glm::distance(found.origin, whole.origin), near);
+    EXPECT_NEAR(static_cast<double>(found.inside), static_cast<double>(whole.inside), 4);
+    for (std::size_t p = 0; p < whole.values.size(); ++p) {
+        if (found.cells[p] == kNone || whole.cells[p] == kNone) continue;
+        EXPECT_NEAR(found.values[p], whole.values[p], 1e-4);
+    }
+}
+
+TEST_F(BrickSlice, RefusesWhatIsMalformed) {
+    HexMesh mesh = test::make_box(4, 4, 4);
+    test::add_field(mesh, "f", [](const Vec3& x) { return x.x; });
+    const Bricks bricks = split_mesh(path("b"), mesh, {.bricks = 2}).bricks;
+    EXPECT_THAT(error_of([&] { (void)slice_limit(bricks, {2, 2, 9}, {0, 0, 1}); }), HasSubstr("misses the volume"));
+    EXPECT_THAT(error_of([&] { (void)slice_limit(bricks, {2, 2, 2}, {0, 0, 0}); }), HasSubstr("no direction"));
+    EXPECT_THAT(error_of([&] {
+                    (void)slice_limit(bricks, {2, 2, 2}, {0, 0, 1}, {.resolution = 1});
+                }),
+                HasSubstr("2 to 20,000"));
+}
+
+}  // namespace
+}  // namespace subvol
