@@ -8,7 +8,7 @@
 #include "picture_arguments.h"
 #include "places_input.h"
 #include "refine_arguments.h"
-#include "subvol/brick_slice.h"
+#include "subvol/brick_probe.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/limit_slice.h"

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "brick_layers.h"
+#include "slice_part.h"
 #include "subvol/detail/median_tree.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
@@ -94,6 +95,22 @@ ProbeResult probe_bricks(const Bricks& bricks, std::span<const Vec3> places, con
         }
     }
     return result;
+}
+
+LimitSlice slice_limit(const Bricks& bricks, const Vec3& point, const Vec3& normal, const SliceOptions& options,
+                       const BrickFields& fields) {
+    LimitSlice slice = detail::empty_slice(bricks.bounds, point, normal, options);
+    const auto first_alone = [&](HexMesh brick) {
+        if (fields) brick = fields(std::move(brick));
+        brick = with_scalar_field(brick, {});
+        slice.field = brick.attributes.front().name;
+        return brick;
+    };
+    LimitOptions quiet = options.limit;
+    quiet.progress = nullptr;
+    const std::vector<Vec3> places = detail::places_of(slice);
+    detail::take_found(slice, probe_bricks(bricks, places, {.limit = quiet}, first_alone, options.progress));
+    return slice;
 }
 
 }  // namespace subvol

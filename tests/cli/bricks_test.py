@@ -113,8 +113,6 @@ class SameAsTheWhole(InFolder):
             at = rows[len(rows) // 2]
             there = self.run_ok("probe", BALL, f"--at={','.join(at[:3])}", "--json").json()["values"][0]
             self.assertAlmostEqual(float(at[6]), there["value"], delta=1e-9)
-        self.assert_said("misses the volume", "slice", "b.bricks", "-o", "a.png", "--plane", "0,0,9,0,0,1")
-        self.assert_said("which is not refined by", "slice", "b.bricks", "-o", "a.png", "--scheme", "tetoct")
 
     def test_statistics(self):
         whole = self.run_ok("probe", "model:twist:4", "--stats", "--json").json()["stats"]["whole"]
@@ -198,6 +196,8 @@ class WhatGoesWrong(InFolder):
         for verb, *more in (("view", "--screenshot", "a.png"), ("page", "-o", "a.html"), ("compare", "t.bricks")):
             self.assert_said(f"which `subvol {verb}` does not take", verb, "t.bricks", *more)
         self.assert_said(said, "subdivide", "t.bricks", "-o", "a.vtu")
+        self.assert_said("misses the volume", "slice", "t.bricks", "-o", "a.png", "--plane", "0,0,9,0,0,1")
+        self.assert_said("which is not refined by", "slice", "t.bricks", "-o", "a.png", "--scheme", "tetoct")
         self.assert_said("whole mesh in memory", "vdb", "t.bricks", "-o", "a.vdb", "--sdf")
         self.assert_said("whole mesh in memory", "points", "t.bricks", "-o", "a.ply", "--levels", 1)
         self.assert_said("--per-edge 1", "points", "t.bricks", "-o", "a.ply", "--per-edge", 2)

@@ -8,7 +8,6 @@
 #include "subvol/brick_measure.h"
 #include "subvol/brick_points.h"
 #include "subvol/brick_probe.h"
-#include "subvol/brick_slice.h"
 #include "subvol/brick_surface.h"
 #include "subvol/bricks.h"
 #include "subvol/camera.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slices of a mesh in bricks have the values of the mesh, wherever it is cut into bricks.
-#include "subvol/brick_slice.h"
+#include "subvol/brick_probe.h"
 
 #include <gmock/gmock.h>
 
