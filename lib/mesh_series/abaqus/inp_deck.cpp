@@ -6,12 +6,15 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <unordered_map>
 
 #include "subvol/error.h"
 #include "text_scanner.h"
 
 namespace subvol::detail {
+
+using namespace std::string_view_literals;
 
 namespace {
 
@@ -35,8 +38,22 @@ std::vector<std::string_view> fields_of(std::string_view line) {
     return fields;
 }
 
-// The nodes of an element of a volume; 0 if it is another type.
+// Shells, membranes and surfaces of four nodes, with or without a suffix for the integration; not those of axisymmetric parts.
+constexpr std::array kQuads{"S4"sv, "DS4"sv, "M3D4"sv, "SFM3D4"sv, "R3D4"sv};
+// Beams, trusses and rigid links of two nodes, in space.
+constexpr std::array kLines{"B31"sv, "B33"sv, "T3D2"sv, "DC1D2"sv, "RB3D2"sv, "PIPE31"sv};
+
+bool is_one_of(std::string_view type, std::span<const std::string_view> kinds) {
+    return std::ranges::any_of(kinds, [&](std::string_view kind) {
+        // A digit behind it is another type: S4R5 is an S4, S43 is not.
+        return type.starts_with(kind) && (type.size() == kind.size() || type[kind.size()] < '0' || type[kind.size()] > '9');
+    });
+}
+
+// The nodes of an element of a volume, a sheet or a curve; 0 if it is another type.
 std::size_t nodes_of(std::string_view type) {
+    if (is_one_of(type, kQuads)) return 4;
+    if (is_one_of(type, kLines)) return 2;
     if (!type.starts_with("C3D") && !type.starts_with("DC3D")) return 0;
     const std::size_t digits = type.find("3D") + 2;
     std::size_t nodes = 0;
@@ -336,6 +353,10 @@ Vec3 InpInstance::operator()(const Vec3& x) const {
     const Vec3 u = along / length, v = moved - axis[0];
     const double angle = angle_deg * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
     return axis[0] + c * v + s * glm::cross(u, v) + (1 - c) * glm::dot(u, v) * u;
+}
+
+bool is_sheet(std::string_view type) {
+    return is_one_of(type, kQuads) || is_one_of(type, kLines);
 }
 
 InpDeck read_inp_deck(const std::filesystem::path& path) {

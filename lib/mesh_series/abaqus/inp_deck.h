@@ -5,13 +5,14 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "subvol/vec.h"
 
 namespace subvol::detail {
 
-/// An element of a deck. type: in capitals, such as C3D8R; set: the one that its keyword names, empty if none
+/// An element of a deck. type: in capitals, such as C3D8R
 struct InpElement {
     std::int64_t number;
     std::string_view type;
@@ -43,6 +44,9 @@ struct InpDeck {
     std::vector<InpInstance> instances;
     std::map<std::string, std::string> types;  // owns the names of types
 };
+
+/// Whether a type is one of shells and membranes with four nodes, or of beams and trusses with two.
+[[nodiscard]] bool is_sheet(std::string_view type);
 
 /// throws: Error(InvalidInput) that names the file and the line
 [[nodiscard]] InpDeck read_inp_deck(const std::filesystem::path& path);

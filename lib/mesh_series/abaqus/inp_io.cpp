@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "assemble.h"
 #include "inp_deck.h"
@@ -34,6 +35,7 @@ public:
             found_.warnings.push_back(counted(curved_, "element has", "elements have") +
                                       " more nodes than corners: only the corners are used");
         }
+        drop_parts();
         std::string list;
         for (const auto& [type, count] : left_out_) {
             list += (list.empty() ? "" : ", ") + counted(count, "element", "elements") + " of type " + type;
@@ -89,6 +91,10 @@ private:
         const bool volume = element.type.starts_with("C3D") || element.type.starts_with("DC3D");
         const bool others = options_.other_cells != OtherCells::Ignore;
         const std::size_t nodes = volume ? element.nodes.size() : 0;
+        if (is_sheet(element.type)) {
+            take_sheet(element);
+            return false;
+        }
         if (nodes == 8 || nodes == 20 || nodes == 27) {
             const bool whole = nodes == 20 && options_.curved_tolerance.has_value();
             put(found_.hexes, element, whole);
@@ -104,6 +110,22 @@ private:
             return false;
         }
         return true;
+    }
+
+    void take_sheet(const InpElement& element) {
+        if (element.nodes.size() == 4) put(found_.quads, element, false);
+        if (element.nodes.size() == 2) put(found_.lines, element, false);
+        sheets_.emplace_back(static_cast<Index>(next_), element.type);
+    }
+
+    // Counts the faces and edges of cells among the sheets by their types.
+    void drop_parts() {
+        static_cast<void>(drop_parts_of_cells(found_, options_.sheets_alone));
+        std::unordered_set<Index> kept(found_.quads.numbers.begin(), found_.quads.numbers.end());
+        kept.insert(found_.lines.numbers.begin(), found_.lines.numbers.end());
+        for (const auto& [number, type] : sheets_) {
+            if (!kept.contains(number)) ++left_out_[printable(std::string(type))];
+        }
     }
 
     [[nodiscard]] Index place(const InpElement& element, std::int64_t node) const {
@@ -137,6 +159,7 @@ private:
     std::unordered_map<std::int64_t, Index> places_;
     std::vector<std::int64_t> numbers_;
     std::map<std::string, std::size_t> blocks_, left_out_;
+    std::vector<std::pair<Index, std::string_view>> sheets_;  // numbers and types
     std::size_t next_ = 0, curved_ = 0;
 };
 
