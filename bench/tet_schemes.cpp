@@ -20,9 +20,17 @@ namespace {
 
 using namespace subvol;
 
-double field_at(const Vec3& p) {
-    return std::sin(4 * p.x + 1) * std::cos(3 * p.y) + std::exp(-2 * glm::dot(p, p)) * p.z;
-}
+/// A field that is the same on meshes of every size: of places in parts of half the longest side of the box.
+struct Field {
+    Vec3 center{0.0};
+    double half = 1;
+
+    double operator()(const Vec3& x) const {
+        const Vec3 p = (x - center) / half;
+        return std::sin(4 * p.x + 1) * std::cos(3 * p.y) + std::exp(-2 * glm::dot(p, p)) * p.z;
+    }
+};
+Field field_at;
 
 template <class Mesh>
 void sample(Mesh& mesh) {
@@ -75,6 +83,8 @@ void compare(const char* path, bool shape_alone) {
     ReadOptions options;
     HexMesh hexes = without_unused_points(read_mesh(path, options).mesh);
     hexes.attributes.clear();
+    const Vec3 size = bounds(hexes).size();
+    field_at = {bounds(hexes).center(), std::max({size.x, size.y, size.z}) / 2};
     MixedMesh tets = join_split_cells(hexes);
     if (!shape_alone) sample(tets);
     const MixedShape shape = measure_cells(tets);
