@@ -24,7 +24,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::string_view kMagic = "subvol-kernels\n";
+constexpr std::string_view kMagic{"subvol-kernels\n", 16};  // with the null
 constexpr std::uint32_t kByteOrder = 0x01020304, kVersion = 1;
 constexpr std::uint64_t kMostCount = std::uint64_t{1} << 32;  // of kernels, and of the boundary's points and triangles
 constexpr std::uint32_t kMostChannels = 1 << 16;
