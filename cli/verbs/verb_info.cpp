@@ -104,7 +104,8 @@ private:
             for (const BrickField& field : open_bricks_input(input_, app(), report).fields) list(field.name);
         } else if (holds_levels(input_)) {
             report["input"] = input_;
-            for (const auto& channel : KernelFile(input_).contents().channels) list(channel.name);
+            const KernelFile file(input_);
+            for (const auto& channel : file.contents().channels) list(channel.name);
         } else if (holds_points(input_)) {
             for (const RbfChannel& channel : read_points_input(input_, report).channels) list(channel.name);
         } else if (is_vdb_file(input_)) {

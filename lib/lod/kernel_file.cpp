@@ -21,7 +21,7 @@ namespace subvol {
 
 namespace {
 
-constexpr std::size_t kTurn = 64;  // blocks that are in memory together, besides those in the cache
+constexpr std::size_t kTurn = 512;  // blocks that are in memory together, besides those in the cache
 
 /// A set of numbers that knows for each of them how many are less.
 class RankedSet {

@@ -55,7 +55,7 @@ public:
         out_.write_boundary(volume_.boundary);
         KernelHierarchy top;
         merger_.allocate(top, 2 * layout.blocks() - 1);
-        constexpr std::size_t kTurn = 16;  // blocks that are in memory together
+        constexpr std::size_t kTurn = 128;  // blocks that are in memory together
         for (std::size_t first = 0; first < layout.blocks(); first += kTurn) {
             report_progress(progress_, "merge kernels", static_cast<double>(first) / static_cast<double>(layout.blocks()));
             std::vector<Block> blocks(std::min(kTurn, layout.blocks() - first));

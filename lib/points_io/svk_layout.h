@@ -41,13 +41,13 @@ struct SvkExtent {
 };
 
 /// The tree has 2^levels leaves of at most 8 kernels. A block is what lies below one node of the level `root_level`: some
-/// 10⁴ kernels. The top of the tree, down to these nodes, is one extent. The rest of a block has parts, each of which is read
-/// as a whole: the nodes of the first six levels below its root, those of each further level, the kernels' numbers, and the
+/// 1000 kernels. The top of the tree, down to these nodes, is one extent. The rest of a block has parts, each of which is read
+/// as a whole: the nodes of the first three levels below its root, those of each further level, the kernels' numbers, and the
 /// kernels. So few bytes are read where a view needs few levels.
 class SvkLayout {
 public:
     static constexpr std::size_t kLeafSize = 8;
-    static constexpr int kBlockLevels = 11, kFirstLevels = 6;
+    static constexpr int kBlockLevels = 8, kFirstLevels = 3;
 
     SvkLayout() = default;
     /// data: where the head ends

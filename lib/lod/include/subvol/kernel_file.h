@@ -18,7 +18,7 @@ namespace subvol {
 /// What a file of kernels with levels of detail holds.
 ///
 /// levels: of the tree, with the root and the leaves
-/// blocks: of some 10⁴ kernels each; what lies below one node of the tree
+/// blocks: of some 1000 kernels each; what lies below one node of the tree
 /// bytes:  of the file
 struct KernelFileContents {
     struct Channel {
