@@ -8,6 +8,7 @@
 
 #include "lib/mesh_io/mesh_texts.h"
 #include "lib/mesh_io/vtu_texts.h"
+#include "subvol/kernel_file.h"
 #include "subvol/mesh_io.h"
 #include "subvol/points_io.h"
 #include "subvol/refine.h"
@@ -272,6 +273,7 @@ void add_meshes(Seeds& seeds, const HexMesh& mesh) {
 void add_points(Seeds& seeds, const HexMesh& mesh) {
     const RbfVolume volume = sample_rbf_points(mesh, {}).volume;
     for (const std::string format : {"ply", "vtp"}) write_points(seeds.path(format, "." + format), volume);
+    write_kernel_file(seeds.path("svk", ".svk"), volume);
     seeds.add("kernel", to_json(volume.kernel));
 }
 

@@ -59,7 +59,7 @@ void VdbArguments::add_grids_to(CLI::App& app) {
     app.add_flag("--half", half, "store floats in 16 bits");
     app.add_option("--from", from,
                    "what is rasterized: mesh, or points: kernels sampled from it, summed at the voxels of the mesh; not needed "
-                   "for a FILE of points (.ply, .vtp, .vdb)")
+                   "for a FILE of points (.ply, .vtp, .svk, .vdb)")
         ->type_name("WHAT")
         ->check(offered({"mesh", "points"}));
     app.add_option("--per-edge", per_edge, "with --from points: sample intervals per edge")

@@ -80,7 +80,7 @@ void print_table(const Json& json) {
             for (const std::string& line : columns_of(value)) lines.emplace_back(std::exchange(name, ""), line);
             continue;
         }
-        const bool bytes = key.ends_with("bytes") && value.is_number();
+        const bool bytes = (key.ends_with("bytes") || key.starts_with("bytes_")) && value.is_number();
         const std::string name = key.ends_with("_bytes") ? key.substr(0, key.size() - 6) + "_memory" : key;
         lines.emplace_back(name, key == "seconds" && value.is_object() ? stages(value)
                                  : bytes                               ? bytes_text(value.get<double>())

@@ -2,6 +2,7 @@
 #include "points_input.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "grid_input.h"
 #include "subvol/detail/near_name.h"
@@ -20,6 +21,13 @@ constexpr std::initializer_list<const char*> kOfMeshes{
     "--crease-angle", "--tolerance",      "--footprint",     "--footprint-size", "--values",   "--kernel",
     "--value-kernel", "--threshold",      "--reduce",        "--refine",         "--seconds"};
 
+constexpr const char* kNeedsMesh = "needs a mesh; these are points that have been sampled already";
+
+[[noreturn]] void refuse_field(const std::string& name, const std::vector<std::string>& names, const std::string& input) {
+    throw Error(ErrorCode::InvalidInput, "there is no field '" + name + "'" + detail::did_you_mean(name, names), input,
+                "it has: " + join(names));
+}
+
 }  // namespace
 
 bool holds_points(const std::string& input) {
@@ -35,7 +43,7 @@ RbfVolume read_points_input(const std::string& input, Report& report) {
 }
 
 RbfVolume load_all_points(const std::string& input, const CLI::App& app, Report& report) {
-    refuse_options(app, kOfMeshes, "needs a mesh; these are points that have been sampled already");
+    refuse_options(app, kOfMeshes, kNeedsMesh);
     return read_points_input(input, report);
 }
 
@@ -50,13 +58,36 @@ RbfVolume load_points(const std::string& input, const CommonOptions& options, co
     return volume;
 }
 
+bool holds_levels(const std::string& input) {
+    return std::filesystem::path(input).extension() == ".svk";
+}
+
+LevelsInput open_levels(const std::string& input, const CommonOptions& options, const std::optional<std::string>& second,
+                        std::uint64_t cache_bytes, const CLI::App& app, Report& report) {
+    refuse_options(app, kOfMeshes, kNeedsMesh);
+    report["input"] = input;
+    LevelsInput levels{report.timed("read", [&] { return KernelFile(input, cache_bytes); }), {}};
+    const KernelFileContents& contents = levels.file.contents();
+    report["points"] = contents.kernels;
+    std::vector<std::string> names;
+    for (const auto& channel : contents.channels) names.push_back(channel.name);
+    const auto number_of = [&](const std::string& name) {
+        const auto found = std::ranges::find(names, name);
+        if (found == names.end()) refuse_field(name, names, input);
+        return static_cast<std::size_t>(found - names.begin());
+    };
+    levels.channels.push_back(number_of(options.field.value_or(names.front())));
+    report["field"] = names[levels.channels.front()];
+    if (second && *second != names[levels.channels.front()]) levels.channels.push_back(number_of(*second));
+    return levels;
+}
+
 std::size_t find_channel(const RbfVolume& volume, const std::string& name, const std::string& input) {
     const auto found = std::ranges::find(volume.channels, name, &RbfChannel::name);
     if (found != volume.channels.end()) return static_cast<std::size_t>(found - volume.channels.begin());
     std::vector<std::string> names;
     for (const RbfChannel& channel : volume.channels) names.push_back(channel.name);
-    throw Error(ErrorCode::InvalidInput, "there is no field '" + name + "'" + detail::did_you_mean(name, names), input,
-                "it has: " + join(names));
+    refuse_field(name, names, input);
 }
 
 Range channel_range(const RbfVolume& volume, std::size_t channel) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "input.h"
+#include "subvol/kernel_file.h"
 #include "subvol/rbf_volume.h"
 
 namespace CLI {
@@ -12,7 +15,7 @@ class App;
 
 namespace subvol::cli {
 
-/// Whether the input is a file of points: .ply, .vtp, or a .vdb with a point grid.
+/// Whether the input is a file of points: .ply, .vtp, .svk, or a .vdb with a point grid.
 [[nodiscard]] bool holds_points(const std::string& input);
 
 /// Reads them, timed; puts "input" and "points" into the report.
@@ -28,6 +31,20 @@ namespace subvol::cli {
 /// throws: Error(InvalidInput) if there is no such channel, or if an option of `app` was given that applies to meshes only
 [[nodiscard]] RbfVolume load_points(const std::string& input, const CommonOptions& options,
                                     const std::optional<std::string>& second, const CLI::App& app, Report& report);
+
+/// Whether the input is a file of points with levels of detail, .svk.
+[[nodiscard]] bool holds_levels(const std::string& input);
+
+/// A file of points with levels of detail that was opened. channels: as the fields that `load_points` selects
+struct LevelsInput {
+    KernelFile file;
+    std::vector<std::size_t> channels;
+};
+
+/// Opens such a file in place of `load_points`. cache_bytes: as of KernelFile
+[[nodiscard]] LevelsInput open_levels(const std::string& input, const CommonOptions& options,
+                                      const std::optional<std::string>& second, std::uint64_t cache_bytes, const CLI::App& app,
+                                      Report& report);
 
 /// The number of the channel with this name.
 ///

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "level_of_detail.h"
 #include "ranked_bricks.h"
 #include "ranked_splats.h"
 #include "splat_arguments.h"
@@ -54,17 +53,18 @@ void report_drawn(const SplatReport& drawn, const SplatWork& work, Report& repor
 
 }  // namespace
 
-void write_splats(const RbfVolume& volume, const BoundaryValues& skin, double lod_px, const std::vector<View>& views,
-                  const Optics& optics, const SplatWork& work, PictureOutput& output, Report& report) {
-    LevelOfDetail levels(volume, lod_px, work.options.channel, report);
+void write_splats(LevelOfDetail& levels, const BoundaryValues& skin, const std::vector<View>& views, const Optics& optics,
+                  const SplatWork& work, PictureOutput& output, Report& report) {
     std::optional<Splatter> splatter;
-    if (!work.rows) {
+    const auto prepare = [&](const RbfVolume& volume) {
         splatter.emplace(volume, work.options);
         if (!skin.values.empty()) splatter->set_boundary_colors(skin.surface, skin.values.back());
-    }
+    };
+    if (!work.rows && levels.all() != nullptr) prepare(*levels.all());
     const auto draw = [&](const View& view, Progress* progress) {
         const RbfVolume& shown = levels.of(view, report);
         if (splatter && levels.has_changed()) splatter->set_kernels(shown);
+        if (!splatter && !work.rows) prepare(shown);
         SplatResult drawn =
             splatter ? splatter->draw(view, optics, progress) : draw_rows(shown, skin, view, optics, work, progress, report);
         report_drawn(drawn.report, work, report);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "level_of_detail.h"
 #include "picture_output.h"
 #include "ranks.h"
 #include "report.h"
@@ -30,10 +31,9 @@ struct SplatWork {
 
 /// Draws and writes a picture of kernels for each view.
 ///
-/// skin:   the boundary of a solid, which gets its colours from it; without values: the colours are those of the kernels
-/// lod_px: of --lod; 0: all kernels
-void write_splats(const RbfVolume& volume, const BoundaryValues& skin, double lod_px, const std::vector<View>& views,
-                  const Optics& optics, const SplatWork& work, PictureOutput& output, Report& report);
+/// skin: the boundary of a solid, which gets its colours from it; without values: the colours are those of the kernels
+void write_splats(LevelOfDetail& levels, const BoundaryValues& skin, const std::vector<View>& views, const Optics& optics,
+                  const SplatWork& work, PictureOutput& output, Report& report);
 
 /// A mesh in bricks whose kernels are drawn.
 ///

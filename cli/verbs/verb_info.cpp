@@ -50,7 +50,7 @@ public:
                "  subvol info model:ball\n"
                "  subvol info ball.vdb --at 0,0,0 --at .5,0,0\n"
                "  subvol info --gl") {
-        app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp)"));
+        app().add_option("FILE", input_, text(input_help(), ", or a .vdb file, or points (.ply, .vtp, .svk)"));
         app().add_flag("--list-fields", list_fields_, "print the names of a mesh's fields only, one a line");
         app().add_flag("--gl", gl_, "list the OpenGL devices that can splat");
         app()
@@ -102,6 +102,10 @@ private:
         };
         if (is_bricks_input(input_)) {
             for (const BrickField& field : open_bricks_input(input_, app(), report).fields) list(field.name);
+        } else if (holds_levels(input_)) {
+            report["input"] = input_;
+            const KernelFile file(input_);
+            for (const auto& channel : file.contents().channels) list(channel.name);
         } else if (holds_points(input_)) {
             for (const RbfChannel& channel : read_points_input(input_, report).channels) list(channel.name);
         } else if (is_vdb_file(input_)) {
@@ -223,8 +227,25 @@ private:
         for (const MeshBlock& block : read.blocks) report["blocks"].push_back({{"name", block.name}, {"cells", block.cells}});
     }
 
+    /// The head of a file with levels of detail; nothing else is read.
+    void describe_levels(Report& report) {
+        report["input"] = input_;
+        const KernelFileContents contents = report.timed("read", [&] { return KernelFile(input_).contents(); });
+        report["points"] = contents.kernels;
+        report["kernel"] = Json::parse(subvol::to_json(contents.kernel));
+        report["bounds"] = to_json(contents.bounds);
+        report["boundary_triangles"] = contents.boundary_triangles;
+        for (const auto& channel : contents.channels) {
+            report["channels"].push_back({{"name", channel.name}, {"min", channel.min}, {"max", channel.max}});
+        }
+        report["levels"] = contents.levels;
+        report["blocks"] = contents.blocks;
+        report["bytes"] = contents.bytes;
+    }
+
     void describe_points(Report& report) {
         refuse_at("points");
+        if (holds_levels(input_)) return describe_levels(report);
         const RbfVolume volume = read_points_input(input_, report);
         report["kernel"] = Json::parse(subvol::to_json(volume.kernel));
         report["bounds"] = to_json(volume.bounds);

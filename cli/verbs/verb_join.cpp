@@ -17,6 +17,7 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/join_grids.h"
+#include "subvol/kernel_file.h"
 #include "subvol/points_io.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_points.h"
@@ -112,7 +113,7 @@ private:
     }
 
     void join_points(Report& report) {
-        check_output(output_, {".ply", ".vtp", ".vdb"});
+        check_output(output_, {".ply", ".vtp", ".svk", ".vdb"});
         const std::vector<std::size_t> order =
             ordered([](const std::string& part) { return is_points_file(part) ? read_points_note(part) : std::nullopt; });
         if (how_.contains("points")) return join_points_of_bricks(order, report);
@@ -133,13 +134,15 @@ private:
         report.timed("write", [&] {
             if (output_.ends_with(".vdb")) {
                 write_vdb_points(output_, volume);
+            } else if (output_.ends_with(".svk")) {
+                static_cast<void>(write_kernel_file(output_, volume, report.progress()));
             } else {
                 write_points(output_, volume, options);
             }
         });
         report["output"] = output_;
         report["points"] = volume.size();
-        const bool inside = output_.ends_with(".ply") && !options.splats;
+        const bool inside = output_.ends_with(".svk") || (output_.ends_with(".ply") && !options.splats);
         if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = detail::boundary_path(output_).string();
     }
 

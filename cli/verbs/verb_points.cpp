@@ -23,6 +23,7 @@
 #include "subvol/detail/points_range.h"
 #include "subvol/detail/surface_io.h"
 #include "subvol/error.h"
+#include "subvol/kernel_file.h"
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/points_error.h"
 #include "subvol/points_io.h"
@@ -69,12 +70,13 @@ public:
                "  subvol points run.exo -o 'run_####.ply' --step all\n"
                "  subvol points smoke.vdb -o smoke.ply --threshold 0   one kernel per voxel\n"
                "  subvol points big.vtu -o part2.ply --part 2/4        a share, for join\n"
+               "  subvol points big.vtu -o big.svk                     with levels of detail\n"
                "  subvol points fine.vtu -o fine.svw --wavelet-tolerance 1e-3   compressed\n"
                "\n"
                "The boundary of NAME.vtp, of NAME.vdb and of a .ply with --splats is in NAME.boundary.vtp.") {
         app().add_option("FILE", input_, text(input_help(), "; or a .vdb grid of floats"))->required();
         app()
-            .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .vdb; .svw with --wavelet-tolerance)")
+            .add_option("-o,--output", output_, "the points to write (.ply, .vtp, .svk, .vdb; .svw with --wavelet-tolerance)")
             ->type_name("FILE")
             ->required();
         app().add_flag("--ascii", ascii_, ".ply: write text instead of binary numbers");
@@ -127,7 +129,7 @@ public:
         if (output_.ends_with(".svw")) {
             throw Error(ErrorCode::InvalidInput, "wavelets need a tolerance", output_, "--wavelet-tolerance 1e-3");
         }
-        check_output(output_, {".ply", ".vtp", ".vdb"});
+        check_output(output_, {".ply", ".vtp", ".svk", ".vdb"});
         const std::string extension = std::filesystem::path(output_).extension().string();
         if (extension != ".ply" && (ascii_ || splats_)) {
             throw Error(ErrorCode::InvalidInput, "only .ply files have it", ascii_ ? "--ascii" : "--splats");
@@ -155,6 +157,10 @@ public:
             throw Error(ErrorCode::InvalidInput, "a share of points is not written as .vdb, which rounds their places", output_,
                         ".ply or .vtp; `subvol join` writes .vdb");
         }
+        if (share_.given() && extension == ".svk") {
+            throw Error(ErrorCode::InvalidInput, "the levels of detail of a .svk file are those of all points", output_,
+                        ".ply or .vtp; `subvol join` writes .svk");
+        }
         RbfVolume volume = is_vdb_file(input_) ? points_of_grid(report) : points_of_mesh(common(), report);
         if (share_.given()) {
             const auto [begin, end] = share.range(volume.size());
@@ -166,7 +172,7 @@ public:
         if (ranks() != nullptr && !gather(volume, report)) return 0;
         write(output_, volume, report);
         report["output"] = output_;
-        const bool inside = extension == ".ply" && !splats_;
+        const bool inside = extension == ".svk" || (extension == ".ply" && !splats_);
         if (!inside && !volume.boundary.triangles.empty()) report["boundary"] = detail::boundary_path(output_).string();
         return 0;
     }
@@ -208,6 +214,11 @@ private:
         report.timed("write", [&] {
             if (path.ends_with(".vdb")) {
                 write_vdb_points(path, volume);
+            } else if (path.ends_with(".svk")) {
+                const KernelFileContents written = write_kernel_file(path, volume, report.progress());
+                report["levels"] = written.levels;
+                report["blocks"] = written.blocks;
+                report["bytes"] = written.bytes;
             } else {
                 write_points(path, volume, {.ascii = ascii_, .splats = splats_, .up = up_axis(up_).value(), .note = note_});
             }

@@ -61,7 +61,7 @@ public:
                "  subvol render smoke.vdb -o smoke.png --method grid\n"
                "  subvol render smoke.vdb -o smoke.png                   the voxels as kernels") {
         app()
-            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
+            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats"))
             ->required();
         app()
             .add_option("-o,--output", output_, "the picture (.png, or .exr for linear floats), or a turntable's video")
@@ -83,7 +83,8 @@ public:
         splat_.add_to(app());
         app()
             .add_option("--memory", memory_bytes_,
-                        "of bricks: what kernels take while a part of the picture is drawn (default 1G)")
+                        "of bricks: what kernels take while a part of the picture is drawn; of .svk files with --lod: "
+                        "what is kept for the next frame (default 1G)")
             ->type_name("BYTES")
             ->transform(CLI::AsSizeValue(false));
         share_.add_to(app(), "rows of the picture, or some of the frames");
@@ -369,8 +370,15 @@ private:
         if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
+    /// Of a file with levels of detail each view reads what it needs. Without a boundary, all kernels decide where the volume
+    /// ends.
     void draw_points(PictureOutput& output, Report& report) {
         if (!is_of_splats(method_)) throw Error(ErrorCode::InvalidInput, "points can only be splatted", "--method " + method_);
+        if (holds_levels(input_) && reference_.lod.value_or(0) > 0) {
+            const std::uint64_t kept = picture_.turntable_frames ? memory_bytes_ : 0;
+            LevelsInput levels = open_levels(input_, common(), splat_.color_field, kept, app(), report);
+            if (levels.file.contents().boundary_triangles > 0) return draw_levels(levels, output, report);
+        }
         const RbfVolume volume = load_points(input_, common(), splat_.color_field, app(), report);
         if (volume.channels.size() == 1) options_.color_channel.reset();
         const Range range = channel_range(volume, 0), colors = channel_range(volume, volume.channels.size() - 1);
@@ -382,13 +390,29 @@ private:
         if (speaks()) picture_.write_legend(optics, legend, report);
     }
 
+    void draw_levels(LevelsInput& levels, PictureOutput& output, Report& report) {
+        const KernelFileContents& contents = levels.file.contents();
+        const auto& field = contents.channels[levels.channels.front()];
+        const auto& color = contents.channels[levels.channels.back()];
+        const Range range{field.min, field.max}, colors{color.min, color.max};
+        if (levels.channels.size() == 1) options_.color_channel.reset();
+        const Optics optics = picture_.make_optics(contents.bounds, range, colors);
+        const LegendOptions legend = picture_.legend_options({field.name, range}, {color.name, colors});
+        output.set_notes(make_notes(picture_, optics, legend, nullptr));
+        LevelOfDetail shown(levels.file, levels.channels, *reference_.lod);
+        write_splats(shown, {}, picture_.make_views(contents.bounds), optics, splat_work(), output, report);
+        if (speaks()) picture_.write_legend(optics, legend, report);
+    }
+
     [[nodiscard]] SplatWork splat_work() const {
         return {method_, options_, by_rows_ ? std::optional(share_of(share_)) : std::nullopt, ranks()};
     }
 
     void splat(const RbfVolume& volume, const BoundaryValues& skin, const std::vector<View>& views, const Optics& optics,
                PictureOutput& output, Report& report) const {
-        write_splats(volume, skin, reference_.lod.value_or(0), views, optics, splat_work(), output, report);
+        const SplatWork work = splat_work();
+        LevelOfDetail levels(volume, reference_.lod.value_or(0), work.options.channel, report);
+        write_splats(levels, skin, views, optics, work, output, report);
     }
 
     std::string input_;

@@ -41,7 +41,7 @@ public:
                "  subvol vdb kernels.ply -o kernels.vdb --voxel-size 0.01\n"
                "  subvol vdb model:pawn -o pawn.vdb --resolution 1600 --memory 2G\n"
                "  subvol vdb big.vtu -o part2.vdb --part 2/4           a share, for join") {
-        app().add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb)"))->required();
+        app().add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb)"))->required();
         app().add_option("-o,--output", output_.path, "the file to write (.vdb)")->type_name("FILE")->required();
         asked_.add_sizes_to(app());
         refine_.add_to(app(), "rasterize the refined mesh of this level; omitted: the limit");

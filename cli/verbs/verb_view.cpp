@@ -60,7 +60,7 @@ public:
                "  subvol view run.pvd --field T --tf coolwarm\n"
                "  subvol view model:pawn --script turn.json --screenshot pawn.png") {
         app()
-            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .vdb), or a .vdb grid of floats"))
+            .add_option("FILE", input_, text(input_help(), "; or points (.ply, .vtp, .svk, .vdb), or a .vdb grid of floats"))
             ->required();
         app().add_option("--script", script_, "play these actions, then quit; without a window")->type_name("FILE.json");
         app().add_option("--screenshot", screenshot_, "write the last picture (.png or .exr), then quit")->type_name("FILE");

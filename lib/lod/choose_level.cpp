@@ -2,9 +2,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
+#include "node_test.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
@@ -18,13 +18,7 @@ constexpr int kSerialDepth = 8;  // subtrees below it are cut in parallel
 
 class Cutter {
 public:
-    /// view: null: widths do not count
-    Cutter(const KernelHierarchy& hierarchy, const View* view, const LevelOptions& options)
-        : h_(hierarchy), view_(view), options_(options) {
-        if (view == nullptr || !view->perspective()) return;
-        const Vec2 corner = view->slopes(0, 0);
-        widest_ = std::sqrt(1 + glm::dot(corner, corner));
-    }
+    Cutter(const KernelHierarchy& hierarchy, const detail::NodeTest& test) : h_(hierarchy), test_(test) {}
 
     [[nodiscard]] KernelCut cut() {
         KernelCut whole;
@@ -58,7 +52,7 @@ private:
     void collect(std::size_t node, KernelCut& part) const {
         if (takes(node)) {
             part.nodes.push_back(static_cast<Index>(node));
-            part.error = std::max(part.error, double(h_.errors[options_.channel][node]));
+            part.error = std::max(part.error, double(h_.errors[test_.channel()][node]));
         } else if (h_.is_last(node)) {
             const auto [first, last] = h_.slots(node);
             for (std::size_t slot = first; slot < last; ++slot) part.kernels.push_back(h_.order[slot]);
@@ -69,25 +63,11 @@ private:
     }
 
     [[nodiscard]] bool takes(std::size_t node) const {
-        if (!(double(h_.errors[options_.channel][node]) <= options_.error)) return false;
-        if (h_.order.size() == 1) return false;  // the node would be its only kernel
-        return view_ == nullptr || width_px(node) < options_.pixels;
-    }
-
-    [[nodiscard]] double width_px(std::size_t node) const {
-        const double width = double(h_.widths[node]);
-        if (!view_->perspective()) return width / view_->pixel();
-        const Vec3 x = view_->to_eye(h_.nodes.centers[node]);
-        const double nearest = x.z - 0.5 * width;
-        if (!(nearest > 0)) return std::numeric_limits<double>::infinity();
-        // Off the axis spheres are drawn as ellipses; no wider than in the corner of the picture, beyond which nothing is seen.
-        return std::min(glm::length(x) / x.z, widest_) * width / (nearest * view_->pixel());
+        return test_.takes(h_.nodes.centers[node], h_.widths[node], h_.errors[test_.channel()][node]);
     }
 
     const KernelHierarchy& h_;
-    const View* view_;
-    const LevelOptions& options_;
-    double widest_ = 1;
+    const detail::NodeTest& test_;
     std::vector<std::size_t> open_;
 };
 
@@ -102,7 +82,15 @@ std::vector<T> gathered(const std::vector<T>& kernels, const std::vector<T>& nod
     return result;
 }
 
-KernelCut checked_cut(const KernelHierarchy& hierarchy, const View* view, const LevelOptions& options) {
+KernelCut cut_of(const KernelHierarchy& hierarchy, const View* view, const LevelOptions& options) {
+    const detail::NodeTest test(view, options, hierarchy.order.size(), hierarchy.errors.size());
+    return Cutter(hierarchy, test).cut();
+}
+
+}  // namespace
+
+detail::NodeTest::NodeTest(const View* view, const LevelOptions& options, std::size_t kernels, std::size_t channels)
+    : view_(view), options_(options), single_(kernels == 1) {
     if (!(options.pixels >= 0)) {
         throw Error(ErrorCode::InvalidInput, "the width of kernels is " + detail::number_text(options.pixels) + " pixels", {},
                     "0 or more");
@@ -110,21 +98,21 @@ KernelCut checked_cut(const KernelHierarchy& hierarchy, const View* view, const 
     if (!(options.error >= 0)) {
         throw Error(ErrorCode::InvalidInput, "the error is " + detail::number_text(options.error), {}, "0 or more");
     }
-    if (options.channel >= hierarchy.errors.size()) {
+    if (options.channel >= channels) {
         throw Error(ErrorCode::InvalidInput, "there is no channel " + std::to_string(options.channel), {},
-                    "the hierarchy has " + std::to_string(hierarchy.errors.size()));
+                    "the hierarchy has " + std::to_string(channels));
     }
-    return Cutter(hierarchy, view, options).cut();
+    if (view == nullptr || !view->perspective()) return;
+    const Vec2 corner = view->slopes(0, 0);
+    widest_ = std::sqrt(1 + glm::dot(corner, corner));
 }
 
-}  // namespace
-
 KernelCut choose_cut(const KernelHierarchy& hierarchy, const View& view, const LevelOptions& options) {
-    return checked_cut(hierarchy, &view, options);
+    return cut_of(hierarchy, &view, options);
 }
 
 KernelCut choose_cut(const KernelHierarchy& hierarchy, double error, std::size_t channel) {
-    return checked_cut(hierarchy, nullptr, {.error = error, .channel = channel});
+    return cut_of(hierarchy, nullptr, {.error = error, .channel = channel});
 }
 
 KernelCut level_cut(const KernelHierarchy& hierarchy, std::size_t most) {

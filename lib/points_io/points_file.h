@@ -24,5 +24,6 @@ inline constexpr const char* kNumber = "number";
 [[nodiscard]] RbfVolume read_ply(std::string_view text, const std::filesystem::path& path,
                                  std::vector<double>* numbers = nullptr);
 [[nodiscard]] RbfVolume read_vtp(std::string_view text, const std::filesystem::path& path);
+[[nodiscard]] RbfVolume read_svk(const std::filesystem::path& path);
 
 }  // namespace subvol::detail

@@ -17,7 +17,7 @@ using namespace detail;
 
 namespace {
 
-constexpr const char* kFormats = ".ply or .vtp";
+constexpr const char* kRead = ".ply, .vtp or .svk";
 
 std::string format_of(const std::filesystem::path& path) {
     return upper_case(path.extension().string());
@@ -25,9 +25,13 @@ std::string format_of(const std::filesystem::path& path) {
 
 /// numbers: null, or gets those of the points; only .ply has them
 RbfVolume read(const std::filesystem::path& path, std::vector<double>* numbers) {
-    const std::string text = read_text(path);
+    const auto read_whole = [&] {
+        if (format_of(path) == ".SVK") return read_svk(path);
+        const std::string text = read_text(path);
+        return format_of(path) == ".PLY" ? read_ply(text, path, numbers) : read_vtp(text, path);
+    };
     try {
-        RbfVolume volume = format_of(path) == ".PLY" ? read_ply(text, path, numbers) : read_vtp(text, path);
+        RbfVolume volume = read_whole();
         for (RbfChannel& channel : volume.channels) channel.name = printable(channel.name);
         validate(volume);
         volume.bounds = box_of(volume);
@@ -49,12 +53,14 @@ std::optional<UpAxis> up_axis(std::string_view name) {
 }
 
 bool is_points_file(const std::filesystem::path& path) {
-    return format_of(path) == ".PLY" || format_of(path) == ".VTP";
+    return format_of(path) == ".PLY" || format_of(path) == ".VTP" || format_of(path) == ".SVK";
 }
 
 void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options) {
-    if (!is_points_file(path))
-        throw Error(ErrorCode::InvalidInput, "points cannot be written in this format", path.string(), kFormats);
+    if (format_of(path) != ".PLY" && format_of(path) != ".VTP") {
+        throw Error(ErrorCode::InvalidInput, "points cannot be written in this format", path.string(),
+                    format_of(path) == ".SVK" ? "write_kernel_file writes .svk" : ".ply or .vtp");
+    }
     validate(volume);
     if (format_of(path) == ".PLY") {
         write_ply(path, volume, options);
@@ -65,7 +71,7 @@ void write_points(const std::filesystem::path& path, const RbfVolume& volume, co
 
 RbfVolume read_points(const std::filesystem::path& path) {
     if (!is_points_file(path))
-        throw Error(ErrorCode::InvalidInput, "points cannot be read from this format", path.string(), kFormats);
+        throw Error(ErrorCode::InvalidInput, "points cannot be read from this format", path.string(), kRead);
     return read(path, nullptr);
 }
 

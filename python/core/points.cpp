@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+
 #include "bind.h"
 #include "subvol/basis_function.h"
 #include "subvol/fit_kernel.h"
+#include "subvol/kernel_file.h"
 #include "subvol/points_io.h"
 #include "subvol/reduce.h"
 #include "subvol/sample.h"
@@ -254,6 +257,10 @@ void bind_points(py::module_& module) {
             const std::optional<UpAxis> axis = up_axis(up);
             if (!axis) throw unknown_word(up, "up", "x, y or z");
             const py::gil_scoped_release without_gil;
+            if (std::filesystem::path(path).extension() == ".svk") {
+                static_cast<void>(write_kernel_file(path, volume));
+                return;
+            }
             write_points(path, volume, {.ascii = ascii, .splats = splats, .up = *axis});
         },
         py::arg("path"), py::arg("volume"), py::arg("ascii"), py::arg("splats"), py::arg("up"));

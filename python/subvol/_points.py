@@ -83,7 +83,7 @@ def kernels() -> dict[str, dict[str, Any]]:
 
 
 def read_points(path: Path) -> RbfVolume:
-    """Reads the files of `write_points`: .ply, .vtp, .vdb."""
+    """Reads the files of `write_points`: .ply, .vtp, .svk, .vdb."""
     if extension(path) == ".vdb":
         from . import _grids
 
@@ -92,8 +92,8 @@ def read_points(path: Path) -> RbfVolume:
 
 
 def write_points(volume: RbfVolume, path: Path, *, ascii: bool = False, splats: bool = False, up: Optional[str] = None) -> None:
-    """Writes points as .ply, .vtp (ParaView) or .vdb (Houdini). Numbers are exact: reading gives the same bits, but of the
-    positions in .vdb.
+    """Writes points as .ply, .vtp (ParaView), .svk (with levels of detail) or .vdb (Houdini). Numbers are exact: reading gives
+    the same bits, but of the positions in .vdb.
 
     ascii:  .ply: text instead of binary numbers
     splats: .ply: also for viewers of Gaussian splats
@@ -101,11 +101,11 @@ def write_points(volume: RbfVolume, path: Path, *, ascii: bool = False, splats: 
     """
     if up is not None and not splats:
         raise InvalidInput("up: turns what viewers of splats read; all else keeps its place", "up", "with splats=True")
+    if extension(path) in (".vdb", ".svk") and (ascii or splats):
+        raise InvalidInput("only .ply files have it", "ascii" if ascii else "splats")
     if extension(path) == ".vdb":
         from . import _grids
 
-        if ascii or splats:
-            raise InvalidInput("only .ply files have it", "ascii" if ascii else "splats")
         _grids.write_points(path_bytes(path), volume)
     else:
         _core.write_points(path_bytes(path), volume, ascii, splats, up or "z")

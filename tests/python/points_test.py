@@ -66,7 +66,7 @@ def test_volumes_refuse_wrong_arrays(ball_points):
         subvol.RbfVolume(np.zeros((0, 3)), np.zeros((0, 6)), {"a": np.zeros(0)})
 
 
-@pytest.mark.parametrize("name", ["a.ply", "a.vtp", "ascii.ply", "a.vdb"])
+@pytest.mark.parametrize("name", ["a.ply", "a.vtp", "ascii.ply", "a.svk", "a.vdb"])
 def test_files_of_points(tmp_path, ball_points, name):
     subvol.write_points(ball_points, tmp_path / name, ascii=name.startswith("ascii"))
     again = subvol.read_points(tmp_path / name)

@@ -31,6 +31,7 @@
 #include "subvol/image.h"
 #include "subvol/index.h"
 #include "subvol/kernel.h"
+#include "subvol/kernel_file.h"
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/legend.h"
 #include "subvol/limit.h"

@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
+#include "lib/temp_folder.h"
 #include "lib/test_meshes.h"
 #include "render/constant_optics.h"
 #include "subvol/error.h"
 #include "subvol/gl_device.h"
+#include "subvol/kernel_file.h"
 #include "subvol/kernel_hierarchy.h"
 #include "subvol/model.h"
 #include "subvol/sample.h"
@@ -123,6 +127,34 @@ TEST(LevelOfDetail, ASplatterTakesOtherKernels) {
     other = few;
     other.boundary = {};
     EXPECT_THROW(splatter.set_kernels(other), Error);
+}
+
+class LevelsInFiles : public test::TempFolder {};
+
+// A dolly whose kernels come from a file, with little and with much that is kept from frame to frame.
+TEST_F(LevelsInFiles, GiveThePicturesOfThoseInMemory) {
+    const RbfVolume volume = sample_rbf_points(make_model("ball", 4), {.per_edge = 4}).volume;
+    const KernelHierarchy hierarchy = build_kernel_hierarchy(volume);
+    write_kernel_file(path("a.svk"), volume);
+    const SplatOptions options{.method = SplatMethod::Cpu};
+    std::vector<std::uint64_t> read;
+    for (const std::uint64_t kept : {std::uint64_t{0}, std::uint64_t{1} << 18, std::uint64_t{1} << 30}) {
+        KernelFile file(path("a.svk"), kept);
+        std::optional<Splatter> splatter;
+        RbfVolume shown;
+        for (const double distance : {.6, 1.0, 2.0, 4.0, 9.0, 30.0, 5.0, 1.0}) {
+            const View view = view_from(volume.bounds, distance, 48);
+            shown = file.choose_level(view, {.pixels = 2}).volume;
+            if (splatter) splatter->set_kernels(shown);
+            if (!splatter) splatter.emplace(shown, options);
+            const RbfVolume expected = choose_level(hierarchy, volume, view, {.pixels = 2});
+            EXPECT_EQ(splatter->draw(view, optics_of(volume)).image.rgba,
+                      render_splats(expected, view, optics_of(volume), options).image.rgba);
+        }
+        read.push_back(file.bytes_read());
+    }
+    EXPECT_GE(read[0], read[1]);
+    EXPECT_GT(read[1], read[2]);
 }
 
 TEST(LevelOfDetail, PlainSumsKeepTheMean) {

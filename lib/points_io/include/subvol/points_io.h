@@ -47,8 +47,9 @@ struct PointsWriteOptions {
 void write_points(const std::filesystem::path& path, const RbfVolume& volume, const PointsWriteOptions& options = {});
 
 /// Reads the files of `write_points`: `.ply` in any encoding and order of properties, `.vtp` in any encoding and with any
-/// compressor. Unknown elements, properties and arrays are skipped. The bounds are `box_of`. Memory is never allocated by a
-/// number in the file that the file is too short for.
+/// compressor. Unknown elements, properties and arrays are skipped. `.svk` files of `write_kernel_file` are read as a whole, in
+/// the order of the volume that was written. The bounds are `box_of`. Memory is never allocated by a number in the file that
+/// the file is too short for.
 ///
 /// throws: Error(Io); Error(InvalidInput) if the file is malformed, or if its points have no frames
 [[nodiscard]] RbfVolume read_points(const std::filesystem::path& path);
