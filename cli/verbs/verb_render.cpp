@@ -315,9 +315,9 @@ private:
         const std::string name = report.json().at("field");
         const LegendOptions legend = picture_.legend_options({name, range}, {name, range});
         output.set_notes(make_notes(picture_, optics, legend, nullptr));
-        std::vector<Vec3> framed;
-        if (picture_.look == Look::Solid) framed = report.timed("frame", [&] { return gather_hull(bricks).mesh.points; });
-        const std::vector<View> views = picture_.make_views(bricks.bounds, framed);
+        std::optional<BrickHull> hull = report.timed("hull", [&] { return gather_hull(bricks, fields, report.progress()); });
+        const std::vector<View> views =
+            picture_.make_views(bricks.bounds, picture_.look == Look::Solid ? hull->mesh.points : std::vector<Vec3>());
         const RefineOptions refine = refine_.options(0, report);
         BrickSplatOptions options{
             .sample = sample_.options(bricks.bounds, refine), .splat = options_, .memory_bytes = memory_bytes_};
@@ -325,9 +325,10 @@ private:
         options.splat.progress = report.progress();
         BoundaryValues skin;
         if ((!by_rows_ || speaks()) && picture_.paints_boundary(app(), refine_)) {
-            skin = report.timed("boundary", [&] { return boundary_values(bricks, fields, refine.scheme); });
+            skin = report.timed("boundary", [&] { return boundary_values(*hull, refine.scheme); });
         }
-        Surface boundary = report.timed("boundary", [&] { return sample_bricks_boundary(bricks, options.sample); });
+        Surface boundary = report.timed("boundary", [&] { return sample_bricks_boundary(*hull, options.sample); });
+        hull.reset();
         write_splats({bricks, fields, options, std::move(boundary), skin, reference_.samples}, views, optics, splat_work(),
                      output, report);
         if (speaks()) picture_.write_legend(optics, legend, report);

@@ -43,8 +43,11 @@ BrickPoints sample_brick(const Bricks& bricks, BrickMesh brick, const SampleOpti
 }
 
 Surface sample_bricks_boundary(const Bricks& bricks, const SampleOptions& options) {
-    BrickHull hull = gather_hull(bricks);
-    return detail::sample_hull(std::move(hull.mesh), hull.on_hull, options);
+    return sample_bricks_boundary(gather_hull(bricks, {}, options.progress), options);
+}
+
+Surface sample_bricks_boundary(const BrickHull& hull, const SampleOptions& options) {
+    return detail::sample_hull(hull.mesh, hull.on_hull, options);
 }
 
 BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, const Bricks& bricks, const SampleOptions& options,

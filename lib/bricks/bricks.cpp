@@ -12,6 +12,7 @@
 #include "subvol/detail/inspect_part.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
+#include "topology_parts.h"
 
 namespace subvol {
 
@@ -95,9 +96,10 @@ MeshReport inspect(const Bricks& bricks, Progress* progress) {
     return join_shares(std::span(&all, 1), 0).counts;
 }
 
-BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields) {
+BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields, Progress* progress) {
     std::vector<BrickMesh> parts;
     for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
+        report_progress(progress, "hull", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
         BrickMesh brick = read_brick(bricks, b);
         const std::vector<std::uint8_t> on_hull = hull_points_of_owned(brick);
         if (fields) {
@@ -123,11 +125,12 @@ BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields) {
     return {std::move(all.mesh), std::move(all.owned_points)};
 }
 
-BoundaryValues boundary_values(const Bricks& bricks, const BrickFields& fields, const SchemeOptions& scheme,
-                               std::optional<int> levels) {
-    const BrickHull hull = gather_hull(bricks, fields);
-    const std::size_t triangles = boundary_at_level(hull.mesh, hull.on_hull, {.scheme = scheme, .levels = 0}).triangles.size();
-    return boundary_values_of_hull(hull.mesh, hull.on_hull, {.scheme = scheme, .levels = picture_levels(triangles, levels)});
+BoundaryValues boundary_values(const BrickHull& hull, const SchemeOptions& scheme, std::optional<int> levels) {
+    const auto at_hull = [&](const auto& face) {
+        return std::ranges::all_of(face, [&](Index p) { return hull.on_hull[p] != 0; });
+    };
+    const int sensible = picture_levels(2 * hull_quads(hull.mesh, at_hull).size(), levels);
+    return boundary_values_of_hull(hull.mesh, hull.on_hull, {.scheme = scheme, .levels = sensible});
 }
 
 }  // namespace subvol

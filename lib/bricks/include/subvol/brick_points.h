@@ -34,6 +34,7 @@ struct BrickPoints {
 ///
 /// cost: memory: some 1,500 bytes for each cell at the hull
 [[nodiscard]] Surface sample_bricks_boundary(const Bricks& bricks, const SampleOptions& options = {});
+[[nodiscard]] Surface sample_bricks_boundary(const BrickHull& hull, const SampleOptions& options = {});
 
 /// points: how many were written; clamped, min, max: of the first channel
 struct BrickPointsReport {

@@ -105,15 +105,17 @@ struct BrickHull {
     std::vector<std::uint8_t> on_hull;
 };
 
+/// Reads all bricks once.
+///
 /// fields: changes the attributes of each brick; none: there are no attributes
-/// throws: as `read_brick`
-[[nodiscard]] BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields = {});
+/// throws: as `read_brick`; Error(Cancelled)
+[[nodiscard]] BrickHull gather_hull(const Bricks& bricks, const BrickFields& fields = {}, Progress* progress = nullptr);
 
 /// Values on the boundary of the limit, as `boundary_values` of the whole mesh.
 ///
 /// levels: of the boundary's refinement; none: as many as `picture_levels` says
 /// throws: as `boundary_values`
-[[nodiscard]] BoundaryValues boundary_values(const Bricks& bricks, const BrickFields& fields, const SchemeOptions& scheme,
+[[nodiscard]] BoundaryValues boundary_values(const BrickHull& hull, const SchemeOptions& scheme,
                                              std::optional<int> levels = {});
 
 }  // namespace subvol
