@@ -36,7 +36,7 @@ class LevelsFiles(InFolder):
                 self.assertEqual(expected, actual)
                 for key in "points", "kernels_drawn", "kernels_merged", "merge_error":
                     self.assertEqual(memory.get(key), report.get(key), key)
-        for options in ["--shade"], ["--clip", "0,0,0,1,0,0"], ["--shadows"], ["--look", "solid"]:
+        for options in ["--shade"], ["--clip", "0,0,0,1,0,0"]:
             self.assertEqual(self.picture("a.ply", *BETWEEN, "--lod", "2", *options)[1],
                              self.picture("a.svk", *BETWEEN, "--lod", "2", *options)[1])
 
