@@ -62,7 +62,9 @@ public:
             tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) { blocks[b] = make_block(first + b); });
             for (std::size_t b = 0; b < blocks.size(); ++b) {
                 detail::copy_node(blocks[b].tree, 0, top, layout.blocks() - 1 + first + b);
-                for (std::size_t p = 0; p < layout.parts(); ++p) out_.write_part(first + b, p, blocks[b].parts[p]);
+            }
+            for (std::size_t p = 0; p < layout.parts(); ++p) {  // the same part of neighbours is together in the file
+                for (std::size_t b = 0; b < blocks.size(); ++b) out_.write_part(first + b, p, blocks[b].parts[p]);
             }
         }
         for (std::size_t node = layout.blocks() - 1; node-- > 0;) merger_.merge_nodes(top, node);

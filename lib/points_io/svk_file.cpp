@@ -274,7 +274,12 @@ std::string SvkWriter::head() const {
 void SvkWriter::write(const SvkExtent& extent, std::size_t hash, std::string_view bytes) {
     assert(bytes.size() == extent.bytes);
     hashes_[hash] = hash_of(bytes);
-    out_.write_at(extent.offset, bytes);
+    if (extent.offset == position_) {
+        out_.write(bytes);
+    } else {
+        out_.write_at(extent.offset, bytes);
+    }
+    position_ = extent.offset + extent.bytes;
 }
 
 void SvkWriter::write_boundary(const Surface& boundary) {

@@ -77,6 +77,7 @@ private:
 
     SvkContents contents_;
     OutputFile out_;
+    std::uint64_t position_ = 0;  // behind the last bytes that were written
     SvkLayout layout_;
     std::vector<std::uint64_t> hashes_;
 };
