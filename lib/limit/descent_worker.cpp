@@ -33,7 +33,6 @@ DescentWorker::DescentWorker(const DescentTask& task)
       settling_(task.options, task.scales, stride_, task.samples),
       jets_(task.options.scheme.kind, stride_),
       values_(kMostLevels),
-      rows_(kMostLevels),
       jet_(4 * stride_),
       turned_(4 * stride_),
       child_(64 * stride_) {
@@ -100,9 +99,13 @@ void DescentWorker::begin(const DescentClass& is, std::uint8_t turn, int level, 
     if (level == 0 && &is == &classes.regular()) {  // levels 1 and 2 decide, as the descendants of the cell are on a grid too
         return descend(is, turn, level, places, classes);
     }
-    is.on_grid ? jets_.load_grid(rows, is.grid) : jets_.load_corners(rows, kFirstEight);
+    load(is, rows);
     places = evaluate(places, turn, level, is.on_grid);
     if (!places.empty()) descend(is, turn, level, places, classes);
+}
+
+void DescentWorker::load(const DescentClass& is, const double* rows) {
+    is.on_grid ? jets_.load_grid(rows, is.grid) : jets_.load_corners(rows, kFirstEight);
 }
 
 /// Only those points are computed that a place is evaluated from; the rest of a child's neighbourhood if it goes on.
@@ -112,25 +115,17 @@ void DescentWorker::descend(const DescentClass& is, std::uint8_t turn, int level
     if (&is == &classes.regular() && task_.options.scheme.kind == Scheme::Mcq) {
         return descend_grid({from, 6, stride_}, turn, level, places);
     }
-    StepRows& rows = rows_[static_cast<std::size_t>(level)];
     const ClassChildren& of_class = classes.children(is);
-    const StepTable& table = of_class.table;
-    rows.begin(table, stride_);
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
         const ClassChildren::Child& child = of_class.children[walk_octant(turn, octant)];
         if (child.to == nullptr) return leave(inside);
-        apply_step(table, child.near, stride_, from, rows);
-        if (child.to->on_grid) {
-            jets_.load_grid(rows.values.data(), child.grid);
-        } else {
-            jets_.load_corners(rows.values.data(), child.corners);
-        }
+        double* to = values(level + 1, child.to->point_count());
+        child.near.apply(stride_, from, to);
+        load(*child.to, to);
         const std::uint8_t child_turn = composed(child.turn, turn);
         inside = evaluate(inside, child_turn, level + 1, child.to->on_grid);
         if (inside.empty()) return;
-        apply_step(table, child.rows, stride_, from, rows);
-        double* to = values(level + 1, child.rows.size());
-        for (const std::uint16_t row : child.rows) to = copy_row(&rows.values[row * stride_], stride_, to);
+        child.rest.apply(stride_, from, to);
         descend(*child.to, child_turn, level + 1, inside, classes);
     });
 }

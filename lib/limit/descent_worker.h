@@ -33,7 +33,7 @@ struct DescentTask {
 
 /// Evaluates places in a cell of a class, and in its descendants as deep as they ask for it. Each thread has its own.
 ///
-///     a class   its children's neighbourhoods by the class's table, row by row as they are needed
+///     a class   its children's neighbourhoods by the class's tables, as far as they are needed
 ///     a grid    by the masks of MCQ, block by block: no table, no rows
 ///
 /// The arithmetic of a place does not depend on the others.
@@ -65,6 +65,7 @@ public:
     [[nodiscard]] LimitReport& report() { return settling_.report(); }
 
 private:
+    void load(const DescentClass& is, const double* rows);
     void descend(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes);
     void descend_grid(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places);
     void descend_twice(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places);
@@ -74,7 +75,6 @@ private:
     Settling settling_;
     CellJets jets_;
     std::vector<std::vector<double>> values_;  // of the neighbourhoods on the way down
-    std::vector<StepRows> rows_;               // of the children of these
     std::vector<OpenPlace> places_;
     std::vector<double> lasts_, jet_, turned_, child_;
     std::vector<std::size_t> left_;
