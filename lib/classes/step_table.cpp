@@ -32,7 +32,7 @@ HWY_INLINE void apply_group(const StepTable::Group& group, const double* HWY_RES
         auto a0 = hn::Zero(d), a1 = hn::Zero(d), a2 = hn::Zero(d), a3 = hn::Zero(d);
         auto b0 = hn::Zero(d), b1 = hn::Zero(d), b2 = hn::Zero(d), b3 = hn::Zero(d);
         for (std::size_t t = 0; t < group.terms; t += 2, weight += kSame ? 2 : 2 * kRows, column += 2 * kRows) {
-            const auto at = [&](std::size_t n) { return hn::LoadU(d, in + stride * column[n]); };
+            const auto at = [&](std::size_t n) { return hn::LoadU(d, in + stride / 4 * column[n]); };
             const auto w = [&](std::size_t term, std::size_t row) {
                 return hn::Set(d, weight[kSame ? term : term * kRows + row]);
             };
@@ -123,8 +123,11 @@ StepTable::StepTable(const StencilTable::Block& block, std::span<const Row> rows
 /// weights: where they begin, or will begin
 void StepTable::add_group(std::span<const Source> rows, bool same, std::size_t weights) {
     const std::size_t terms = rows[0].terms;
-    Group& group = groups_.emplace_back(Group{static_cast<std::uint32_t>(weights), static_cast<std::uint32_t>(columns_.size()),
-                                              static_cast<std::uint16_t>(terms), same, {}});
+    Group& group = groups_.emplace_back(Group{static_cast<std::uint32_t>(weights),
+                                              static_cast<std::uint32_t>(columns_.size()),
+                                              static_cast<std::uint16_t>(terms),
+                                              same,
+                                              {}});
     const std::size_t row_weights = same ? 1 : kRows;
     if (weights_.size() == weights) weights_.resize(weights + terms * row_weights, 0.0);
     columns_.resize(columns_.size() + terms * kRows);
@@ -133,7 +136,7 @@ void StepTable::add_group(std::span<const Source> rows, bool same, std::size_t w
         group.to[r] = row.to;
         for (std::size_t t = 0; t < terms; ++t) {
             const Index point = row.points[std::min(t, row.points.size() - 1)];
-            columns_[group.columns + kRows * t + r] = static_cast<std::uint16_t>(point);
+            columns_[group.columns + kRows * t + r] = static_cast<std::uint16_t>(4 * point);
         }
         if (r >= row_weights) continue;
         double* to = &weights_[weights + r];

@@ -36,7 +36,7 @@ public:
     static constexpr std::size_t kRows = 4;
     /// Up to kRows rows with as many terms; missing ones repeat the first.
     ///
-    /// weights, columns: begin there; term t of row r has column kRows·t + r
+    /// weights, columns: begin there; term t of row r has column kRows·t + r, four times the number of its point
     /// same:             all rows have the weights 0, 1, 2 …; otherwise weights are ordered as columns are
     /// terms:            even; the last may have no weight
     struct Group {
