@@ -97,36 +97,44 @@ struct ClassGraph::State {
         RefinedNeighborhood refined(parent.about, parent.about.code[0]);
         const SchemeRows rows(refined.parent(), scheme);
         StencilBuilder row;
-        Neighborhood found;
+        StencilBlockWriter block;  // of all their points, each once
+        block.start(0);
+        std::array<std::vector<StepTable::Row>, 8> near_rows, rest_rows;
         std::vector<Index> row_of(refined.child().points.size(), kNone);
+        Neighborhood found;
         for (std::size_t octant = 0; octant < 8; ++octant) {
             bool is_regular = false;
             if (!refined.find(octant, found, is_regular)) continue;
             ClassChildren::Child& child = made.children[octant];
             child.to = is_regular ? &regular : class_of(found);
             child.turn = found.turn;
-            for (const Index point : found.points) {
-                if (row_of[point] == kNone) {
-                    row_of[point] = static_cast<Index>(made.table.rows());
-                    row.clear();
-                    point < rows.kept() ? row.add(point, 1) : rows.write_row(point, row);
-                    made.table.add(row.finish());
-                }
-                child.rows.push_back(static_cast<std::uint16_t>(row_of[point]));
-            }
+            std::vector<std::uint8_t> is_near(found.points.size(), 0);
             if (child.to->on_grid) {
-                for (std::size_t n = 0; n < 64; ++n) {
-                    const Index p = child.to->grid[n];
-                    child.grid[n] = p == kNone ? kNone : child.rows[p];
-                    if (p != kNone) child.near.push_back(child.rows[p]);
+                for (const Index p : child.to->grid) {
+                    if (p != kNone) is_near[p] = 1;
                 }
             } else {
-                std::copy_n(child.rows.begin(), 8, child.corners.begin());
-                child.near.assign(child.rows.begin(), child.rows.begin() + 8);
+                std::fill_n(is_near.begin(), 8, std::uint8_t{1});
             }
-            bytes += sizeof(child) + 2 * (child.rows.size() + child.near.size());
+            std::vector<StepTable::Row>& near = near_rows[octant];
+            std::vector<StepTable::Row>& rest = rest_rows[octant];
+            for (std::size_t p = 0; p < found.points.size(); ++p) {
+                const Index point = found.points[p];
+                if (row_of[point] == kNone) {
+                    row_of[point] = static_cast<Index>(block.block().row_patterns.size());
+                    row.clear();
+                    point < rows.kept() ? row.add(point, 1) : rows.write_row(point, row);
+                    block.push(row.finish());
+                }
+                (is_near[p] != 0 ? near : rest).push_back({row_of[point], static_cast<std::uint16_t>(p)});
+            }
         }
-        bytes += made.table.bytes();
+        for (std::size_t octant = 0; octant < 8; ++octant) {
+            ClassChildren::Child& child = made.children[octant];
+            child.near = StepTable(block.block(), near_rows[octant]);
+            child.rest = StepTable(block.block(), rest_rows[octant]);
+            bytes += sizeof(child) + child.near.bytes() + child.rest.bytes();
+        }
     }
 
     void make_entry(const Neighborhood& about, ClassEntry& entry) {

@@ -19,21 +19,16 @@ namespace subvol::detail {
 struct DescentClass;
 
 /// How the neighbourhoods of a cell's children follow from that of the cell.
-///
-/// table: all their points, each once
 struct ClassChildren {
     /// to:   the child's class; null if its neighbourhood has none (see NeighborhoodWalk::find)
     /// turn: from the axes of the child's walk to those of the parent's
-    /// rows: the child's points
-    /// near: those that a place in it is evaluated from; grid: the same as its regular grid, or in `corners`
+    /// near: makes the points that a place in the child is evaluated from
+    /// rest: makes the other points of its neighbourhood
     struct Child {
         const DescentClass* to = nullptr;
         std::uint8_t turn = kIdentityTurn;
-        std::vector<std::uint16_t> rows{}, near{};
-        GridPoints grid{};
-        std::array<Index, 8> corners{};
+        StepTable near{}, rest{};
     };
-    StepTable table{};
     std::array<Child, 8> children{};  // by octants along the axes of the parent's walk
 };
 

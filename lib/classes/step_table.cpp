@@ -3,6 +3,7 @@
 #include "step_table.h"
 
 #include <algorithm>
+#include <tuple>
 #include <type_traits>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
@@ -16,42 +17,56 @@ namespace subvol::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Stride: a number, or a constant that the compiler knows.
-template <class Stride>
-void apply_rows(const StepTable& table, std::span<const std::uint16_t> rows, Stride stride, const double* HWY_RESTRICT in,
-                StepRows& to) {
+/// Two sums a row, as each addition waits for the one before. Stride: a number, or a constant that the compiler knows
+template <bool kSame, class Stride>
+HWY_INLINE void apply_group(const StepTable::Group& group, const double* HWY_RESTRICT weights,
+                            const std::uint16_t* HWY_RESTRICT columns, Stride stride, const double* HWY_RESTRICT from,
+                            double* HWY_RESTRICT to) {
     const hn::CappedTag<double, 4> d;
     const std::size_t step = hn::Lanes(d);
-    const double* HWY_RESTRICT weights = table.weights.data();
-    const std::uint16_t* HWY_RESTRICT columns = table.columns.data();
-    const std::uint32_t* HWY_RESTRICT begins = table.begins.data();
-    std::uint32_t* HWY_RESTRICT marks = to.marks.data();
-    double* HWY_RESTRICT values = to.values.data();
-    const std::uint32_t mark = to.mark;
-    for (const std::size_t row : rows) {
-        if (marks[row] == mark) continue;
-        marks[row] = mark;
-        const std::size_t begin = begins[row], end = begins[row + 1];
-        for (std::size_t block = 0; block < stride; block += step) {
-            const double* HWY_RESTRICT from = in + block;
-            // Four sums, as each addition waits for the one before.
-            auto a = hn::Zero(d), b = hn::Zero(d), c = hn::Zero(d), e = hn::Zero(d);
-            for (std::size_t n = begin; n < end; n += StepTable::kTerms) {
-                a = hn::MulAdd(hn::Set(d, weights[n]), hn::LoadU(d, from + stride * columns[n]), a);
-                b = hn::MulAdd(hn::Set(d, weights[n + 1]), hn::LoadU(d, from + stride * columns[n + 1]), b);
-                c = hn::MulAdd(hn::Set(d, weights[n + 2]), hn::LoadU(d, from + stride * columns[n + 2]), c);
-                e = hn::MulAdd(hn::Set(d, weights[n + 3]), hn::LoadU(d, from + stride * columns[n + 3]), e);
-            }
-            hn::StoreU(hn::Add(hn::Add(a, b), hn::Add(c, e)), d, values + row * stride + block);
+    constexpr std::size_t kRows = StepTable::kRows;
+    for (std::size_t block = 0; block < stride; block += step) {
+        const double* HWY_RESTRICT in = from + block;
+        const double* HWY_RESTRICT weight = weights;
+        const std::uint16_t* HWY_RESTRICT column = columns;
+        auto a0 = hn::Zero(d), a1 = hn::Zero(d), a2 = hn::Zero(d), a3 = hn::Zero(d);
+        auto b0 = hn::Zero(d), b1 = hn::Zero(d), b2 = hn::Zero(d), b3 = hn::Zero(d);
+        for (std::size_t t = 0; t < group.terms; t += 2, weight += kSame ? 2 : 2 * kRows, column += 2 * kRows) {
+            const auto at = [&](std::size_t n) { return hn::LoadU(d, in + stride / 4 * column[n]); };
+            const auto w = [&](std::size_t term, std::size_t row) {
+                return hn::Set(d, weight[kSame ? term : term * kRows + row]);
+            };
+            a0 = hn::MulAdd(w(0, 0), at(0), a0);
+            a1 = hn::MulAdd(w(0, 1), at(1), a1);
+            a2 = hn::MulAdd(w(0, 2), at(2), a2);
+            a3 = hn::MulAdd(w(0, 3), at(3), a3);
+            b0 = hn::MulAdd(w(1, 0), at(4), b0);
+            b1 = hn::MulAdd(w(1, 1), at(5), b1);
+            b2 = hn::MulAdd(w(1, 2), at(6), b2);
+            b3 = hn::MulAdd(w(1, 3), at(7), b3);
         }
+        hn::StoreU(hn::Add(a0, b0), d, to + group.to[0] * stride + block);
+        hn::StoreU(hn::Add(a1, b1), d, to + group.to[1] * stride + block);
+        hn::StoreU(hn::Add(a2, b2), d, to + group.to[2] * stride + block);
+        hn::StoreU(hn::Add(a3, b3), d, to + group.to[3] * stride + block);
     }
 }
 
-void apply(const StepTable& table, std::span<const std::uint16_t> rows, std::size_t stride, const double* in, StepRows& to) {
+template <class Stride>
+void apply_groups(std::span<const StepTable::Group> groups, const double* weights, const std::uint16_t* columns, Stride stride,
+                  const double* from, double* to) {
+    for (const StepTable::Group& group : groups) {
+        const auto apply_one = group.same ? apply_group<true, Stride> : apply_group<false, Stride>;
+        apply_one(group, weights + group.weights, columns + group.columns, stride, from, to);
+    }
+}
+
+void apply(std::span<const StepTable::Group> groups, const double* weights, const std::uint16_t* columns, std::size_t stride,
+           const double* from, double* to) {
     if (stride == 4) {  // positions and one value
-        apply_rows(table, rows, std::integral_constant<std::size_t, 4>(), in, to);
+        apply_groups(groups, weights, columns, std::integral_constant<std::size_t, 4>(), from, to);
     } else {
-        apply_rows(table, rows, stride, in, to);
+        apply_groups(groups, weights, columns, stride, from, to);
     }
 }
 
@@ -63,35 +78,80 @@ namespace subvol::detail {
 
 HWY_EXPORT(apply);
 
-void StepTable::add(const StencilRuns& row) {
-    auto point = row.points.begin();
-    for (const auto& [weight, count] : row.runs) {
-        weights.insert(weights.end(), count, weight);
-        for (std::uint32_t i = 0; i < count; ++i) columns.push_back(static_cast<std::uint16_t>(*point++));
+/// A row where its block has it. terms: rounded up to an even number
+struct StepTable::Source {
+    std::uint16_t terms, pattern, to;
+    std::span<const StencilTable::Run> runs;
+    std::span<const Index> points;
+};
+
+StepTable::StepTable(const StencilTable::Block& block, std::span<const Row> rows) {
+    std::vector<std::size_t> lengths;  // of the patterns
+    for (std::size_t p = 0; p + 1 < block.pattern_offsets.size(); ++p) {
+        std::size_t& length = lengths.emplace_back(0);
+        for (std::size_t r = block.pattern_offsets[p]; r < block.pattern_offsets[p + 1]; ++r) length += block.runs[r].count;
     }
-    while (weights.size() % kTerms != 0) {
-        weights.push_back(0);
-        columns.push_back(columns.back());
+    std::vector<std::size_t> begins{0};  // of the points of each row
+    for (const std::uint16_t pattern : block.row_patterns) begins.push_back(begins.back() + lengths[pattern]);
+
+    std::vector<Source> sources;
+    for (const auto& [row, to] : rows) {
+        const std::uint16_t pattern = block.row_patterns[row];
+        const std::size_t first = block.pattern_offsets[pattern], last = block.pattern_offsets[pattern + 1U];
+        sources.push_back({static_cast<std::uint16_t>((lengths[pattern] + 1) / 2 * 2), pattern, to,
+                           std::span(block.runs).subspan(first, last - first),
+                           std::span(block.points).subspan(begins[row], lengths[pattern])});
     }
-    begins.push_back(static_cast<std::uint32_t>(weights.size()));
+    std::ranges::sort(sources, {}, [](const Source& s) { return std::tuple(s.terms, s.pattern, s.to); });
+    std::vector<Source> others;  // too few of a pattern
+    for (std::size_t first = 0, end = 0; first < sources.size(); first = end) {
+        while (end < sources.size() && sources[end].pattern == sources[first].pattern) ++end;
+        for (const std::size_t weights = weights_.size(); end - first >= kRows - 1; first += std::min(kRows, end - first)) {
+            add_group(std::span(sources).subspan(first, std::min(kRows, end - first)), true, weights);
+        }
+        for (; first < end; ++first) others.push_back(sources[first]);
+    }
+    for (std::size_t first = 0, end = 0; first < others.size(); first = end) {
+        while (end < others.size() && end - first < kRows && others[end].terms == others[first].terms) ++end;
+        add_group(std::span(others).subspan(first, end - first), false, weights_.size());
+    }
+    weights_.shrink_to_fit();
+    columns_.shrink_to_fit();
+    groups_.shrink_to_fit();
+}
+
+/// weights: where they begin, or will begin
+void StepTable::add_group(std::span<const Source> rows, bool same, std::size_t weights) {
+    const std::size_t terms = rows[0].terms;
+    Group& group = groups_.emplace_back(Group{static_cast<std::uint32_t>(weights),
+                                              static_cast<std::uint32_t>(columns_.size()),
+                                              static_cast<std::uint16_t>(terms),
+                                              same,
+                                              {}});
+    const std::size_t row_weights = same ? 1 : kRows;
+    if (weights_.size() == weights) weights_.resize(weights + terms * row_weights, 0.0);
+    columns_.resize(columns_.size() + terms * kRows);
+    for (std::size_t r = 0; r < kRows; ++r) {
+        const Source& row = rows[r < rows.size() ? r : 0];
+        group.to[r] = row.to;
+        for (std::size_t t = 0; t < terms; ++t) {
+            const Index point = row.points[std::min(t, row.points.size() - 1)];
+            columns_[group.columns + kRows * t + r] = static_cast<std::uint16_t>(4 * point);
+        }
+        if (r >= row_weights) continue;
+        double* to = &weights_[weights + r];
+        for (const auto& [weight, count] : row.runs) {
+            for (std::uint32_t i = 0; i < count; ++i, to += row_weights) *to = weight;
+        }
+    }
+}
+
+void StepTable::apply(std::size_t stride, const double* from, double* to) const {
+    HWY_DYNAMIC_DISPATCH(apply)(groups_, weights_.data(), columns_.data(), stride, from, to);
 }
 
 std::size_t StepTable::bytes() const {
-    return begins.size() * sizeof(begins[0]) + weights.size() * (sizeof(weights[0]) + sizeof(columns[0]));
-}
-
-void StepRows::begin(const StepTable& table, std::size_t stride) {
-    if (values.size() < table.rows() * stride) values.resize(table.rows() * stride);
-    if (marks.size() < table.rows()) marks.resize(table.rows(), 0);
-    if (++mark == 0) {
-        std::fill(marks.begin(), marks.end(), 0);
-        mark = 1;
-    }
-}
-
-void apply_step(const StepTable& table, std::span<const std::uint16_t> rows, std::size_t stride, const double* in,
-                StepRows& to) {
-    HWY_DYNAMIC_DISPATCH(apply)(table, rows, stride, in, to);
+    return groups_.size() * sizeof(groups_[0]) + weights_.size() * sizeof(weights_[0]) + columns_.size() * sizeof(columns_[0]);
 }
 
 }  // namespace subvol::detail

@@ -1,44 +1,58 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "stencil_row.h"
+#include "subvol/stencil_table.h"
 
 namespace subvol::detail {
 
-/// The points of a cell's refinement as sums over those of its neighbourhood.
+/// Rows that make the points of a cell's refinement from those of its neighbourhood, four at a time.
 ///
-///     row i is Σ weights[n] · (point columns[n]),   n = begins[i] .. begins[i + 1],
-///     a multiple of 4 terms: the last ones may have no weight
-struct StepTable {
-    static constexpr std::size_t kTerms = 4;
-    std::vector<std::uint32_t> begins{0};
-    std::vector<double> weights;
-    std::vector<std::uint16_t> columns;
+/// Most rows are one of a few masks: rows with the same weights stand together, and the weights once for all of them. So a
+/// table takes two bytes a term and stays in the caches however many classes there are.
+class StepTable {
+public:
+    /// A row of a block, and the number of the point that it makes.
+    struct Row {
+        std::uint32_t row;
+        std::uint16_t to;
+    };
 
-    [[nodiscard]] std::size_t rows() const { return begins.size() - 1; }
-    void add(const StencilRuns& row);
+    StepTable() = default;
+    StepTable(const StencilTable::Block& block, std::span<const Row> rows);
+
+    /// Computes the points.
+    ///
+    /// stride: numbers of a point in `from` and `to`, a multiple of 4
+    void apply(std::size_t stride, const double* from, double* to) const;
+
     [[nodiscard]] std::size_t bytes() const;
+
+    static constexpr std::size_t kRows = 4;
+    /// Up to kRows rows with as many terms; missing ones repeat the first.
+    ///
+    /// weights, columns: begin there; term t of row r has column kRows·t + r, four times the number of its point
+    /// same:             all rows have the weights 0, 1, 2 …; otherwise weights are ordered as columns are
+    /// terms:            even; the last may have no weight
+    struct Group {
+        std::uint32_t weights, columns;
+        std::uint16_t terms;
+        bool same;
+        std::array<std::uint16_t, kRows> to;
+    };
+
+private:
+    struct Source;
+    void add_group(std::span<const Source> rows, bool same, std::size_t weights);
+
+    std::vector<Group> groups_;
+    std::vector<double> weights_;
+    std::vector<std::uint16_t> columns_;
 };
-
-/// Rows of a table that have been computed for one neighbourhood.
-struct StepRows {
-    std::vector<double> values;        // channel c of row i at i·stride + c
-    std::vector<std::uint32_t> marks;  // of the rows that are there: mark
-    std::uint32_t mark = 0;
-
-    /// Forgets all rows.
-    void begin(const StepTable& table, std::size_t stride);
-};
-
-/// Computes those of the rows that are not there yet.
-///
-/// stride: of `in` and of the rows, a multiple of 4
-void apply_step(const StepTable& table, std::span<const std::uint16_t> rows, std::size_t stride, const double* in,
-                StepRows& to);
 
 }  // namespace subvol::detail

@@ -74,24 +74,28 @@ Box PieceTree::box_of(std::size_t piece) const {
 
 std::optional<NearPlace> PieceTree::invert(std::size_t piece, const Vec3& x) const {
     const Vec3 offset = x - pieces_->origins[piece];
+    const float* const nodes = pieces_->node(piece, 0);
+    const std::size_t row = pieces_->node_size;
     Vec3 t(0.5);
     for (int step = 0; step < kMostSteps; ++step) {
         const QuadraticWeights u(t.x), v(t.y), w(t.z);
         Vec3 at(0.0);
         Mat3 jacobian(0.0);
-        std::size_t n = 0;
+        const float* node = nodes;
         for (std::size_t k = 0; k < 3; ++k) {
-            for (std::size_t j = 0; j < 3; ++j) {
-                const double vw = v.values[j] * w.values[k], dv = v.slopes[j] * w.values[k], dw = v.values[j] * w.slopes[k];
-                for (std::size_t i = 0; i < 3; ++i, ++n) {
-                    const float* node = pieces_->node(piece, n);
-                    const Vec3 p(node[0], node[1], node[2]);
-                    at += u.values[i] * vw * p;
-                    jacobian[0] += u.slopes[i] * vw * p;
-                    jacobian[1] += u.values[i] * dv * p;
-                    jacobian[2] += u.values[i] * dw * p;
-                }
+            Vec3 plane(0.0), plane_u(0.0), plane_v(0.0);
+            for (std::size_t j = 0; j < 3; ++j, node += 3 * row) {
+                const Vec3 a(node[0], node[1], node[2]), b(node[row], node[row + 1], node[row + 2]),
+                    c(node[2 * row], node[2 * row + 1], node[2 * row + 2]);
+                const Vec3 line = u.values[0] * a + u.values[1] * b + u.values[2] * c;
+                plane += v.values[j] * line;
+                plane_u += v.values[j] * (u.slopes[0] * a + u.slopes[1] * b + u.slopes[2] * c);
+                plane_v += v.slopes[j] * line;
             }
+            at += w.values[k] * plane;
+            jacobian[0] += w.values[k] * plane_u;
+            jacobian[1] += w.values[k] * plane_v;
+            jacobian[2] += w.slopes[k] * plane;
         }
         const double determinant = glm::determinant(jacobian);
         if (!(std::abs(determinant) > 0)) return std::nullopt;

@@ -11,6 +11,7 @@
 
 #include "limit_place.h"
 #include "piece_tree.h"
+#include "space_order.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
@@ -23,11 +24,8 @@ namespace {
 
 constexpr std::size_t kBatch = std::size_t{1} << 19;  // places that are open at a time
 constexpr int kMostRounds = 24;                       // for all candidates of a place together
-// A step this small (in parameters) is the last: what it changes is linear to within 1e-7 of the field's change in a cell.
-constexpr double kLastStep = 3e-4;
-// The first round ends at the piece's distance from the limit anyway: it needs only so much of the diagonal. The second one is
-// then near enough to be the last for most places.
-constexpr double kFirstTolerance = 1e-5;
+// A step this small (in parameters) is the last. What it changes is linear as far as the Jacobian is known, to about 1e-3.
+constexpr double kLastStep = 2e-5;
 
 /// A place that has not been found yet.
 ///
@@ -67,9 +65,9 @@ struct LimitProbe::State {
         }
     }
 
-    void run(std::span<const Vec3> places, std::size_t begin, Progress* progress, ProbeResult& result) const;
+    void run(std::span<const Vec3> places, std::span<const std::size_t> to, Progress* progress, ProbeResult& result) const;
     [[nodiscard]] std::vector<Open> find(std::span<const Vec3> places, std::vector<NearPlace>& candidates) const;
-    void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, bool may_end, std::size_t begin,
+    void settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, std::span<const std::size_t> to,
                 std::span<const NearPlace> candidates, ProbeResult& result) const;
     static void write(const Open& open, std::size_t query, const LimitSamples& samples, const detail::LimitStep& step,
                       double distance, std::size_t to, ProbeResult& result);
@@ -128,28 +126,37 @@ std::vector<Open> LimitProbe::State::find(std::span<const Vec3> places, std::vec
     return open;
 }
 
-void LimitProbe::State::run(std::span<const Vec3> places, std::size_t begin, Progress* progress, ProbeResult& result) const {
+/// to: the numbers of the places in the result
+void LimitProbe::State::run(std::span<const Vec3> places, std::span<const std::size_t> to, Progress* progress,
+                            ProbeResult& result) const {
+    const std::size_t done = *std::ranges::min_element(to);  // the batches before
     std::vector<NearPlace> candidates;
     std::vector<Open> open = find(places, candidates);
     std::vector<LimitQuery> queries;
+    std::vector<Vec3> positions;
     for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
-        report_progress(progress, "probe", static_cast<double>(begin) / static_cast<double>(result.cells.size()));
+        report_progress(progress, "probe", static_cast<double>(done) / static_cast<double>(result.cells.size()));
         queries.clear();
-        for (const Open& one : open) queries.push_back(one.at);
-        const double tolerance = round == 0 ? kFirstTolerance : 0;
-        const bool last = tolerance <= options.limit.tolerance;
-        const LimitSamples samples = limit->at(queries, last ? options.limit.tolerance : tolerance);
+        positions.clear();
+        for (const Open& one : open) {
+            queries.push_back(one.at);
+            positions.push_back(places[one.place]);
+        }
+        // What a coarse level says helps a place that is far off; a place that is near would not come nearer.
+        const LimitSamples samples = round == 0 ? limit->approach(queries, positions) : limit->at(queries);
         detail::parallel_each(open.size(), [&](std::size_t i) {
-            settle(open[i], i, samples, places[open[i].place], last, begin, candidates, result);
+            open[i].at = queries[i];
+            settle(open[i], i, samples, positions[i], to, candidates, result);
         });
         std::erase_if(open, [](const Open& one) { return one.done; });
         result.rounds = std::max(result.rounds, round + 1);
     }
 }
 
-/// One step of Newton's method; the last one is written down. may_end: the samples have the final tolerance
-void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place, bool may_end,
-                               std::size_t begin, std::span<const NearPlace> candidates, ProbeResult& result) const {
+/// One step of Newton's method; the last one is written down.
+void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples& samples, const Vec3& place,
+                               std::span<const std::size_t> to, std::span<const NearPlace> candidates,
+                               ProbeResult& result) const {
     const Vec3 offset = place - samples.positions[query];
     const detail::LimitStep step = detail::step_towards(offset, samples.jacobians[query], open.at, steps);
     const double size = std::max({std::abs(step.by.x), std::abs(step.by.y), std::abs(step.by.z)});
@@ -158,9 +165,9 @@ void LimitProbe::State::settle(Open& open, std::size_t query, const LimitSamples
     const bool stays = glm::all(glm::greaterThanEqual(next.uvw, Vec3(-kLastStep))) &&
                        glm::all(glm::lessThanEqual(next.uvw, Vec3(1 + kLastStep)));
     const bool found = left <= on_boundary;
-    if (may_end && size < kLastStep && stays) {
+    if (size < kLastStep && stays) {
         if (found || left <= options.reach_world) {
-            write(open, query, samples, step, found ? 0 : left, begin + open.place, result);
+            write(open, query, samples, step, found ? 0 : left, to[open.place], result);
             open.done = true;
             return;
         }
@@ -203,8 +210,17 @@ ProbeResult LimitProbe::at(std::span<const Vec3> places, Progress* progress) con
         result.fields.push_back({attribute.name, channels, std::vector<double>(places.size() * channels),
                                  std::vector<Vec3>(places.size() * channels, Vec3(0.0))});
     }
+    std::vector<Vec3> sorted;  // near ones after each other: they share what they read
+    std::vector<std::size_t> numbers;
     for (std::size_t begin = 0; begin < places.size(); begin += kBatch) {
-        state_->run(places.subspan(begin, std::min(kBatch, places.size() - begin)), begin, progress, result);
+        const auto batch = places.subspan(begin, std::min(kBatch, places.size() - begin));
+        sorted.clear();
+        numbers.clear();
+        for (const Index p : detail::space_order(batch)) {
+            sorted.push_back(batch[p]);
+            numbers.push_back(begin + p);
+        }
+        state_->run(sorted, numbers, progress, result);
     }
     report_progress(progress, "probe", 1);
     return result;

@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t kMostLevels = 24;
 constexpr std::size_t kManyPlaces = 6;  // in one cell of a grid: two levels of all its children cost less than those of each
+constexpr int kTargetLevels = 6, kTargetSteps = 3;           // on each of the levels that is a cubic near the place
+constexpr double kNearTarget = 3e-6, kFarFromTarget = 0.25;  // steps towards a target, in parameters of the control cell
 constexpr std::array<Index, 8> kFirstEight{0, 1, 2, 3, 4, 5, 6, 7};
 
 std::array<std::size_t, 3> bits_of(std::size_t octant) {
@@ -33,7 +35,6 @@ DescentWorker::DescentWorker(const DescentTask& task)
       settling_(task.options, task.scales, stride_, task.samples),
       jets_(task.options.scheme.kind, stride_),
       values_(kMostLevels),
-      rows_(kMostLevels),
       jet_(4 * stride_),
       turned_(4 * stride_),
       child_(64 * stride_) {
@@ -57,33 +58,71 @@ double* DescentWorker::values(int level, std::size_t rows) {
     return values.data();
 }
 
+/// The jet at a place of the loaded cell, along the axes of the control cell.
+const double* DescentWorker::jet_at(const Vec3& uvw, std::uint8_t turn, double scale) {
+    if (turn == kIdentityTurn) {
+        jets_.evaluate(uvw, scale, jet_.data());
+        return jet_.data();
+    }
+    const auto& sides = cell_turns()[turn].sides;
+    Vec3 turned;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double t = uvw[static_cast<int>(sides[2 * a] / 2)];
+        turned[static_cast<int>(a)] = (sides[2 * a] & 1) != 0 ? 1 - t : t;
+    }
+    jets_.evaluate(turned, scale, jet_.data());
+    std::copy_n(jet_.data(), stride_, turned_.data());
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double sign = (sides[2 * a] & 1) != 0 ? -1 : 1;
+        const double* from = &jet_[(1 + a) * stride_];
+        double* to = &turned_[(1 + static_cast<std::size_t>(sides[2 * a] / 2)) * stride_];
+        for (std::size_t c = 0; c < stride_; ++c) to[c] = sign * from[c];
+    }
+    return turned_.data();
+}
+
+/// A step of Newton's method towards the place's target, as far as the loaded cell goes. False if it does not move.
+bool DescentWorker::step_to_target(OpenPlace& at, const double* jet, double scale) const {
+    const auto row = [&](std::size_t r) { return Vec3(jet[r * stride_], jet[r * stride_ + 1], jet[r * stride_ + 2]); };
+    const Vec3 offset = task_.targets[at.query] - row(0), du = row(1), dv = row(2), dw = row(3);
+    const Vec3 normal = glm::cross(dv, dw);
+    const double determinant = glm::dot(du, normal);
+    const Vec3 step =
+        scale / determinant *
+        Vec3(glm::dot(normal, offset), glm::dot(glm::cross(dw, du), offset), glm::dot(glm::cross(du, dv), offset));
+    const double longest = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)}) / scale;
+    if (!(longest > kNearTarget && longest < kFarFromTarget)) return false;
+    const Vec3 to = glm::clamp(at.uvw + step, Vec3(0.0), Vec3(1.0)), by = (to - at.uvw) / scale;
+    at.uvw = to;
+    at.moved += by;
+    if (scale == 1) return true;
+    for (std::size_t c = 0; c < stride_; ++c) {  // the jet before, where the place is now
+        for (std::size_t d = 0; d < 3; ++d) at.last[c] += at.last[(1 + d) * stride_ + c] * by[static_cast<int>(d)];
+    }
+    return true;
+}
+
+void DescentWorker::approach(std::span<OpenPlace> places, std::uint8_t turn, int level) {
+    if (task_.targets.empty()) return;
+    const double scale = std::ldexp(1.0, level);
+    for (OpenPlace& at : places) {
+        for (int step = 0; step < kTargetSteps && step_to_target(at, jet_at(at.uvw, turn, scale), scale); ++step) {
+        }
+    }
+}
+
 std::span<OpenPlace> DescentWorker::evaluate(std::span<OpenPlace> places, std::uint8_t turn, int level, bool on_grid) {
     settling_.report().deepest_level = std::max(settling_.report().deepest_level, level);
     const bool exact = task_.options.scheme.kind == Scheme::Linear || (on_grid && task_.is_spline());
     const double scale = std::ldexp(1.0, level);
+    if (on_grid && level >= 1 && level <= kTargetLevels) approach(places, turn, level);
     std::size_t kept = 0;
     for (OpenPlace& at : places) {
-        const double* jet = jet_.data();
-        if (turn == kIdentityTurn) {
-            jets_.evaluate(at.uvw, scale, jet_.data());
-        } else {
-            const auto& sides = cell_turns()[turn].sides;
-            Vec3 uvw;
-            for (std::size_t a = 0; a < 3; ++a) {
-                const double t = at.uvw[static_cast<int>(sides[2 * a] / 2)];
-                uvw[static_cast<int>(a)] = (sides[2 * a] & 1) != 0 ? 1 - t : t;
-            }
-            jets_.evaluate(uvw, scale, jet_.data());
-            std::copy_n(jet_.data(), stride_, turned_.data());
-            for (std::size_t a = 0; a < 3; ++a) {
-                const double sign = (sides[2 * a] & 1) != 0 ? -1 : 1;
-                const double* from = &jet_[(1 + a) * stride_];
-                double* to = &turned_[(1 + static_cast<std::size_t>(sides[2 * a] / 2)) * stride_];
-                for (std::size_t c = 0; c < stride_; ++c) to[c] = sign * from[c];
-            }
-            jet = turned_.data();
+        const double* jet = jet_at(at.uvw, turn, scale);
+        if (settling_.settle(at, jet, level, on_grid, exact)) {
+            if (!task_.targets.empty()) task_.moved[at.query] = at.moved;
+            continue;
         }
-        if (settling_.settle(at, jet, level, on_grid, exact)) continue;
         if (&places[kept] != &at) places[kept] = at;
         ++kept;
     }
@@ -97,12 +136,17 @@ void DescentWorker::leave(std::span<const OpenPlace> places) {
 void DescentWorker::begin(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places,
                           ClassGraph& classes) {
     const double* rows = values_[static_cast<std::size_t>(level)].data();
-    if (level == 0 && &is == &classes.regular()) {  // levels 1 and 2 decide, as the descendants of the cell are on a grid too
-        return descend(is, turn, level, places, classes);
-    }
-    is.on_grid ? jets_.load_grid(rows, is.grid) : jets_.load_corners(rows, kFirstEight);
+    const bool is_regular = level == 0 && &is == &classes.regular();
+    // There levels 1 and 2 decide, as the descendants of the cell are on a grid too.
+    if (is_regular && task_.targets.empty()) return descend(is, turn, level, places, classes);
+    load(is, rows);
+    if (is_regular) approach(places, turn, level);
     places = evaluate(places, turn, level, is.on_grid);
     if (!places.empty()) descend(is, turn, level, places, classes);
+}
+
+void DescentWorker::load(const DescentClass& is, const double* rows) {
+    is.on_grid ? jets_.load_grid(rows, is.grid) : jets_.load_corners(rows, kFirstEight);
 }
 
 /// Only those points are computed that a place is evaluated from; the rest of a child's neighbourhood if it goes on.
@@ -112,25 +156,17 @@ void DescentWorker::descend(const DescentClass& is, std::uint8_t turn, int level
     if (&is == &classes.regular() && task_.options.scheme.kind == Scheme::Mcq) {
         return descend_grid({from, 6, stride_}, turn, level, places);
     }
-    StepRows& rows = rows_[static_cast<std::size_t>(level)];
     const ClassChildren& of_class = classes.children(is);
-    const StepTable& table = of_class.table;
-    rows.begin(table, stride_);
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
         const ClassChildren::Child& child = of_class.children[walk_octant(turn, octant)];
         if (child.to == nullptr) return leave(inside);
-        apply_step(table, child.near, stride_, from, rows);
-        if (child.to->on_grid) {
-            jets_.load_grid(rows.values.data(), child.grid);
-        } else {
-            jets_.load_corners(rows.values.data(), child.corners);
-        }
+        double* to = values(level + 1, child.to->point_count());
+        child.near.apply(stride_, from, to);
+        load(*child.to, to);
         const std::uint8_t child_turn = composed(child.turn, turn);
         inside = evaluate(inside, child_turn, level + 1, child.to->on_grid);
         if (inside.empty()) return;
-        apply_step(table, child.rows, stride_, from, rows);
-        double* to = values(level + 1, child.rows.size());
-        for (const std::uint16_t row : child.rows) to = copy_row(&rows.values[row * stride_], stride_, to);
+        child.rest.apply(stride_, from, to);
         descend(*child.to, child_turn, level + 1, inside, classes);
     });
 }

@@ -17,8 +17,11 @@ struct CellPlaces {
     std::size_t first, last;
 };
 
-/// What is asked for, of which mesh. order: the numbers of the queries, sorted by cells; scales: of each channel, what
-/// tolerances are relative to
+/// What is asked for, of which mesh.
+///
+/// order:   the numbers of the queries, sorted by cells
+/// scales:  of each channel, what tolerances are relative to
+/// targets: if not empty, the position that each query approaches; moved: by how much it has moved in its cell
 struct DescentTask {
     const HexMesh& control;
     std::span<const LimitQuery> queries;
@@ -26,6 +29,8 @@ struct DescentTask {
     const LimitOptions& options;
     std::span<const double> scales;
     LimitSamples& samples;
+    std::span<const Vec3> targets{};
+    std::span<Vec3> moved{};
     Channels channels{control};
 
     [[nodiscard]] bool is_spline() const { return !interpolates(options.scheme.kind); }
@@ -33,7 +38,7 @@ struct DescentTask {
 
 /// Evaluates places in a cell of a class, and in its descendants as deep as they ask for it. Each thread has its own.
 ///
-///     a class   its children's neighbourhoods by the class's table, row by row as they are needed
+///     a class   its children's neighbourhoods by the class's tables, as far as they are needed
 ///     a grid    by the masks of MCQ, block by block: no table, no rows
 ///
 /// The arithmetic of a place does not depend on the others.
@@ -50,6 +55,9 @@ public:
 
     /// Loads the cell that is evaluated next.
     CellJets& jets() { return jets_; }
+    /// Moves places towards their targets, if the task has some, as far as the cell that is loaded goes. turn: as below
+    void approach(std::span<OpenPlace> places, std::uint8_t turn, int level);
+
     /// Evaluates places in the cell that is loaded. Those that are open are moved to the front and returned.
     ///
     /// turn: from the axes of the loaded cell to those of the control cell
@@ -65,6 +73,9 @@ public:
     [[nodiscard]] LimitReport& report() { return settling_.report(); }
 
 private:
+    [[nodiscard]] const double* jet_at(const Vec3& uvw, std::uint8_t turn, double scale);
+    [[nodiscard]] bool step_to_target(OpenPlace& at, const double* jet, double scale) const;
+    void load(const DescentClass& is, const double* rows);
     void descend(const DescentClass& is, std::uint8_t turn, int level, std::span<OpenPlace> places, ClassGraph& classes);
     void descend_grid(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places);
     void descend_twice(const GridRows& about, std::uint8_t turn, int level, std::span<OpenPlace> places);
@@ -74,7 +85,6 @@ private:
     Settling settling_;
     CellJets jets_;
     std::vector<std::vector<double>> values_;  // of the neighbourhoods on the way down
-    std::vector<StepRows> rows_;               // of the children of these
     std::vector<OpenPlace> places_;
     std::vector<double> lasts_, jet_, turned_, child_;
     std::vector<std::size_t> left_;

@@ -30,8 +30,9 @@ private:
 
 /// Copies a row of channels; returns the end of the copy.
 inline double* copy_row(const double* from, std::size_t stride, double* to) {
-    if (stride == 4) return std::copy_n(from, 4, to);  // positions and one value: a known size, no call
-    return std::copy_n(from, stride, to);
+    if (stride != 4) return std::copy_n(from, stride, to);
+    const std::array<double, 4> row{from[0], from[1], from[2], from[3]};  // positions and one value: no call
+    return std::copy_n(row.data(), 4, to);
 }
 
 // A *jet* is the values of all channels at one place, then their derivatives by u, by v and by w: 4 × stride numbers.
@@ -74,10 +75,12 @@ private:
 /// agreed: number of consecutive levels whose jets agreed within the tolerance
 /// octant: of the child that it is in; at first none
 /// stays:  whether the last two cells that it was in meet at a vertex of the cell before them
+/// moved:  by how much it has moved in its control cell
 struct OpenPlace {
     std::size_t query;
     Vec3 uvw;
     double* last;
+    Vec3 moved{0.0};
     std::uint8_t agreed = 0;
     std::uint8_t octant = 8;
     bool stays = false;

@@ -108,14 +108,16 @@ struct Evaluation {
           scales(channel_scales(control)),
           descents(control, options.scheme) {}
 
-    /// keep: what had to be refined, for the next call
-    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, const LimitOptions& wanted, bool keep) const {
+    /// keep:    what had to be refined, for the next call
+    /// targets: if not empty, positions that the queries approach; moved: by how much they have
+    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, const LimitOptions& wanted, bool keep,
+                                  std::span<const Vec3> targets = {}, std::span<Vec3> moved = {}) const {
         check(wanted);
         check(control, queries);
         LimitSamples samples = make_samples(control, queries.size());
         const auto order = sorted_by_cells(queries, control.cells.size());
         const auto cells = places_of_cells(queries, order);
-        const auto rest = descents.run({control, queries, order, wanted, scales, samples}, cells, keep);
+        const auto rest = descents.run({control, queries, order, wanted, scales, samples, targets, moved}, cells, keep);
         if (!rest.empty()) refine_rest(control, queries, rest, wanted, scales, samples);
         return samples;
     }
@@ -142,6 +144,20 @@ LimitSamples LimitEvaluator::at(std::span<const LimitQuery> queries, std::option
     LimitOptions options = state_->evaluation.options;
     if (tolerance) options.tolerance = *tolerance;
     return state_->evaluation.at(queries, options, true);
+}
+
+LimitSamples LimitEvaluator::approach(std::span<LimitQuery> queries, std::span<const Vec3> positions) const {
+    if (positions.size() != queries.size()) {
+        throw Error(ErrorCode::InvalidInput, "there are " + std::to_string(positions.size()) + " positions", "limit",
+                    "as many as queries, " + std::to_string(queries.size()));
+    }
+    std::vector<Vec3> moved(queries.size(), Vec3(0.0));
+    const Evaluation& evaluation = state_->evaluation;
+    LimitSamples samples = evaluation.at(queries, evaluation.options, true, positions, moved);
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        queries[q].uvw = glm::clamp(queries[q].uvw + moved[q], Vec3(0.0), Vec3(1.0));
+    }
+    return samples;
 }
 
 LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries, const LimitOptions& options) {

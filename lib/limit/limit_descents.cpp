@@ -56,7 +56,9 @@ struct LimitDescents::State {
             with.begin(classes.regular(), kIdentityTurn, 0, with.open(in), classes);
         } else {
             const bool on_grid = mesh.load(in.cell, with.jets());
-            (void)with.evaluate(with.open(in), kIdentityTurn, 0, on_grid);
+            const auto places = with.open(in);
+            with.approach(places, kIdentityTurn, 0);
+            (void)with.evaluate(places, kIdentityTurn, 0, on_grid);
         }
         return true;
     }

@@ -129,11 +129,19 @@ void RefinedCells::enter(const RefinedOctant& parent, std::span<OpenPlace> place
         const auto& corners = second_cells_[8 * slots_[from] + kCornerOctants[octants[at.child]]];
         return &second_rows_[corners[kCornerOctants[octants[at.corner]]] * stride];
     };
+    const auto& points = parent.entry->points;
+    // The neighbourhoods of several places share points, which are far apart in memory.
+    const bool many = places.size() > 2;
+    double* const all = with.values(1, many ? points.size() : 0);
+    if (many) {
+        double* to = all;
+        for (const ClassEntry::Corner& point : points) to = copy_row(row_of(point), stride, to);
+    }
     each_octant(places, [&](std::size_t octant, std::span<OpenPlace> inside) {
         const ClassEntry::Child& child = parent.entry->children[walk_octant(parent.turn, octant)];
         if (child.to == nullptr) return with.leave(inside);
         double* to = with.values(2, child.rows.size());
-        for (const std::uint16_t row : child.rows) to = copy_row(row_of(parent.entry->points[row]), stride, to);
+        for (const std::uint16_t row : child.rows) to = copy_row(many ? all + row * stride : row_of(points[row]), stride, to);
         with.begin(*child.to, composed(child.turn, parent.turn), 2, inside, *classes_);
     });
 }

@@ -71,6 +71,24 @@ TEST(Probe, FindsPlacesOfTrilinearCells) {
     expect_values_of_the_limit(test::irregular(), {.kind = Scheme::Linear});
 }
 
+TEST(Probe, FindsTheSameInAnyOrder) {
+    HexMesh mesh = test::irregular();
+    test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(p.x) * p.y + p.z; });
+    const auto queries = random_queries(mesh, 3000);
+    const std::vector<Vec3> places = evaluate_limit(mesh, queries).positions;
+    const LimitProbe probe(mesh);
+    const ProbeResult all = probe.at(places);
+    const std::vector<Vec3> backwards(places.rbegin(), places.rbegin() + 1000);
+    const ProbeResult some = probe.at(backwards);
+    for (std::size_t p = 0; p < backwards.size(); ++p) {
+        const std::size_t same = places.size() - 1 - p;
+        EXPECT_EQ(some.cells[p], all.cells[same]);
+        EXPECT_EQ(some.parameters[p], all.parameters[same]);
+        EXPECT_EQ(some.fields[0].values[p], all.fields[0].values[same]);
+        EXPECT_EQ(some.fields[0].gradients[p], all.fields[0].gradients[same]);
+    }
+}
+
 TEST(Probe, GradientsAreThoseByPosition) {
     HexMesh mesh = test::irregular();
     test::add_field(mesh, "f", [](const Vec3& p) { return 2 * p.x - 3 * p.y + .5 * p.z; });  // affine fields stay affine

@@ -7,7 +7,10 @@
 #include <thread>
 
 #include "lib/test_meshes.h"
+#include "subvol/error.h"
 #include "subvol/limit.h"
+#include "subvol/mesh_io.h"
+#include "subvol/model.h"
 #include "subvol/refine.h"
 
 namespace subvol {
@@ -128,6 +131,45 @@ TEST_P(LimitPlaces, AreFineVerticesWhereCellsMeetAtAnEdgeOnly) {
     expect_fine_vertices(mesh, {GetParam()}, tolerance_of(GetParam()));
 }
 
+/// Asserts that places at vertices of level 4 of MCQ are those of some refined cells, relative to the size of the mesh.
+void expect_vertices_of_cells(HexMesh mesh, std::size_t count) {
+    mesh.attributes.clear();
+    const double size = bounds(mesh).diagonal();
+    test::add_field(mesh, "f", [&](const Vec3& p) { return std::sin(9 * p.x / size) * p.y / size + p.z / size; });
+    std::vector<Index> cells;
+    for (std::size_t i = 0; i < count; ++i) cells.push_back(static_cast<Index>(i * mesh.cells.size() / count));
+    const HexMesh fine = refine_cells(mesh, cells, {.levels = kLevels});
+    std::mt19937 random(6);
+    std::vector<LimitQuery> queries;
+    std::vector<Index> vertices;
+    for (Index c = 0; c < cells.size(); ++c) {
+        for (int i = 0; i < 20; ++i) {
+            const auto sixteenth = [&] { return static_cast<Index>(random() % 16); };
+            const std::array<Index, 3> at{sixteenth(), sixteenth(), sixteenth()};
+            queries.push_back({cells[c], Vec3(at[0], at[1], at[2]) / 16.0});
+            vertices.push_back(vertex_at(fine, c, at));
+        }
+    }
+    // Two levels beyond that of the vertices in any case: nothing is left to the tolerance.
+    const LimitSamples samples = evaluate_limit(mesh, queries, {.tolerance = 0, .max_levels = 6});
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        EXPECT_NEAR(glm::distance(samples.positions[q], fine.points[vertices[q]]), 0, 1e-13 * size) << q;
+        EXPECT_NEAR(samples.attributes[0].values[q], fine.attributes[0].values[vertices[q]], 1e-13) << q;
+    }
+}
+
+TEST(LimitOfMcq, HasTheVerticesOfRefinedModels) {
+    expect_vertices_of_cells(make_model("ball", 4), 60);
+    expect_vertices_of_cells(make_model("pawn", 12), 60);
+    expect_vertices_of_cells(make_model("twist", 6), 60);
+}
+
+TEST(LimitOfMcq, HasTheVerticesOfARefinedRealMesh) {
+    const auto data = test::data_folder();
+    if (!data) GTEST_SKIP() << "SUBVOL_DATA does not name the folder of real meshes";
+    expect_vertices_of_cells(read_mesh(*data / "sibl_bunny_conforming.mesh").mesh, 80);
+}
+
 /// Places in all cells of a mesh.
 std::vector<LimitQuery> scattered(const HexMesh& mesh, unsigned seed, std::size_t count = 2000) {
     std::mt19937 random(seed);
@@ -159,6 +201,35 @@ TEST_P(LimitPlaces, OfAnEvaluatorAreTheSameInEveryCall) {
     }
     expect_same(1, 2000);
     EXPECT_EQ(evaluator.at({}).positions.size(), 0U);
+}
+
+TEST_P(LimitPlaces, ApproachAPosition) {
+    HexMesh mesh = test::irregular();
+    test::add_field(mesh, "f", [](const Vec3& p) { return p.x * p.y - p.z; });
+    const LimitEvaluator evaluator(mesh, {.scheme = {GetParam()}, .tolerance = 1e-8, .max_levels = 14});
+    const auto places = scattered(mesh, 3);
+    const std::vector<Vec3> targets = evaluator.at(places).positions;
+    std::vector<LimitQuery> queries = places;
+    for (LimitQuery& query : queries) query.uvw = glm::clamp(query.uvw + Vec3(.01, -.02, .015), Vec3(0), Vec3(1));
+    const std::vector<Vec3> before = evaluator.at(queries).positions;
+    const LimitSamples samples = evaluator.approach(queries, targets);
+    const LimitSamples there = evaluator.at(queries);
+    double far_before = 0, far = 0;
+    for (std::size_t q = 0; q < queries.size(); ++q) {
+        EXPECT_EQ(queries[q].cell, places[q].cell);
+        // Both are of the limit at the same place, to about the tolerance.
+        EXPECT_NEAR(glm::distance(samples.positions[q], there.positions[q]), 0, 1e-6);
+        EXPECT_NEAR(samples.attributes[0].values[q], there.attributes[0].values[q], 1e-6);
+        far_before += glm::distance(before[q], targets[q]);
+        far += glm::distance(samples.positions[q], targets[q]);
+    }
+    EXPECT_LT(far, .1 * far_before);  // a place near the side of an octant stops there
+    // A place that is there stays, and so does one whose target is nowhere.
+    std::vector<LimitQuery> two{places[0], places[1]};
+    (void)evaluator.approach(two, std::vector<Vec3>{targets[0], {NAN, 0, 0}});
+    EXPECT_NEAR(glm::distance(two[0].uvw, places[0].uvw), 0, 1e-3);
+    EXPECT_EQ(two[1].uvw, places[1].uvw);
+    EXPECT_THROW((void)evaluator.approach(two, std::span(targets).first(1)), Error);
 }
 
 TEST(LimitInOneCell, IsTheSameForManyPlaces) {

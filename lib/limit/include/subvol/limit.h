@@ -86,6 +86,14 @@ public:
     ///            negative
     [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, std::optional<double> tolerance = {}) const;
 
+    /// `at`, but each place first moves towards where the limit has a given position: by Newton's method on the coarse levels,
+    /// within its cell. From a place that is near, most end within 1e-3 of a cell; what is left is a step by the Jacobian.
+    ///
+    /// queries:   where the search starts; become the places of the samples
+    /// positions: one for each query; others than finite ones leave it where it is
+    /// throws:    Error(InvalidInput) as `at`, or if there are not as many positions
+    [[nodiscard]] LimitSamples approach(std::span<LimitQuery> queries, std::span<const Vec3> positions) const;
+
 private:
     struct State;
     std::unique_ptr<State> state_;
