@@ -35,11 +35,14 @@ public:
                "  subvol join part1.vdb part2.vdb part3.vdb -o big.vdb\n"
                "  subvol join part*.ply -o big.ply\n"
                "\n"
-               "The result is that of one process without --part: the same points, the same leaves.",
+               "The result is that of one process without --part: the same points, the same leaves. The list of files that "
+               "`vdb --memory` and `vdb` of bricks write is one PART.",
                Reads::NoMesh) {
         app()
-            .add_option("PART", parts_,
-                        "the parts, in any order: .vdb of `vdb`, .ply or .vtp of `points`, .exr of `render`, JSON of `info`")
+            .add_option(
+                "PART", parts_,
+                "the parts, in any order: .vdb of `vdb`, .ply or .vtp of `points`, .exr of `render`, JSON of `info`; or "
+                "the list (.json) of a grid in several files")
             ->required()
             ->expected(1, -1);
         app().add_option("-o,--output", output_, "the file to write")->type_name("FILE")->required();
@@ -57,6 +60,8 @@ public:
             join_points(report);
         } else if (extension == ".exr") {
             join_pictures(report);
+        } else if (extension == ".json" && output_.ends_with(".vdb")) {
+            join_listed_grids(report);
         } else if (extension == ".json") {
             join_figures(report);
         } else {
@@ -93,23 +98,61 @@ private:
         std::size_t at = 0;
         const std::vector<std::size_t> order =
             ordered([&](const std::string&) { return text_of_grid(read[at++].front(), kPartNote); });
-        std::vector<VdbGrid> grids;
-        report.timed("join", [&] {
-            const std::size_t count = read.front().size();
+        std::vector<VdbGrid> grids = joined(std::move(read), order, parts_, report);
+        for (VdbGrid& grid : grids) {
+            set_text_of_grid(grid, kPartNote, {});
+            store_in_half(grid, how("half", false));
+        }
+        write_reported(grids, {.path = output_, .compression = compression_named(how("compression", std::string("blosc")))},
+                       report);
+    }
+
+    /// of_files: the grids of each file; order: of the files; names: theirs
+    [[nodiscard]] static std::vector<VdbGrid> joined(std::vector<std::vector<VdbGrid>> of_files,
+                                                     const std::vector<std::size_t>& order,
+                                                     const std::vector<std::string>& names, Report& report) {
+        return report.timed("join", [&] {
+            std::vector<VdbGrid> grids;
+            const std::size_t count = of_files.front().size();
             for (std::size_t g = 0; g < count; ++g) {
                 std::vector<VdbGrid> of_parts;
                 for (const std::size_t p : order) {
-                    if (read[p].size() != count)
-                        throw Error(ErrorCode::InvalidInput, "has other grids than other parts", parts_[p]);
-                    of_parts.push_back(std::move(read[p][g]));
+                    if (of_files[p].size() != count)
+                        throw Error(ErrorCode::InvalidInput, "has other grids than other parts", names[p]);
+                    of_parts.push_back(std::move(of_files[p][g]));
                 }
                 grids.push_back(join_grids(std::move(of_parts)));
-                set_text_of_grid(grids.back(), kPartNote, {});
-                store_in_half(grids.back(), how("half", false));
             }
+            return grids;
         });
-        write_reported(grids, {.path = output_, .compression = compression_named(how("compression", std::string("blosc")))},
-                       report);
+    }
+
+    /// The grids of the files that a list of `vdb` names, which lie beside it.
+    void join_listed_grids(Report& report) {
+        const std::string& list = parts_.front();
+        if (parts_.size() > 1) throw Error(ErrorCode::InvalidInput, "is one part too many: a list names all files", parts_[1]);
+        std::ifstream file(list, std::ios::binary);
+        const Json json = Json::parse(file, nullptr, false);
+        const Json files = json.is_object() && json.contains("parts") ? json["parts"] : Json();
+        std::vector<std::string> names;
+        std::vector<std::size_t> order;
+        for (const Json& entry : files.is_array() ? files : Json::array()) {
+            if (!entry.is_object() || !entry.contains("file") || !entry["file"].is_string()) break;
+            const std::filesystem::path name = std::filesystem::path(entry["file"].get<std::string>()).filename();
+            order.push_back(names.size());
+            names.push_back((std::filesystem::path(list).parent_path() / name).string());
+        }
+        if (names.empty() || names.size() != files.size()) {
+            throw Error(ErrorCode::InvalidInput, "is no list of grids in several files", list,
+                        "the one that `vdb` writes beside them");
+        }
+        report["parts"] = names.size();
+        std::vector<std::vector<VdbGrid>> read;
+        report.timed("read", [&] {
+            for (const std::string& name : names) read.push_back(read_vdb_contents(name).grids);
+        });
+        if (read.front().empty()) throw Error(ErrorCode::InvalidInput, "has no grids", names.front());
+        write_reported(joined(std::move(read), order, names, report), {.path = output_}, report);
     }
 
     void join_points(Report& report) {

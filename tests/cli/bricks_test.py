@@ -61,6 +61,9 @@ class SameAsTheWhole(InFolder):
                     self.assertEqual(parts["grids"][0][key], whole["grids"][0][key], cut)
                 for part in listed:
                     self.assertEqual(self.values_in(part["file"]), self.values_in("whole.vdb", part["file"]), cut)
+                self.run_ok("join", "parts.json", "-o", "joined.vdb", "--quiet")
+                hashes = [self.run_ok("info", name, "--json").json()["grids"][0]["hash"] for name in ("joined.vdb", "whole.vdb")]
+                self.assertEqual(hashes[0], hashes[1], cut)
                 for part in listed:
                     os.remove(self.folder / part["file"])
 
@@ -190,6 +193,16 @@ class WhatGoesWrong(InFolder):
         self.each_verb("not well-formed JSON")
         index.write_text('{"format": "OpenSubVol bricks", "version": 1}')
         self.each_verb("not an index of bricks")
+
+    def test_lists_that_cannot_be_joined(self):
+        no_list = "is no list of grids in several files"
+        self.assert_said(no_list, "join", "t.bricks/index.json", "-o", "a.vdb")
+        for text in ("[", "{}", '{"parts": []}', '{"parts": [3]}', '{"parts": [{"file": 3}]}', '{"parts": [{"file": "a"}, 3]}'):
+            (self.folder / "list.json").write_text(text)
+            self.assert_said(no_list, "join", "list.json", "-o", "a.vdb")
+        self.assert_said("a list names all files", "join", "list.json", "list.json", "-o", "a.vdb")
+        (self.folder / "list.json").write_text('{"parts": [{"file": "/none/x.vdb"}]}')
+        self.assert_said("x.vdb: cannot be read", "join", "list.json", "-o", "a.vdb")
 
     def test_what_cannot_be_done_by_bricks(self):
         said = "is a folder of bricks, which this command does not take yet"
