@@ -59,15 +59,19 @@ function(subvol_precompiled_of result)
   set(${result} ${name} PARENT_SCOPE)
 endfunction()
 
-# subvol_room(COMPONENT NAME SOURCES file… USES room… FOREIGN library… SHADERS file… COLD HOT): a room is a folder of a component and
+# subvol_room(COMPONENT NAME SOURCES file… ALONE file… USES room… FOREIGN library… SHADERS file… COLD HOT): a room is a folder of a component and
 # an object library. Its include roots are its folder, its public headers in NAME/include, and those of the rooms that it uses: an
 # include against the arrows does not compile, and neither does one of a third-party library that the room does not list.
+# In unity builds several sources of a room are compiled together: names in their unnamed namespaces must be unique within the room.
+# ALONE sources are not: Highway includes them once for each instruction set.
 function(subvol_room component name)
-  cmake_parse_arguments(ARG "COLD;HOT" "" "SOURCES;USES;FOREIGN;SHADERS" ${ARGN})
+  cmake_parse_arguments(ARG "COLD;HOT" "" "SOURCES;ALONE;USES;FOREIGN;SHADERS" ${ARGN})
   set(room subvol_${component}_${name})
   list(TRANSFORM ARG_SOURCES PREPEND ${name}/)
+  list(TRANSFORM ARG_ALONE PREPEND ${name}/)
   list(TRANSFORM ARG_USES PREPEND subvol_${component}_)
-  add_library(${room} OBJECT ${ARG_SOURCES})
+  add_library(${room} OBJECT ${ARG_SOURCES} ${ARG_ALONE})
+  set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set_target_properties(${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${room} PUBLIC cxx_std_20)
   target_include_directories(${room} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/${name})

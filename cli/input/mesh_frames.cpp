@@ -12,7 +12,7 @@
 namespace subvol::cli {
 namespace {
 
-std::optional<int> whole_number(std::string_view text) {
+std::optional<int> frame_number(std::string_view text) {
     int number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size() || number < 0) return std::nullopt;
@@ -34,8 +34,8 @@ FrameRange frames_of(const Share& share, const FrameRange& all) {
 FrameRange parse_frames(const std::string& text) {
     const std::string_view all = text;
     const std::size_t dash = all.find('-');
-    const auto first = dash == std::string::npos ? std::optional(1) : whole_number(all.substr(0, dash));
-    const auto last = whole_number(dash == std::string::npos ? all : all.substr(dash + 1));
+    const auto first = dash == std::string::npos ? std::optional(1) : frame_number(all.substr(0, dash));
+    const auto last = frame_number(dash == std::string::npos ? all : all.substr(dash + 1));
     if (!first || !last || *last < *first) {
         throw Error(ErrorCode::InvalidInput, "'" + text + "' is not a range of frames", "--frames", "1-10, or 10 for the same");
     }

@@ -9,7 +9,7 @@
 namespace subvol::cli {
 namespace {
 
-std::optional<std::size_t> whole_number(std::string_view text) {
+std::optional<std::size_t> step_number(std::string_view text) {
     std::size_t number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -40,7 +40,7 @@ std::optional<std::size_t> one_step(const std::string& input, const CommonOption
                     "a number or last; vdb, points and render write a file a step");
     }
     if (*options.step == "last") return open_series(input).size() - 1;
-    const auto step = whole_number(*options.step);
+    const auto step = step_number(*options.step);
     if (!step) refuse(*options.step);
     return step;
 }
@@ -50,8 +50,8 @@ FrameRange chosen_steps(const MeshSeries& series, const CommonOptions& options) 
     const std::string& text = *options.step;
     if (text == "all") return {0, last};
     const std::size_t dash = text.find('-');
-    const auto first = whole_number(std::string_view(text).substr(0, dash));
-    const auto end = whole_number(std::string_view(text).substr(dash + 1));
+    const auto first = step_number(std::string_view(text).substr(0, dash));
+    const auto end = step_number(std::string_view(text).substr(dash + 1));
     if (!first || !end || *end < *first) refuse(text);
     return {static_cast<int>(existing(*first, series)), static_cast<int>(existing(*end, series))};
 }

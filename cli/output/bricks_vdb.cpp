@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint64_t kDefaultMemory = std::uint64_t{1} << 30;
 // Of a cell that is gathered: itself twice, its topology, and the pieces of its limit, which are sorted once.
 constexpr double kBytesOfCell = 1600;
-constexpr double kBytesOfChannel = 10;  // of a voxel: leaves that are not full, and the grid that is made of them
+constexpr double kBytesOfBrickChannel = 10;  // of a voxel: leaves that are not full, and the grid that is made of them
 
 constexpr double kMostIndex = 1 << 30;  // as of the voxels of a mesh
 constexpr std::size_t kMostBlocks = 1'000'000;
@@ -119,7 +119,7 @@ private:
                                             std::max(box.lower[d], brick.bounds.lower[d])) /
                           voxel_;
             }
-            bytes += share * static_cast<double>(brick.cells) * kBytesOfCell + voxels * kBytesOfChannel * channels_;
+            bytes += share * static_cast<double>(brick.cells) * kBytesOfCell + voxels * kBytesOfBrickChannel * channels_;
         }
         return bytes;
     }

@@ -174,14 +174,14 @@ CaseResult counts_case(const StudyCase& of, const HexMesh& mesh) {
 
 using FieldCase = CaseResult (*)(const StudyCase&, const HexMesh&);
 
-const std::map<std::string, FieldCase> kCases{
+const std::map<std::string, FieldCase> kFieldCases{
     {"field", field_case}, {"volume", volume_case}, {"voxels", voxels_case}, {"values", values_case}, {"counts", counts_case}};
 
 }  // namespace
 
 CaseResult run_field_case(const StudyCase& of) {
-    const auto found = kCases.find(of.text("method"));
-    assert(found != kCases.end());
+    const auto found = kFieldCases.find(of.text("method"));
+    assert(found != kFieldCases.end());
     const HexMesh mesh = study_mesh(of);
     CaseResult result = found->second(of, mesh);
     result.metrics["points"] = static_cast<double>(mesh.points.size());

@@ -139,13 +139,13 @@ CaseResult slice_case(const StudyCase& of, const CasePlace& place) {
 
 using KernelCase = CaseResult (*)(const StudyCase&, const CasePlace&);
 
-const std::map<std::string, KernelCase> kCases{{"errors", errors_case}, {"fit", fit_case}, {"slice", slice_case}};
+const std::map<std::string, KernelCase> kKernelCases{{"errors", errors_case}, {"fit", fit_case}, {"slice", slice_case}};
 
 }  // namespace
 
 CaseResult run_kernel_case(const StudyCase& of, const CasePlace& place) {
-    const auto found = kCases.find(of.text("method"));
-    assert(found != kCases.end());
+    const auto found = kKernelCases.find(of.text("method"));
+    assert(found != kKernelCases.end());
     return found->second(of, place);
 }
 

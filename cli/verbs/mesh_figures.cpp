@@ -13,14 +13,6 @@ namespace {
     throw Error(ErrorCode::InvalidInput, "its figures of a share cannot be read", file);
 }
 
-Json corner(const Vec3& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-Json to_json(const Box& box) {
-    return Json::array({corner(box.lower), corner(box.upper)});
-}
-
 Vec3 corner_from(const Json& json) {
     return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
@@ -51,6 +43,14 @@ constexpr std::array<Count, 12> kCounts{Count{"points", &MeshReport::points},
 
 }  // namespace
 
+Json json_of(const Vec3& point) {
+    return Json::array({point.x, point.y, point.z});
+}
+
+Json json_of(const Box& box) {
+    return Json::array({json_of(box.lower), json_of(box.upper)});
+}
+
 void put_mesh_report(Report& report, const MeshReport& mesh) {
     Json valences = Json::object();
     for (const auto& [valence, count] : mesh.interior_edge_valence) valences[std::to_string(valence)] = count;
@@ -70,7 +70,7 @@ void put_mesh_report(Report& report, const MeshReport& mesh) {
     report["nonmanifold_points"] = mesh.nonmanifold_points;
     report["nonmanifold_faces"] = mesh.nonmanifold_faces;
     report["volume"] = mesh.volume;
-    report["bounds"] = to_json(mesh.bounds);
+    report["bounds"] = json_of(mesh.bounds);
 }
 
 Json json_of(const detail::MeshShare& share) {
@@ -81,7 +81,7 @@ Json json_of(const detail::MeshShare& share) {
         json["interior_edge_valence"].push_back({valence, count});
     }
     json["min_scaled_jacobian"] = share.counts.min_scaled_jacobian;
-    json["bounds"] = to_json(share.counts.bounds);
+    json["bounds"] = json_of(share.counts.bounds);
     json["volumes"] = share.volumes;
     json["inverted"] = share.inverted;
     return json;

@@ -8,6 +8,12 @@
 
 namespace subvol::cli {
 
+/// [x, y, z]
+[[nodiscard]] Json json_of(const Vec3& point);
+
+/// [lower corner, upper corner]
+[[nodiscard]] Json json_of(const Box& box);
+
 /// Puts the figures of a mesh into a report, as `info` has them.
 void put_mesh_report(Report& report, const MeshReport& mesh);
 

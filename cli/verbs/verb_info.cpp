@@ -26,21 +26,13 @@
 namespace subvol::cli {
 namespace {
 
-Json to_json(const Vec3& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-Json to_json(const GlDevice& device) {
+Json device_json(const GlDevice& device) {
     return {{"index", device.index},
             {"renderer", device.renderer},
             {"hardware", device.hardware},
             {"version", device.version},
             {"max_ssbo_bytes", device.max_ssbo_bytes},
             {"memory_bytes", device.memory_bytes > 0 ? Json(device.memory_bytes) : Json(nullptr)}};
-}
-
-Json to_json(const Box& box) {
-    return Json::array({to_json(box.lower), to_json(box.upper)});
 }
 
 class InfoVerb : public Verb {
@@ -90,7 +82,7 @@ private:
         report["gl"] = Json(nullptr);
         if (!devices.empty()) report["gl"] = {{"renderer", devices.front().renderer}, {"hardware", devices.front().hardware}};
         report["gl_devices"] = Json::array();
-        for (const GlDevice& device : devices) report["gl_devices"].push_back(to_json(device));
+        for (const GlDevice& device : devices) report["gl_devices"].push_back(device_json(device));
     }
 
     int list_fields(Report& report) {
@@ -233,7 +225,7 @@ private:
         const KernelFileContents contents = report.timed("read", [&] { return KernelFile(input_).contents(); });
         report["points"] = contents.kernels;
         report["kernel"] = Json::parse(subvol::to_json(contents.kernel));
-        report["bounds"] = to_json(contents.bounds);
+        report["bounds"] = json_of(contents.bounds);
         report["boundary_triangles"] = contents.boundary_triangles;
         for (const auto& channel : contents.channels) {
             report["channels"].push_back({{"name", channel.name}, {"min", channel.min}, {"max", channel.max}});
@@ -248,7 +240,7 @@ private:
         if (holds_levels(input_)) return describe_levels(report);
         const RbfVolume volume = read_points_input(input_, report);
         report["kernel"] = Json::parse(subvol::to_json(volume.kernel));
-        report["bounds"] = to_json(volume.bounds);
+        report["bounds"] = json_of(volume.bounds);
         report["boundary_triangles"] = volume.boundary.triangles.size();
         for (const RbfChannel& channel : volume.channels) {
             const auto [min, max] = std::ranges::minmax(channel.values);
@@ -266,7 +258,7 @@ private:
                                        {"kind", about.kind},
                                        {"active_voxels", about.active_voxels},
                                        {"voxel_size", about.voxel_size_world},
-                                       {"bounds", to_json(about.bounds)},
+                                       {"bounds", json_of(about.bounds)},
                                        {"min", about.min},
                                        {"max", about.max},
                                        {"bytes", about.bytes},
@@ -280,7 +272,7 @@ private:
             for (const VdbGrid& scalar : scalars) {
                 const std::optional<double> value = scalar.value(x);
                 report["at"].push_back(
-                    {{"point", to_json(x)}, {"field", scalar.report().name}, {"value", value ? Json(*value) : Json(nullptr)}});
+                    {{"point", json_of(x)}, {"field", scalar.report().name}, {"value", value ? Json(*value) : Json(nullptr)}});
             }
         }
     }

@@ -36,7 +36,7 @@ constexpr double kLong_s = 10;
 constexpr const char* kPageBytes = "6e6";  // of a page beside the report
 
 /// A number that is not known becomes null.
-Json to_json(const StudyTable& table) {
+Json table_json(const StudyTable& table) {
     Json rows = Json::array();
     for (const auto& row : table.rows) {
         Json values = Json::array();
@@ -289,7 +289,7 @@ private:
             detail::write_text_file(folder / (table.name + ".txt"), as_text(table));
             detail::write_text_file(folder / (table.name + ".csv"), as_csv(table));
             detail::write_text_file(folder / (table.name + ".tex"), as_tex(table));
-            report["tables"].push_back(to_json(table));
+            report["tables"].push_back(table_json(table));
             report.say("\n" + as_text(table));
         }
         if (const auto setup = setup_table(results)) {

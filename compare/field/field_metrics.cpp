@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "random_unit.h"
 #include "sample_grid.h"
 #include "subvol/error.h"
 
@@ -23,15 +24,10 @@ struct Place {
     std::optional<double> reference{}, test{};
 };
 
-/// std::uniform_real_distribution differs between libraries; this does not.
-double unit(std::mt19937_64& random) {
-    return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 std::vector<Place> random_batch(const FieldView& test, const FieldView& reference, std::mt19937_64& random) {
     std::vector<Place> batch(kBatch);
     for (Place& place : batch) {
-        for (int k = 0; k < 3; ++k) place.x[k] = unit(random);
+        for (int k = 0; k < 3; ++k) place.x[k] = detail::random_unit(random);
         place.x = reference.box.lower + place.x * reference.box.size();
     }
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {

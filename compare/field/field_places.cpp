@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "random_unit.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/topology.h"
@@ -46,11 +47,6 @@ std::vector<CellPart> parts_of(const HexMesh& mesh, PlaceKind kind) {
     return parts;
 }
 
-/// std::uniform_real_distribution differs between libraries; this does not.
-double unit(std::mt19937_64& random) {
-    return static_cast<double>(random() >> 11) * 0x1p-53;
-}
-
 std::vector<LimitQuery> random_queries(const std::vector<CellPart>& parts, double within, std::size_t count,
                                        std::uint64_t seed) {
     std::mt19937_64 random(seed);
@@ -59,7 +55,7 @@ std::vector<LimitQuery> random_queries(const std::vector<CellPart>& parts, doubl
         const CellPart& part = parts[random() % parts.size()];
         query.cell = part.cell;
         for (int a = 0; a < 3; ++a) {
-            const double t = unit(random);
+            const double t = detail::random_unit(random);
             const auto extent = part.extents[static_cast<std::size_t>(a)];
             query.uvw[a] = extent == CellPart::All ? t : extent == CellPart::NearLow ? within * t : 1 - within * t;
         }

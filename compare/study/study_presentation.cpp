@@ -42,7 +42,7 @@ std::map<std::string, std::string> words(const Json& json, const char* key, cons
     return all;
 }
 
-const Json& list_of(const Json& json, const char* key, const std::string& path) {
+const Json& optional_list(const Json& json, const char* key, const std::string& path) {
     static const Json kNone = Json::array();
     if (!json.contains(key)) return kNone;
     if (!json[key].is_array()) refuse(in(path, key), must_be("a list", json[key]));
@@ -64,7 +64,7 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
         study.pictures = true;
         study.pictures_where = words(json, "pictures", root);
     }
-    const Json& tables = list_of(json, "tables", root);
+    const Json& tables = optional_list(json, "tables", root);
     for (std::size_t i = 0; i < tables.size(); ++i) {
         const std::string path = at(in(root, "tables"), i);
         const std::vector<std::string> known{"title",  "caption",  "rows",  "columns", "across",
@@ -85,7 +85,7 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
         if (!table.values.empty() && table.across.empty()) refuse(in(path, "across"), "this key is missing; 'values' needs it");
         study.tables.push_back(std::move(table));
     }
-    const Json& plots = list_of(json, "plots", root);
+    const Json& plots = optional_list(json, "plots", root);
     for (std::size_t i = 0; i < plots.size(); ++i) {
         const std::string path = at(in(root, "plots"), i);
         const std::vector<std::string> known{"title", "caption", "x",   "y",        "series", "panels",
@@ -103,7 +103,7 @@ void read_presentation(const Json& json, const std::string& root, Study& study) 
                                .fit = flag_or(plots[i], "fit", path, false),
                                .where = words(plots[i], "where", path)});
     }
-    const Json& demands = list_of(json, "demands", root);
+    const Json& demands = optional_list(json, "demands", root);
     for (std::size_t i = 0; i < demands.size(); ++i) {
         const std::string path = at(in(root, "demands"), i);
         const std::vector<std::string> known{"metric", "least", "most", "where"};

@@ -9,7 +9,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 16;  // cells that are read together
+constexpr std::size_t kCellsAtOnce = std::size_t{1} << 16;  // cells that are read together
 constexpr std::uint32_t kNobody = ~0U;
 
 // The bricks that reach a point: its owner, and for few points others.
@@ -64,8 +64,8 @@ private:
 template <class Call>
 void each_cell(const SpillFile& corners, std::size_t count, const Call& call) {
     std::vector<std::array<Index, 8>> cells;
-    for (std::size_t begin = 0; begin < count; begin += kChunk) {
-        cells.resize(std::min(kChunk, count - begin));
+    for (std::size_t begin = 0; begin < count; begin += kCellsAtOnce) {
+        cells.resize(std::min(kCellsAtOnce, count - begin));
         corners.read(begin, records_of(cells));
         for (std::size_t i = 0; i < cells.size(); ++i) call(static_cast<Index>(begin + i), cells[i]);
     }

@@ -13,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 16;  // cells that are worked on together
+constexpr std::size_t kCellsOfChunk = std::size_t{1} << 16;  // cells that are worked on together
 
 // The centres lie in a file for each axis.
 class SpilledCenters : public CellCenters {
@@ -42,9 +42,9 @@ std::unique_ptr<CellCenters> centers_of(PieceTables& tables, const std::filesyst
     std::vector<std::array<Index, 8>> cells;
     std::vector<Vec3> points;
     std::array<std::vector<double>, 3> of_axis;
-    for (std::uint64_t begin = 0; begin < tables.cells; begin += kChunk) {
+    for (std::uint64_t begin = 0; begin < tables.cells; begin += kCellsOfChunk) {
         report_progress(progress, "measure", static_cast<double>(begin) / static_cast<double>(tables.cells));
-        cells.resize(std::min<std::uint64_t>(kChunk, tables.cells - begin));
+        cells.resize(std::min<std::uint64_t>(kCellsOfChunk, tables.cells - begin));
         tables.corners.read(begin, records_of(cells));
         const CornersOfCells corners(cells);
         points.resize(corners.points().size());

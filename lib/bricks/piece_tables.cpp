@@ -17,7 +17,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 16;  // points that are checked together
+constexpr std::size_t kPointsOfChunk = std::size_t{1} << 16;  // points that are checked together
 
 // Reads the pieces, and puts them into the tables.
 class Maker {
@@ -238,8 +238,8 @@ private:
         if (!tables_->point_values) return;
         const std::size_t length = tables_->components(false);
         std::vector<double> records;
-        for (std::size_t begin = 0; begin < points_; begin += kChunk) {
-            const std::size_t count = std::min(kChunk, points_ - begin);
+        for (std::size_t begin = 0; begin < points_; begin += kPointsOfChunk) {
+            const std::size_t count = std::min(kPointsOfChunk, points_ - begin);
             records.resize(count * length);
             tables_->point_values->read(begin, records_of(records));
             each_column(false, [&](const FileArray& array, std::size_t column, std::size_t components) {

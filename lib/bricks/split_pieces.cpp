@@ -18,7 +18,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 16;  // records that are taken apart together
+constexpr std::size_t kRecordsOfChunk = std::size_t{1} << 16;  // records that are taken apart together
 
 /// Makes bricks of the tables, one at a time.
 class BrickMaker {
@@ -86,8 +86,8 @@ private:
             if (array.at_cells == at_cells) array.values.reserve(numbers.size() * static_cast<std::size_t>(array.components));
         }
         std::vector<double> records;
-        for (std::size_t begin = 0; begin < numbers.size(); begin += kChunk) {
-            const auto some = numbers.subspan(begin, std::min(kChunk, numbers.size() - begin));
+        for (std::size_t begin = 0; begin < numbers.size(); begin += kRecordsOfChunk) {
+            const auto some = numbers.subspan(begin, std::min(kRecordsOfChunk, numbers.size() - begin));
             records.resize(some.size() * length);
             (at_cells ? tables_.cell_values : tables_.point_values)->read_some(some, records_of(records));
             std::size_t column = 0;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 
+#include "splitmix.h"
 #include "subvol/cell.h"
 #include "subvol/detail/bucket_sort.h"
 #include "topology_parts.h"
@@ -169,13 +170,6 @@ void mark_regular(CellLinks& links) {
         }
         links.regular[i] = regular;
     });
-}
-
-/// Of splitmix64: every bit of the input changes about half of the output's.
-std::uint64_t mixed(std::uint64_t x) {
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ULL;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebULL;
-    return x ^ x >> 31;
 }
 
 /// Colour refinement: cells are coloured by their sides and tags, then cells by their points and points by their cells,

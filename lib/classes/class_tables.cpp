@@ -10,18 +10,12 @@
 
 #include "dense_block.h"
 #include "run_nested.h"
+#include "splitmix.h"
 #include "subvol/cell.h"
 
 namespace subvol::detail {
 
 namespace {
-
-/// Of splitmix64: every bit of the input changes about half of the output's.
-std::uint64_t mixed(std::uint64_t x) {
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9ULL;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebULL;
-    return x ^ x >> 31;
-}
 
 /// Refines the unit vectors of a neighbourhood's points: a vertex's values are then its weights.
 WeightTable make_table(const Neighborhood& neighborhood, const SchemeOptions& scheme, int level,

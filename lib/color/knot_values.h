@@ -11,7 +11,7 @@
 
 namespace subvol::detail {
 
-struct ValueRange {
+struct KnotRange {
     double min, max;
 
     [[nodiscard]] double at(double t) const { return min + t * (max - min); }
@@ -21,7 +21,7 @@ struct ValueRange {
 /// middle.
 ///
 /// throws: Error(InvalidInput) if the range is not finite or min > max
-inline ValueRange usable_range(double min, double max) {
+inline KnotRange usable_range(double min, double max) {
     if (!std::isfinite(min) || !std::isfinite(max) || min > max || !std::isfinite(max - min)) {
         throw Error(ErrorCode::InvalidInput, "the field's range is not finite or its minimum is above its maximum",
                     "transfer function");

@@ -24,11 +24,11 @@ std::optional<double> number_in(std::string_view text) {
     return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-class Entry {
+class OpacityEntry {
 public:
-    Entry(std::string_view text, std::size_t index) : text_(text), index_(index) {}
+    OpacityEntry(std::string_view text, std::size_t index) : text_(text), index_(index) {}
 
-    [[nodiscard]] TransferFunction::OpacityKnot read(const ValueRange& range) const {
+    [[nodiscard]] TransferFunction::OpacityKnot read(const KnotRange& range) const {
         constexpr const char* kForm = "value:opacity or part%:opacity, such as 0%:0,50%:.2,100%:.9";
         const std::size_t colon = text_.find(':');
         if (colon == std::string_view::npos) refuse("is not a value and an opacity", kForm);
@@ -54,11 +54,11 @@ private:
 }  // namespace
 
 std::vector<TransferFunction::OpacityKnot> parse_opacity(const std::string& text, double min, double max) {
-    const ValueRange range = usable_range(min, max);
+    const KnotRange range = usable_range(min, max);
     std::vector<TransferFunction::OpacityKnot> knots;
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t end = std::min(text.find(',', begin), text.size());
-        const Entry entry(std::string_view(text).substr(begin, end - begin), knots.size());
+        const OpacityEntry entry(std::string_view(text).substr(begin, end - begin), knots.size());
         const auto knot = entry.read(range);
         if (!knots.empty() && knot.value < knots.back().value) entry.refuse("the value is below the one before it");
         knots.push_back(knot);

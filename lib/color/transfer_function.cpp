@@ -55,7 +55,7 @@ double alpha_at(const TransferFunction& function, double value) {
 
 TransferFunction stretched(const TransferFunction& function, double min, double max) {
     validate(function);
-    const ValueRange to = usable_range(min, max);
+    const KnotRange to = usable_range(min, max);
     const double first = function.color.front().value, width = function.color.back().value - first;
     TransferFunction result = function;
     if (!(width > 0)) return result;

@@ -20,14 +20,14 @@ namespace {
 using Rgb = std::array<double, 3>;
 using ColorKnots = std::vector<TransferFunction::ColorKnot>;
 
-struct Entry {
+struct TableColor {
     int index;
     Rgb rgb;
 };
 
 // sRGB. N. J. Smith, S. van der Walt, E. Firing, matplotlib 2.0 (CC0). Of its 256 entries, these are enough for straight lines
 // in linear light to be right to 1/512.
-constexpr std::array<Entry, 31> kViridis{{
+constexpr std::array<TableColor, 31> kViridis{{
     {0, {0.267004, 0.004874, 0.329415}},   {7, {0.276022, 0.044167, 0.370164}},   {14, {0.281446, 0.084320, 0.407414}},
     {22, {0.283187, 0.125848, 0.444960}},  {32, {0.278826, 0.175490, 0.483397}},  {44, {0.265145, 0.232956, 0.516599}},
     {59, {0.239346, 0.300855, 0.540844}},  {78, {0.203063, 0.379716, 0.553925}},  {100, {0.166617, 0.463708, 0.558119}},
@@ -94,7 +94,7 @@ Vec3 vector(const Rgb& rgb) {
     return {rgb[0], rgb[1], rgb[2]};
 }
 
-ColorKnots viridis(ValueRange range) {
+ColorKnots viridis(KnotRange range) {
     ColorKnots knots;
     for (const auto& [index, rgb] : kViridis) knots.push_back({range.at(index / 255.0), linear_from_srgb(vector(rgb))});
     return knots;
@@ -106,7 +106,7 @@ double value_of(const Polynomial& coefficients, double t) {
     return std::clamp(value, 0.0, 1.0);
 }
 
-ColorKnots sampled(const Polynomials& rgb, ValueRange range) {
+ColorKnots sampled(const Polynomials& rgb, KnotRange range) {
     ColorKnots knots;
     for (int i = 0; i <= kPolynomialKnots; ++i) {
         const double t = static_cast<double>(i) / kPolynomialKnots;
@@ -115,17 +115,17 @@ ColorKnots sampled(const Polynomials& rgb, ValueRange range) {
     return knots;
 }
 
-ColorKnots spread(std::span<const Stop> stops, ColorSpace space, ValueRange range) {
+ColorKnots spread(std::span<const Stop> stops, ColorSpace space, KnotRange range) {
     ColorKnots knots;
     for (const auto& [part, rgb] : stops) knots.push_back({range.at(part), vector(rgb)});
     return straight_pieces(knots, space);
 }
 
-TransferFunction ramp(ColorKnots color, ValueRange range) {
+TransferFunction ramp(ColorKnots color, KnotRange range) {
     return {std::move(color), {{range.min, 0}, {range.max, kDefaultOpacity}}};
 }
 
-TransferFunction isosurfaces(ValueRange range) {
+TransferFunction isosurfaces(KnotRange range) {
     TransferFunction function{viridis(range), {}};
     for (int i = 0; i < kIsosurfaces; ++i) {
         const double part = (i + 0.5) / kIsosurfaces;
@@ -136,7 +136,7 @@ TransferFunction isosurfaces(ValueRange range) {
     return function;
 }
 
-TransferFunction surface(ValueRange range) {
+TransferFunction surface(KnotRange range) {
     const double width = range.max - range.min, end = range.max > 0 ? range.max : width;
     TransferFunction function{{}, {{0, 0}, {kSurfaceRamp * width, kSurfaceOpacity}}};
     for (std::size_t i = 0; i < kIvory.size(); ++i) {
@@ -145,14 +145,14 @@ TransferFunction surface(ValueRange range) {
     return function;
 }
 
-TransferFunction constant(ValueRange range) {
+TransferFunction constant(KnotRange range) {
     return {{{range.min, Vec3(1)}, {range.max, Vec3(1)}}, {{range.min, kDefaultOpacity}, {range.max, kDefaultOpacity}}};
 }
 
 }  // namespace
 
 TransferFunction transfer_function_preset(const std::string& name, double min, double max) {
-    const ValueRange range = usable_range(min, max);
+    const KnotRange range = usable_range(min, max);
     if (name == "viridis") return ramp(viridis(range), range);
     if (name == "plasma") return ramp(sampled(kPlasma, range), range);
     if (name == "inferno") return ramp(sampled(kInferno, range), range);

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 
+#include "corner_of.h"
 #include "subvol/cell.h"
 
 namespace subvol::detail {
 
 namespace {
-
-std::size_t corner_of(const std::array<Index, 8>& cell, Index point) {
-    return static_cast<std::size_t>(std::find(cell.begin(), cell.end(), point) - cell.begin());
-}
 
 // The number in kCellEdges of the edge along `axis` at the other two axes' sides (in their order).
 constexpr std::array<std::array<std::size_t, 4>, 3> kEdgeAt{{{0, 1, 2, 3}, {4, 5, 6, 7}, {8, 9, 10, 11}}};

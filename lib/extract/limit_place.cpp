@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corner_of.h"
 #include "subvol/cell.h"
 
 namespace subvol::detail {
@@ -14,10 +15,6 @@ namespace {
 constexpr double kLongestStep = 0.75;
 // Of the lengths of the Jacobian's columns, multiplied: cells that are flatter than this have no inverse.
 constexpr double kFlat = 1e-9;
-
-std::size_t corner_of(const std::array<Index, 8>& cell, Index point) {
-    return static_cast<std::size_t>(std::find(cell.begin(), cell.end(), point) - cell.begin());
-}
 
 Vec3 parameters_of(std::size_t corner) {
     const auto& p = kCornerParameters[corner];

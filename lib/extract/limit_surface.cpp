@@ -23,7 +23,7 @@ using detail::SurfaceSoup;
 namespace {
 
 constexpr int kFirstLevel = 1;
-constexpr std::size_t kBatch = std::size_t{1} << 20;  // points whose fields are evaluated at a time
+constexpr std::size_t kPointsAtOnce = std::size_t{1} << 20;  // points whose fields are evaluated at a time
 constexpr double kCrease = 0.9;  // cosine: normals of the limit and of the triangles that differ by more are on a crease
 
 class Extractor {
@@ -183,8 +183,8 @@ private:
         }
         if (all.fields.empty()) return;
         const LimitEvaluator limit(mesh_, {.scheme = options_.scheme});
-        for (std::size_t begin = 0; begin < count; begin += kBatch) {
-            const auto places = std::span(all.places).subspan(begin, std::min(kBatch, count - begin));
+        for (std::size_t begin = 0; begin < count; begin += kPointsAtOnce) {
+            const auto places = std::span(all.places).subspan(begin, std::min(kPointsAtOnce, count - begin));
             const LimitSamples samples = limit.at(places);
             for (std::size_t f = 0; f < all.fields.size(); ++f) {
                 const std::size_t channels = all.fields[f].channels;

@@ -20,9 +20,9 @@ struct PointSettler::Moving {
 
 namespace {
 
-constexpr int kMostRounds = 12;                       // of Newton's method on an edge
-constexpr double kEdgeTolerance = 1e-9;               // of an edge
-constexpr std::size_t kBatch = std::size_t{1} << 20;  // points that are moved to the limit at a time
+constexpr int kMostSettlingRounds = 12;                       // of Newton's method on an edge
+constexpr double kEdgeTolerance = 1e-9;                       // of an edge
+constexpr std::size_t kSettledAtOnce = std::size_t{1} << 20;  // points that are moved to the limit at a time
 constexpr double kTriangleBend = 4.0 / 3;  // the middle of a triangle is farther from a sphere than those of its edges
 
 Vec3 place_on_edge(const SurfacePoint& point, double t, int level) {
@@ -58,10 +58,10 @@ SettledPoints PointSettler::settle(const SurfaceSoup& soup, const Cut& cut, int 
     settled.places.resize(soup.points.size());
     settled.positions.resize(soup.points.size());
     settled.normals.resize(soup.points.size());
-    for (std::size_t begin = 0; begin < soup.points.size(); begin += kBatch) {
+    for (std::size_t begin = 0; begin < soup.points.size(); begin += kSettledAtOnce) {
         report_progress(progress_, "to the limit", static_cast<double>(begin) / static_cast<double>(soup.points.size()));
         std::vector<Moving> moving;
-        for (std::size_t p = begin; p < std::min(soup.points.size(), begin + kBatch); ++p) {
+        for (std::size_t p = begin; p < std::min(soup.points.size(), begin + kSettledAtOnce); ++p) {
             const SurfacePoint& point = soup.points[p];
             const double difference = point.off[0] - point.off[1];
             moving.push_back({p, 0, 1, point.a == point.b || difference == 0 ? 0 : point.off[0] / difference});
@@ -97,7 +97,7 @@ void PointSettler::move(const SurfaceSoup& soup, const Cut& cut, int level, std:
                 if (!(next > one.low && next < one.high)) next = off == 0 ? one.t : 0.5 * (one.low + one.high);
                 by = next - one.t;
             }
-            const bool last = std::abs(by) < 1e-3 || round + 1 == kMostRounds;
+            const bool last = std::abs(by) < 1e-3 || round + 1 == kMostSettlingRounds;
             if (!last) {
                 one.t += by;
                 return;
@@ -107,7 +107,7 @@ void PointSettler::move(const SurfaceSoup& soup, const Cut& cut, int level, std:
             settled.places[one.point] = {queries[i].cell, glm::clamp(queries[i].uvw + step, Vec3(0.0), Vec3(1.0))};
             settled.positions[one.point] = samples.positions[i] + samples.jacobians[i] * step;
             settled.normals[one.point] = normal_of(point, samples, i, cut);
-            one.done = std::abs(by) < kEdgeTolerance || round + 1 == kMostRounds || std::abs(by) < 1e-3;
+            one.done = std::abs(by) < kEdgeTolerance || round + 1 == kMostSettlingRounds || std::abs(by) < 1e-3;
         });
         std::erase_if(moving, [](const Moving& one) { return one.done; });
     }

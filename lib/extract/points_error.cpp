@@ -13,8 +13,8 @@ namespace subvol {
 
 namespace {
 
-constexpr std::size_t kBatch = 1 << 17;  // kernels whose places are compared at once
-constexpr std::size_t kPlaces = 9;       // of a kernel
+constexpr std::size_t kKernelsAtOnce = 1 << 17;  // kernels whose places are compared at once
+constexpr std::size_t kPlaces = 9;               // of a kernel
 
 /// L of S/R² = L Lᵀ: its columns are a sample interval long, as those of the kernel's Jacobian are.
 Mat3 intervals(const Symmetric3& frame, double support) {
@@ -48,9 +48,9 @@ PointsError points_error(const RbfVolume& points, const HexMesh& mesh, std::stri
     error.of_points.assign(points.size(), 0);
     double squares = 0;
     std::vector<Vec3> places;
-    for (std::size_t first = 0; first < points.size(); first += kBatch) {
+    for (std::size_t first = 0; first < points.size(); first += kKernelsAtOnce) {
         report_progress(options.progress, "error", static_cast<double>(first) / static_cast<double>(points.size()));
-        const std::size_t end = std::min(first + kBatch, points.size());
+        const std::size_t end = std::min(first + kKernelsAtOnce, points.size());
         places.clear();
         for (std::size_t p = first; p < end; ++p) {
             add_places(points.centers[p], intervals(points.frames[p], support_radius(points.kernel)), places);

@@ -22,8 +22,8 @@ using detail::NearPlace;
 
 namespace {
 
-constexpr std::size_t kBatch = std::size_t{1} << 19;  // places that are open at a time
-constexpr int kMostRounds = 24;                       // for all candidates of a place together
+constexpr std::size_t kPlacesAtOnce = std::size_t{1} << 19;  // places that are open at a time
+constexpr int kMostProbeRounds = 24;                         // for all candidates of a place together
 // A step this small (in parameters) is the last. What it changes is linear as far as the Jacobian is known, to about 1e-3.
 constexpr double kLastStep = 2e-5;
 
@@ -134,7 +134,7 @@ void LimitProbe::State::run(std::span<const Vec3> places, std::span<const std::s
     std::vector<Open> open = find(places, candidates);
     std::vector<LimitQuery> queries;
     std::vector<Vec3> positions;
-    for (int round = 0; round < kMostRounds && !open.empty(); ++round) {
+    for (int round = 0; round < kMostProbeRounds && !open.empty(); ++round) {
         report_progress(progress, "probe", static_cast<double>(done) / static_cast<double>(result.cells.size()));
         queries.clear();
         positions.clear();
@@ -212,8 +212,8 @@ ProbeResult LimitProbe::at(std::span<const Vec3> places, Progress* progress) con
     }
     std::vector<Vec3> sorted;  // near ones after each other: they share what they read
     std::vector<std::size_t> numbers;
-    for (std::size_t begin = 0; begin < places.size(); begin += kBatch) {
-        const auto batch = places.subspan(begin, std::min(kBatch, places.size() - begin));
+    for (std::size_t begin = 0; begin < places.size(); begin += kPlacesAtOnce) {
+        const auto batch = places.subspan(begin, std::min(kPlacesAtOnce, places.size() - begin));
         sorted.clear();
         numbers.clear();
         for (const Index p : detail::space_order(batch)) {

@@ -18,14 +18,14 @@ constexpr std::size_t kPlaces = 64, kLongestName = 4096;
 // holds a whole name.
 enum class State { Free, Changing, Held };
 
-struct Place {
+struct Destination {
     std::atomic<State> state = State::Free;
     std::array<char, kLongestName> file{};
     std::array<char, kLongestName> folder{};  // empty: not to be removed
 };
 static_assert(std::atomic<State>::is_always_lock_free);
 
-std::array<Place, kPlaces> places;
+std::array<Destination, kPlaces> places;
 std::atomic<void (*)() noexcept> of_module = nullptr;
 
 void put(const std::string& name, std::array<char, kLongestName>& to) {
@@ -53,7 +53,7 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void remove_unfinished_files() noexcept {
-    for (const Place& place : places) {
+    for (const Destination& place : places) {
         if (place.state != State::Held) continue;
         (void)unlink(place.file.data());
         if (place.folder[0] != '\0') (void)rmdir(place.folder.data());

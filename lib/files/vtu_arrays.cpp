@@ -10,7 +10,7 @@ namespace subvol::detail {
 
 namespace {
 
-const std::map<std::string_view, NumberType> kTypes{
+const std::map<std::string_view, NumberType> kVtkTypes{
     {"Int8", NumberType::Int8},       {"UInt8", NumberType::UInt8},   {"Int16", NumberType::Int16},
     {"UInt16", NumberType::UInt16},   {"Int32", NumberType::Int32},   {"UInt32", NumberType::UInt32},
     {"Int64", NumberType::Int64},     {"UInt64", NumberType::UInt64}, {"Float32", NumberType::Float32},
@@ -129,8 +129,8 @@ std::vector<std::int64_t> VtuArrays::integers(const pugi::xml_node& array) const
 
 NumberType VtuArrays::type_of(const pugi::xml_node& array) const {
     const char* name = array.attribute("type").as_string();
-    const auto type = kTypes.find(name);
-    if (type == kTypes.end()) fail(array, "the type " + in_quotes(name) + " is not supported");
+    const auto type = kVtkTypes.find(name);
+    if (type == kVtkTypes.end()) fail(array, "the type " + in_quotes(name) + " is not supported");
     return type->second;
 }
 

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kMostRounds = 500;
-constexpr int kMaxLevel = 6;  // 193³ values, 58 MB
+constexpr int kMaxTensorLevel = 6;  // 193³ values, 58 MB
 
 /// The samples of an octant as a matrix with rows x and columns (y, z). Each entry is multiplied by the root of how many
 /// samples are equal to it, so that least squares over the octant are those over all samples.
@@ -26,7 +26,7 @@ struct Octant {
 };
 
 Octant octant_of(const BasisFunction& basis) {
-    if (basis.level > kMaxLevel) {
+    if (basis.level > kMaxTensorLevel) {
         throw Error(ErrorCode::InvalidInput, "a table cannot be fitted at level " + std::to_string(basis.level), {}, "0 to 6");
     }
     const auto n = static_cast<Eigen::Index>(detail::fit_last(basis)) + 1;

@@ -5,16 +5,13 @@
 #include <cmath>
 #include <string>
 
+#include "camera_axes.h"
 #include "subvol/detail/ray_clip.h"
 #include "subvol/error.h"
 
 namespace subvol {
 
 namespace {
-
-bool finite(const Vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 void check(const CutPlane& plane, const char* kind, std::size_t number) {
     const std::string where = std::string(kind) + " " + std::to_string(number);

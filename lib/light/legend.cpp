@@ -90,10 +90,10 @@ public:
 
 private:
     [[nodiscard]] bool apart() const { return !options_.opacity_title.empty(); }
-    [[nodiscard]] static double part(const ValueRange& range, double value) {
+    [[nodiscard]] static double part(const KnotRange& range, double value) {
         return (value - range.min) / (range.max - range.min);
     }
-    [[nodiscard]] double x(const ValueRange& range, double value) const {
+    [[nodiscard]] double x(const KnotRange& range, double value) const {
         return kLeft + part(range, value) * options_.width_px;
     }
     [[nodiscard]] double y(double alpha) const { return (apart() ? kBarEnd + kApart : kTop + kCurve) - alpha * kCurve; }
@@ -161,7 +161,7 @@ private:
         append_ticks(svg, range_, kBarEnd);
     }
 
-    void append_ticks(pugi::xml_node svg, const ValueRange& range, double top) const {
+    void append_ticks(pugi::xml_node svg, const KnotRange& range, double top) const {
         const int most = std::clamp(options_.width_px / 50, 5, 11);
         for (const auto& [value, label] : round_ticks(range.min, range.max, most)) {
             append(svg, "path", {{"stroke", kInk}, {"d", "M" + number(x(range, value)) + " " + number(top) + " v5"}});
@@ -171,7 +171,7 @@ private:
 
     const TransferFunction& function_;
     LegendOptions options_;
-    ValueRange range_, opacity_range_;
+    KnotRange range_, opacity_range_;
     int end_;  // of the bar, in pixels
 };
 

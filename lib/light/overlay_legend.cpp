@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMostOfHeight = 0.45;  // a longer title is cut off
 
-double part_of(const ValueRange& range, double value) {
+double part_of(const KnotRange& range, double value) {
     return (value - range.min) / (range.max - range.min);
 }
 
@@ -68,10 +68,10 @@ private:
         return !apart() && varies(function_) ? 2.6 * letter_ : apart() ? 2.6 * letter_ : 0;
     }
     [[nodiscard]] double title_width(const std::string& title) const { return text_width_px(title, 1.08 * letter_); }
-    [[nodiscard]] std::vector<Tick> ticks(const ValueRange& range) const {
+    [[nodiscard]] std::vector<Tick> ticks(const KnotRange& range) const {
         return round_ticks(range.min, range.max, apart() ? 5 : 8);
     }
-    [[nodiscard]] double labels_width(const ValueRange& range) const {
+    [[nodiscard]] double labels_width(const KnotRange& range) const {
         double width = 0;
         for (const auto& [value, label] : ticks(range)) width = std::max(width, text_width_px(label, letter_));
         return width;
@@ -116,7 +116,7 @@ private:
         draw_line(*image_, from, to, {.width_px = width * std::max(1.0, letter_ / 14), .color = ink_});
     }
 
-    void draw_ticks(double x, double top, double bottom, const ValueRange& range) const {
+    void draw_ticks(double x, double top, double bottom, const KnotRange& range) const {
         for (const auto& [value, label] : ticks(range)) {
             const double y = bottom - part_of(range, value) * (bottom - top);
             line({x, y}, {x + 0.4 * letter_, y}, 1);
@@ -125,7 +125,7 @@ private:
     }
 
     /// The opacity, 0 at the right edge and 1 at the left.
-    void draw_curve(double right, double top, double bottom, const ValueRange& range) const {
+    void draw_curve(double right, double top, double bottom, const KnotRange& range) const {
         const double width = curve_width() - 0.5 * letter_;
         const auto place = [&](double value) {
             return Vec2(right - alpha_at(function_, value) * width, bottom - part_of(range, value) * (bottom - top));
@@ -145,7 +145,7 @@ private:
 
     const TransferFunction& function_;
     const LegendOptions& options_;
-    ValueRange colors_, opacities_;
+    KnotRange colors_, opacities_;
     double height_, letter_;
     Image* image_ = nullptr;
     Vec3 ink_{0.0};

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 
+#include "all_cells.h"
 #include "cell_refiner.h"
 #include "dense_block.h"
 #include "patch.h"
@@ -24,12 +25,6 @@ namespace {
 /// on their surroundings, more would take too much memory.
 std::size_t batch_size(int levels) {
     return std::size_t{1} << std::max(0, 18 - 3 * levels);
-}
-
-std::vector<Index> all_cells(const HexMesh& mesh) {
-    std::vector<Index> cells(mesh.cells.size());
-    std::iota(cells.begin(), cells.end(), Index{0});
-    return cells;
 }
 
 /// Gathers the grid of one control cell from a refined patch.

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "all_cells.h"
 #include "node_steps.h"
 #include "subvol/dense_cells.h"
 
@@ -19,12 +20,6 @@ namespace {
 
 bool fits(std::size_t count, int level, double most) {
     return static_cast<double>(count) * std::pow(8.0, level) <= most;
-}
-
-std::vector<Index> all_cells(const HexMesh& mesh) {
-    std::vector<Index> cells(mesh.cells.size());
-    std::iota(cells.begin(), cells.end(), Index{0});
-    return cells;
 }
 
 }  // namespace

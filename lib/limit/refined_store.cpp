@@ -14,8 +14,8 @@ namespace subvol::detail {
 namespace {
 
 constexpr std::size_t kBatchCells = 8192, kBatchPlaces = 1U << 19;
-constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of what is kept
-constexpr int kMany = 5;                                    // of the octants of a cell: then all are refined
+constexpr std::size_t kMostBytesOfStore = std::size_t{256} << 20;  // of what is kept
+constexpr int kMany = 5;                                           // of the octants of a cell: then all are refined
 
 /// The octants of a cell that have places, bit by bit.
 std::uint8_t octants_of(const DescentTask& task, const CellPlaces& in) {
@@ -110,7 +110,7 @@ void RefinedStore::refine(const Batch& batch, std::span<const std::uint8_t> miss
     if (!keep) return;
     const std::size_t bytes = refined->bytes();
     const std::scoped_lock lock(mutex_);
-    if (bytes_ + bytes > kMostBytes) return;
+    if (bytes_ + bytes > kMostBytesOfStore) return;
     bytes_ += bytes;
     pieces_.push_back(refined);
     for (std::size_t n = 0; n < cells.size(); ++n) {

@@ -14,7 +14,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr EntityNames kNames{"vertex", "hex", 1};
+constexpr EntityNames kMeditNames{"vertex", "hex", 1};
 
 bool is_keyword(std::string_view word) {
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
@@ -54,7 +54,7 @@ public:
         tag_ridges();
         groups_.check(file_);
         list_left_out();
-        return assemble(std::move(found_), in_, file_, kNames, options_);
+        return assemble(std::move(found_), in_, file_, kMeditNames, options_);
     }
 
 private:
@@ -100,14 +100,14 @@ private:
         const std::size_t count = in_.count({"Vertices"});
         found_.points.reserve(std::min(count, in_.room_for(4)));
         for (std::size_t v = 0; v < count; ++v) {
-            read_point(in_, found_, kNames, count);
+            read_point(in_, found_, kMeditNames, count);
             in_.integer({"reference of vertex", static_cast<std::int64_t>(v + 1), count});
         }
     }
 
     void read_cells(std::string_view keyword) {
         if (keyword == "Hexahedra") {
-            read_cells(keyword, kNames, found_.hexes.corners);
+            read_cells(keyword, kMeditNames, found_.hexes.corners);
         } else if (keyword == "Tetrahedra") {
             read_cells(keyword, {"vertex", "tetrahedron", 1}, found_.tets.corners);
         } else if (keyword == "Pyramids") {

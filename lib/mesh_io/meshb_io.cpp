@@ -10,7 +10,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr EntityNames kNames{"vertex", "hex", 1};
+constexpr EntityNames kMeshbNames{"vertex", "hex", 1};
 
 // Sections by their numbers in the format.
 constexpr std::int64_t kDimension = 3;
@@ -53,7 +53,7 @@ public:
         if (groups_.any()) read_groups();
         groups_.check(file_);
         add_left_out_warning(found_, left_out_, file_);
-        return assemble(std::move(found_), in_, file_, kNames, options_);
+        return assemble(std::move(found_), in_, file_, kMeshbNames, options_);
     }
 
 private:

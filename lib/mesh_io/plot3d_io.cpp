@@ -22,7 +22,7 @@ struct Encoding {
 };
 
 // The layout of a file. The file does not state it: it is the first layout that gives the size of the file.
-struct Layout {
+struct Plot3dLayout {
     Encoding encoding;
     bool several = false;  // the file begins with the number of blocks
     bool blanks = false;   // one integer for each point, 0 where there is no flow
@@ -96,7 +96,7 @@ std::optional<std::vector<StructuredGrid>> read_sizes(Numbers& in, bool several)
 
 // The size of a file with this layout: the header, then for each block a record with so many reals and integers per point,
 // after a record of `extra` reals if there are any.
-std::size_t size_of_file(const Layout& layout, std::size_t reals, std::size_t integers, std::size_t extra) {
+std::size_t size_of_file(const Plot3dLayout& layout, std::size_t reals, std::size_t integers, std::size_t extra) {
     const Encoding& encoding = layout.encoding;
     const auto record = [&](std::size_t size) { return size + 2 * encoding.mark; };
     std::size_t size = record(3 * layout.blocks.size() * encoding.integer);
@@ -115,7 +115,7 @@ struct Kind {
 constexpr Kind kPlaces{3, 0};
 constexpr Kind kFlow{5, 4};
 
-std::optional<Layout> layout_of(const TextScanner& in, const Kind& kind) {
+std::optional<Plot3dLayout> layout_of(const TextScanner& in, const Kind& kind) {
     TextScanner words = in;
     const bool text = is_text(in.rest());
     std::size_t size = in.bytes_left();
@@ -125,7 +125,7 @@ std::optional<Layout> layout_of(const TextScanner& in, const Kind& kind) {
     for (const Encoding& encoding : encodings(text)) {
         for (const bool several : {false, true}) {
             for (const bool blanks : {false, true}) {
-                Layout layout{encoding, several, blanks, {}};
+                Plot3dLayout layout{encoding, several, blanks, {}};
                 try {
                     Numbers numbers(in, encoding);
                     auto blocks = read_sizes(numbers, several);
@@ -142,7 +142,7 @@ std::optional<Layout> layout_of(const TextScanner& in, const Kind& kind) {
 }
 
 // Reads all x of a block, then all y, then all z, then its blanks.
-void read_block(Numbers& in, const Layout& layout, const StructuredGrid& grid, MeshFile& found, FileArray& ghosts) {
+void read_block(Numbers& in, const Plot3dLayout& layout, const StructuredGrid& grid, MeshFile& found, FileArray& ghosts) {
     const std::size_t first = found.points.size(), count = grid.point_count();
     std::vector<Vec3> points(count);
     in.mark();
@@ -158,7 +158,7 @@ void read_block(Numbers& in, const Layout& layout, const StructuredGrid& grid, M
 }
 
 // For each block the file has the densities of all points, then each of the three components of momentum, then the energies.
-void read_flow(std::string_view text, std::string_view file, const Layout& places, MeshFile& found) {
+void read_flow(std::string_view text, std::string_view file, const Plot3dLayout& places, MeshFile& found) {
     const TextScanner in(text, file, TextScanner::Comments::None);
     const auto layout = layout_of(in, kFlow);
     const auto same = [](const StructuredGrid& a, const StructuredGrid& b) { return a.points == b.points; };

@@ -17,7 +17,7 @@ namespace {
 constexpr int kMostLists = 8;  // in lists
 constexpr std::size_t kMostFiles = 100000;
 constexpr std::array<std::string_view, 3> kSurfaces{".VTP", ".PVTP", ".STL"};
-constexpr EntityNames kNames{"point", "cell", 0};
+constexpr EntityNames kPieceNames{"point", "cell", 0};
 
 // The files that are no lists, in the order of the lists. extension: in capitals
 void expand(const ListedFile& file, int depth, std::vector<ListedFile>& files) {
@@ -122,13 +122,13 @@ ReadResult read_step(const std::filesystem::path& path, const Collection& collec
     if (cells_of(found) == 0) throw Error(ErrorCode::InvalidInput, "no hexahedra in any of its files", list);
     merge_blocks(found.blocks);
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
-    return assemble(std::move(found), list, kNames, of_file);
+    return assemble(std::move(found), list, kPieceNames, of_file);
 }
 
 }  // namespace
 
 const EntityNames& names_in_parts() {
-    return kNames;
+    return kPieceNames;
 }
 
 std::optional<PartFiles> part_files(const std::filesystem::path& path, const ReadOptions& options) {

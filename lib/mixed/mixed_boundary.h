@@ -2,17 +2,14 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "mixed_split.h"
+#include "point_kind.h"
 #include "subvol/mixed_mesh.h"
 
 namespace subvol::detail {
-
-/// How a point moves: with the cells around it, the boundary's faces, its two crease edges, or not at all.
-enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
 
 /// The boundary of a mixed mesh, as the rules need it.
 ///

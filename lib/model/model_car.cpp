@@ -7,7 +7,6 @@
 namespace subvol::detail::model {
 namespace {
 
-constexpr Blend kBlend = kCellBlend;
 constexpr Vec3 kWheel{24, 17.5, -10};  // centre of the left front wheel; the others mirror it
 
 double hull(const Vec3& m) {
@@ -15,7 +14,7 @@ double hull(const Vec3& m) {
     const Vec3 narrow(m.x, 0.6 * m.y, m.z);  // round parts are wider than high in it
     const double bonnet = rod(narrow, {12, 0, 0}, {32, 0, -3}, 4.5, 3.5);
     const double boot = rod(narrow, {-20, 0, 0}, {-34, 0, -2}, 4.5, 3.5);
-    return kBlend.join({tub, bonnet, boot});
+    return kCellBlend.join({tub, bonnet, boot});
 }
 
 /// The cabin is narrower towards the roof, and has posts at its four corners and in the middle of each side.
@@ -27,18 +26,18 @@ double cabin(const Vec3& m) {
     const double front_windows = box(m - level - Vec3(4, 0, 0), {6, 40, 4.6}, 2);
     const double rear_windows = box(m - level - Vec3(-13.5, 0, 0), {6.5, 40, 4.6}, 2);
     const double screens = box(m - level, {80, 10, 4.6}, 2);
-    return kBlend.meet({shell, front, rear, side, -front_windows, -rear_windows, -screens});
+    return kCellBlend.meet({shell, front, rear, side, -front_windows, -rear_windows, -screens});
 }
 
 double wheel(const Vec3& m) {
     const Vec3 q = m - kWheel;
-    const double tyre = kBlend.cut(cylinder(q, 1, 8, 3.6), ring(q - Vec3(0, 3.8, 0), 1, 4.6, 1.5));
+    const double tyre = kCellBlend.cut(cylinder(q, 1, 8, 3.6), ring(q - Vec3(0, 3.8, 0), 1, 4.6, 1.5));
     const double axle = cylinder(m - Vec3(kWheel.x, 0, kWheel.z), 1, 2.2, kWheel.y);
-    return kBlend.join({tyre, ellipsoid(q - Vec3(0, 3, 0), {2.6, 2, 2.6}), axle});
+    return kCellBlend.join({tyre, ellipsoid(q - Vec3(0, 3, 0), {2.6, 2, 2.6}), axle});
 }
 
 double lamps(const Vec3& m) {
-    return kBlend.join({ball(m - Vec3(37, 11, -1.5), 4.2), box(m - Vec3(-38.5, 13, -3), {1.6, 2.2, 2.6})});
+    return kCellBlend.join({ball(m - Vec3(37, 11, -1.5), 4.2), box(m - Vec3(-38.5, 13, -3), {1.6, 2.2, 2.6})});
 }
 
 /// A toy car driving to +x, 83 long; left and right are mirror images.
@@ -48,17 +47,17 @@ double car(const Vec3& q) {
     const double bumper = rod(quarter, {39.5, 0, -9}, {39.5, 15, -9}, 2, 2);
     const double arch = cylinder(quarter - kWheel, 1, 9.6, 6);
     const double grille = box(m - Vec3(40, 0, -3), {2.5, 5, 2});
-    const double body = kBlend.meet({kBlend.join({hull(m), cabin(m)}), -arch, -grille});
-    return kBlend.join({body, wheel(quarter), lamps(m), bumper});
+    const double body = kCellBlend.meet({kCellBlend.join({hull(m), cabin(m)}), -arch, -grille});
+    return kCellBlend.join({body, wheel(quarter), lamps(m), bumper});
 }
 
-constexpr std::array<Deformation, 3> kDeformation{Swell{.along = 0, .amount = 0.15, .rate = 0.036, .phase = 0.3},
-                                                  Twist{.axis = 0, .rate = 0.006},
-                                                  Bend{.along = 0, .towards = 2, .radius = 62}};
+constexpr std::array<Deformation, 3> kCarDeformation{Swell{.along = 0, .amount = 0.15, .rate = 0.036, .phase = 0.3},
+                                                     Twist{.axis = 0, .rate = 0.006},
+                                                     Bend{.along = 0, .towards = 2, .radius = 62}};
 
 }  // namespace
 
 constinit const Solid kCar{
-    .distance = car, .transition = kCellTransition, .half = {44, 25, 19.5}, .main = 0, .deformation = kDeformation};
+    .distance = car, .transition = kCellTransition, .half = {44, 25, 19.5}, .main = 0, .deformation = kCarDeformation};
 
 }  // namespace subvol::detail::model

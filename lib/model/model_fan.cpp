@@ -8,7 +8,6 @@
 namespace subvol::detail::model {
 namespace {
 
-constexpr Blend kBlend = kCellBlend;
 constexpr int kBlades = 5;
 
 /// A blade along z, from the hub to the ring: wider, flatter and swept forward towards its tip.
@@ -24,23 +23,23 @@ double blades(const Vec3& q) {
         const double turn = 2 * std::numbers::pi * k / kBlades, c = std::cos(turn), s = std::sin(turn);
         each[static_cast<std::size_t>(k)] = blade({c * q.x - s * q.z, q.y, s * q.x + c * q.z});
     }
-    return kBlend.join({each[0], each[1], each[2], each[3], each[4]});
+    return kCellBlend.join({each[0], each[1], each[2], each[3], each[4]});
 }
 
 /// Five blades about a bored hub, in a ring, 53 wide about the y axis.
 double fan(const Vec3& q) {
-    const double ring_wall = kBlend.cut(cylinder(q, 1, 26.4, 6), cylinder(q, 1, 22.8, 20));
-    const double hub = kBlend.join({cylinder(q, 1, 6.5, 6.5), ellipsoid(q - Vec3(0, -5.5, 0), {6, 3.4, 6})});
-    const double inner = kBlend.meet({blades(q), cylinder(q, 1, 24.5, 20)}), bore = cylinder(q, 1, 2.4, 20);
-    return kBlend.cut(kBlend.join({ring_wall, hub, inner}), bore);
+    const double ring_wall = kCellBlend.cut(cylinder(q, 1, 26.4, 6), cylinder(q, 1, 22.8, 20));
+    const double hub = kCellBlend.join({cylinder(q, 1, 6.5, 6.5), ellipsoid(q - Vec3(0, -5.5, 0), {6, 3.4, 6})});
+    const double inner = kCellBlend.meet({blades(q), cylinder(q, 1, 24.5, 20)}), bore = cylinder(q, 1, 2.4, 20);
+    return kCellBlend.cut(kCellBlend.join({ring_wall, hub, inner}), bore);
 }
 
-constexpr std::array<Deformation, 2> kDeformation{Twist{.axis = 2, .rate = 0.011},
-                                                  Bend{.along = 2, .towards = 1, .radius = -55}};
+constexpr std::array<Deformation, 2> kFanDeformation{Twist{.axis = 2, .rate = 0.011},
+                                                     Bend{.along = 2, .towards = 1, .radius = -55}};
 
 }  // namespace
 
 constinit const Solid kFan{
-    .distance = fan, .transition = kCellTransition, .half = {28, 10, 28}, .main = 2, .deformation = kDeformation};
+    .distance = fan, .transition = kCellTransition, .half = {28, 10, 28}, .main = 2, .deformation = kFanDeformation};
 
 }  // namespace subvol::detail::model

@@ -13,12 +13,12 @@ using namespace detail;
 namespace {
 
 constexpr double kThroat = 0.21;      // radius where the gas is as fast as sound
-constexpr double kCore = 0.5;         // half the side of the core square, relative to the radius
-constexpr double kBulge = 0.5;        // how far the core square is rounded towards a disk, in [0,1]
+constexpr double kBore = 0.5;         // half the side of the core square, relative to the radius
+constexpr double kBulgeOfWall = 0.5;  // how far the core square is rounded towards a disk, in [0,1]
 constexpr double kBoundaryLayer = 6;  // exponent of the profile across the flow: the layer takes about a tenth of the radius
 
-constexpr std::array<model::Deformation, 2> kDeformation{model::Sway{.along = 0, .towards = 1, .amount = 0.1, .rate = 2.2},
-                                                         model::Bend{.along = 0, .towards = 2, .radius = 2.6}};
+constexpr std::array<model::Deformation, 2> kNozzleDeformation{
+    model::Sway{.along = 0, .towards = 1, .amount = 0.1, .rate = 2.2}, model::Bend{.along = 0, .towards = 2, .radius = 2.6}};
 
 /// The Mach number: from .15 at the inlet to 3 at the outlet, which have about the same cross-section.
 double mach(double s) {
@@ -81,7 +81,7 @@ void add_rings(Section& section, const std::vector<Index>& inner, Index rings) {
         const double t = static_cast<double>(layer) / static_cast<double>(rings);
         for (const Index id : inner) {
             const Vec2 square = section.points[id], disk = disk_from_square(square);
-            section.points.push_back(glm::mix(kCore * glm::mix(square, disk, kBulge), disk, t));
+            section.points.push_back(glm::mix(kBore * glm::mix(square, disk, kBulgeOfWall), disk, t));
         }
         for (Index k = 0; k < around; ++k) {
             const Index next = (k + 1) % around;
@@ -96,7 +96,7 @@ Section o_grid(Index across, Index rings) {
     const std::size_t core = section.points.size();
     add_rings(section, rim(across), rings);
     for (std::size_t p = 0; p < core; ++p) {
-        section.points[p] = kCore * glm::mix(section.points[p], disk_from_square(section.points[p]), kBulge);
+        section.points[p] = kBore * glm::mix(section.points[p], disk_from_square(section.points[p]), kBulgeOfWall);
     }
     return section;
 }
@@ -122,14 +122,14 @@ HexMesh extruded(const Section& section, Index layers) {
 }  // namespace
 
 Vec3 NozzleField::parameter(const Vec3& x) {
-    const Vec3 q = model::undo(kDeformation, x);
+    const Vec3 q = model::undo(kNozzleDeformation, x);
     const double r = radius(q.x);
     return {q.x, q.y / r, q.z / r};
 }
 
 Vec3 NozzleField::position(const Vec3& p) {
     const double r = radius(p.x);
-    return model::apply(kDeformation, {p.x, r * p.y, r * p.z});
+    return model::apply(kNozzleDeformation, {p.x, r * p.y, r * p.z});
 }
 
 double NozzleField::density(const Vec3& p) {

@@ -18,7 +18,7 @@ constexpr double kPi = std::numbers::pi;
 // The arc of radius 1.6 reaches from -63° to 63°; the section turns by 90° on the way.
 constexpr double kRadius = 1.6, kHalfLength = 0.35 * kPi * kRadius;
 constexpr Vec3 kHalf{0.6, 0.6, kHalfLength};
-constexpr std::array<model::Deformation, 2> kDeformation{
+constexpr std::array<model::Deformation, 2> kTwistDeformation{
     model::Twist{.axis = 2, .rate = kPi / 4 / kHalfLength, .offset = kPi / 4},
     model::Bend{.along = 2, .towards = 0, .radius = kRadius}};
 
@@ -31,11 +31,11 @@ double rounded_to_float(double x) {
 }  // namespace
 
 Vec3 TwistField::parameter(const Vec3& x) {
-    return model::undo(kDeformation, x) / kHalf;
+    return model::undo(kTwistDeformation, x) / kHalf;
 }
 
 Vec3 TwistField::position(const Vec3& parameter) {
-    return model::apply(kDeformation, kHalf * parameter);
+    return model::apply(kTwistDeformation, kHalf * parameter);
 }
 
 double TwistField::density(const Vec3& p) {

@@ -17,11 +17,11 @@ namespace {
 
 using detail::parallel_each;
 
-struct ValueRange {
+struct RangeOfValues {
     float low = std::numeric_limits<float>::infinity();
     float high = -std::numeric_limits<float>::infinity();
 
-    void add(const ValueRange& other) {
+    void add(const RangeOfValues& other) {
         low = std::min(low, other.low);
         high = std::max(high, other.high);
     }
@@ -39,7 +39,7 @@ public:
     }
 
     /// center, half: of the box; returns nothing if the box lies outside the support
-    [[nodiscard]] std::optional<ValueRange> range(const Vec3& center, const Vec3& half) const {
+    [[nodiscard]] std::optional<RangeOfValues> range(const Vec3& center, const Vec3& half) const {
         const Vec3 d = center - center_;
         const double at = std::sqrt(std::max(0.0, glm::dot(d, inverse_ * d))), around = std::sqrt(product(inverse_, half));
         if (at - around > 1) return std::nullopt;
@@ -53,8 +53,8 @@ public:
         const double spread = glm::dot(glm::abs(gradient_), half) + bent, middle = value_ + glm::dot(gradient_, d);
         const double near_moment = moment_ * nearest * nearest, far_moment = moment_ * farthest * farthest;
         const double slack = 1e-5 * (std::abs(middle) + spread + std::abs(moment_));  // more than rounding
-        return ValueRange{static_cast<float>(middle - spread + std::min(near_moment, far_moment) - slack),
-                          static_cast<float>(middle + spread + std::max(near_moment, far_moment) + slack)};
+        return RangeOfValues{static_cast<float>(middle - spread + std::min(near_moment, far_moment) - slack),
+                             static_cast<float>(middle + spread + std::max(near_moment, far_moment) + slack)};
     }
 
 private:
@@ -97,9 +97,9 @@ public:
     }
 
     /// The range of the field in the support of a kernel.
-    [[nodiscard]] ValueRange about(std::size_t i) {
-        ValueRange range;
-        each_box(i, [&](const ValueRange& box, const ValueRange&) { range.add(box); });
+    [[nodiscard]] RangeOfValues about(std::size_t i) {
+        RangeOfValues range;
+        each_box(i, [&](const RangeOfValues& box, const RangeOfValues&) { range.add(box); });
         return range;
     }
 
@@ -107,7 +107,7 @@ private:
     static constexpr double kMostBoxes = 512;  // along an axis
 
     /// The least and the largest do not depend on the order of the threads.
-    static void widen(ValueRange& box, const ValueRange& range) {
+    static void widen(RangeOfValues& box, const RangeOfValues& range) {
         const std::atomic_ref low(box.low), high(box.high);
         for (float now = low.load(); range.low < now && !low.compare_exchange_weak(now, range.low);) {
         }
@@ -150,10 +150,10 @@ private:
     Vec3 lower_{0.0};
     double edge_ = 0;
     std::array<int, 3> counts_{};
-    std::vector<ValueRange> ranges_;
+    std::vector<RangeOfValues> ranges_;
 };
 
-bool is_visible(const TransferFunction& function, const ValueRange& range) {
+bool is_visible(const TransferFunction& function, const RangeOfValues& range) {
     const auto& knots = function.opacity;
     if (alpha_at(function, range.low) > 0 || alpha_at(function, range.high) > 0) return true;
     return std::any_of(knots.begin(), knots.end(),

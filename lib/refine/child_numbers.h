@@ -6,6 +6,11 @@
 
 namespace subvol::detail {
 
+/// The number of a corner as an index of an array.
+constexpr std::size_t of_corner(int corner) {
+    return static_cast<std::size_t>(corner);
+}
+
 // The numbers of a child's edges and faces, counted instead of sorted.
 //
 //    ●─ a ─○─ a ─●      A face of the parent after one refinement: old points ●, edge points ○ and the face point □.

@@ -13,10 +13,6 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t at(int corner) {
-    return static_cast<std::size_t>(corner);
-}
-
 /// The number of the edge of a cell between two of its corners.
 constexpr std::size_t edge_between(int a, int b) {
     for (std::size_t k = 0; k < 12; ++k) {
@@ -105,7 +101,7 @@ private:
                 for (std::size_t i = 0; i < 4; ++i) {
                     const int a = kCellFaces[s][i], b = kCellFaces[s][(i + 1) % 4];
                     faces[i] = n_.inner[c][edge_between(a, b)];
-                    cells[i] = child_cell(static_cast<Index>(c), at(b));
+                    cells[i] = child_cell(static_cast<Index>(c), of_corner(b));
                 }
                 put_ring(n_.to_cell[c][s], faces, cells);
             }

@@ -27,10 +27,6 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t at(int corner) {
-    return static_cast<std::size_t>(corner);
-}
-
 class ChildBuilder {
 public:
     explicit ChildBuilder(const Topology& parent) : p_(parent), n_(parent) {}
@@ -117,7 +113,7 @@ private:
             t_.faces[face] = {edge_point(e), face_point(f0), cell_point(c), face_point(f1)};
             t_.face_edges[face] = {n_.to_face[f0][slot_of(p_.face_edges[f0], e)], n_.to_cell[c][side[0]],
                                    n_.to_cell[c][side[1]], n_.to_face[f1][slot_of(p_.face_edges[f1], e)]};
-            const Index c0 = child_cell(c, at(kCellEdges[k][0])), c1 = child_cell(c, at(kCellEdges[k][1]));
+            const Index c0 = child_cell(c, of_corner(kCellEdges[k][0])), c1 = child_cell(c, of_corner(kCellEdges[k][1]));
             t_.face_cells[face] = {std::min(c0, c1), std::max(c0, c1)};
         }
     }
@@ -135,7 +131,8 @@ private:
     void fill_cell(Index c, std::size_t child) {
         const auto& faces = p_.cell_faces[c];
         for (std::size_t k = 0; k < 12; ++k) {
-            auto low = lattice_place(child, at(kCellEdges[k][0])), high = lattice_place(child, at(kCellEdges[k][1]));
+            auto low = lattice_place(child, of_corner(kCellEdges[k][0])),
+                 high = lattice_place(child, of_corner(kCellEdges[k][1]));
             if (high.kind < low.kind) std::swap(low, high);
             Index& edge = t_.cell_edges[child_cell(c, child)][k];
             if (low.kind == LatticePlace::Corner) {
@@ -156,7 +153,7 @@ private:
                 face = n_.quarters[faces[s]][slot_of(p_.faces[faces[s]], p_.cells[c][child])];
             } else {
                 for (const int corner : corners) {
-                    const auto place = lattice_place(child, at(corner));
+                    const auto place = lattice_place(child, of_corner(corner));
                     if (place.kind == LatticePlace::Edge) face = n_.inner[c][place.number];
                 }
             }

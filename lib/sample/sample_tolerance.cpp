@@ -11,7 +11,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr int kMostRounds = 6;
-constexpr int kMostIntervals = 64;
+constexpr int kMostIntervalsOfTolerance = 64;
 
 /// The largest difference of two values of the first channel at the nodes.
 double range_of(const CellBlocks& blocks, std::size_t cells) {
@@ -66,9 +66,9 @@ bool refine_intervals(const Topology& topology, const std::vector<double>& error
     for (std::size_t e = 0; e < intervals.size(); ++e) {
         const auto& [a, b] = topology.edges[e];
         const double error = std::max(at_points[a], at_points[b]);
-        if (error <= tolerance || intervals[e] == kMostIntervals) continue;
+        if (error <= tolerance || intervals[e] == kMostIntervalsOfTolerance) continue;
         const double wanted = std::ceil(intervals[e] * std::sqrt(error / tolerance));
-        intervals[e] = static_cast<int>(std::clamp(wanted, intervals[e] + 1.0, double(kMostIntervals)));
+        intervals[e] = static_cast<int>(std::clamp(wanted, intervals[e] + 1.0, double(kMostIntervalsOfTolerance)));
         any = true;
     }
     return any;

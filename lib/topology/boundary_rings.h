@@ -5,11 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "point_kind.h"
 #include "subvol/topology.h"
 
 namespace subvol::detail {
-
-enum class PointKind : std::uint8_t { Interior, Smooth, Crease, Corner };
 
 /// The kind of every point. On the boundary it is smooth without crease edges, on a crease with exactly two of them, else a
 /// corner. A point where several fans of boundary faces touch is a corner too, unless all of them lie between the same two

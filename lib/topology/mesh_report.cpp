@@ -95,7 +95,7 @@ void count_points(const detail::MeshPart& part, MeshReport& report) {
 
 constexpr std::size_t kPart = 4096;  // cells that are summed together, so that rounding does not depend on the threads
 
-std::size_t part_count(const HexMesh& mesh) {
+std::size_t summed_parts(const HexMesh& mesh) {
     return (mesh.cells.size() + kPart - 1) / kPart;
 }
 
@@ -114,7 +114,7 @@ std::vector<ShapeReport> shapes_of_parts(const HexMesh& mesh, std::size_t begin,
 
 ShapeReport measure_cells(const HexMesh& mesh) {
     ShapeReport report;
-    for (const ShapeReport& part : shapes_of_parts(mesh, 0, part_count(mesh))) {
+    for (const ShapeReport& part : shapes_of_parts(mesh, 0, summed_parts(mesh))) {
         report.volume += part.volume;
         report.inverted_cells += part.inverted_cells;
         report.degenerate_cells += part.degenerate_cells;
@@ -206,7 +206,7 @@ detail::MeshShare detail::inspect_share(const HexMesh& mesh, int part, int of, s
         count_edges(some, counts);
         count_faces(some, counts);
     });
-    const std::size_t parts = part_count(mesh), shares = static_cast<std::size_t>(of);
+    const std::size_t parts = summed_parts(mesh), shares = static_cast<std::size_t>(of);
     const std::size_t begin = parts * static_cast<std::size_t>(part - 1) / shares,
                       end = parts * static_cast<std::size_t>(part) / shares;
     for (const ShapeReport& shape : shapes_of_parts(mesh, begin, end)) {

@@ -54,14 +54,14 @@ Box box_of(const py::object& bounds) {
     return {corners[0], corners[1]};
 }
 
-std::string said(const Camera& camera) {
+std::string camera_text(const Camera& camera) {
     return py::str("<subvol.Camera: eye {}, target {}, {}>")
         .format(as_tuple(camera.eye), as_tuple(camera.target),
                 camera.ortho_height > 0 ? py::str("{} high").format(camera.ortho_height)
                                         : py::str("{} degrees").format(camera.fovy_deg));
 }
 
-Picture picture_of(const py::object& given) {
+Picture picture_from(const py::object& given) {
     py::array array = py::array::ensure(given);
     PyErr_Clear();
     const bool right =
@@ -138,7 +138,7 @@ void bind_default_looks(py::module_& module) {
 void bind_image(py::module_& module) {
     py::class_<Picture>(module, "Image", py::buffer_protocol(),
                         "A picture in linear light: RGBA floats, premultiplied, rows from the top.")
-        .def(py::init(&picture_of), py::arg("array"))
+        .def(py::init(&picture_from), py::arg("array"))
         .def_buffer([](Picture& picture) {
             const auto width = py::ssize_t(picture.image.width), height = py::ssize_t(picture.image.height);
             const py::ssize_t word = sizeof(float);
@@ -171,7 +171,7 @@ void bind_image(py::module_& module) {
                  return "<subvol.Image: " + std::to_string(p.image.width) + " x " + std::to_string(p.image.height) + " pixels>";
              })
         .def(py::pickle([](const py::object& self) { return py::make_tuple(py::array::ensure(self).attr("copy")()); },
-                        [](const py::tuple& state) { return picture_of(state[0]); }));
+                        [](const py::tuple& state) { return picture_from(state[0]); }));
     module.def(
         "read_image",
         [](const std::string& path) {
@@ -247,7 +247,7 @@ void bind_look(py::module_& module) {
                 return turntable(c, vector_of(center, "center"), frames);
             },
             py::arg("center"), py::arg("frames"))
-        .def("__repr__", &said)
+        .def("__repr__", &camera_text)
         .def(py::pickle(
             [](const Camera& c) {
                 return py::make_tuple(as_tuple(c.eye), as_tuple(c.target), as_tuple(c.up), c.fovy_deg, c.ortho_height);

@@ -62,7 +62,7 @@ HexMesh mesh_of(const py::object& points, const py::object& cells, const py::obj
     return mesh;
 }
 
-std::string said(const HexMesh& mesh) {
+std::string mesh_text(const HexMesh& mesh) {
     std::string text = "<subvol.HexMesh: " + std::to_string(mesh.points.size()) + " points, " +
                        std::to_string(mesh.cells.size()) + (mesh.cells.size() == 1 ? " cell" : " cells");
     for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
@@ -201,7 +201,7 @@ void bind_mesh(py::module_& module) {
             py::arg("angle_deg"))
         .def(
             "same_cells", [](const HexMesh& mesh, const HexMesh& other) { return same_cells(mesh, other); }, py::arg("other"))
-        .def("__repr__", &said)
+        .def("__repr__", &mesh_text)
         .def(py::pickle(
             [](const py::object& self) {
                 return py::make_tuple(self.attr("points"), self.attr("cells"), self.attr("fields"), self.attr("creases"),

@@ -78,7 +78,7 @@ RbfVolume volume_of(const py::object& centers, const py::object& frames, const p
     return volume;
 }
 
-py::tuple boundary_of(const py::object& self) {
+py::tuple boundary_arrays(const py::object& self) {
     const Surface& boundary = self.cast<const RbfVolume&>().boundary;
     const Index* corners = boundary.triangles.empty() ? nullptr : boundary.triangles.front().data();
     return py::make_tuple(view_of_points(boundary.points, self), view(corners, {length(boundary.triangles.size()), 3}, self));
@@ -185,7 +185,7 @@ py::tuple fit(const std::string& shape, const std::string& scheme, int level, do
     return py::make_tuple(to_json(best.kernel), errors);
 }
 
-std::string said(const RbfVolume& volume) {
+std::string points_text(const RbfVolume& volume) {
     std::string text = "<subvol.RbfVolume: " + std::to_string(volume.size()) + " points, channels";
     for (const RbfChannel& channel : volume.channels) text += " " + channel.name;
     return text + (volume.boundary.triangles.empty() ? ", no boundary>" : ">");
@@ -213,9 +213,9 @@ void bind_points(py::module_& module) {
         .def_property_readonly("moments", [](const py::object& self) { return of_channels(&RbfChannel::moments, self); })
         .def_property_readonly("hessians", [](const py::object& self) { return of_channels(&RbfChannel::hessians, self); })
         .def_property_readonly("kernel", [](const RbfVolume& volume) { return to_json(volume.kernel); })
-        .def_property_readonly("boundary", &boundary_of)
+        .def_property_readonly("boundary", &boundary_arrays)
         .def_property_readonly("bounds", [](const RbfVolume& volume) { return as_array(volume.bounds); })
-        .def("__repr__", &said)
+        .def("__repr__", &points_text)
         .def(py::pickle(
             [](const py::object& self) {
                 return py::make_tuple(self.attr("centers"), self.attr("frames"), self.attr("values"), self.attr("gradients"),

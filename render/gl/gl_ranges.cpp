@@ -7,8 +7,8 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::uint32_t kThreads = 256;  // of a group; each thread finds one bin
-constexpr GLint kBinsLocation = 2;
+constexpr std::uint32_t kRangeThreads = 256;  // of a group; each thread finds one bin
+constexpr GLint kRangeBinsLocation = 2;
 
 }  // namespace
 
@@ -23,8 +23,8 @@ void GlRanges::find_ranges(GlBuffer& keys, const GlCount& count, std::uint32_t b
     set_count(count);
     keys.bind(0);
     offsets.bind(1);
-    glUniform1ui(kBinsLocation, bins);
-    dispatch(bins / kThreads + 1);
+    glUniform1ui(kRangeBinsLocation, bins);
+    dispatch(bins / kRangeThreads + 1);
 }
 
 }  // namespace subvol::detail

@@ -31,7 +31,7 @@ namespace {
 constexpr int kBandRows = 8;
 constexpr std::int64_t kSnap = 4096;   // units a pixel
 constexpr double kGuard_px = 1 << 17;  // triangles that reach further out are clipped: edge functions could overflow
-constexpr std::size_t kChunks = 64;
+constexpr std::size_t kChunksOfTriangles = 64;
 
 struct SnappedPoint {
     std::int64_t x, y;
@@ -234,11 +234,11 @@ void resolve(std::span<const Hit> hits, float near, std::vector<float>& depths, 
 }
 
 std::vector<std::vector<ScreenTriangle>> project(const Surface& surface, const View& view, double near) {
-    std::vector<std::vector<ScreenTriangle>> chunks(kChunks);
+    std::vector<std::vector<ScreenTriangle>> chunks(kChunksOfTriangles);
     const std::size_t count = surface.triangles.size();
-    tbb::parallel_for(std::size_t{0}, kChunks, [&](std::size_t chunk) {
+    tbb::parallel_for(std::size_t{0}, kChunksOfTriangles, [&](std::size_t chunk) {
         TriangleSetup setup(view, near);
-        for (std::size_t i = count * chunk / kChunks; i < count * (chunk + 1) / kChunks; ++i) {
+        for (std::size_t i = count * chunk / kChunksOfTriangles; i < count * (chunk + 1) / kChunksOfTriangles; ++i) {
             const auto& t = surface.triangles[i];
             setup.add(static_cast<std::uint32_t>(i),
                       {view.to_eye(surface.points[t[0]]), view.to_eye(surface.points[t[1]]), view.to_eye(surface.points[t[2]])},

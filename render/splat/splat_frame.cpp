@@ -14,7 +14,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kChunks = 64;
+constexpr std::size_t kChunksOfSplats = 64;
 
 /// A counting sort in a fixed number of chunks: within a tile kernels keep their order, whatever the number of threads.
 void list_tiles(SplatFrame& frame) {
@@ -22,7 +22,7 @@ void list_tiles(SplatFrame& frame) {
     const auto tiles = static_cast<std::size_t>(frame.tiles_x) * static_cast<std::size_t>(frame.tiles_y);
     const TileFinder finder(frame);
     std::vector<TileRect> rects(splats.size());
-    const std::size_t chunks = std::clamp<std::size_t>(splats.size() / 4096, 1, kChunks);
+    const std::size_t chunks = std::clamp<std::size_t>(splats.size() / 4096, 1, kChunksOfSplats);
     std::vector<std::size_t> next(tiles * chunks);
     const auto each = [&](const auto& visit) {
         tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {

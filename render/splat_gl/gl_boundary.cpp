@@ -11,24 +11,21 @@
 #include "shader_boundary_resolve_comp.h"
 #include "shader_boundary_strips_comp.h"
 #include "shader_gl_groups_glsl.h"
+#include "work_groups.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr std::uint32_t kThreads = 256, kRasterGroups = 1024;
-constexpr std::size_t kEyePoint_bytes = 32, kBox_bytes = 16, kPair_bytes = 8, kWord_bytes = 4;
+constexpr std::uint32_t kRasterGroups = 1024;
+constexpr std::size_t kEyePoint_bytes = 32, kBox_bytes = 16, kPair_bytes = 8;
 constexpr GLuint kCameraBinding = 1;
 
-GlProgram make_program(const char* file, const char* source, const char* defines = "") {
+GlProgram boundary_program(const char* file, const char* source, const char* defines = "") {
     return {file,
             source,
             defines,
             {{"gl_groups.glsl", kShader_gl_groups_glsl}, {"boundary_frame.glsl", kShader_boundary_frame_glsl}}};
-}
-
-std::uint32_t groups_for(std::size_t items) {
-    return static_cast<std::uint32_t>((items + kThreads - 1) / kThreads);
 }
 
 }  // namespace
@@ -56,11 +53,11 @@ struct alignas(32) GlBoundary::Camera {
 
 GlBoundary::GlBoundary(bool on_device)
     : on_device_(on_device),
-      points_program_(make_program("boundary_points.comp", kShader_boundary_points_comp)),
-      strips_program_(make_program("boundary_strips.comp", kShader_boundary_strips_comp)),
-      count_program_(make_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 0\n")),
-      fill_program_(make_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 1\n")),
-      resolve_program_(make_program("boundary_resolve.comp", kShader_boundary_resolve_comp)) {
+      points_program_(boundary_program("boundary_points.comp", kShader_boundary_points_comp)),
+      strips_program_(boundary_program("boundary_strips.comp", kShader_boundary_strips_comp)),
+      count_program_(boundary_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 0\n")),
+      fill_program_(boundary_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 1\n")),
+      resolve_program_(boundary_program("boundary_resolve.comp", kShader_boundary_resolve_comp)) {
 }
 
 void GlBoundary::upload_surface(const Surface& surface) {

@@ -8,19 +8,15 @@
 #include "shader_splat_emit_comp.h"
 #include "shader_splat_eye_comp.h"
 #include "shader_splat_frame_glsl.h"
+#include "work_groups.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kSplat_bytes = 64, kVector_bytes = 16, kWord_bytes = 4;
-constexpr std::uint32_t kThreads = 256;  // of a work group
+constexpr std::size_t kSplat_bytes = 64, kVector_bytes = 16;
 
-std::uint32_t groups_for(std::uint32_t items) {
-    return (items + kThreads - 1) / kThreads;
-}
-
-GlProgram make_program(const char* file, const char* source, const std::string& defines) {
+GlProgram bins_program(const char* file, const char* source, const std::string& defines) {
     return {
         file, source, defines, {{"gl_groups.glsl", kShader_gl_groups_glsl}, {"splat_frame.glsl", kShader_splat_frame_glsl}}};
 }
@@ -29,8 +25,8 @@ GlProgram make_program(const char* file, const char* source, const std::string& 
 
 GlSplatBins::GlSplatBins(const std::string& defines, std::uint32_t extras)
     : extras_(extras),
-      eye_(make_program("splat_eye.comp", kShader_splat_eye_comp, defines)),
-      emit_(make_program("splat_emit.comp", kShader_splat_emit_comp, defines)),
+      eye_(bins_program("splat_eye.comp", kShader_splat_eye_comp, defines)),
+      emit_(bins_program("splat_emit.comp", kShader_splat_emit_comp, defines)),
       total_(2 * kWord_bytes) {
 }
 

@@ -23,7 +23,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kBatch = 16;  // bricks
+constexpr std::size_t kBricksAtOnce = 16;  // bricks
 
 openvdb::Coord coord_of(const VoxelCoord& c) {
     return {c[0], c[1], c[2]};
@@ -145,8 +145,8 @@ std::vector<openvdb::GridBase::Ptr> make_grids(VoxelBricks voxels, const std::ve
     std::vector<std::unique_ptr<GridMaker>> makers;
     for (const GridOfChannels& grid : wanted) makers.push_back(make_maker(grid));
     auto bricks = voxels.release();
-    for (std::size_t first = 0; first < bricks.size(); first += kBatch) {
-        const auto batch = std::span(bricks).subspan(first, std::min(kBatch, bricks.size() - first));
+    for (std::size_t first = 0; first < bricks.size(); first += kBricksAtOnce) {
+        const auto batch = std::span(bricks).subspan(first, std::min(kBricksAtOnce, bricks.size() - first));
         for (const auto& maker : makers) maker->convert(batch);
         for (auto& brick : batch) brick.reset();
         for (const auto& maker : makers) maker->add_to_tree();

@@ -18,8 +18,8 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kBatch = 1 << 14;       // leaves whose voxels are compared at once: up to 8 million
-constexpr double kHalfRounding = 1.0 / 2048;  // of a value of 11 bits
+constexpr std::size_t kLeavesCompared = 1 << 14;  // leaves whose voxels are compared at once: up to 8 million
+constexpr double kHalfRounding = 1.0 / 2048;      // of a value of 11 bits
 constexpr double kReach_voxels = 1;
 // Of the tolerance: where the limit has little smoothness, two levels agree although the limit is this much farther.
 constexpr double kTrust = 10;
@@ -47,9 +47,9 @@ GridError grid_error(const VdbGrid& grid, const HexMesh& mesh, std::string_view 
     double most = 0, squares = 0;
     std::size_t count = 0, outside = 0;
     std::vector<Vec3> places;
-    for (std::size_t first = 0; first < leaves.leafCount(); first += kBatch) {
+    for (std::size_t first = 0; first < leaves.leafCount(); first += kLeavesCompared) {
         report_progress(options.progress, "error", static_cast<double>(first) / static_cast<double>(leaves.leafCount()));
-        const std::size_t end = std::min(first + kBatch, leaves.leafCount());
+        const std::size_t end = std::min(first + kLeavesCompared, leaves.leafCount());
         places.clear();
         for (std::size_t l = first; l < end; ++l) {
             for (auto at = leaves.leaf(l).cbeginValueOn(); at; ++at) {

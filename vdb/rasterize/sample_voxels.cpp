@@ -19,7 +19,7 @@ const openvdb::FloatGrid& floats_of(const VdbGrid& grid) {
     throw Error(ErrorCode::InvalidInput, "its voxels are not floats", "grid \"" + grid.report().name + "\"");
 }
 
-constexpr std::size_t kBatch = 512;  // leaves whose points are evaluated at once
+constexpr std::size_t kLeavesAtOnce = 512;  // leaves whose points are evaluated at once
 
 }  // namespace
 
@@ -30,8 +30,8 @@ VdbGrid sample_at_voxels(const VdbGrid& where, const std::string& name,
     grid->tree().voxelizeActiveTiles();
     openvdb::tree::LeafManager<openvdb::FloatTree> leaves(grid->tree());
     std::vector<Vec3> points;
-    for (std::size_t first = 0; first < leaves.leafCount(); first += kBatch) {
-        const std::size_t end = std::min(first + kBatch, leaves.leafCount());
+    for (std::size_t first = 0; first < leaves.leafCount(); first += kLeavesAtOnce) {
+        const std::size_t end = std::min(first + kLeavesAtOnce, leaves.leafCount());
         points.clear();
         for (std::size_t l = first; l < end; ++l) {
             for (auto at = leaves.leaf(l).cbeginValueOn(); at; ++at) {

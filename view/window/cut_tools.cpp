@@ -13,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr float kTurn_deg = 0.5F;  // for each pixel of a drag
+constexpr float kTurnOfCut_deg = 0.5F;  // for each pixel of a drag
 
 std::string named(const CutHandle& handle) {
     return std::string(handle.slice ? "\"slice\": " : "\"clip\": ") + std::to_string(handle.index);
@@ -57,8 +57,8 @@ bool take_cut(WindowHost& host, WindowMemory& memory) {
     if (ImGui::IsItemActive() && (by.x != 0 || by.y != 0)) {
         if (memory.turns_cut) {
             run(host, memory, "turn_cut",
-                "{" + named(memory.held_cut) + ", \"by\": " + json_text(double{kTurn_deg * by.x}, double{-kTurn_deg * by.y}) +
-                    "}");
+                "{" + named(memory.held_cut) +
+                    ", \"by\": " + json_text(double{kTurnOfCut_deg * by.x}, double{-kTurnOfCut_deg * by.y}) + "}");
         } else {
             run(host, memory, "move_cut",
                 "{" + named(memory.held_cut) + ", \"drag\": " + json_text(double{by.x * fine.x}, double{by.y * fine.y}) + "}");

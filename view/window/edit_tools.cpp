@@ -13,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kTurn_deg = 0.4;  // for each pixel of a drag
+constexpr double kTurnOfHandle_deg = 0.4;  // for each pixel of a drag
 
 std::string three_text(const Vec3& v) {
     return "[" + json_text(v.x) + ", " + json_text(v.y) + ", " + json_text(v.z) + "]";
@@ -25,7 +25,7 @@ void work(WindowHost& host, WindowMemory& memory, const ImVec2& by, float height
     const double right = double{by.x}, down = double{by.y};
     const Vec3 forward = glm::normalize(camera.target - camera.eye), axis = glm::normalize(camera.up);
     const Vec3 to_right = glm::normalize(glm::cross(forward, axis));
-    const std::string angle = "{\"angle\": " + json_text(kTurn_deg * right);
+    const std::string angle = "{\"angle\": " + json_text(kTurnOfHandle_deg * right);
     if (tool == "brush" || tool == "move") {
         run(host, memory, "drag", json_text(right / double{height}, -down / double{height}));
     } else if (tool == "rotate") {

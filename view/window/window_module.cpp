@@ -22,7 +22,7 @@ namespace subvol::detail {
 namespace {
 
 constexpr float kPanel = 340;                     // width, in units of the screen
-constexpr float kTurn_deg = 0.35F;                // for each pixel of a drag
+constexpr float kOrbit_deg = 0.35F;               // for each pixel of a drag
 constexpr double kBusy_s = 0.01, kIdle_s = 0.25;  // between frames without events
 constexpr double kStep_s = 0.5;                   // between steps that play
 constexpr int kSettled = 3;                       // frames after which a window looks as it will
@@ -88,7 +88,7 @@ void take_mouse(Window& self, float height) {
             } else if (moves) {
                 run(self.host, self.memory, "pan", json_text(double{by.x} / double{height}, -double{by.y} / double{height}));
             } else {
-                run(self.host, self.memory, "orbit", json_text(double{-kTurn_deg * by.x}, double{kTurn_deg * by.y}));
+                run(self.host, self.memory, "orbit", json_text(double{-kOrbit_deg * by.x}, double{kOrbit_deg * by.y}));
             }
         }
     }

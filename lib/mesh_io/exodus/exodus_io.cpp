@@ -13,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr EntityNames kNames{"node", "element", 1};
+constexpr EntityNames kExodusNames{"node", "element", 1};
 
 // A block of elements of one type.
 //
@@ -77,7 +77,7 @@ public:
         }
         list_left_out();
         read_variables();
-        return assemble(std::move(found_), in_, file_, kNames, options_);
+        return assemble(std::move(found_), in_, file_, kExodusNames, options_);
     }
 
 private:
@@ -174,7 +174,7 @@ private:
     [[nodiscard]] Index corner(std::int64_t node, std::size_t element) const {
         const std::size_t count = found_.points.size();
         if (node < 1 || static_cast<std::uint64_t>(node) > count) {
-            exodus_.fail(kNames.cell(element) + ": there is no node " + std::to_string(node),
+            exodus_.fail(kExodusNames.cell(element) + ": there is no node " + std::to_string(node),
                          "nodes are 1 to " + std::to_string(count));
         }
         return static_cast<Index>(node - 1);

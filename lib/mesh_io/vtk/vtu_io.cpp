@@ -11,7 +11,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::uint8_t kHexahedron = 12, kQuad = 9, kLine = 3;
+constexpr std::uint8_t kHexType = 12, kQuadType = 9, kLineType = 3;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "points are written as they lie in memory");
 
@@ -38,7 +38,7 @@ void write_cells(VtkXmlWriter& out, const Contents& contents) {
         return static_cast<std::int64_t>(8 * hexes + 4 * of_quad + 2 * (more - of_quad));
     });
     out.made_array<std::uint8_t>("types", 1, all, [&](std::size_t c) {
-        return c < cells ? kHexahedron : c < with_quads ? kQuad : kLine;
+        return c < cells ? kHexType : c < with_quads ? kQuadType : kLineType;
     });
     out.line("</Cells>");
 }

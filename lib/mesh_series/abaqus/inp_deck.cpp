@@ -11,6 +11,7 @@
 
 #include "subvol/error.h"
 #include "text_scanner.h"
+#include "trimmed.h"
 
 namespace subvol::detail {
 
@@ -20,12 +21,6 @@ namespace {
 
 constexpr int kMostIncludes = 16;
 constexpr std::size_t kMostGenerated = std::size_t{1} << 20;  // nodes and elements: a line could ask for any number
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kSpace = " \t\r\n\f\v";
-    const std::size_t begin = text.find_first_not_of(kSpace);
-    return begin == std::string_view::npos ? std::string_view() : text.substr(begin, text.find_last_not_of(kSpace) + 1 - begin);
-}
 
 std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> fields;

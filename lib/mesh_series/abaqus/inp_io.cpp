@@ -15,7 +15,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr EntityNames kNames{"node", "element", 1};
+constexpr EntityNames kAbaqusNames{"node", "element", 1};
 
 class DeckAssembly {
 public:
@@ -44,7 +44,7 @@ public:
         for (const auto& [name, cells] : blocks_) {
             if (cells > 0) found_.blocks.push_back({name, cells});
         }
-        EntityNames names = kNames;
+        EntityNames names = kAbaqusNames;
         names.point_numbers = numbers_;
         return assemble(std::move(found_), file_, names, options_);
     }

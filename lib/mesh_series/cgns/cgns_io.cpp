@@ -18,15 +18,15 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr EntityNames kNames{"vertex", "element", 1};
+constexpr EntityNames kCgnsNames{"vertex", "element", 1};
 constexpr std::int64_t kMixed = 20, kPolygons = 22, kPolyhedra = 23;
 
 // The nodes of each type of element; those of volumes begin with a T, P or H.
-struct ElementType {
+struct CgnsType {
     std::size_t nodes;
     std::string_view name;
 };
-constexpr std::array<ElementType, 40> kTypes{
+constexpr std::array<CgnsType, 40> kCgnsTypes{
     {{0, ""},          {0, "USER"},      {1, "NODE"},      {2, "BAR_2"},    {3, "BAR_3"},     {3, "TRI_3"},    {6, "TRI_6"},
      {4, "QUAD_4"},    {8, "QUAD_8"},    {9, "QUAD_9"},    {4, "TETRA_4"},  {10, "TETRA_10"}, {5, "PYRA_5"},   {14, "PYRA_14"},
      {6, "PENTA_6"},   {15, "PENTA_15"}, {18, "PENTA_18"}, {8, "HEXA_8"},   {20, "HEXA_20"},  {27, "HEXA_27"}, {0, "MIXED"},
@@ -34,7 +34,7 @@ constexpr std::array<ElementType, 40> kTypes{
      {16, "QUAD_16"},  {16, "TETRA_16"}, {20, "TETRA_20"}, {21, "PYRA_21"}, {29, "PYRA_29"},  {30, "PYRA_30"}, {24, "PENTA_24"},
      {38, "PENTA_38"}, {40, "PENTA_40"}, {32, "HEXA_32"},  {56, "HEXA_56"}, {64, "HEXA_64"}}};
 
-bool is_volume(const ElementType& type) {
+bool is_volume(const CgnsType& type) {
     return type.name.starts_with("TETRA") || type.name.starts_with("P") || type.name.starts_with("HEXA");
 }
 
@@ -101,7 +101,7 @@ public:
                                      " more nodes than corners: only the corners are used");
         }
         if (!left_out_.empty()) found.warnings.push_back(left_out().substr(6));
-        return assemble(std::move(found), tree_.file().name(), kNames, options_);
+        return assemble(std::move(found), tree_.file().name(), kCgnsNames, options_);
     }
 
 private:
@@ -184,7 +184,7 @@ private:
         } else {
             read_sections(zone, found);
         }
-        refuse_not_finite(found, in_, kNames);
+        refuse_not_finite(found, in_, kCgnsNames);
         const auto chosen = of_step(zone, "FlowSolutionPointers", "FlowSolution_t");
         if (chosen) {
             read_solution(zone, *chosen, found);
@@ -249,7 +249,7 @@ private:
             const std::uint64_t count = static_cast<std::uint64_t>(range[1]) - static_cast<std::uint64_t>(range[0]) + 1;
             const std::int64_t type = data.empty() ? 0 : data[0];
             if (type == kPolygons || type == kPolyhedra) {
-                left_out_[kTypes[static_cast<std::size_t>(type)].name] += count;
+                left_out_[kCgnsTypes[static_cast<std::size_t>(type)].name] += count;
                 continue;
             }
             const auto numbers = tree_.integers(section + "/ElementConnectivity");
@@ -260,7 +260,7 @@ private:
                     if (at == numbers.size()) tree_.file().fail("node " + in_quotes(section) + " ends before its elements do");
                     kind = numbers[at++];
                 }
-                const ElementType& of = known(kind, section);
+                const CgnsType& of = known(kind, section);
                 if (of.nodes > numbers.size() - at)
                     tree_.file().fail("node " + in_quotes(section) + " ends before its elements do");
                 take(of, std::span(numbers).subspan(at, of.nodes), first + static_cast<std::int64_t>(e), cells, found);
@@ -271,14 +271,14 @@ private:
         cells_of_sections_ = cells;
     }
 
-    [[nodiscard]] const ElementType& known(std::int64_t type, const std::string& section) const {
-        const bool sound =
-            type >= 2 && type < static_cast<std::int64_t>(kTypes.size()) && kTypes[static_cast<std::size_t>(type)].nodes > 0;
+    [[nodiscard]] const CgnsType& known(std::int64_t type, const std::string& section) const {
+        const bool sound = type >= 2 && type < static_cast<std::int64_t>(kCgnsTypes.size()) &&
+                           kCgnsTypes[static_cast<std::size_t>(type)].nodes > 0;
         if (!sound) tree_.file().fail("node " + in_quotes(section) + " has elements of type " + std::to_string(type));
-        return kTypes[static_cast<std::size_t>(type)];
+        return kCgnsTypes[static_cast<std::size_t>(type)];
     }
 
-    void take(const ElementType& type, std::span<const std::int64_t> nodes, std::int64_t number, std::size_t cell,
+    void take(const CgnsType& type, std::span<const std::int64_t> nodes, std::int64_t number, std::size_t cell,
               MeshFile& found) {
         const bool others = options_.other_cells != OtherCells::Ignore;
         const bool hex = type.name.starts_with("HEXA");

@@ -8,7 +8,7 @@ namespace subvol::detail {
 
 namespace {
 
-std::string trimmed(const std::string& text) {
+std::string without_padding(const std::string& text) {
     const std::string whole = text.substr(0, text.find('\0'));
     const std::size_t last = whole.find_last_not_of(' ');
     return last == std::string::npos ? std::string() : whole.substr(0, last + 1);
@@ -21,7 +21,7 @@ std::vector<std::string> CgnsTree::children(const std::string& node, const std::
     for (const std::string& name : file_.names(node.empty() ? "/" : node)) {
         if (name.empty() || name.front() == ' ') continue;  // the node's own data
         const std::string path = node + "/" + name;
-        if (trimmed(file_.text(path, "label").value_or("")) == label) found.push_back(path);
+        if (without_padding(file_.text(path, "label").value_or("")) == label) found.push_back(path);
     }
     return found;
 }
@@ -48,7 +48,7 @@ std::string CgnsTree::text(const std::string& node) const {
     if (!has_data(node)) return {};
     std::string text;
     for (const std::int64_t character : integers(node)) text += static_cast<char>(character);
-    return trimmed(text);
+    return without_padding(text);
 }
 
 std::vector<std::string> CgnsTree::texts(const std::string& node) const {
@@ -56,7 +56,8 @@ std::vector<std::string> CgnsTree::texts(const std::string& node) const {
     std::string all;
     for (const std::int64_t character : integers(node)) all += static_cast<char>(character);
     std::vector<std::string> texts;
-    for (std::size_t at = 0; at + kOfName <= all.size(); at += kOfName) texts.push_back(trimmed(all.substr(at, kOfName)));
+    for (std::size_t at = 0; at + kOfName <= all.size(); at += kOfName)
+        texts.push_back(without_padding(all.substr(at, kOfName)));
     return texts;
 }
 

@@ -7,18 +7,13 @@
 #include <numeric>
 
 #include "subvol/error.h"
+#include "trimmed.h"
 
 namespace subvol::detail {
 
 namespace {
 
 constexpr std::size_t kMostSteps = 1000000;
-
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r");
-    return begin == std::string_view::npos ? std::string_view()
-                                           : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
-}
 
 std::string lower_case(std::string_view text) {
     std::string lower(text);

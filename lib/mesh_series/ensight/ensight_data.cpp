@@ -3,6 +3,7 @@
 
 #include "number_type.h"
 #include "subvol/index.h"
+#include "trimmed.h"
 
 namespace subvol::detail {
 
@@ -10,11 +11,8 @@ namespace {
 
 constexpr std::size_t kOfLine = 80, kOfNumber = 4;
 
-std::string_view trimmed(std::string_view text) {
-    text = text.substr(0, text.find('\0'));
-    const std::size_t begin = text.find_first_not_of(" \t\r\n");
-    return begin == std::string_view::npos ? std::string_view()
-                                           : text.substr(begin, text.find_last_not_of(" \t\r\n") + 1 - begin);
+std::string_view line_text(std::string_view text) {
+    return trimmed(text.substr(0, text.find('\0')));
 }
 
 }  // namespace
@@ -38,9 +36,9 @@ bool EnsightData::at_end() {
 std::string EnsightData::line() {
     if (!binary_) {
         if (in_.at_end()) fail("the file ends where a line is expected");
-        return std::string(trimmed(in_.line()));
+        return std::string(line_text(in_.line()));
     }
-    return std::string(trimmed(in_.bytes(kOfLine, {"line"})));
+    return std::string(line_text(in_.bytes(kOfLine, {"line"})));
 }
 
 void EnsightData::expect_room(std::size_t count, const std::string& what) const {

@@ -18,7 +18,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr EntityNames kNames{"node", "element", 1};
+constexpr EntityNames kEnsightNames{"node", "element", 1};
 
 const std::map<std::string, std::size_t, std::less<>> kNodes{{"point", 1},    {"bar2", 2},     {"bar3", 3},       {"tria3", 3},
                                                              {"tria6", 6},    {"quad4", 4},    {"quad8", 8},      {"tetra4", 4},
@@ -70,7 +70,7 @@ public:
                                      " more nodes than corners: only the corners are used");
         }
         if (!left_out_.empty()) found.warnings.push_back(left_out().substr(6));
-        return assemble(std::move(found), file_, kNames, options_);
+        return assemble(std::move(found), file_, kEnsightNames, options_);
     }
 
 private:
@@ -112,7 +112,7 @@ private:
                 read_elements(data, parts_[*open], line, element_ids);
             }
         }
-        for (const auto& [number, part] : parts_) refuse_not_finite(part.found, data.in(), kNames);
+        for (const auto& [number, part] : parts_) refuse_not_finite(part.found, data.in(), kEnsightNames);
     }
 
     // "node id given": the numbers follow, and say nothing about who refers to what.

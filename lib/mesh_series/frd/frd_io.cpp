@@ -14,38 +14,33 @@
 #include "steps.h"
 #include "text_readers.h"
 #include "text_scanner.h"
+#include "trimmed.h"
 
 namespace subvol::detail {
 
 namespace {
 
-constexpr EntityNames kNames{"node", "element", 1};
+constexpr EntityNames kFrdNames{"node", "element", 1};
 constexpr std::size_t kOfReal = 12;
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t begin = text.find_first_not_of(" \t\r");
-    return begin == std::string_view::npos ? std::string_view()
-                                           : text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin);
-}
-
 // The nodes of each type of element, by its number; those of volumes only with names.
-struct ElementType {
+struct FrdType {
     std::size_t nodes;
     std::string_view name;
 };
-constexpr std::array<ElementType, 13> kTypes{{{0, ""},
-                                              {8, "he8"},
-                                              {6, "pe6"},
-                                              {4, "te4"},
-                                              {20, "he20"},
-                                              {15, "pe15"},
-                                              {10, "te10"},
-                                              {3, "tr3"},
-                                              {6, "tr6"},
-                                              {4, "qu4"},
-                                              {8, "qu8"},
-                                              {2, "be2"},
-                                              {3, "be3"}}};
+constexpr std::array<FrdType, 13> kFrdTypes{{{0, ""},
+                                             {8, "he8"},
+                                             {6, "pe6"},
+                                             {4, "te4"},
+                                             {20, "he20"},
+                                             {15, "pe15"},
+                                             {10, "te10"},
+                                             {3, "tr3"},
+                                             {6, "tr6"},
+                                             {4, "qu4"},
+                                             {8, "qu8"},
+                                             {2, "be2"},
+                                             {3, "be3"}}};
 
 class FrdLines {
 public:
@@ -188,7 +183,7 @@ public:
         }
         if (numbers_.empty()) lines_.fail("not a file of CalculiX's results, or it has no nodes");
         finish();
-        EntityNames names = kNames;
+        EntityNames names = kFrdNames;
         names.point_numbers = numbers_;
         return assemble(std::move(found_), lines_.in(), file_, names, options_);
     }
@@ -215,10 +210,10 @@ private:
         while (lines_.next() && lines_.key() == "-1") {
             const std::int64_t number = lines_.integer(3, width, "the number of an element");
             const std::int64_t type = lines_.integer(3 + width, 5, "the type of an element");
-            if (type < 1 || type >= static_cast<std::int64_t>(kTypes.size())) {
+            if (type < 1 || type >= static_cast<std::int64_t>(kFrdTypes.size())) {
                 lines_.fail("element " + std::to_string(number) + " is of type " + std::to_string(type), "types are 1 to 12");
             }
-            const ElementType& kind = kTypes[static_cast<std::size_t>(type)];
+            const FrdType& kind = kFrdTypes[static_cast<std::size_t>(type)];
             std::vector<Index> nodes;
             while (lines_.next() && lines_.key() == "-2") {
                 for (std::size_t at = 3; nodes.size() < kind.nodes && lines_.has(at); at += width) {
@@ -246,7 +241,7 @@ private:
     }
 
     // The edges' nodes are those of the bottom, the upright ones and those of the top.
-    void take(const ElementType& kind, const std::vector<Index>& nodes) {
+    void take(const FrdType& kind, const std::vector<Index>& nodes) {
         const bool others = options_.other_cells != OtherCells::Ignore;
         if (kind.name.starts_with("he")) {
             const bool whole = kind.nodes == 20 && options_.curved_tolerance;

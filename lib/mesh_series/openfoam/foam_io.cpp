@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr EntityNames kNames{"point", "cell", 0};
+constexpr EntityNames kFoamNames{"point", "cell", 0};
 
-std::size_t components_of(std::string_view type) {
+std::size_t components_of_class(std::string_view type) {
     return type == "volScalarField"       ? 1
            : type == "volVectorField"     ? 3
            : type == "volSymmTensorField" ? 6
@@ -81,7 +81,7 @@ private:
         const std::string of_points = file("points").string();
         TextScanner in(std::string_view(), of_points, TextScanner::Comments::None);
         in.name_no_place();
-        refuse_not_finite(found_, in, kNames);
+        refuse_not_finite(found_, in, kFoamNames);
     }
 
     // Those of the points in the whole mesh; points that were added in the middle of cells belong to no other part.
@@ -106,7 +106,7 @@ private:
         constexpr std::size_t kHeader = 4096;
         if (std::string_view(read_maybe_gzipped(path)).substr(0, kHeader).find("FoamFile") == std::string_view::npos) return;
         FoamText text(path);
-        const std::size_t components = components_of(text.type());
+        const std::size_t components = components_of_class(text.type());
         if (components == 0) return;
         found_.arrays.push_back({name, static_cast<int>(components), true, text.internal_field(components, cells_)});
     }
@@ -133,7 +133,7 @@ ReadResult read_foam(const fs::path& path, const ReadOptions& options) {
     }
     found.warnings.insert(found.warnings.begin(), warnings.begin(), warnings.end());
     add_left_out_warning(found, {}, file);
-    return assemble(std::move(found), file, kNames, options);
+    return assemble(std::move(found), file, kFoamNames, options);
 }
 
 }  // namespace subvol::detail

@@ -15,7 +15,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace field_metrics_test {
 
 using Formula = std::function<double(const Vec3&)>;
 
@@ -186,5 +186,5 @@ TEST(MassError, IsRelative) {
                 1, 1e-12);
 }
 
-}  // namespace
+}  // namespace field_metrics_test
 }  // namespace subvol

@@ -9,7 +9,7 @@
 #include "subvol/field_metrics.h"
 
 namespace subvol {
-namespace {
+namespace isosurface_test {
 
 const Box kBox{Vec3(-1.0), Vec3(1.0)};
 
@@ -122,5 +122,5 @@ TEST(HausdorffDistance, OfTrianglesByHand) {
     EXPECT_EQ(hausdorff_distance(a, {}), std::numeric_limits<double>::infinity());
 }
 
-}  // namespace
+}  // namespace isosurface_test
 }  // namespace subvol

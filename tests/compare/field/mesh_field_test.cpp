@@ -18,7 +18,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace mesh_field_test {
 
 const Vec3 kSlope(1.5, -2, .7);
 
@@ -157,5 +157,5 @@ TEST(PointsField, WithoutABoundaryWeightsDecide) {
     EXPECT_THROW(PointsField(volume, 3), Error);
 }
 
-}  // namespace
+}  // namespace mesh_field_test
 }  // namespace subvol

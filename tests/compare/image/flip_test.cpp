@@ -12,7 +12,7 @@
 #include "subvol/vec.h"
 
 namespace subvol {
-namespace {
+namespace flip_test {
 
 constexpr double kFloat = 1e-6;  // maps are floats in [0,1], and the colour exponents at most double an error
 
@@ -268,5 +268,5 @@ TEST(HdrFlip, RefusesExposuresThatAreNone) {
     EXPECT_THROW((void)hdr_flip(a, a, {.start = std::nan(""), .stop = 1}), Error);
 }
 
-}  // namespace
+}  // namespace flip_test
 }  // namespace subvol

@@ -17,7 +17,7 @@
 #include "subvol/error.h"
 
 namespace subvol {
-namespace {
+namespace image_io_test {
 
 namespace fs = std::filesystem;
 
@@ -259,5 +259,5 @@ TEST_F(ImageIo, CutOffFilesAreRefused) {
     }
 }
 
-}  // namespace
+}  // namespace image_io_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "subvol/error.h"
 
 namespace subvol {
-namespace {
+namespace image_metrics_test {
 
 Image uniform_image(int width, int height, float value) {
     Image image(width, height);
@@ -123,5 +123,5 @@ TEST(DifferenceHeatmap, EqualAndTinyImages) {
     EXPECT_GT(luminance(tiny.pixel(0, 0)), 0.9);
 }
 
-}  // namespace
+}  // namespace image_metrics_test
 }  // namespace subvol

@@ -12,7 +12,7 @@
 #include "subvol/error.h"
 
 namespace subvol {
-namespace {
+namespace image_regions_test {
 
 bool in_disc(int x, int y) {
     return (x - 17) * (x - 17) + (y - 14) * (y - 14) <= 100;
@@ -154,5 +154,5 @@ TEST(OpticalDepth, OpaquePixelsAreTold) {
     EXPECT_NEAR(depth.sum, 6 * 24 * std::log(2), 1e-12);
 }
 
-}  // namespace
+}  // namespace image_regions_test
 }  // namespace subvol

@@ -18,7 +18,7 @@
 #include "subvol/image_metrics.h"
 
 namespace subvol {
-namespace {
+namespace oiio_compare_test {
 
 namespace fs = std::filesystem;
 
@@ -103,5 +103,5 @@ TEST(CompareOiio, EqualAndWrongPictures) {
     EXPECT_NO_THROW((void)compare_yee(plain_image(1, 1, 0, 0, 0), plain_image(1, 1, 1, 1, 1)));
 }
 
-}  // namespace
+}  // namespace oiio_compare_test
 }  // namespace subvol

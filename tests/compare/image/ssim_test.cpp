@@ -11,7 +11,7 @@
 #include "subvol/error.h"
 
 namespace subvol {
-namespace {
+namespace ssim_test {
 
 constexpr double kFloat = 1e-6;  // the map has floats in [-1,1]
 
@@ -99,5 +99,5 @@ TEST(Ssim, RefusesWhatHasNoAnswer) {
     EXPECT_THROW((void)ssim(Image(), Image()), Error);
 }
 
-}  // namespace
+}  // namespace ssim_test
 }  // namespace subvol

@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace page_test {
 
 using namespace detail;
 
@@ -112,6 +112,6 @@ TEST(Page, RefusesWhatItCannotDraw) {
     refused("no boundary", {.fields = {field}});
 }
 
-}  // namespace
+}  // namespace page_test
 
 }  // namespace subvol::test

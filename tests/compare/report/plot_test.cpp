@@ -10,7 +10,7 @@
 #include "lib/comma_locale.h"
 
 namespace subvol {
-namespace {
+namespace plot_test {
 
 std::size_t count(const std::string& text, const std::string& part) {
     std::size_t found = 0;
@@ -222,8 +222,6 @@ TEST(Plot, PdfHasItsObjectsWhereItsTableSays) {
     EXPECT_NE(pdf.find("(L\\344nge \\(m\\)) Tj"), std::string::npos);                 // ä
     EXPECT_EQ(pdf, plot_pdf(plot));
 }
-
-}  // namespace
 TEST(Plot, MarksTheStudiedPlacesButNotThoseOfACurve) {
     const auto circles = [](std::size_t count) {
         Plot plot;
@@ -242,4 +240,5 @@ TEST(Plot, MarksTheStudiedPlacesButNotThoseOfACurve) {
     EXPECT_EQ(circles(200), 0u);
 }
 
+}  // namespace plot_test
 }  // namespace subvol

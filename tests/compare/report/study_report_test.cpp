@@ -9,7 +9,7 @@
 #include "lib/temp_folder.h"
 
 namespace subvol {
-namespace {
+namespace study_report_test {
 
 Study demanding() {
     return parse_study(R"({"name": "s", "title": "<b>Title</b> & more", "about": "About 'it'", "pictures": true,
@@ -149,5 +149,5 @@ TEST(Report, LinesJoinWhatIsSwept) {
     EXPECT_EQ(line.breaks, (std::vector<std::size_t>{3}));
 }
 
-}  // namespace
+}  // namespace study_report_test
 }  // namespace subvol

@@ -8,7 +8,7 @@
 #include "subvol/study.h"
 
 namespace subvol {
-namespace {
+namespace study_parse_test {
 
 using test::error_of;
 
@@ -203,5 +203,5 @@ TEST_F(StudyFolder, FilesThatAreNoneAreRefused) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace study_parse_test
 }  // namespace subvol

@@ -13,7 +13,7 @@
 #include "subvol/version.h"
 
 namespace subvol {
-namespace {
+namespace study_run_test {
 
 using test::error_of;
 using test::read_bytes;
@@ -192,5 +192,5 @@ TEST(StudyTable, IsAlignedAndQuoted) {
     EXPECT_EQ(as_csv(table), "\"name\",\"½\"\n\"a \"\"b\"\"\",\"0.5\"\n\"c\",\"12\"\n\"d\",\"–\"\n");
 }
 
-}  // namespace
+}  // namespace study_run_test
 }  // namespace subvol

@@ -7,7 +7,7 @@
 #include "subvol/study.h"
 
 namespace subvol {
-namespace {
+namespace study_test {
 
 TEST(FieldPlaces, LieWhereTheyWereAskedFor) {
     const HexMesh mesh = make_model("ball", 6);
@@ -34,5 +34,5 @@ TEST(BuiltInStudies, AreFilesThatParse) {
     EXPECT_THROW((void)built_in_study("table3"), Error);
 }
 
-}  // namespace
+}  // namespace study_test
 }  // namespace subvol

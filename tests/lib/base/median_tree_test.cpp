@@ -8,7 +8,7 @@
 #include <random>
 
 namespace subvol::detail {
-namespace {
+namespace median_tree_test {
 
 std::vector<Box> random_boxes(std::size_t count) {
     std::mt19937 random(static_cast<unsigned>(count));
@@ -84,5 +84,5 @@ TEST(MedianTree, EndsAtTheFirstLeafThatIsEnoughAndHasNoneWithoutItems) {
     EXPECT_EQ(none.slots(0), std::pair(std::size_t{0}, std::size_t{0}));
 }
 
-}  // namespace
+}  // namespace median_tree_test
 }  // namespace subvol::detail

@@ -14,7 +14,7 @@
 #include "subvol/optics.h"
 
 namespace subvol::detail {
-namespace {
+namespace number_text_test {
 
 TEST(NumberText, IsThatOfPrintf) {
     EXPECT_EQ(number_text(1234567.0), "1.23457e+06");
@@ -64,5 +64,5 @@ TEST(NumberText, TheLibraryReadsAndWritesPointsInEveryLocale) {
     test::expect_error(ErrorCode::InvalidInput, "the opacity unit is -0.5", [&] { const Optics optics(grey, -0.5); });
 }
 
-}  // namespace
+}  // namespace number_text_test
 }  // namespace subvol::detail

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace subvol::detail {
-namespace {
+namespace part_of_progress_test {
 
 class Seen : public Progress {
 public:
@@ -53,5 +53,5 @@ TEST(PartOfProgress, NobodyNeedsToSeeIt) {
     EXPECT_FALSE(part.cancelled());
 }
 
-}  // namespace
+}  // namespace part_of_progress_test
 }  // namespace subvol::detail

@@ -7,7 +7,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace printable_test {
 
 using namespace detail;
 
@@ -67,6 +67,6 @@ TEST(Printable, WhatAParserExpectsStays) {
     EXPECT_EQ(parser_message("last read: '"), "last read: \"\"");
 }
 
-}  // namespace
+}  // namespace printable_test
 
 }  // namespace subvol::test

@@ -10,7 +10,7 @@
 #include <thread>
 
 namespace subvol {
-namespace {
+namespace run_nested_test {
 
 /// Waits until the condition holds, for a limited time: with a single thread it never holds.
 template <class Condition>
@@ -45,5 +45,5 @@ TEST(RunNested, HandsOnWhatTheWorkThrows) {
     EXPECT_THROW(detail::run_nested([] { throw std::runtime_error("its own"); }), std::runtime_error);
 }
 
-}  // namespace
+}  // namespace run_nested_test
 }  // namespace subvol

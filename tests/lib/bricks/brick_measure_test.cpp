@@ -12,7 +12,7 @@
 #include "subvol/split.h"
 
 namespace subvol {
-namespace {
+namespace brick_measure_test {
 
 using test::error_of;
 using testing::HasSubstr;
@@ -80,5 +80,5 @@ TEST_F(BrickMeasure, SaysWhatItCannotDo) {
     EXPECT_THAT(error_of([&] { (void)measure_limit(bricks, {.groups = groups}); }), HasSubstr("groups"));
 }
 
-}  // namespace
+}  // namespace brick_measure_test
 }  // namespace subvol

@@ -10,7 +10,7 @@
 #include "subvol/split.h"
 
 namespace subvol {
-namespace {
+namespace brick_slice_test {
 
 using test::error_of;
 using testing::HasSubstr;
@@ -72,5 +72,5 @@ TEST_F(BrickSlice, RefusesWhatIsMalformed) {
                 HasSubstr("2 to 20,000"));
 }
 
-}  // namespace
+}  // namespace brick_slice_test
 }  // namespace subvol

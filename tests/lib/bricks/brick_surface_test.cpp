@@ -10,7 +10,7 @@
 #include "subvol/split.h"
 
 namespace subvol {
-namespace {
+namespace brick_surface_test {
 
 using test::error_of;
 using testing::HasSubstr;
@@ -71,5 +71,5 @@ TEST_F(BrickSurface, SaysWhatItCannotDo) {
     EXPECT_TRUE(limit_surface(bricks, "f", {.isos = {1e6}}).surface.triangles.empty());
 }
 
-}  // namespace
+}  // namespace brick_surface_test
 }  // namespace subvol

@@ -18,7 +18,7 @@
 #include "subvol/split.h"
 
 namespace subvol {
-namespace {
+namespace bricks_test {
 
 using test::error_of;
 using test::read_bytes;
@@ -370,5 +370,5 @@ TEST_F(BricksTest, NothingElseIsOverwritten) {
     EXPECT_NE(error_of([&] { (void)sample_brick(thin, read_brick(thin, 0)); }).find("split with --halo 3"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace bricks_test
 }  // namespace subvol

@@ -10,7 +10,7 @@
 #include "../temp_folder.h"
 
 namespace subvol::detail {
-namespace {
+namespace piece_numbers_test {
 
 /// The ranks are those in a sorted set, however the numbers come.
 void expect_ranks(const std::vector<std::vector<double>>& lists) {
@@ -65,5 +65,5 @@ TEST_F(RanksOfPlacesTest, PointsOfOnePieceStayApart) {
     EXPECT_EQ(file_count(), 0U) << "its file has no name";
 }
 
-}  // namespace
+}  // namespace piece_numbers_test
 }  // namespace subvol::detail

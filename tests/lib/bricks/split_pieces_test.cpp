@@ -12,7 +12,7 @@
 #include "subvol/split.h"
 
 namespace subvol {
-namespace {
+namespace split_pieces_test {
 
 using test::error_of;
 using testing::HasSubstr;
@@ -251,5 +251,5 @@ TEST_F(SplitPieces, ValuesThatAreNotFiniteAreSaidAsOfTheWhole) {
     }
 }
 
-}  // namespace
+}  // namespace split_pieces_test
 }  // namespace subvol

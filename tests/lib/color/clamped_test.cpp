@@ -6,7 +6,7 @@
 #include "lib/expect_error.h"
 
 namespace subvol {
-namespace {
+namespace clamped_test {
 
 TEST(Clamped, ValuesBeyondTheRangeLookLikeItsEnds) {
     const TransferFunction all{{{0, {0, 0, 0}}, {10, {1, 1, 1}}}, {{0, 0}, {5, 1}, {10, 0.2}}};
@@ -21,5 +21,5 @@ TEST(Clamped, ValuesBeyondTheRangeLookLikeItsEnds) {
     test::expect_error(ErrorCode::InvalidInput, "exchanged", [&] { (void)clamped(all, 6, 2); });
 }
 
-}  // namespace
+}  // namespace clamped_test
 }  // namespace subvol

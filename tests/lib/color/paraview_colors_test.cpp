@@ -13,7 +13,7 @@
 #include "subvol/transfer_function.h"
 
 namespace subvol {
-namespace {
+namespace paraview_colors_test {
 
 constexpr double kPromised = 1.0 / 512;
 
@@ -124,5 +124,5 @@ TEST_F(ParaViewColors, OpacitiesFollowMidpointAndSharpness) {
     expect_curve("1, 0", {.1400004, .1800008, .2200012, .300002, .3800028, .4600036});
 }
 
-}  // namespace
+}  // namespace paraview_colors_test
 }  // namespace subvol

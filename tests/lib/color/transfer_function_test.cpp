@@ -10,7 +10,7 @@
 #include "subvol/optics.h"
 
 namespace subvol {
-namespace {
+namespace transfer_function_test {
 
 using test::expect_error;
 
@@ -289,5 +289,5 @@ TEST(Validate, RefusesWhatCannotBeInterpolated) {
     refused("colour knot 0: the colour", [](auto& f) { f.color[0].rgb.y = -0.1; });
 }
 
-}  // namespace
+}  // namespace transfer_function_test
 }  // namespace subvol

@@ -13,7 +13,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace limit_slice_test {
 
 TEST(Slice, OfTheBallIsADisk) {
     const LimitSlice slice = slice_limit(make_model("ball", 6), {}, {0, 0, 0.2}, {0, 0, 1}, {.resolution = 100});
@@ -85,5 +85,5 @@ TEST(Slice, RefusesPlanesThatMissAndOptionsOutOfRange) {
     refused("resolution", {0, 0, 0}, {0, 0, 1}, 1);
 }
 
-}  // namespace
+}  // namespace limit_slice_test
 }  // namespace subvol

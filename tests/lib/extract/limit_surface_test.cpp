@@ -14,7 +14,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace limit_surface_test {
 
 /// The ball with the squared distance from its centre: isosurfaces are spheres as far as the limit has the field.
 HexMesh ball_with_radius(int resolution) {
@@ -222,5 +222,5 @@ TEST(LimitSurface, RefusesWhatMakesNoSense) {
     EXPECT_TRUE(limit_surface(mesh, "f", {.isos = {7}}).surface.triangles.empty());
 }
 
-}  // namespace
+}  // namespace limit_surface_test
 }  // namespace subvol

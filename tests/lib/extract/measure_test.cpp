@@ -13,7 +13,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace measure_test {
 
 TEST(Measure, IntegralOfALinearFieldOverABox) {
     HexMesh mesh = test::make_box(3, 2, 4);
@@ -118,5 +118,5 @@ TEST(Measure, RefusesOptionsOutOfRange) {
     test::expect_error(ErrorCode::InvalidInput, "groups", [&] { (void)measure_limit(mesh, {.groups = groups}); });
 }
 
-}  // namespace
+}  // namespace measure_test
 }  // namespace subvol

@@ -17,7 +17,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace points_error_test {
 
 RbfVolume points_of(const HexMesh& mesh, int per_edge = 1) {
     return sample_rbf_points(mesh, {.per_edge = per_edge}).volume;
@@ -53,8 +53,6 @@ Truth truth(const RbfVolume& points, const HexMesh& mesh) {
     truth.rms = std::sqrt(squares / static_cast<double>(count));
     return truth;
 }
-
-}  // namespace
 
 // The estimate is of the size of the true error.
 TEST(PointsError, IsAboutTheTrueError) {
@@ -99,4 +97,5 @@ TEST(PointsError, BecomesAChannel) {
               std::string::npos);
 }
 
+}  // namespace points_error_test
 }  // namespace subvol::test

@@ -12,7 +12,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace probe_test {
 
 /// Random places inside cells of the limit.
 std::vector<LimitQuery> random_queries(const HexMesh& mesh, std::size_t count) {
@@ -157,5 +157,5 @@ TEST(Probe, RefusesWhatIsNoPlace) {
                        [] { (void)LimitProbe(test::make_box(1, 1, 1), {.reach_world = -1}); });
 }
 
-}  // namespace
+}  // namespace probe_test
 }  // namespace subvol

@@ -15,7 +15,7 @@
 #include "subvol/model.h"
 
 namespace subvol::detail {
-namespace {
+namespace atomic_file_test {
 
 namespace fs = std::filesystem;
 
@@ -125,5 +125,5 @@ TEST_F(AtomicFiles, ADeviceStaysADevice) {
     EXPECT_TRUE(fs::is_character_file("/dev/full"));
 }
 
-}  // namespace
+}  // namespace atomic_file_test
 }  // namespace subvol::detail

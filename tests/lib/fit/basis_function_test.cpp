@@ -12,7 +12,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace basis_function_test {
 
 constexpr Scheme kSchemes[] = {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw, Scheme::Linear};
 
@@ -196,5 +196,5 @@ TEST(BasisFunction, LevelsAreBounded) {
     test::expect_error(ErrorCode::InvalidInput, "tension", [] { (void)sample_basis_function(Scheme::Mcq, 1, std::nan("")); });
 }
 
-}  // namespace
+}  // namespace basis_function_test
 }  // namespace subvol

@@ -8,7 +8,7 @@
 #include "lib/expect_error.h"
 
 namespace subvol {
-namespace {
+namespace fit_kernel_test {
 
 const BasisFunction& mcq() {
     static const BasisFunction basis = sample_basis_function(Scheme::Mcq, 5);
@@ -203,5 +203,5 @@ TEST(FitKernel, BadOptionsAreRefused) {
     test::expect_error(ErrorCode::InvalidInput, "rank", [&] { (void)fit_tucker(basis, 8); });
 }
 
-}  // namespace
+}  // namespace fit_kernel_test
 }  // namespace subvol

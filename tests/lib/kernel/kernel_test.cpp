@@ -15,7 +15,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace kernel_test {
 
 using test::every_kernel;
 using test::expect_error;
@@ -227,5 +227,5 @@ TEST(Kernel, EveryNameIsAValidKernel) {
     expect_error(ErrorCode::InvalidInput, "no kernel 'sinc'", [] { (void)named_kernel("sinc"); });
 }
 
-}  // namespace
+}  // namespace kernel_test
 }  // namespace subvol

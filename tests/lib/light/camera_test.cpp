@@ -12,7 +12,7 @@
 #include "lib/temp_folder.h"
 
 namespace subvol {
-namespace {
+namespace camera_test {
 
 using test::expect_error;
 
@@ -258,5 +258,5 @@ TEST_F(CameraFile, NamesTheKeyThatIsWrong) {
     expect_error(ErrorCode::Io, "cannot be read", [this] { (void)parse_camera(path(".").string(), {}); });
 }
 
-}  // namespace
+}  // namespace camera_test
 }  // namespace subvol

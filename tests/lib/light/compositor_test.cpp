@@ -12,7 +12,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace compositor_test {
 
 struct Stretch {
     double front, back, length;
@@ -139,5 +139,5 @@ TEST(Compositor, NotANumberComesBack) {
     EXPECT_EQ(at_once(compositor, {{0.7, 0.7, std::numeric_limits<double>::infinity()}}).transmittance, 0);
 }
 
-}  // namespace
+}  // namespace compositor_test
 }  // namespace subvol

@@ -17,7 +17,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace legend_test {
 
 using test::expect_error;
 
@@ -146,5 +146,5 @@ TEST_F(Legend, IsWrittenWhole) {
     expect_error(ErrorCode::Io, "nowhere", [&] { write_legend("nowhere/a.svg", f); });
 }
 
-}  // namespace
+}  // namespace legend_test
 }  // namespace subvol

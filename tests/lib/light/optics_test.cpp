@@ -14,7 +14,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace optics_test {
 
 TransferFunction constant(const Vec3& rgb, double alpha) {
     return {{{0.0, rgb}}, {{0.0, alpha}}};
@@ -252,5 +252,5 @@ TEST(PreintegratedTable, KnowsWhatCannotBeSeen) {
     EXPECT_TRUE(table.transparent(1e9, 3073));
 }
 
-}  // namespace
+}  // namespace optics_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "subvol/transfer_function.h"
 
 namespace subvol {
-namespace {
+namespace overlay_test {
 
 /// The sum of all covers, in pixels.
 double ink_of(const Image& image) {
@@ -157,5 +157,5 @@ TEST(Overlay, LegendOfTwoFieldsHasBothTitles) {
     test::expect_error(ErrorCode::InvalidInput, "not finite", [&] { draw_legend(two, function, options, Vec3(0.0)); });
 }
 
-}  // namespace
+}  // namespace overlay_test
 }  // namespace subvol

@@ -8,7 +8,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace boundary_values_test {
 
 TEST(BoundaryValues, AreThoseOfALinearField) {
     HexMesh mesh = test::make_box(3, 2, 4);
@@ -71,5 +71,5 @@ TEST(BoundaryTables, FollowAMeshThatMoves) {
     }
 }
 
-}  // namespace
+}  // namespace boundary_values_test
 }  // namespace subvol

@@ -12,7 +12,7 @@
 #include "subvol/limit.h"
 
 namespace subvol {
-namespace {
+namespace dense_cells_test {
 
 struct Grids {
     std::vector<std::vector<Vec3>> points;
@@ -170,5 +170,5 @@ TEST(DenseCells, ByTablesAreTheSameToRounding) {
     }
 }
 
-}  // namespace
+}  // namespace dense_cells_test
 }  // namespace subvol

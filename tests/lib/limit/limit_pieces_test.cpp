@@ -14,7 +14,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace limit_pieces_test {
 
 /// A mesh with edges of three and five cells, a boundary with edges and corners, and a kink in its field.
 HexMesh irregular() {
@@ -126,5 +126,5 @@ TEST(LimitPieces, BelongToOneMesh) {
     EXPECT_FALSE(are_pieces_of(*limit.pieces, other));
 }
 
-}  // namespace
+}  // namespace limit_pieces_test
 }  // namespace subvol

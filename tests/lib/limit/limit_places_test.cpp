@@ -14,7 +14,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace limit_places_test {
 
 constexpr int kLevels = 4;
 
@@ -280,5 +280,5 @@ TEST(LimitInAGrid, IsTheSameByBlocksAsByRefinement) {
     expect_fine_vertices(mesh, {.tension = 1. / 20}, tolerance_of(Scheme::Mcq));
 }
 
-}  // namespace
+}  // namespace limit_places_test
 }  // namespace subvol

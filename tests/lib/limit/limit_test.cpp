@@ -13,7 +13,7 @@
 #include "subvol/limit_level.h"
 
 namespace subvol {
-namespace {
+namespace limit_test {
 
 /// A box of n³ cells from the origin with 1 at one point and 0 elsewhere.
 HexMesh impulse(Index n, const Vec3& where) {
@@ -382,5 +382,5 @@ TEST(Limit, RefusesPlacesThatDoNotExist) {
     });
 }
 
-}  // namespace
+}  // namespace limit_test
 }  // namespace subvol

@@ -19,7 +19,7 @@
 #include "svk_file.h"
 
 namespace subvol::test {
-namespace {
+namespace kernel_file_test {
 
 using detail::SvkFile;
 using detail::SvkLayout;
@@ -293,5 +293,5 @@ TEST_F(WrongContents, DoNotCrash) {
     }
 }
 
-}  // namespace
+}  // namespace kernel_file_test
 }  // namespace subvol::test

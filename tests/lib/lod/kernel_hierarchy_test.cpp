@@ -14,7 +14,7 @@
 #include "subvol/rbf_field.h"
 
 namespace subvol {
-namespace {
+namespace kernel_hierarchy_test {
 
 constexpr double kFloatTol = 1e-5;  // sums of 32-bit floats over some tens of levels, each rounded to 6e-8
 
@@ -291,5 +291,5 @@ TEST(KernelHierarchy, MistakesHaveASentence) {
     test::expect_error(ErrorCode::InvalidInput, "point 3", [&] { (void)build_kernel_hierarchy(wrong); });
 }
 
-}  // namespace
+}  // namespace kernel_hierarchy_test
 }  // namespace subvol

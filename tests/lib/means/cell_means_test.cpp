@@ -14,7 +14,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace cell_means_test {
 
 double smooth(const Vec3& x) {
     return std::sin(2 * x.x) * std::cos(1.5 * x.y) + .5 * std::sin(x.z + x.x);
@@ -183,6 +183,6 @@ TEST(CellMeans, WrongInputIsRefused) {
                  Error);
 }
 
-}  // namespace
+}  // namespace cell_means_test
 
 }  // namespace subvol::test

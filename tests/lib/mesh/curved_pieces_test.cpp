@@ -6,7 +6,7 @@
 #include "lib/test_meshes.h"
 
 namespace subvol::detail {
-namespace {
+namespace curved_pieces_test {
 
 using Sizes = std::array<std::size_t, 3>;
 
@@ -55,5 +55,5 @@ TEST_F(CurvedPiecesTest, TooManyPiecesAreFewerAndTheFieldsGiveWayFirst) {
     EXPECT_GT(hexes, pieces.most_hexes / 4);
 }
 
-}  // namespace
+}  // namespace curved_pieces_test
 }  // namespace subvol::detail

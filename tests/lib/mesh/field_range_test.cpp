@@ -9,7 +9,7 @@
 #include "lib/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace field_range_test {
 
 TEST(FieldRange, IsThatOfEachChannel) {
     const FieldRange range = range_of({"v", 2, {1, 10, -3, 30, 2, 20}});
@@ -51,5 +51,5 @@ TEST(FieldRange, MeshesAreTurnedAndScaled) {
         test::expect_error(ErrorCode::InvalidInput, "positive", [&] { scale_points(mesh, factor); });
 }
 
-}  // namespace
+}  // namespace field_range_test
 }  // namespace subvol

@@ -15,7 +15,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace mixed_cells_test {
 
 constexpr double kRounding = 1e-13;  // sums of some hundred exact terms of order one
 
@@ -218,6 +218,6 @@ TEST(MixedCells, AFaceOfThreeCellsIsFoundAfterwards) {
     expect_error(ErrorCode::InvalidInput, "has 3 cells", [&] { static_cast<void>(build_topology(split)); });
 }
 
-}  // namespace
+}  // namespace mixed_cells_test
 
 }  // namespace subvol::test

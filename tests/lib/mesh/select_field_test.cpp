@@ -7,7 +7,7 @@
 #include "lib/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace select_field_test {
 
 /// A cube whose vector field at point p is (p, 10 p, 100 p).
 HexMesh mesh_with_vector() {
@@ -88,5 +88,5 @@ TEST(SelectField, NamesTheNearestField) {
     EXPECT_EQ(message("humidity").find("did you mean"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace select_field_test
 }  // namespace subvol

@@ -9,7 +9,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace abaqus_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -159,6 +159,6 @@ TEST_F(Abaqus, WrongDecksGetASentenceWithTheLine) {
     EXPECT_THAT(error(nodes + "*ELSET, ELSET=e, GENERATE\n1, 9000000000, 1\n"), HasSubstr("are not those of elements"));
 }
 
-}  // namespace
+}  // namespace abaqus_test
 
 }  // namespace subvol::test

@@ -10,7 +10,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace bad_files_test {
 
 using testing::HasSubstr;
 
@@ -174,6 +174,6 @@ TEST_F(BadFiles, EveryFileIsListedHere) {
     EXPECT_EQ(files, kGood.size() + kBad.size() + kBadTopology.size());
 }
 
-}  // namespace
+}  // namespace bad_files_test
 
 }  // namespace subvol::test

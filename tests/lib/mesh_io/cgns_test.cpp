@@ -14,7 +14,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace cgns_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -206,6 +206,6 @@ TEST_F(Cgns, WrongFilesGetASentence) {
                 HasSubstr("old.cgns: the CGNS file is of the older kind ADF (cgnsconvert -h converts it to HDF5)"));
 }
 
-}  // namespace
+}  // namespace cgns_test
 
 }  // namespace subvol::test

@@ -11,7 +11,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace collapsed_cells_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -148,6 +148,6 @@ TEST_F(CollapsedCells, OfOtherKinds) {
     EXPECT_NEAR(inspect(standing.mesh).volume, 1 / 3., 1e-15);
 }
 
-}  // namespace
+}  // namespace collapsed_cells_test
 
 }  // namespace subvol::test

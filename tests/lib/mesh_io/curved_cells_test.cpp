@@ -16,7 +16,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace curved_cells_test {
 
 using testing::Contains;
 using testing::HasSubstr;
@@ -362,6 +362,6 @@ TEST_F(CurvedCells, BesideOtherCellsGiveTheirCorners) {
                 Contains("1 curved cell beside cells of other kinds: only the corners are used"));
 }
 
-}  // namespace
+}  // namespace curved_cells_test
 
 }  // namespace subvol::test

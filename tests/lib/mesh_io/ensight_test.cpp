@@ -15,7 +15,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace ensight_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -227,6 +227,6 @@ TEST_F(EnsightFuzz, Cases) {
     expect_sound_or_refused(".case", one, 41);
 }
 
-}  // namespace
+}  // namespace ensight_test
 
 }  // namespace subvol::test

@@ -13,7 +13,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace exodus_io_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -217,6 +217,6 @@ TEST_F(ExodusIo, StreamsOfRecords) {
     EXPECT_EQ(read_mesh(write("a.e", bytes)).mesh.find_attribute("T")->values, count_from(3 + kPoints, kPoints));
 }
 
-}  // namespace
+}  // namespace exodus_io_test
 
 }  // namespace subvol::test

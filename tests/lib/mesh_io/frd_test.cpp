@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace frd_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -148,6 +148,6 @@ TEST_F(Frd, RealFiles) {
     EXPECT_NEAR(inspect(forming.mesh).volume, inspect(of_deck.mesh).volume, 1e-4 * inspect(of_deck.mesh).volume);
 }
 
-}  // namespace
+}  // namespace frd_test
 
 }  // namespace subvol::test

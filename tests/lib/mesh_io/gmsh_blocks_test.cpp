@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace gmsh_blocks_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -181,6 +181,6 @@ TEST_F(GmshBlocks, CutAnywhereItIsRefused) {
     }
 }
 
-}  // namespace
+}  // namespace gmsh_blocks_test
 
 }  // namespace subvol::test

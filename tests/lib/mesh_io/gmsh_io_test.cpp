@@ -11,7 +11,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace gmsh_io_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -107,6 +107,6 @@ TEST_F(GmshIo, ErrorsNameThePlace) {
     EXPECT_THAT(read_error("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"), HasSubstr("there is no $Nodes section"));
 }
 
-}  // namespace
+}  // namespace gmsh_io_test
 
 }  // namespace subvol::test

@@ -8,7 +8,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace hdf5_missing_test {
 
 using Hdf5Missing = TempFolder;
 
@@ -18,6 +18,6 @@ TEST_F(Hdf5Missing, IsSaid) {
                 testing::HasSubstr("a.vtkhdf: this build cannot read HDF5 files"));
 }
 
-}  // namespace
+}  // namespace hdf5_missing_test
 
 }  // namespace subvol::test

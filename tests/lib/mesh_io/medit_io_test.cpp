@@ -10,7 +10,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace medit_io_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -84,6 +84,6 @@ TEST_F(MeditIo, ReadsEveryKindOfCell) {
     EXPECT_THAT(error("Pyramids", "Prisms"), HasSubstr("there is a second Prisms section"));
 }
 
-}  // namespace
+}  // namespace medit_io_test
 
 }  // namespace subvol::test

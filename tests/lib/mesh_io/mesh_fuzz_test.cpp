@@ -8,7 +8,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace mesh_fuzz_test {
 
 TEST_F(MeshFuzz, Medit) {
     const std::string text = "# c\n" + medit_text(make_box(2, 2, 2)) + "Tetrahedra 1\n1 2 3 4 0\nCorners 1\n1\n";
@@ -187,6 +187,6 @@ TEST_F(MeshFuzz, MixedCells) {
     expect_sound_or_refused(".mesh", "MeshVersionFormatted 2\nDimension 3\n" + cells + vertices, 32);
 }
 
-}  // namespace
+}  // namespace mesh_fuzz_test
 
 }  // namespace subvol::test

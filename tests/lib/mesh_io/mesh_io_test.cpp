@@ -18,7 +18,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace mesh_io_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -182,6 +182,6 @@ TEST_F(MeshIo, AFullDiskIsAnErrorAndLeavesNothing) {
     }
 }
 
-}  // namespace
+}  // namespace mesh_io_test
 
 }  // namespace subvol::test

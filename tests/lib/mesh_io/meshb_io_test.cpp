@@ -11,7 +11,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace meshb_io_test {
 
 using testing::HasSubstr;
 
@@ -179,6 +179,6 @@ TEST_F(MeshbIo, ErrorsNameThePlace) {
     EXPECT_THAT(read_error(numbers({1, 2, 3, 20, 3, 4, 0, -1})), HasSubstr("Vertices: negative count -1"));
 }
 
-}  // namespace
+}  // namespace meshb_io_test
 
 }  // namespace subvol::test

@@ -8,7 +8,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace netcdf_missing_test {
 
 using NetcdfMissing = TempFolder;
 
@@ -20,6 +20,6 @@ TEST_F(NetcdfMissing, IsSaidOfFilesOfHdf5) {
     }
 }
 
-}  // namespace
+}  // namespace netcdf_missing_test
 
 }  // namespace subvol::test

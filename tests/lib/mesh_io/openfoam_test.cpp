@@ -15,7 +15,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace openfoam_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -341,6 +341,6 @@ TEST_F(OpenFoam, WrongFilesGetASentence) {
     EXPECT_THAT(error(), HasSubstr("q.gz: not a whole gzip file"));
 }
 
-}  // namespace
+}  // namespace openfoam_test
 
 }  // namespace subvol::test

@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace plot3d_io_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -154,6 +154,6 @@ TEST_F(Plot3dIo, WhatIsNoGridIsRefused) {
                 HasSubstr("not a Plot3D grid"));
 }
 
-}  // namespace
+}  // namespace plot3d_io_test
 
 }  // namespace subvol::test

@@ -13,7 +13,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace real_meshes_test {
 
 struct Field {
     std::string name, location;
@@ -182,6 +182,6 @@ TEST(RealTetrahedra, AreSplitIntoHexahedra) {
     EXPECT_THROW(without(), Error);
 }
 
-}  // namespace
+}  // namespace real_meshes_test
 
 }  // namespace subvol::test

@@ -10,7 +10,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace series_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -232,6 +232,6 @@ TEST_F(Series, WrongListsGetASentenceWithTheLine) {
     EXPECT_THAT(of_json(R"({"files": [{"name": "c.vtu"}]})"), HasSubstr("entry 0 of \"files\": there is no file \"c.vtu\""));
 }
 
-}  // namespace
+}  // namespace series_test
 
 }  // namespace subvol::test

@@ -15,7 +15,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace sharp_groups_test {
 
 using testing::HasSubstr;
 using Quads = std::vector<std::array<Index, 4>>;
@@ -285,6 +285,6 @@ TEST_F(SharpGroups, RefuseWhatIsNotThere) {
                 HasSubstr("there is no edge with index 4"));
 }
 
-}  // namespace
+}  // namespace sharp_groups_test
 
 }  // namespace subvol::test

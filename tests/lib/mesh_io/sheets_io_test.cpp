@@ -10,7 +10,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace sheets_io_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -153,6 +153,6 @@ TEST_F(SheetsIo, MalformedOnesAreRefused) {
                 HasSubstr("the mesh has no hexahedra"));
 }
 
-}  // namespace
+}  // namespace sheets_io_test
 
 }  // namespace subvol::test

@@ -11,7 +11,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace structured_io_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -232,6 +232,6 @@ TEST_F(StructuredIo, LegacyErrors) {
                 HasSubstr("DATASET \"FIELD\" is not supported"));
 }
 
-}  // namespace
+}  // namespace structured_io_test
 
 }  // namespace subvol::test

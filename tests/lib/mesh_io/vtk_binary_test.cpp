@@ -13,7 +13,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace vtk_binary_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -153,6 +153,6 @@ TEST_F(VtkBinary, ErrorsNameTheByte) {
                 HasSubstr("byte " + std::to_string(cells + 8) + ": cell 0: there is no point with index 27"));
 }
 
-}  // namespace
+}  // namespace vtk_binary_test
 
 }  // namespace subvol::test

@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace vtk_io_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -276,6 +276,6 @@ TEST_F(VtkIo, NamesInLatin1BecomeUtf8) {
               "bit");
 }
 
-}  // namespace
+}  // namespace vtk_io_test
 
 }  // namespace subvol::test

@@ -13,7 +13,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace vtkhdf_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -190,6 +190,6 @@ TEST_F(VtkHdf, RealFile) {
     EXPECT_NE(result.mesh.find_attribute("EQPS"), nullptr);
 }
 
-}  // namespace
+}  // namespace vtkhdf_test
 
 }  // namespace subvol::test

@@ -13,7 +13,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace vtu_io_test {
 
 using testing::DoubleEq;
 using testing::ElementsAre;
@@ -248,6 +248,6 @@ TEST_F(VtuIo, DamagedDataAreRefused) {
     EXPECT_THAT(read_error(huge), HasSubstr("its 1152921504606846976 bytes go beyond the end of the data"));
 }
 
-}  // namespace
+}  // namespace vtu_io_test
 
 }  // namespace subvol::test

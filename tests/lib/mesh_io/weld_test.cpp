@@ -11,7 +11,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace weld_test {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -113,6 +113,6 @@ TEST_F(Weld, CellsWithHiddenPointsAreLeftOut) {
     EXPECT_THAT(error_of([&] { static_cast<void>(read_mesh(write("b.vtk", all))); }), HasSubstr("the mesh has no hexahedra"));
 }
 
-}  // namespace
+}  // namespace weld_test
 
 }  // namespace subvol::test

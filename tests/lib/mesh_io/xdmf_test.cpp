@@ -11,7 +11,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace xdmf_test {
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -202,6 +202,6 @@ TEST_F(XdmfFuzz, StepsAndMixedCells) {
                             document(grid("<Topology TopologyType=\"3DSMesh\" Dimensions=\"2 2 2\"/>" + geometry(mesh))), 32);
 }
 
-}  // namespace
+}  // namespace xdmf_test
 
 }  // namespace subvol::test

@@ -11,7 +11,7 @@
 #include "subvol/detail/star_matrix.h"
 
 namespace subvol {
-namespace {
+namespace mixed_spectrum_test {
 
 using namespace test;
 
@@ -154,5 +154,5 @@ TEST(MixedSpectrum, HasKnownValuesAtIrregularPoints) {
     at_zero(icosahedron(), TetScheme::Boxspline, {.4890, .4890, .4585, .2608});
 }
 
-}  // namespace
+}  // namespace mixed_spectrum_test
 }  // namespace subvol

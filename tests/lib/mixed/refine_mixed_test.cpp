@@ -11,7 +11,7 @@
 #include "mixed_meshes.h"
 
 namespace subvol {
-namespace {
+namespace refine_mixed_test {
 
 using namespace test;
 
@@ -286,5 +286,5 @@ TEST(RefineMixed, RefusesWhatItCannotRefine) {
     EXPECT_NO_THROW(static_cast<void>(refine(in_tetrahedra(make_mixed()), {.scheme = TetScheme::Boxspline})));
 }
 
-}  // namespace
+}  // namespace refine_mixed_test
 }  // namespace subvol

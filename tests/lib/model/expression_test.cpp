@@ -9,7 +9,7 @@
 #include "lib/expect_error.h"
 
 namespace subvol {
-namespace {
+namespace expression_test {
 
 std::vector<Vec3> random_points(std::size_t count) {
     std::mt19937 random(7);
@@ -58,5 +58,5 @@ TEST(Expression, NamesTheFirstPointWithoutAFiniteValue) {
     test::expect_error(ErrorCode::InvalidInput, "point 0", [&] { (void)evaluate_expression("log(-x)", points); });
 }
 
-}  // namespace
+}  // namespace expression_test
 }  // namespace subvol

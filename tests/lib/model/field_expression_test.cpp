@@ -9,7 +9,7 @@
 #include "lib/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace field_expression_test {
 
 HexMesh mesh_with_fields() {
     HexMesh mesh = test::make_box(2, 1, 1);
@@ -61,5 +61,5 @@ TEST(FieldExpression, SaysWhatIsWrong) {
     refused("", "");
 }
 
-}  // namespace
+}  // namespace field_expression_test
 }  // namespace subvol

@@ -16,7 +16,7 @@ namespace subvol {
 
 using detail::PawnField;
 
-namespace {
+namespace model_test {
 
 const std::vector<double>& density(const HexMesh& mesh) {
     return mesh.attributes.at(0).values;
@@ -218,5 +218,5 @@ TEST(Ball, DensityIsOfThePosition) {
     EXPECT_FALSE(BallField().value({0.6, 0.6, 0.6}));
 }
 
-}  // namespace
+}  // namespace model_test
 }  // namespace subvol

@@ -16,7 +16,7 @@ namespace subvol {
 
 using namespace detail;
 
-namespace {
+namespace paper_models_test {
 
 /// A type for each model: its name, its number of points after one level in table 2 of [mnmq2007], its field.
 struct Pawn : PawnField {
@@ -268,5 +268,5 @@ TEST(Nozzle, ConvergesAndDivergesWhileTheGasGetsFaster) {
     EXPECT_NEAR((NozzleField::density({throat_at, 0, 0}) + 1) / 2, std::sqrt(1 / 6.0) / std::sqrt(1.8 / 2.8), 0.01);
 }
 
-}  // namespace
+}  // namespace paper_models_test
 }  // namespace subvol

@@ -6,7 +6,7 @@
 #include "lib/expect_error.h"
 
 namespace subvol {
-namespace {
+namespace clamp_channel_test {
 
 TEST(ClampChannel, ValuesBeyondTheRangeBecomeItsEndsWithoutDerivatives) {
     RbfChannel channel{
@@ -20,5 +20,5 @@ TEST(ClampChannel, ValuesBeyondTheRangeBecomeItsEndsWithoutDerivatives) {
     test::expect_error(ErrorCode::InvalidInput, "exchanged", [&] { clamp_channel(channel, 1, 0); });
 }
 
-}  // namespace
+}  // namespace clamp_channel_test
 }  // namespace subvol

@@ -9,7 +9,7 @@
 #include "subvol/sample.h"
 
 namespace subvol {
-namespace {
+namespace points_range_test {
 
 RbfVolume ball() {
     return sample_rbf_points(make_model("ball", 2), {.correction = Correction::Full}).volume;
@@ -84,5 +84,5 @@ TEST(KernelBytes, AreRefusedIfTheyEndEarly) {
     }
 }
 
-}  // namespace
+}  // namespace points_range_test
 }  // namespace subvol

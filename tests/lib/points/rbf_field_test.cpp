@@ -13,7 +13,7 @@
 #include "subvol/sample.h"
 
 namespace subvol {
-namespace {
+namespace rbf_field_test {
 
 class Random {
 public:
@@ -225,5 +225,5 @@ TEST(RbfField, TakesFlatFramesThatRoundingMadeIndefinite) {
     EXPECT_NO_THROW(validate(volume));
 }
 
-}  // namespace
+}  // namespace rbf_field_test
 }  // namespace subvol

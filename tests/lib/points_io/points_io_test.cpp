@@ -23,7 +23,7 @@ namespace subvol::test {
 
 using namespace detail;
 
-namespace {
+namespace points_io_test {
 
 using testing::HasSubstr;
 
@@ -304,6 +304,6 @@ TEST_P(SplatsFor, ViewersAreTheKernelsEllipsoidsUpright) {
 
 INSTANTIATE_TEST_SUITE_P(Axes, SplatsFor, testing::Values(UpAxis::X, UpAxis::Y, UpAxis::Z));
 
-}  // namespace
+}  // namespace points_io_test
 
 }  // namespace subvol::test

@@ -12,7 +12,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace points_text_test {
 
 using testing::HasSubstr;
 
@@ -152,6 +152,6 @@ TEST_F(PointsText, VtpThatIsWrong) {
     }
 }
 
-}  // namespace
+}  // namespace points_text_test
 
 }  // namespace subvol::test

@@ -12,7 +12,7 @@
 #include "subvol/sample.h"
 
 namespace subvol {
-namespace {
+namespace reduce_test {
 
 /// A block whose field is constant but for a steep ball in one corner.
 HexMesh mesh_with_feature(Index n) {
@@ -150,5 +150,5 @@ TEST(Reduce, RefusesWrongOptionsAndSamples) {
     refuse("one value", [&] { (void)error_at_samples(volume, samples); });
 }
 
-}  // namespace
+}  // namespace reduce_test
 }  // namespace subvol

@@ -9,7 +9,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace affine_test {
 
 class AffineFields : public testing::TestWithParam<const char*> {};
 
@@ -41,5 +41,5 @@ INSTANTIATE_TEST_SUITE_P(Meshes, AffineFields,
                                          "trame_disk_out_ref.vtu", "sibl_bunny_conforming.mesh",
                                          "geos_crackInPlane_benchmark.vtu", "lox_post_103k.vtu", "vtkdata_post_tet.vtk"));
 
-}  // namespace
+}  // namespace affine_test
 }  // namespace subvol

@@ -10,7 +10,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace levels_test {
 
 void expect_same_as_stepwise(HexMesh mesh, const RefineOptions& options) {
     test::add_field(mesh, "g", [](const Vec3& p) { return std::sin(p.x) + p.y * p.z; });
@@ -87,5 +87,5 @@ TEST_P(RefinedInLevels, RealMeshes) {
     }
 }
 
-}  // namespace
+}  // namespace levels_test
 }  // namespace subvol

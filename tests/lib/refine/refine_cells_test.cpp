@@ -10,7 +10,7 @@
 #include "subvol/mesh_io.h"
 
 namespace subvol {
-namespace {
+namespace refine_cells_test {
 
 HexMesh with_field(HexMesh mesh) {
     test::add_field(mesh, "f", [](const Vec3& p) { return std::sin(3 * p.x + p.y) + p.z * p.z; });
@@ -111,5 +111,5 @@ TEST(RefineCells, RefusesCellsThatDoNotExist) {
     });
 }
 
-}  // namespace
+}  // namespace refine_cells_test
 }  // namespace subvol

@@ -14,7 +14,7 @@
 #include "subvol/mesh_report.h"
 
 namespace subvol {
-namespace {
+namespace refine_test {
 
 constexpr double kRounding = 1e-13;  // a few hundred double operations on coordinates of size one
 
@@ -168,5 +168,5 @@ TEST(Refine, RefusesWhatIsNotAMesh) {
     EXPECT_THROW((void)refine(test::make_box(1, 1, 1), {.scheme = {.crease_angle_deg = 200}}), Error);
 }
 
-}  // namespace
+}  // namespace refine_test
 }  // namespace subvol

@@ -10,7 +10,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace sharp_faces_test {
 
 HexMesh bent_box(Index nx) {
     HexMesh mesh = test::make_box(nx, 3, 3);
@@ -105,5 +105,5 @@ TEST(SharpFacesAndReports, LeaveTheHullAlone) {
     test::expect_error(ErrorCode::InvalidInput, "point 12 belongs to no cell", [&] { (void)refine(mesh); });
 }
 
-}  // namespace
+}  // namespace sharp_faces_test
 }  // namespace subvol

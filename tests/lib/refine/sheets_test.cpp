@@ -14,7 +14,7 @@
 #include "subvol/topology.h"
 
 namespace subvol {
-namespace {
+namespace sheets_test {
 
 using Quads = std::vector<std::array<Index, 4>>;
 using Lines = std::vector<std::array<Index, 2>>;
@@ -322,5 +322,5 @@ TEST(Sheets, RefuseWhatIsMalformed) {
     });
 }
 
-}  // namespace
+}  // namespace sheets_test
 }  // namespace subvol

@@ -13,7 +13,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace stencil_test {
 
 using Key = std::pair<char, std::vector<Index>>;
 using Rows = std::map<Key, std::map<Index, double>>;
@@ -93,5 +93,5 @@ TEST(KnownStencilsOfBox, Agree) {
     expect_equal(our_rows(test::make_box(4, 4, 4)), read_rows(data->parent_path() / "expected" / "box4.txt"));
 }
 
-}  // namespace
+}  // namespace stencil_test
 }  // namespace subvol

@@ -13,7 +13,7 @@
 #include "subvol/topology.h"
 
 namespace subvol {
-namespace {
+namespace touching_bodies_test {
 
 constexpr double kRounding = 1e-13;  // sums of some ten terms of size 1, a few levels deep
 
@@ -141,5 +141,5 @@ TEST(NonManifold, AFaceOfThreeCellsIsRefused) {
     test::expect_error(ErrorCode::InvalidInput, "at most two cells share a face", [&] { (void)refine(mesh); });
 }
 
-}  // namespace
+}  // namespace touching_bodies_test
 }  // namespace subvol

@@ -14,7 +14,7 @@
 #include "subvol/sample.h"
 
 namespace subvol {
-namespace {
+namespace sample_centers_test {
 
 constexpr double kFloatTol = 2e-6;  // values and derivatives are 32-bit floats
 
@@ -106,5 +106,5 @@ TEST(SampleCenters, HaveLessErrorThanAsManyInAFinerGrid) {
     }
 }
 
-}  // namespace
+}  // namespace sample_centers_test
 }  // namespace subvol

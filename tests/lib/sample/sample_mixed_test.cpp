@@ -10,7 +10,7 @@
 #include "subvol/rbf_field.h"
 
 namespace subvol {
-namespace {
+namespace sample_mixed_test {
 
 using namespace test;
 
@@ -73,5 +73,5 @@ TEST(SampleMixed, RefusesWhatItCannotSample) {
     expect_error(ErrorCode::InvalidInput, "scalars", [&] { static_cast<void>(sample_rbf_points(mesh)); });
 }
 
-}  // namespace
+}  // namespace sample_mixed_test
 }  // namespace subvol

@@ -9,7 +9,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace sample_tables_test {
 
 HexMesh twisted(HexMesh mesh, double angle) {
     for (Vec3& p : mesh.points) {
@@ -59,5 +59,5 @@ TEST(SampleTables, AreForOneKernelAtEachControlPoint) {
     EXPECT_THROW((void)tables.apply(make_model("ball", 3)), Error);
 }
 
-}  // namespace
+}  // namespace sample_tables_test
 }  // namespace subvol

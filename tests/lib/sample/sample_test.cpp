@@ -12,7 +12,7 @@
 #include "subvol/mesh_report.h"
 
 namespace subvol {
-namespace {
+namespace sample_test {
 
 TEST(Sample, CountsEveryEntityOnce) {
     HexMesh mesh = test::make_nested_cubes(2);
@@ -154,5 +154,5 @@ TEST(Sample, RefusesOptionsOutOfRange) {
     EXPECT_THROW((void)sample_rbf_points(mesh, {.kernel = CompactKernel{.radius = 1}}), Error);
 }
 
-}  // namespace
+}  // namespace sample_test
 }  // namespace subvol

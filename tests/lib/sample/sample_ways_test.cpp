@@ -17,7 +17,7 @@
 #include "subvol/topology.h"
 
 namespace subvol {
-namespace {
+namespace sample_ways_test {
 
 /// Smooth on the scale of a cell, so that orders of convergence can be seen.
 void put_wave(HexMesh& mesh) {
@@ -325,5 +325,5 @@ TEST(SampleWays, RefuseOptionsOutOfRange) {
     EXPECT_THROW((void)sample_rbf_points(mesh, {.footprint = Footprint{.camera = {}, .width_px = 0}}), Error);
 }
 
-}  // namespace
+}  // namespace sample_ways_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace value_rule_test {
 
 double rmse_of(const HexMesh& mesh, ValueRule rule, const Kernel& kernel) {
     const auto values = values_at_new_points(mesh, "f", rule, kernel);
@@ -124,5 +124,5 @@ TEST(ValueRule, TheFieldIsNamedOrTheFirstOfOneChannel) {
     test::expect_error(ErrorCode::InvalidInput, "no field \"three\"", [&] { (void)values("three"); });
 }
 
-}  // namespace
+}  // namespace value_rule_test
 }  // namespace subvol

@@ -12,7 +12,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace eigenvalue_test {
 
 /// The neighbourhood of a point: each triangle is a hexahedron at the point, its vertices are the directions of the
 /// hexahedron's edges. A closed surface gives an interior point, one with a rim a boundary point.
@@ -254,5 +254,5 @@ TEST(Eigenvalues, MoreLayersAddOnlySmallOnes) {
     }
 }
 
-}  // namespace
+}  // namespace eigenvalue_test
 }  // namespace subvol

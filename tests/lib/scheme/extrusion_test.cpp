@@ -13,7 +13,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace extrusion_test {
 
 constexpr double kRounding = 1e-13;  // a few hundred double operations on coordinates of size one
 
@@ -178,5 +178,5 @@ TEST(Bsxw, OfAnExtrusionIsTheSurfaceAverageInSection) {
     }
 }
 
-}  // namespace
+}  // namespace extrusion_test
 }  // namespace subvol

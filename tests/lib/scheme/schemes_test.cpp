@@ -13,7 +13,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace schemes_test {
 
 constexpr double kRounding = 1e-13;  // a few hundred double operations on coordinates of size one
 
@@ -263,5 +263,5 @@ TEST(Bsxw, IsASplitAndAnAverage) {
     }
 }
 
-}  // namespace
+}  // namespace schemes_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace stencil_table_test {
 
 HexMesh irregular() {
     HexMesh mesh = test::make_nested_cubes(3);
@@ -142,5 +142,5 @@ TEST(StencilTable, RefusesDataOfAnotherSize) {
     test::expect_error(ErrorCode::InvalidInput, "7 values", [&] { (void)tables.apply(std::span<const double>(seven), 1); });
 }
 
-}  // namespace
+}  // namespace stencil_table_test
 }  // namespace subvol

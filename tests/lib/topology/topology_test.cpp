@@ -15,7 +15,7 @@
 #include "subvol/surface.h"
 
 namespace subvol {
-namespace {
+namespace topology_test {
 
 TEST(Topology, CountsABox) {
     const auto report = inspect(test::make_box(2, 2, 2));
@@ -170,5 +170,5 @@ TEST(ChildTopology, RefusesMoreEdgesThanAnIndexCounts) {
                        [&] { detail::check_child(plate(12'000)); });
 }
 
-}  // namespace
+}  // namespace topology_test
 }  // namespace subvol

@@ -13,7 +13,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace hierarchy_test {
 
 using test::expect_error;
 
@@ -160,5 +160,5 @@ TEST(Hierarchy, SaysWhyThereIsNone) {
                  [&] { (void)in_hierarchy(find_hierarchy(test::make_box(2, 2, 2)), std::vector<double>(5), 1); });
 }
 
-}  // namespace
+}  // namespace hierarchy_test
 }  // namespace subvol

@@ -16,7 +16,7 @@
 #include "wavelet_format.h"
 
 namespace subvol {
-namespace {
+namespace wavelet_file_test {
 
 using test::error_of;
 using test::expect_error;
@@ -171,5 +171,5 @@ TEST_F(WaveletFile, HostileContentsAreRefused) {
     }
 }
 
-}  // namespace
+}  // namespace wavelet_file_test
 }  // namespace subvol

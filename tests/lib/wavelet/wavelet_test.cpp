@@ -14,7 +14,7 @@
 #include "subvol/refine.h"
 
 namespace subvol {
-namespace {
+namespace wavelet_test {
 
 using test::expect_error;
 
@@ -319,5 +319,5 @@ TEST(Wavelet, RefusesWhatIsNotOfTheBasis) {
                  [&] { (void)wavelet_basis(build_topology(test::make_box(1, 1, 1)), {.levels = 11}); });
 }
 
-}  // namespace
+}  // namespace wavelet_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace clip_test {
 
 /// The methods of the command.
 enum class Method { Tets, Dense, Grid, Pt, Lists, Havs, Cpu, Gl, Sheets };
@@ -266,5 +266,5 @@ TEST(Clip, WrongPlanesAndBoxesAreRefused) {
     EXPECT_NO_THROW(validate({.planes = {{{0, 0, 0}, {0, 0, 1e-300}}}}));
 }
 
-}  // namespace
+}  // namespace clip_test
 }  // namespace subvol

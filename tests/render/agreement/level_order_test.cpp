@@ -12,7 +12,7 @@
 #include "subvol/transfer_function.h"
 
 namespace subvol {
-namespace {
+namespace level_order_test {
 
 struct Sequence {
     const char* model;
@@ -44,7 +44,7 @@ TEST_P(Levels, AreOfTheSecondOrderByDenseGridsAndByTetrahedra) {
     const auto order = [&](const std::string& name, const std::function<Image(int)>& draw) {
         std::vector<double> errors;
         for (int l = 1; l <= kCompared; ++l) {
-            errors.push_back(test::rms(draw(l), limit));
+            errors.push_back(test::rmse(draw(l), limit));
             RecordProperty(name + "_rms_1e6_level_" + std::to_string(l), std::to_string(1e6 * errors.back()));
         }
         return std::log2(errors.front() / errors.back()) / (kCompared - 1);
@@ -56,5 +56,5 @@ TEST_P(Levels, AreOfTheSecondOrderByDenseGridsAndByTetrahedra) {
 INSTANTIATE_TEST_SUITE_P(Models, Levels, testing::Values(Sequence{"twist", 4, 1}, Sequence{"ball", 2, 0.4}),
                          [](const auto& sequence) { return std::string(sequence.param.model); });
 
-}  // namespace
+}  // namespace level_order_test
 }  // namespace subvol

@@ -10,7 +10,7 @@
 #include "subvol/render_field.h"
 
 namespace subvol {
-namespace {
+namespace reference_agreement_test {
 
 using test::evaluate;
 using test::largest_difference;
@@ -124,5 +124,5 @@ TEST_P(FromEverywhere, FiveOrSixTetrahedraShowTheSameLinearField) {
 INSTANTIATE_TEST_SUITE_P(Cameras, FromEverywhere, testing::ValuesIn(kPlaces),
                          [](const auto& place) { return std::string(place.param.name); });
 
-}  // namespace
+}  // namespace reference_agreement_test
 }  // namespace subvol

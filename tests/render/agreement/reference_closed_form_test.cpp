@@ -13,7 +13,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace reference_closed_form_test {
 
 using test::Reference;
 
@@ -212,11 +212,11 @@ TEST_P(ClosedForm, GaussianIsOfSecondOrderAndExtrapolatesToTheClosedForm) {
     for (std::size_t i = 0; i < extrapolated.rgba.size(); ++i) {
         extrapolated.rgba[i] += (fine.rgba[i] - middle.rgba[i]) / 3;
     }
-    RecordProperty("rms_coarse_1e9", std::to_string(1e9 * test::rms(coarse, exact)));
-    RecordProperty("rms_fine_1e9", std::to_string(1e9 * test::rms(fine, exact)));
-    RecordProperty("rms_extrapolated_1e9", std::to_string(1e9 * test::rms(extrapolated, exact)));
-    EXPECT_NEAR(std::log2(test::rms(coarse, exact) / test::rms(fine, exact)) / 2, 2, 0.2);
-    EXPECT_LT(test::rms(extrapolated, exact), kTol);
+    RecordProperty("rms_coarse_1e9", std::to_string(1e9 * test::rmse(coarse, exact)));
+    RecordProperty("rms_fine_1e9", std::to_string(1e9 * test::rmse(fine, exact)));
+    RecordProperty("rms_extrapolated_1e9", std::to_string(1e9 * test::rmse(extrapolated, exact)));
+    EXPECT_NEAR(std::log2(test::rmse(coarse, exact) / test::rmse(fine, exact)) / 2, 2, 0.2);
+    EXPECT_LT(test::rmse(extrapolated, exact), kTol);
 }
 
 constexpr int kBallLevel = 1;  // of dense grids
@@ -302,5 +302,5 @@ TEST_P(ClosedForm, BallIsReachedWithItsOrder) {
 INSTANTIATE_TEST_SUITE_P(References, ClosedForm, testing::ValuesIn(test::kReferences),
                          [](const auto& reference) { return test::name_of(reference.param); });
 
-}  // namespace
+}  // namespace reference_closed_form_test
 }  // namespace subvol

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "render/hex_meshes.h"
+#include "render/image_differences.h"
 #include "render/voxel_box.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
@@ -30,22 +31,6 @@ inline void PrintTo(Reference reference, std::ostream* out) {
 
 [[nodiscard]] inline bool needs_gl(Reference reference) {
     return reference == Reference::ProjectedTopological || reference == Reference::ProjectedLists;
-}
-
-inline double largest_difference(const Image& a, const Image& b) {
-    double largest = a.rgba.size() == b.rgba.size() ? 0 : 1e30;
-    for (std::size_t i = 0; i < std::min(a.rgba.size(), b.rgba.size()); ++i) {
-        const double difference = std::abs(double{a.rgba[i]} - double{b.rgba[i]});
-        if (!(difference <= largest)) largest = difference;  // NaN counts
-    }
-    return largest;
-}
-
-/// The largest difference over all four channels.
-inline double rms(const Image& a, const Image& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
-    return std::sqrt(sum / static_cast<double>(a.rgba.size()));
 }
 
 /// Draws a field on a mesh; dense grids at `levels` of MCQ. Not for voxels, which have no mesh.

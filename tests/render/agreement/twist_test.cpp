@@ -13,7 +13,7 @@
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace twist_test {
 
 constexpr int kCells = 20, kSize_px = 96;
 
@@ -78,5 +78,5 @@ TEST_P(TwistedBlock, FewKernelsShowWhatManyShow) {
 INSTANTIATE_TEST_SUITE_P(TransferFunctions, TwistedBlock, testing::Bool(),
                          [](const auto& tested) { return tested.param ? "Sharp" : "Smooth"; });
 
-}  // namespace
+}  // namespace twist_test
 }  // namespace subvol

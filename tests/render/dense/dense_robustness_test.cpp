@@ -18,7 +18,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace dense_robustness_test {
 
 constexpr double kLengthTol = 1e-4;  // of the diagonal: the requirement; pictures are floats, 2e-7 of it
 constexpr int kSize = 9;             // odd: there is a ray in the middle
@@ -81,5 +81,5 @@ INSTANTIATE_TEST_SUITE_P(Collection, RealDense,
                              return name.substr(0, name.find('.'));
                          });
 
-}  // namespace
+}  // namespace dense_robustness_test
 }  // namespace subvol

@@ -9,6 +9,7 @@
 
 #include "render/constant_optics.h"
 #include "render/hex_meshes.h"
+#include "render/image_differences.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 #include "subvol/model.h"
@@ -16,7 +17,9 @@
 #include "subvol/render_tets.h"
 
 namespace subvol {
-namespace {
+namespace render_dense_test {
+
+using test::largest_difference;
 
 using test::constant_alpha;
 using test::constant_optics;
@@ -58,13 +61,6 @@ double rms(const Image& a, const Image& b) {
         if (i % 4 != 3) sum += std::pow(double{a.rgba[i]} - double{b.rgba[i]}, 2);
     }
     return std::sqrt(sum / (0.75 * double(a.rgba.size())));
-}
-
-double largest_difference(const Image& a, const Image& b) {
-    double largest = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i)
-        largest = std::max(largest, std::abs(double{a.rgba[i]} - double{b.rgba[i]}));
-    return largest;
 }
 
 /// The same volume drawn by render_tets after `refine`.
@@ -311,5 +307,5 @@ TEST(RenderDense, RefusesWrongInput) {
     EXPECT_THROW((void)render_dense(valued(mesh, ones), {}, view, optics, {.samples = 0}), Error);
 }
 
-}  // namespace
+}  // namespace render_dense_test
 }  // namespace subvol

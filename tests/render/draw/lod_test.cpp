@@ -20,7 +20,7 @@
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace lod_test {
 
 View view_from(const Box& box, double distance, int size) {
     const Vec3 eye = box.center() + distance * box.diagonal() * glm::normalize(Vec3(1, -2, .7));
@@ -178,5 +178,5 @@ TEST(LevelOfDetail, PlainSumsKeepTheMean) {
     }
 }
 
-}  // namespace
+}  // namespace lod_test
 }  // namespace subvol

@@ -10,7 +10,7 @@
 #include "subvol/render_tets.h"
 
 namespace subvol {
-namespace {
+namespace progressive_test {
 
 const Camera kCamera{.eye = {2.6, -4.2, 2.0}, .target = {-.55, 0, 0}, .up = {0, 0, 1}};
 
@@ -152,5 +152,5 @@ TEST(Progressive, RefusesImpossibleTimes) {
                  Error);
 }
 
-}  // namespace
+}  // namespace progressive_test
 }  // namespace subvol

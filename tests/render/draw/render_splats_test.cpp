@@ -6,12 +6,15 @@
 #include <numbers>
 
 #include "lib/test_meshes.h"
+#include "render/image_differences.h"
 #include "subvol/error.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace render_splats_test {
+
+using test::largest_difference;
 
 Optics constant_optics(double alpha, double unit, const Vec3& color = {1, .5, .25}) {
     return Optics({.color = {{0, color}, {1, color}}, .opacity = {{0, alpha}, {1, alpha}}}, unit);
@@ -33,13 +36,6 @@ RbfVolume sample(const HexMesh& mesh, int per_edge = 1) {
 
 Camera orthographic(double height, const Vec3& eye = {2, -10, 2}) {
     return {.eye = eye, .target = eye + Vec3(0, 1, 0), .up = {0, 0, 1}, .ortho_height = height};
-}
-
-double largest_difference(const Image& a, const Image& b) {
-    double largest = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i)
-        largest = std::max(largest, std::abs(double(a.rgba[i]) - double(b.rgba[i])));
-    return largest;
 }
 
 std::vector<SplatMethod> methods() {
@@ -286,5 +282,5 @@ TEST(RenderSplats, RefusesWhatItCannotDraw) {
     EXPECT_THROW((void)render_splats(volume, view, optics, {.method = SplatMethod::Cpu, .shading = Shading{}}), Error);
 }
 
-}  // namespace
+}  // namespace render_splats_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace visible_points_test {
 
 Image picture(const RbfVolume& volume, const TransferFunction& function, const char* view) {
     return render_splats(volume, View(parse_camera(view, volume.bounds), 160, 160),
@@ -79,5 +79,5 @@ TEST(EmptySpaceLimits, RefusesChannelsAndKernelsThatItCannotBound) {
     EXPECT_THROW((void)drop_invisible(volume, 0, opaque_above(0)), Error);
 }
 
-}  // namespace
+}  // namespace visible_points_test
 }  // namespace subvol

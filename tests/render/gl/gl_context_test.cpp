@@ -13,7 +13,7 @@
 #include "subvol/error.h"
 
 namespace subvol {
-namespace {
+namespace gl_context_test {
 
 using detail::check_gl;
 using detail::GlBuffer;
@@ -190,5 +190,5 @@ TEST_F(GlPrograms, NameFileAndLineOfAnError) {
     EXPECT_NE(in_main.find("main.comp:4"), std::string::npos) << in_main;
 }
 
-}  // namespace
+}  // namespace gl_context_test
 }  // namespace subvol

@@ -16,7 +16,7 @@
 #include "subvol/error.h"
 
 namespace subvol {
-namespace {
+namespace gl_primitives_test {
 
 using detail::GlBuffer;
 using detail::GlCount;
@@ -216,5 +216,5 @@ TEST_F(GlPrimitives, RefuseWhatDoesNotFit) {
     EXPECT_THROW(ranges.find_ranges(small, 4, detail::kMostGlItems + 1, other), Error);
 }
 
-}  // namespace
+}  // namespace gl_primitives_test
 }  // namespace subvol

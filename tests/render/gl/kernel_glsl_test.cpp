@@ -16,7 +16,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace kernel_glsl_test {
 
 using detail::GlBuffer;
 using detail::GlContext;
@@ -118,5 +118,5 @@ TEST(KernelGlsl, EqualsCppToFloatAccuracy) {
     }
 }
 
-}  // namespace
+}  // namespace kernel_glsl_test
 }  // namespace subvol

@@ -8,6 +8,7 @@
 
 #include "render/constant_optics.h"
 #include "render/hex_meshes.h"
+#include "render/image_differences.h"
 #include "subvol/mesh_io.h"
 #include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
@@ -45,16 +46,6 @@ inline View orthographic_view(int width, int height) {
 
 inline View ball_view(int width, int height) {
     return {{.eye = {1.8, -2.9, 1.4}, .target = {0, 0, 0}, .up = {0, 0, 1}, .fovy_deg = 38}, width, height};
-}
-
-inline double largest_difference(const Image& a, const Image& b) {
-    EXPECT_EQ(a.rgba.size(), b.rgba.size());
-    double largest = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
-        const double difference = std::abs(double{a.rgba[i]} - double{b.rgba[i]});
-        if (!(difference <= largest)) largest = difference;  // NaN counts
-    }
-    return largest;
 }
 
 inline double waves(const Vec3& p) {

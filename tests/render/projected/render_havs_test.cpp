@@ -11,7 +11,7 @@
 #include "subvol/mesh_io.h"
 
 namespace subvol {
-namespace {
+namespace render_havs_test {
 
 using namespace test;
 
@@ -232,5 +232,5 @@ TEST_F(RenderHavs, RefusesWrongOptions) {
     }
 }
 
-}  // namespace
+}  // namespace render_havs_test
 }  // namespace subvol

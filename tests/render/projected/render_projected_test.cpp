@@ -10,7 +10,7 @@
 #include "subvol/model.h"
 
 namespace subvol {
-namespace {
+namespace render_projected_test {
 
 using namespace test;
 
@@ -247,5 +247,5 @@ TEST_F(RenderProjected, RefusesWrongInput) {
     EXPECT_THROW((void)render_projected(valued(mesh, 1.0), {}, slanted_view(4), constant_optics(), {.device = 99}), Error);
 }
 
-}  // namespace
+}  // namespace render_projected_test
 }  // namespace subvol

@@ -12,7 +12,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace tet_faces_test {
 
 TetMesh split(const HexMesh& mesh) {
     return build_tet_mesh(mesh, std::vector<double>(mesh.points.size(), 1.0));
@@ -116,5 +116,5 @@ TEST(TetFaces, ValuesInsideAreLinear) {
         EXPECT_NEAR(value_at(mesh, p), field(p), 1e-12);
 }
 
-}  // namespace
+}  // namespace tet_faces_test
 }  // namespace subvol

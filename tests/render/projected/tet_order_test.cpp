@@ -14,7 +14,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace tet_order_test {
 
 TetMesh split(const HexMesh& mesh) {
     return build_tet_mesh(mesh, std::vector<double>(mesh.points.size(), 1.0));
@@ -132,5 +132,5 @@ TEST(ListParts, HoldEveryPixelOnceAndNoMoreThanTheyMay) {
     EXPECT_THROW((void)detail::split_into_parts(counts, kWidth, kHeight, 39), Error);
 }
 
-}  // namespace
+}  // namespace tet_order_test
 }  // namespace subvol

@@ -10,7 +10,7 @@
 #include "subvol/error.h"
 
 namespace subvol {
-namespace {
+namespace render_field_test {
 
 Optics constant_optics() {
     return {{{{0, {1, 0.5, 0.25}}}, {{0, 0.5}}}, 1.0};
@@ -121,5 +121,5 @@ TEST(RenderField, RefusesWrongOptions) {
     EXPECT_THROW((void)render_field(ball, unit_ball_box(), perspective(2), constant_optics(), {.samples = 0}), Error);
 }
 
-}  // namespace
+}  // namespace render_field_test
 }  // namespace subvol

@@ -15,7 +15,7 @@
 #include "subvol/render_field.h"
 
 namespace subvol {
-namespace {
+namespace render_grid_test {
 
 // Images are in single precision, all before in double.
 constexpr double kFloatTol = 1e-6;
@@ -273,5 +273,5 @@ TEST(RenderGrid, RefusesWrongInput) {
     EXPECT_THROW((void)render_grid(flat, view_of(2), constant_optics()), Error);
 }
 
-}  // namespace
+}  // namespace render_grid_test
 }  // namespace subvol

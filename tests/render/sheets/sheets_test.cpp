@@ -13,7 +13,7 @@
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace sheets_test {
 
 /// The largest and the RMS difference of two linear pictures, and their mean brightness.
 struct Difference {
@@ -170,5 +170,5 @@ TEST_F(Sheets, ArePixelForPixelTheSameEveryTime) {
     EXPECT_EQ(first.rgba, splatter.draw(view(), optics(true)).image.rgba);
 }
 
-}  // namespace
+}  // namespace sheets_test
 }  // namespace subvol

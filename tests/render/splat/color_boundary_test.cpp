@@ -8,7 +8,7 @@
 #include "subvol/transfer_function.h"
 
 namespace subvol {
-namespace {
+namespace color_boundary_test {
 
 TEST(ColorBoundary, PixelsGetTheColorOfTheirPlaceOnTheSurface) {
     HexMesh mesh = test::make_box(1, 1, 1);
@@ -35,5 +35,5 @@ TEST(ColorBoundary, PixelsGetTheColorOfTheirPlaceOnTheSurface) {
                        [&] { color_boundary(image, boundary.surface, std::vector<double>(3), view, optics, flat); });
 }
 
-}  // namespace
+}  // namespace color_boundary_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "subvol/picture_look.h"
 
 namespace subvol {
-namespace {
+namespace draw_sheets_test {
 
 constexpr int kSize = 48;
 
@@ -126,5 +126,5 @@ TEST(DrawSheets, RefuseWhatDoesNotFit) {
     test::expect_error(ErrorCode::InvalidInput, "3 values for 4 points", [&] { draw(image); });
 }
 
-}  // namespace
+}  // namespace draw_sheets_test
 }  // namespace subvol

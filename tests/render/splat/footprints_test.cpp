@@ -12,7 +12,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace footprints_test {
 
 const SplatOptions kFootprints{.method = SplatMethod::Footprints};
 
@@ -152,5 +152,5 @@ TEST(Footprints, RefuseWhatTheyDoNotKnow) {
     expect_error(ErrorCode::InvalidInput, "radial", [&] { Splatter(separable, kFootprints); });
 }
 
-}  // namespace
+}  // namespace footprints_test
 }  // namespace subvol::test

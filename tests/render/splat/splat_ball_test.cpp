@@ -13,7 +13,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace splat_ball_test {
 
 constexpr int kSize_px = 96;
 
@@ -75,5 +75,5 @@ TEST(SplatBall, OneKernelAControlVertexIsNearTheLimit) {
     }
 }
 
-}  // namespace
+}  // namespace splat_ball_test
 }  // namespace subvol::test

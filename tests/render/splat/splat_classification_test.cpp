@@ -8,7 +8,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace splat_classification_test {
 
 constexpr int kSize_px = 64;
 
@@ -127,5 +127,5 @@ TEST(SplatClassification, ColorsOfASecondChannelAndLightAreOfSecondOrder) {
     EXPECT_GT(coarse / fine, 3.3);
 }
 
-}  // namespace
+}  // namespace splat_classification_test
 }  // namespace subvol::test

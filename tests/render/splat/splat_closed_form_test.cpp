@@ -9,7 +9,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace splat_closed_form_test {
 
 constexpr double kSigma = 0.43;  // of the kernels below, whose sample interval is 1
 
@@ -216,5 +216,5 @@ TEST(SplatClosedForm, CellCenteredPointsWithoutABoundaryFillTheirBox) {
     }
 }
 
-}  // namespace
+}  // namespace splat_closed_form_test
 }  // namespace subvol::test

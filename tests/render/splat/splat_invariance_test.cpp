@@ -11,7 +11,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace splat_invariance_test {
 
 constexpr int kWidth_px = 100, kHeight_px = 70;
 
@@ -37,7 +37,8 @@ struct Frame {
     View view;
     detail::SplatFrame frame;
 
-    Frame(const RbfVolume& volume, const Optics& optics, const SplatOptions& options, const View& seen = test::view())
+    Frame(const RbfVolume& volume, const Optics& optics, const SplatOptions& options,
+          const View& seen = splat_invariance_test::view())
         : scene(detail::make_scene(volume, options)), classification(classify(scene, optics)), view(seen) {
         prepare_frame(frame, scene, view, classification, options.sheets, nullptr);
         find_interval_ends(frame);
@@ -163,5 +164,5 @@ TEST(SplatInvariance, WhereNothingCanBeSeenNothingIsDrawn) {
     EXPECT_TRUE(std::all_of(result.image.rgba.begin(), result.image.rgba.end(), [](float v) { return v == 0; }));
 }
 
-}  // namespace
+}  // namespace splat_invariance_test
 }  // namespace subvol::test

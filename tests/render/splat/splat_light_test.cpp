@@ -6,7 +6,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace splat_light_test {
 
 constexpr int kSize_px = 48;
 
@@ -79,5 +79,5 @@ TEST(SplatLight, AConstantFieldHasNoSurfaces) {
     EXPECT_LT(largest_difference(draw(Shading{}), draw({})), 2e-6);  // other loops: the rounding of products of 200 floats
 }
 
-}  // namespace
+}  // namespace splat_light_test
 }  // namespace subvol::test

@@ -11,7 +11,7 @@
 #include "splat_scenes.h"
 
 namespace subvol::test {
-namespace {
+namespace splat_oracle_test {
 
 // Sums are floats, right to 1e-6 of the range. The slope of the transfer function multiplies their error: one or two for the
 // smooth one, .9 over 1/32 of the range for the sharp one.
@@ -208,5 +208,5 @@ TEST(SplatOracle, EmissionIsMixedWithExtinctionToThirdOrder) {
     expect_same(ball(), {.emission = Emission::Exact}, {.sheets = 60}, 60 * std::pow(1.4 / 30, 2) * (2. / 30) / 12);
 }
 
-}  // namespace
+}  // namespace splat_oracle_test
 }  // namespace subvol::test

@@ -6,6 +6,7 @@
 
 #include "lib/test_meshes.h"
 #include "render/hex_meshes.h"
+#include "render/image_differences.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
 #include "subvol/sample.h"
@@ -53,20 +54,6 @@ inline Camera perspective_camera() {
 
 inline Camera orthographic_camera() {
     return {.eye = {3, -4, 2.5}, .target = {0, .03, 0}, .up = {0, 0, 1}, .ortho_height = 3.2};
-}
-
-inline double largest_difference(const Image& a, const Image& b) {
-    double largest = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i)
-        largest = std::max(largest, std::abs(static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i])));
-    return largest;
-}
-
-inline double rmse(const Image& a, const Image& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i)
-        sum += std::pow(static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]), 2);
-    return std::sqrt(sum / static_cast<double>(a.rgba.size()));
 }
 
 }  // namespace subvol::test

@@ -7,7 +7,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace splat_shadow_test {
 
 /// A light from above in pictures whose `up` is +z, and no other.
 const Shading kFromAbove{.ambient = 0, .diffuse = 0, .specular = 0, .key = {0, 1, 0}};
@@ -160,5 +160,5 @@ TEST(SplatShadows, WhatCannotBeDrawnIsRefused) {
                  [&] { Splatter(volume, {.method = SplatMethod::Sheets, .shadows = true}); });
 }
 
-}  // namespace
+}  // namespace splat_shadow_test
 }  // namespace subvol::test

@@ -10,7 +10,7 @@
 #include "subvol/splat.h"
 
 namespace subvol::test {
-namespace {
+namespace thin_bodies_test {
 
 constexpr int kSize_px = 60;
 
@@ -129,5 +129,5 @@ TEST(ThinBodies, AutomaticSheetsFollowTheKernels) {
     EXPECT_NEAR(sheets_of(32), 2 * sheets_of(16), 6) << "cells of half the size need twice as many";
 }
 
-}  // namespace
+}  // namespace thin_bodies_test
 }  // namespace subvol::test

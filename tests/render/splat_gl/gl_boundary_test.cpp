@@ -11,7 +11,7 @@
 #include "lib/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace gl_boundary_test {
 
 using detail::GlBoundary;
 using detail::GlStages;
@@ -103,5 +103,5 @@ TEST_F(GlBoundaries, ViewsThatNeedMoreRoomGetIt) {
     }
 }
 
-}  // namespace
+}  // namespace gl_boundary_test
 }  // namespace subvol

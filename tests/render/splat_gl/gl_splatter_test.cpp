@@ -16,7 +16,7 @@
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace gl_splatter_test {
 
 using detail::Drawn;
 using detail::GlSplatter;
@@ -265,5 +265,5 @@ TEST_F(GlSplats, RefusesADeviceThatIsNotThere) {
     EXPECT_THROW(Splatter(volume, {.device = 99}), Error);
 }
 
-}  // namespace
+}  // namespace gl_splatter_test
 }  // namespace subvol

@@ -7,11 +7,14 @@
 
 #include "render/constant_optics.h"
 #include "render/hex_meshes.h"
+#include "render/image_differences.h"
 #include "subvol/error.h"
 #include "subvol/render_tets.h"
 
 namespace subvol {
-namespace {
+namespace render_tets_test {
+
+using test::largest_difference;
 
 using test::constant_alpha;
 using test::constant_optics;
@@ -82,13 +85,6 @@ void expect_ramp_box(const Image& image, const View& view, const Vec3& gradient)
             }
         }
     }
-}
-
-double largest_difference(const Image& a, const Image& b) {
-    double largest = 0;
-    for (std::size_t i = 0; i < a.rgba.size(); ++i)
-        largest = std::max(largest, std::abs(double{a.rgba[i]} - double{b.rgba[i]}));
-    return largest;
 }
 
 TEST(RenderTets, ConstantSlabIsBeerLambert) {
@@ -376,5 +372,5 @@ TEST(RenderTets, ReportsProgressAndStops) {
     }
 }
 
-}  // namespace
+}  // namespace render_tets_test
 }  // namespace subvol

@@ -14,7 +14,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace tet_packet_test {
 
 const detail::RayClip kNoClip;
 
@@ -107,5 +107,5 @@ TEST(TetPackets, StopWhereTheLightIsUsedUp) {
     Packets(test::jittered_box(12, 0.3, 4), 1e-4).expect_same(600, 200);
 }
 
-}  // namespace
+}  // namespace tet_packet_test
 }  // namespace subvol

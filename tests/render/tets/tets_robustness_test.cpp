@@ -20,7 +20,7 @@
 namespace subvol {
 
 using namespace detail;
-namespace {
+namespace tets_robustness_test {
 
 const detail::RayClip kNoClip;
 
@@ -139,5 +139,5 @@ INSTANTIATE_TEST_SUITE_P(Collection, RealTets,
                              return name.substr(0, name.find('.'));
                          });
 
-}  // namespace
+}  // namespace tets_robustness_test
 }  // namespace subvol

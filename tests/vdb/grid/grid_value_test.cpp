@@ -8,7 +8,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace grid_value_test {
 
 using namespace test;
 
@@ -41,5 +41,5 @@ TEST(GridValue, NothingFarAwayOrNowhere) {
     EXPECT_FALSE(grid.value(Vec3(0.5, std::numeric_limits<double>::quiet_NaN(), 0.5)));
 }
 
-}  // namespace
+}  // namespace grid_value_test
 }  // namespace subvol

@@ -13,7 +13,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace grids_test {
 
 using namespace test;
 
@@ -176,5 +176,5 @@ TEST(VdbGrids, ConstantFieldsBecomeTiles) {
     EXPECT_EQ(constant.value(Vec3(0.4)), 0.5);
 }
 
-}  // namespace
+}  // namespace grids_test
 }  // namespace subvol

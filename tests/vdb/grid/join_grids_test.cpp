@@ -10,7 +10,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace join_grids_test {
 
 using namespace test;
 
@@ -95,5 +95,5 @@ TEST(JoinGrids, RefusesWhatDoesNotFit) {
     EXPECT_THROW((void)rasterize_share(mesh, kField, {.voxel_size_world = 0.02}, 3, 2), Error);
 }
 
-}  // namespace
+}  // namespace join_grids_test
 }  // namespace subvol

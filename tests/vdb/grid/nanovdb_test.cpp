@@ -14,7 +14,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace nanovdb_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -91,5 +91,5 @@ TEST_F(NanoVdb, OfNothing) {
     EXPECT_EQ(nanovdb::io::readGrids((folder_ / "a.nvdb").string()).front().grid<float>()->activeVoxelCount(), 0u);
 }
 
-}  // namespace
+}  // namespace nanovdb_test
 }  // namespace subvol

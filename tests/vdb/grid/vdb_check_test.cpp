@@ -21,7 +21,7 @@
 
 namespace subvol::test {
 
-namespace {
+namespace vdb_check_test {
 
 using namespace detail;
 using openvdb::Coord;
@@ -265,6 +265,6 @@ TEST_F(VdbCheck, DamagedGridsAreReadOrRefused) {
     EXPECT_GT(refused, runs / 2);
 }
 
-}  // namespace
+}  // namespace vdb_check_test
 
 }  // namespace subvol::test

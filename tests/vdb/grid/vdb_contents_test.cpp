@@ -11,7 +11,7 @@
 #include "subvol/rasterize.h"
 
 namespace subvol {
-namespace {
+namespace vdb_contents_test {
 
 /// A box with a scalar x and a vector (x, 2y, 3).
 HexMesh box_with_fields() {
@@ -76,5 +76,5 @@ TEST(VdbContents, VoxelsAreClamped) {
     test::expect_error(ErrorCode::InvalidInput, "components", [&] { clamp_voxels(grids[1], {{0}, {1}}); });
 }
 
-}  // namespace
+}  // namespace vdb_contents_test
 }  // namespace subvol

@@ -15,7 +15,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace vdb_file_test {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -176,5 +176,5 @@ TEST_F(VdbFile, CutOffFilesAreRefused) {
     }
 }
 
-}  // namespace
+}  // namespace vdb_file_test
 }  // namespace subvol

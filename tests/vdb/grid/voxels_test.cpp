@@ -12,7 +12,7 @@
 #include "subvol/vdb_grid.h"
 
 namespace subvol {
-namespace {
+namespace voxels_test {
 
 /// Compares what the cursor returns for random voxels with the field at their centres.
 void expect_cursor_fits_field(const VdbGrid& grid) {
@@ -69,5 +69,5 @@ TEST(Voxels, OfAFileWithTranslation) {
     expect_cursor_fits_field(read_vdb(std::filesystem::path(folder) / "arnold_smoke.vdb").front());
 }
 
-}  // namespace
+}  // namespace voxels_test
 }  // namespace subvol

@@ -25,7 +25,7 @@ namespace subvol::test {
 
 using namespace detail;
 
-namespace {
+namespace vdb_points_test {
 
 using testing::HasSubstr;
 
@@ -277,6 +277,6 @@ TEST_F(VdbPoints, WhatCannotBeWrittenLeavesNothing) {
     EXPECT_EQ(file_count(), 1u);
 }
 
-}  // namespace
+}  // namespace vdb_points_test
 
 }  // namespace subvol::test

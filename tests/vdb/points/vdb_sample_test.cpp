@@ -15,7 +15,7 @@
 #include "subvol/rbf_field.h"
 
 namespace subvol {
-namespace {
+namespace vdb_sample_test {
 
 using openvdb::Coord;
 using Function = std::function<double(const Vec3&)>;
@@ -205,5 +205,5 @@ TEST_F(VdbSample, SmokeOfAnotherProgramAtItsVoxels) {
     }
 }
 
-}  // namespace
+}  // namespace vdb_sample_test
 }  // namespace subvol

@@ -17,7 +17,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace accuracy_test {
 
 using namespace test;
 
@@ -242,5 +242,5 @@ TEST(VdbAccuracy, ActiveVolumeIsTheMeshsToFirstOrder) {
     EXPECT_GT(order, 1.0);
 }
 
-}  // namespace
+}  // namespace accuracy_test
 }  // namespace subvol

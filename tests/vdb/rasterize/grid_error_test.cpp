@@ -11,7 +11,7 @@
 #include "vdb/each_voxel.h"
 
 namespace subvol {
-namespace {
+namespace grid_error_test {
 
 const std::vector<std::string> kDensity{"density"};
 
@@ -73,5 +73,5 @@ TEST(GridError, OfSixteenBitsIsLargerByTheirRounding) {
     EXPECT_GT(grid_error(grids.front(), mesh, "density", {.half = true}).rms, full);
 }
 
-}  // namespace
+}  // namespace grid_error_test
 }  // namespace subvol

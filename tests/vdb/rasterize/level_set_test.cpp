@@ -14,7 +14,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace level_set_test {
 
 using namespace test;
 
@@ -191,5 +191,5 @@ TEST(LevelSet, RefusesWhatCannotBe) {
     EXPECT_THROW((void)volume_and_level_set(sheet, {.voxel_size_world = 2e-5}), Error);
 }
 
-}  // namespace
+}  // namespace level_set_test
 }  // namespace subvol

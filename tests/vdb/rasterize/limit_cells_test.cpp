@@ -17,7 +17,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace limit_cells_test {
 
 using namespace test;
 
@@ -201,5 +201,5 @@ TEST(LimitCells, OfAnotherMeshAreRefused) {
     EXPECT_THROW((void)rasterized(mesh, 0.1, limit), Error);
 }
 
-}  // namespace
+}  // namespace limit_cells_test
 }  // namespace subvol

@@ -15,7 +15,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace mesh_motion_test {
 
 using namespace test;
 
@@ -178,5 +178,5 @@ TEST(MeshMotion, TablesOfAnotherMeshAreRefused) {
     EXPECT_THROW((void)rasterize(turned_cell, field, options), Error);
 }
 
-}  // namespace
+}  // namespace mesh_motion_test
 }  // namespace subvol

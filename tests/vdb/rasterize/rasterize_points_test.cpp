@@ -13,7 +13,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace rasterize_points_test {
 
 using namespace test;
 
@@ -102,5 +102,5 @@ TEST(RasterizePoints, RefusesWhatCannotBe) {
     EXPECT_THROW((void)rasterize_points(volume, kFirst, {.voxel_size_world = -1}), Error);
 }
 
-}  // namespace
+}  // namespace rasterize_points_test
 }  // namespace subvol

@@ -11,7 +11,7 @@
 #include "vdb/test_meshes.h"
 
 namespace subvol {
-namespace {
+namespace rasterize_test {
 
 using namespace test;
 
@@ -246,5 +246,5 @@ TEST(Rasterize, CanBeStopped) {
     EXPECT_EQ(code_of([&] { (void)rasterize(mesh, fields, {.progress = &progress}); }), ErrorCode::Cancelled);
 }
 
-}  // namespace
+}  // namespace rasterize_test
 }  // namespace subvol

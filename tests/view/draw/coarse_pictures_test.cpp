@@ -9,7 +9,7 @@
 #include "view/session/small_sessions.h"
 
 namespace subvol {
-namespace {
+namespace coarse_pictures_test {
 
 class CoarsePictures : public testing::Test {
 protected:
@@ -40,5 +40,5 @@ TEST_F(CoarsePictures, OfAnotherBodyShowItsOwnKernels) {
     EXPECT_EQ(coarse.image.rgba, PictureDrawer(kByCpu).draw(state, ball, 4).image.rgba);
 }
 
-}  // namespace
+}  // namespace coarse_pictures_test
 }  // namespace subvol

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace subvol {
-namespace {
+namespace camera_motion_test {
 
 constexpr double kRounding = 1e-12;  // of a few rotations
 
@@ -50,5 +50,5 @@ TEST(CameraMotion, ZoomScalesWhatIsAtTheTarget) {
     EXPECT_NEAR(after, 2 * before, 1e-9);
 }
 
-}  // namespace
+}  // namespace camera_motion_test
 }  // namespace subvol

@@ -8,7 +8,7 @@
 #include "subvol/view_session.h"
 
 namespace subvol {
-namespace {
+namespace cut_actions_test {
 
 class Cuts : public testing::Test {
 protected:
@@ -108,5 +108,5 @@ TEST_F(Cuts, AreRefusedInOneSentence) {
     EXPECT_EQ(session.state_json(), before);
 }
 
-}  // namespace
+}  // namespace cut_actions_test
 }  // namespace subvol

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -11,7 +12,7 @@
 #include "subvol/view_session.h"
 
 namespace subvol {
-namespace {
+namespace edit_test {
 
 constexpr double kRounding = 1e-12;
 
@@ -125,5 +126,5 @@ TEST_F(Editing, RefusesWhatCannotBeDone) {
     }
 }
 
-}  // namespace
+}  // namespace edit_test
 }  // namespace subvol

@@ -14,7 +14,7 @@
 #include "subvol/transfer_function.h"
 
 namespace subvol {
-namespace {
+namespace points_session_test {
 
 class PointsSession : public testing::Test {
 protected:
@@ -122,5 +122,5 @@ TEST_F(WaitingNowhere, SavesItsColoursForParaView) {
     EXPECT_THROW(session.run(R"({"save_tf": "map.txt"})"), Error);
 }
 
-}  // namespace
+}  // namespace points_session_test
 }  // namespace subvol

@@ -16,7 +16,7 @@
 #include "subvol/splat.h"
 
 namespace subvol {
-namespace {
+namespace view_session_test {
 
 const Vec3 kFromCorner(-1, 1, -1);
 
@@ -272,5 +272,5 @@ TEST(WrongLook, BecomesTheErrorOfThePicture) {
     EXPECT_NO_THROW((void)session.wait());
 }
 
-}  // namespace
+}  // namespace view_session_test
 }  // namespace subvol
