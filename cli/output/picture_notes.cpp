@@ -53,9 +53,10 @@ void PictureNotes::add_legend(Picture& picture) const {
     draw_legend(picture.image, function, *legend, ink);
 }
 
-PictureNotes make_notes(PictureArguments& arguments, const Optics& optics, const LegendOptions& legend, const HexMesh* mesh) {
+PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh) {
+    const LegendOptions& legend = colors.legend;
     const Vec3 behind = arguments.background_color();
-    PictureNotes notes{.axes = arguments.axes, .function = optics.function()};
+    PictureNotes notes{.axes = arguments.axes, .function = colors.optics.function()};
     notes.ink = Vec3(0.2126 * behind.x + 0.7152 * behind.y + 0.0722 * behind.z > 0.18 ? kDarkInk : kLightInk);
     if (arguments.edges) {
         if (mesh == nullptr) throw Error(ErrorCode::InvalidInput, "needs a mesh; this input has no cells", "--edges");

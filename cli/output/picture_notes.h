@@ -21,6 +21,12 @@ struct Picture {
 
 struct SheetScene;
 
+/// The colours of the pictures of a run, and the legend that explains them.
+struct ShownColors {
+    Optics optics;
+    LegendOptions legend;
+};
+
 /// What is drawn over the pictures of a run: sheets and curves, axes, edges of the control mesh, a legend beside them.
 struct PictureNotes {
     bool axes = false;
@@ -43,7 +49,6 @@ struct PictureNotes {
 /// on.
 ///
 /// mesh: the control mesh, which the notes refer to; null: there is none
-[[nodiscard]] PictureNotes make_notes(PictureArguments& arguments, const Optics& optics, const LegendOptions& legend,
-                                      const HexMesh* mesh);
+[[nodiscard]] PictureNotes make_notes(PictureArguments& arguments, const ShownColors& colors, const HexMesh* mesh);
 
 }  // namespace subvol::cli

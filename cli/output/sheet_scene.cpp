@@ -2,6 +2,7 @@
 #include "sheet_scene.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "input.h"
 #include "report.h"
@@ -25,6 +26,12 @@ int levels_of(const Sheets& sheets, std::optional<int> most) {
 
 void SheetScene::draw_into(Picture& picture, const View& view) const {
     draw_sheets(picture.image, picture.depth, drawn, boundary, view, optics, Shading{}, samples, clip);
+}
+
+Picture empty_picture(const View& view) {
+    Picture picture{Image(view.width(), view.height()), {}};
+    picture.depth.assign(picture.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
+    return picture;
 }
 
 std::shared_ptr<const SheetScene> make_sheet_scene(const HexMesh& mesh, const Sheets& sheets, RefineOptions refine,

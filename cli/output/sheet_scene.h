@@ -25,6 +25,9 @@ struct SheetScene {
     void draw_into(Picture& picture, const View& view) const;
 };
 
+/// The picture without cells, into which sheets are drawn.
+[[nodiscard]] Picture empty_picture(const View& view);
+
 /// Puts sheets and curves on the limit. Null if there are none.
 ///
 /// mesh:   with the field that is shown and, last, the one of the colours

@@ -75,6 +75,12 @@ void write_splats(LevelOfDetail& levels, const BoundaryValues& skin, const std::
     output.write(views, draw, report);
 }
 
+void write_splats(const RbfVolume& volume, double lod, const BoundaryValues& skin, const std::vector<View>& views,
+                  const Optics& optics, const SplatWork& work, PictureOutput& output, Report& report) {
+    LevelOfDetail levels(volume, lod, work.options.channel, report);
+    write_splats(levels, skin, views, optics, work, output, report);
+}
+
 void write_splats(BricksToSplats what, const std::vector<View>& views, const Optics& optics, const SplatWork& work,
                   PictureOutput& output, Report& report) {
     if (work.rows) what.options.rows = rows_of(*work.rows, views.front().height());

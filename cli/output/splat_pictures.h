@@ -35,6 +35,12 @@ struct SplatWork {
 void write_splats(LevelOfDetail& levels, const BoundaryValues& skin, const std::vector<View>& views, const Optics& optics,
                   const SplatWork& work, PictureOutput& output, Report& report);
 
+/// The same of a volume.
+///
+/// lod: of --lod; 0: all kernels
+void write_splats(const RbfVolume& volume, double lod, const BoundaryValues& skin, const std::vector<View>& views,
+                  const Optics& optics, const SplatWork& work, PictureOutput& output, Report& report);
+
 /// A mesh in bricks whose kernels are drawn.
 ///
 /// options: rows are those of the work
