@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdlib>
-#include <limits>
-#include <map>
 #include <utility>
 
 #include "assemble.h"
 #include "formats.h"
+#include "gmsh_cells.h"
 #include "gmsh_data.h"
 #include "gmsh_elements.h"
-#include "sharp_groups.h"
+#include "gmsh_groups.h"
 
 namespace subvol::detail {
 
@@ -18,12 +16,15 @@ namespace {
 // geometry.
 enum class Layout { V2, V40, V41 };
 
-constexpr std::int64_t kMostGroup = std::numeric_limits<std::int64_t>::max();
-
 class GmshReader {
 public:
     GmshReader(std::string_view text, std::string_view file, const ReadOptions& options)
-        : in_(text, file, TextScanner::Comments::None), file_(file), options_(options), values_(in_), groups_(options.sharp) {}
+        : in_(text, file, TextScanner::Comments::None),
+          file_(file),
+          options_(options),
+          values_(in_),
+          groups_(options.sharp),
+          cells_(in_, values_, nodes_, options_, found_) {}
 
     ReadResult read() {
         read_format();
@@ -33,7 +34,7 @@ public:
             read_section(keyword);
         }
         if (found_.points.empty()) in_.fail("there is no $Nodes section, or it is empty");
-        list_left_out();
+        cells_.list_left_out(file_);
         groups_.check(file_);
         return assemble(std::move(found_), in_, file_, names_, options_);
     }
@@ -91,9 +92,9 @@ private:
             if (!has_elements_) in_.fail("$ElementData come before $Elements");
             read_gmsh_data(in_, values_, {.at_cells = true, .numbers = elements_, .needed = taken_}, found_);
         } else if (keyword == "$PhysicalNames" && groups_.any()) {
-            read_group_names();
+            groups_.read_names(in_);
         } else if (keyword == "$Entities" && groups_.any() && layout_ != Layout::V2) {
-            read_entities();
+            groups_.read_entities(values_, layout_ == Layout::V41);
         } else {
             skip_section(keyword);
             return;
@@ -110,51 +111,6 @@ private:
             return;
         }
         in_.fail_word({shortened(keyword)}, shortened(end), "");
-    }
-
-    // The names of groups are text even in a binary file.
-    void read_group_names() {
-        const std::size_t count = in_.count({"$PhysicalNames"});
-        for (std::size_t n = 0; n < count; ++n) {
-            const Place place{"physical name", static_cast<std::int64_t>(n + 1), count};
-            const std::int64_t dimension = in_.integer(place);
-            const std::int64_t number = in_.integer(place);
-            group_names_[{dimension, number}] = unquoted(in_.line());
-        }
-    }
-
-    // The entities of the geometry: number, bounding box, physical groups, and the entities that bound it. In version 4.1 a
-    // point has its coordinates instead of a box.
-    void read_entities() {
-        values_.begin();
-        std::array<std::size_t, 4> counts;
-        for (std::size_t& count : counts) count = values_.count({"$Entities"}, NumberType::UInt64);
-        for (std::size_t dimension = 0; dimension < counts.size(); ++dimension) {
-            for (std::size_t e = 0; e < counts[dimension]; ++e) {
-                const Place place{"entity", static_cast<std::int64_t>(e + 1), counts[dimension]};
-                auto& groups = groups_of_[{static_cast<std::int64_t>(dimension), values_.integer(place)}];
-                for (int k = 0; k < (dimension == 0 && layout_ == Layout::V41 ? 3 : 6); ++k) values_.real(place);
-                const std::size_t of_groups = values_.count(place, NumberType::UInt64);
-                for (std::size_t g = 0; g < of_groups; ++g) groups.push_back(values_.integer(place));
-                const std::size_t bounds = dimension == 0 ? 0 : values_.count(place, NumberType::UInt64);
-                for (std::size_t b = 0; b < bounds; ++b) values_.integer(place);
-            }
-        }
-    }
-
-    // Whether the user wants a physical group.
-    bool is_sharp(std::int64_t dimension, std::int64_t group) {
-        if (!groups_.any() || (dimension != 1 && dimension != 2) || group == 0 || group < -kMostGroup) return false;
-        const auto [known, is_new] = sharp_.try_emplace({dimension, group}, false);
-        if (!is_new) return known->second;
-        const std::string number = std::to_string(std::abs(group));  // negative where the element is turned round
-        const auto named = group_names_.find({dimension, std::abs(group)});
-        return known->second = groups_.takes(named == group_names_.end() ? number : named->second, number);
-    }
-
-    static std::int64_t dimension_of(const GmshElement& element) {
-        if (element.shape == GmshShape::Line) return 1;
-        return element.shape == GmshShape::Triangle || element.shape == GmshShape::Quad ? 2 : 3;
     }
 
     // In a binary file of version 4.1 the numbers of nodes and elements, and their counts, have 8 bytes.
@@ -221,16 +177,6 @@ private:
         }
     }
 
-    Index read_corner(const Place& place, NumberType type) {
-        const std::int64_t number = values_.integer(place, type);
-        const Index node = nodes_.find(number);
-        if (node == kNone) {
-            in_.fail(std::string(place.what) + " " + std::to_string(place.number) + ": there is no node " +
-                     std::to_string(number));
-        }
-        return node;
-    }
-
     void read_elements() {
         if (has_elements_) in_.fail("there is a second $Elements section");
         if (found_.points.empty()) in_.fail("$Elements come before $Nodes");
@@ -243,6 +189,13 @@ private:
             read_blocks("$Elements", elements_, [&](std::size_t count) { read_element_block(count); });
         }
         static_cast<void>(elements_.sort());  // numbers that occur twice matter only to data
+    }
+
+    /// Reads the nodes of an element.
+    void take(const GmshElement& element, std::int64_t number, const Place& place) {
+        const std::size_t before = elements_.size();
+        elements_.add(number);
+        taken_.push_back(cells_.take(element, before, in_sharp_group_, number_type(), place) ? 1 : 0);
     }
 
     [[nodiscard]] Place next_element(std::size_t of) const {
@@ -285,7 +238,7 @@ private:
 
     // The first tag of an element is its physical group.
     void read_tag(const GmshElement& element, std::size_t tag, std::int64_t value) {
-        if (tag == 0) in_sharp_group_ = is_sharp(dimension_of(element), value);
+        if (tag == 0) in_sharp_group_ = groups_.is_sharp(dimension_of(element), value);
     }
 
     // Reads a block: elements of one type on one entity of the geometry.
@@ -293,10 +246,7 @@ private:
         const std::int64_t first = values_.integer({"block of $Elements"});
         const std::int64_t second = values_.integer({"block of $Elements"});
         const auto entity = layout_ == Layout::V41 ? std::pair(first, second) : std::pair(second, first);
-        in_sharp_group_ = false;
-        if (const auto groups = groups_of_.find(entity); groups != groups_of_.end()) {
-            for (const std::int64_t group : groups->second) in_sharp_group_ = is_sharp(entity.first, group) || in_sharp_group_;
-        }
+        in_sharp_group_ = groups_.has_sharp(entity.first, entity.second);
         const GmshElement& element = element_of(values_.integer({"block of $Elements"}));
         const std::size_t count = values_.count({"block of $Elements"}, NumberType::UInt64);
         if (count > of - elements_.size()) {
@@ -308,107 +258,19 @@ private:
         }
     }
 
-    // Reads the nodes of an element.
-    void take(const GmshElement& element, std::int64_t number, const Place& place) {
-        const bool others = options_.other_cells != OtherCells::Ignore;
-        const std::size_t before = elements_.size();
-        elements_.add(number);
-        taken_.push_back(1);
-        if (element.shape == GmshShape::Hexahedron) return take_as(found_.hexes, element, before, place);
-        if (element.shape == GmshShape::Tetrahedron && others) {
-            return take_as(found_.tets, element, before, place);
-        }
-        if (element.shape == GmshShape::Prism && others) return take_as(found_.prisms, element, before, place);
-        if (element.shape == GmshShape::Pyramid && others) return take_as(found_.pyramids, element, before, place);
-        taken_.back() = 0;
-        if (in_sharp_group_ && dimension_of(element) < 3) return take_tag(element, place);
-        if (element.shape == GmshShape::Quad && element.nodes == 4) return take_sheet(found_.quads, element, before, place);
-        if (element.shape == GmshShape::Line && element.nodes == 2) return take_sheet(found_.lines, element, before, place);
-        for (std::size_t k = 0; k < element.nodes; ++k) values_.integer(place, number_type());
-        leave_out(element, 1);
-    }
-
-    void leave_out(const GmshElement& element, std::size_t how_many) {
-        if (how_many == 0) return;
-        auto& [count, many] = left_out_[element.one];
-        count += how_many;
-        many = element.many;
-    }
-
-    // Reads a quad or a line; those with unknown nodes are left out, as they were never needed.
-    template <std::size_t N>
-    void take_sheet(FileCells<N>& into, const GmshElement& element, std::size_t number, const Place& place) {
-        std::array<Index, N> corners;
-        bool known = true;
-        for (Index& corner : corners) {
-            corner = nodes_.find(values_.integer(place, number_type()));
-            known = known && corner != kNone;
-        }
-        if (!known) return leave_out(element, 1);
-        into.corners.push_back(corners);
-        into.numbers.push_back(static_cast<Index>(number));
-    }
-
-    void take_tag(const GmshElement& element, const Place& place) {
-        const std::size_t corners = element.shape == GmshShape::Line ? 2 : element.shape == GmshShape::Triangle ? 3 : 4;
-        std::array<Index, 4> tag;
-        for (std::size_t k = 0; k < corners; ++k) tag[k] = read_corner(place, number_type());
-        for (std::size_t k = corners; k < element.nodes; ++k) values_.integer(place, number_type());
-        if (corners == 2) return found_.sharp.edges.push_back({tag[0], tag[1]});
-        if (corners == 3) tag[3] = tag[2];
-        found_.sharp.faces.push_back(tag);
-    }
-
-    template <std::size_t N>
-    void take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, const Place& place) {
-        auto& corners = into.corners.emplace_back();
-        for (Index& corner : corners) corner = read_corner(place, number_type());
-        into.numbers.push_back(static_cast<Index>(number));
-        const bool whole = N == 8 && element.nodes > N && options_.curved_tolerance.has_value();
-        curved_ += element.nodes > N && !whole;
-        std::vector<Index> nodes(corners.begin(), corners.end());
-        for (std::size_t k = N; k < element.nodes; ++k) {
-            if (whole) {
-                nodes.push_back(read_corner(place, number_type()));
-            } else {
-                values_.integer(place, number_type());
-            }
-        }
-        if (whole) found_.curved.add(number, CurvedOrder::Gmsh, nodes);
-    }
-
-    void list_left_out() {
-        if (curved_ > 0) {
-            found_.warnings.push_back(counted(curved_, "element has", "elements have") +
-                                      " more nodes than corners: only the corners are used");
-        }
-        const auto [quads, lines] = drop_parts_of_cells(found_, options_.sheets_alone);
-        leave_out(kGmshElements.at(3), quads);
-        leave_out(kGmshElements.at(1), lines);
-        std::string list;
-        for (const auto& [one, rest] : left_out_) {
-            list += (list.empty() ? "" : ", ") + counted(rest.first, one, rest.second);
-        }
-        add_left_out_warning(found_, list, file_);
-    }
-
     TextScanner in_;
     std::string_view file_;
     ReadOptions options_;
     GmshValues values_;
-    SharpGroups groups_;
-    std::map<std::pair<std::int64_t, std::int64_t>, std::string> group_names_;              // by dimension and number
-    std::map<std::pair<std::int64_t, std::int64_t>, std::vector<std::int64_t>> groups_of_;  // of an entity of the geometry
-    std::map<std::pair<std::int64_t, std::int64_t>, bool> sharp_;                           // groups that occurred
-    bool in_sharp_group_ = false;                                                           // the element that is being read
+    GmshGroups groups_;
+    bool in_sharp_group_ = false;  // the element that is being read
     Layout layout_ = Layout::V2;
     MeshFile found_;
     EntityNames names_{"node", "element", 1};
     GmshNumbers nodes_;
     GmshNumbers elements_;
     std::vector<std::uint8_t> taken_;  // a flag for each element: whether it is read as a cell
-    std::size_t curved_ = 0;
-    std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;
+    GmshCells cells_;
     bool has_elements_ = false;
 };
 
