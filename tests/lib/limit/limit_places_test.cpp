@@ -6,6 +6,7 @@
 #include <random>
 #include <thread>
 
+#include "lib/mixed/mixed_meshes.h"
 #include "lib/test_meshes.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
@@ -162,6 +163,12 @@ TEST(LimitOfMcq, HasTheVerticesOfRefinedModels) {
     expect_vertices_of_cells(make_model("ball", 4), 60);
     expect_vertices_of_cells(make_model("pawn", 12), 60);
     expect_vertices_of_cells(make_model("twist", 6), 60);
+}
+
+TEST(LimitOfMcq, HasTheVerticesOfRefinedIrregularMeshes) {
+    expect_vertices_of_cells(make_model("nozzle", 12), 60);
+    // A ball of tetrahedra, each in four hexahedra: lines of three, four and six cells, which meet in every middle of a face.
+    expect_vertices_of_cells(in_hexahedra(test::make_tet_ball(4)), 80);
 }
 
 TEST(LimitOfMcq, HasTheVerticesOfARefinedRealMesh) {
