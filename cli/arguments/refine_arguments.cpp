@@ -34,7 +34,7 @@ void check_memory(std::size_t cells, int levels) {
 Scheme scheme_named(const std::string& name) {
     if (name == "tetoct" || name == "boxspline") {
         throw Error(ErrorCode::InvalidInput, name + " refines tetrahedra, and this verb or input has hexahedra only",
-                    "--scheme", "subdivide, points, render, vdb, surface and slice take it");
+                    "--scheme", "info, subdivide, points, render, vdb, probe, surface, slice and page take it");
     }
     check_choice("--scheme", name, {"mcq", "cc", "bsxw", "linear"});
     if (name == "cc") return Scheme::CatmullClark;

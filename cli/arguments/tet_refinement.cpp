@@ -7,9 +7,6 @@
 namespace subvol::cli {
 namespace {
 
-constexpr double kInterpolationTol = 1e-4;  // of the range of a field: far below the error of the mesh
-constexpr int kMostSteps = 100;
-
 // An edge of a box may have two tetrahedra or more, so the rule of hexahedra, sharp where one cell is, does not find it. A
 // ball of some hundred points bends by 20 degrees at its edges.
 constexpr double kCreaseAngleDeg = 60;
@@ -32,7 +29,24 @@ void TetRefinement::refuse_bricks(const std::string& bricks) const {
                 "another --scheme");
 }
 
-MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Report& report) const {
+MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Report& report,
+                                 std::vector<Index>* parents) const {
+    Json figures;
+    MixedMesh fine = refined(mesh, default_levels, vertices, figures, report, parents);
+    for (const auto& [key, value] : figures.items()) report[key.c_str()] = value;
+    return fine;
+}
+
+Json TetRefinement::figures(const HexMesh& mesh, int default_levels, Report& report) const {
+    Json figures;
+    HexMesh bare{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
+    const MixedMesh fine = refined(bare, default_levels, Vertices::OnTheLimit, figures, report, nullptr);
+    figures["volume"] = measure_cells(fine).volume;
+    return figures;
+}
+
+MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertices vertices, Json& figures, Report& report,
+                                 std::vector<Index>* parents) const {
     const MixedRefineOptions options{.scheme = *scheme_,
                                      .levels = levels_.value_or(default_levels),
                                      .crease_angle_deg = crease_angle_deg_,
@@ -40,23 +54,22 @@ MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertic
     MixedMesh fine = report.timed("refine", [&] {
         MixedMesh control = join_split_cells(mesh);
         if (*scheme_ == TetScheme::Boxspline) control = in_tetrahedra(std::move(control));
-        report["control_points"] = control.points.size();
-        report["control_cells"] = control.cells();
+        figures["control_points"] = control.points.size();
+        figures["control_cells"] = control.cells();
+        if (parents != nullptr) *parents = control_cells(control, options.levels);
         if (vertices == Vertices::OfTheLevel) return refine(control, options);
-        MixedRefineOptions creases = options;
-        creases.levels = 0;  // the control mesh with its creases, which the interpolation must know
-        MixedInterpolation through = interpolate_vertices(refine(control, creases), *scheme_, kInterpolationTol, kMostSteps);
-        report["off_points"] = through.left;
-        return on_limit(refine(through.mesh, options), *scheme_);
+        MixedVolume volume = volume_through(control, options);
+        figures["off_points"] = volume.left;
+        return std::move(volume.mesh);
     });
-    report["scheme"] = name();
-    report["levels"] = options.levels;
-    report["crease_angle"] = *crease_angle_deg_;
-    report["tets"] = fine.tets.size();
-    report["octahedra"] = fine.octahedra.size();
+    figures["scheme"] = name();
+    figures["levels"] = options.levels;
+    figures["crease_angle"] = *crease_angle_deg_;
+    figures["tets"] = fine.tets.size();
+    figures["octahedra"] = fine.octahedra.size();
     const MixedShape shape = measure_cells(fine);
-    report["inverted_cells"] = shape.inverted;
-    report["worst_shape"] = shape.worst;
+    figures["inverted_cells"] = shape.inverted;
+    figures["worst_shape"] = shape.worst;
     if (shape.inverted > 0) {
         report.warn(text(shape.inverted, " of ", fine.cells(), " refined cells are inverted (worst shape ", shape.worst,
                          "; that of a regular cell is 1)"));

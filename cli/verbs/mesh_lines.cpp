@@ -109,4 +109,17 @@ std::string mesh_lines(const ReadResult& read, const detail::MeshShare& joined, 
     return aligned(lines);
 }
 
+std::string refined_lines(const Json& figures) {
+    const auto count = [&](const char* key) { return figures.at(key).get<std::size_t>(); };
+    std::string lines =
+        aligned({{figures.at("scheme").get<std::string>(),
+                  text(counted(count("control_cells"), "cell"), " to ", count_text(count("tets")), " tetrahedra and ",
+                       count_text(count("octahedra")), " octahedra at level ", count("levels"), "; ",
+                       count_text(count("inverted_cells")), " cells inverted, worst shape ", std::setprecision(3),
+                       figures.at("worst_shape").get<double>(), " (1 a regular cell's), volume ",
+                       number(figures.at("volume").get<double>()))}});
+    lines.pop_back();
+    return lines;
+}
+
 }  // namespace subvol::cli

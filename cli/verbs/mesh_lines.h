@@ -28,4 +28,7 @@ inline constexpr std::size_t kCellsNamed = 8;
 /// "sound", or what is wrong, as "51 cells inverted: 3, 17, 20, …".
 [[nodiscard]] std::string verdict(const HexMesh& mesh, const MeshReport& report);
 
+/// A line about the mesh that a scheme of tetrahedra makes, from `TetRefinement::figures`.
+[[nodiscard]] std::string refined_lines(const Json& figures);
+
 }  // namespace subvol::cli

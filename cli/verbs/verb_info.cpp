@@ -4,6 +4,7 @@
 #include <span>
 
 #include "bricks_input.h"
+#include "choices.h"
 #include "grid_input.h"
 #include "input.h"
 #include "mesh_figures.h"
@@ -20,6 +21,7 @@
 #include "subvol/points_io.h"
 #include "subvol/splat.h"
 #include "subvol/vdb_grid.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -50,6 +52,22 @@ public:
                         "print the values of a .vdb file's grids there, or of the one that --field names (repeatable)")
             ->type_name("X,Y,Z")
             ->allow_extra_args(false);
+        refine_.scheme.clear();
+        app()
+            .add_option("--scheme", refine_.scheme, "figures of the refined tetrahedra, too: of tetoct or boxspline")
+            ->type_name("NAME")
+            ->check(offered({"tetoct", "boxspline"}));
+        app()
+            .add_option("--levels", refine_.levels, "of --scheme (default 2)")
+            ->type_name("L")
+            ->check(CLI::Range(0, 8))
+            ->needs("--scheme");
+        app()
+            .add_option("--crease-angle", refine_.crease_angle_deg,
+                        "of --scheme: boundary edges that bend by more are sharp (default 60)")
+            ->type_name("DEG")
+            ->check(CLI::Range(0.0, 180.0))
+            ->needs("--scheme");
         share_.add_to(app(), "the figures of some cells of a mesh, with --json");
     }
 
@@ -60,6 +78,7 @@ public:
             throw Error(ErrorCode::InvalidInput, "only the figures of a mesh are found in shares",
                         ranks() != nullptr ? "info in several processes" : "--part");
         }
+        set_refinement();
         if (list_fields_) return list_fields(report);
         if (gl_) describe_gl(report);
         if (input_.empty()) {
@@ -77,6 +96,16 @@ public:
     }
 
 private:
+    void set_refinement() {
+        if (refine_.scheme.empty()) return;
+        check_choice("--scheme", refine_.scheme, {"tetoct", "boxspline"});
+        tets_ = TetRefinement(refine_);
+        if (list_fields_ || input_.empty() || shares(share_) || is_bricks_input(input_) || holds_points(input_) ||
+            is_vdb_file(input_)) {
+            throw Error(ErrorCode::InvalidInput, "is of a mesh in one piece and one process", "--scheme", "no --scheme");
+        }
+    }
+
     static void describe_gl(Report& report) {
         const std::vector<GlDevice> devices = gl_devices();
         report["gl"] = Json(nullptr);
@@ -143,11 +172,13 @@ private:
                                         {"min", field.min},
                                         {"max", field.max}});
         }
+        if (tets_.asked()) report["refined"] = tets_.figures(used_mesh(read.mesh, {}), 2, report);
         if (!share_.given()) report["verdict"] = verdict(about.counts, about.inverted);
         if (gl_) return;  // the table has all
         std::string lines = mesh_lines(read, about, report.json().at("seconds"));
         lines.pop_back();
         report.say(lines);
+        if (tets_.asked()) report.say(refined_lines(report.json().at("refined")));
         report.all_said();
     }
 
@@ -299,6 +330,8 @@ private:
     bool gl_ = false;
     bool list_fields_ = false;
     std::vector<std::string> points_;
+    RefineArguments refine_;  // of --scheme
+    TetRefinement tets_;
     ShareArgument share_;
 };
 

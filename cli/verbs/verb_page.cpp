@@ -18,6 +18,7 @@
 #include "subvol/error.h"
 #include "subvol/page.h"
 #include "subvol/splat.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -72,6 +73,7 @@ public:
         }
         picture_.check();
         report.if_long("--max-bytes that fits without merging, or a larger --spacing");
+        tets_ = TetRefinement(refine_);
         PageOptions options{.title = title_.empty() ? title_of_file() : title_, .source = source_name()};
         const std::vector<PageStep> steps = make_steps(options, report);
         finish_options(options, steps.back(), report);
@@ -147,6 +149,7 @@ private:
         std::vector<Range> ranges;
         const auto add = [&](const CommonOptions& common, const std::string& label) {
             mesh_ = shown_mesh(load_mesh(input_, common, report), common, report);
+            mesh_ = tets_.hexes(std::move(mesh_), 1, report);
             const HexMesh& mesh = mesh_;
             box_.add(bounds(mesh));
             if (options.fields.empty()) {
@@ -161,9 +164,11 @@ private:
                 if (f >= ranges.size()) ranges.push_back(range);
                 ranges[f] = {std::min(ranges[f].min, range.min), std::max(ranges[f].max, range.max)};
             }
-            PageStep step{.label = label, .volume = sample_reported(mesh, sample_, refine_, std::nullopt, report)};
+            PageStep step{.label = label,
+                          .volume = tets_.asked() ? sample_tets_reported(mesh, sample_, std::nullopt, report)
+                                                  : sample_reported(mesh, sample_, refine_, std::nullopt, report)};
             RefineOptions refine = refine_.options(0, report);
-            refine.levels = picture_levels(mesh, refine_.levels);
+            refine.levels = picture_levels(mesh, tets_.asked() ? std::optional(0) : refine_.levels);
             step.boundary = report.timed("boundary", [&] { return boundary_values(mesh, refine); });
             steps.push_back(std::move(step));
         };
@@ -249,6 +254,7 @@ private:
     PictureArguments picture_;
     SampleArguments sample_;
     RefineArguments refine_;
+    TetRefinement tets_;
 };
 
 }  // namespace

@@ -7,36 +7,20 @@
 #include "input.h"
 #include "outputs.h"
 #include "places_input.h"
-#include "quantities.h"
+#include "probe_output.h"
 #include "refine_arguments.h"
 #include "subvol/brick_measure.h"
 #include "subvol/brick_probe.h"
-#include "subvol/detail/atomic_file.h"
-#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "subvol/measure.h"
-#include "subvol/plot.h"
+#include "subvol/mixed_probe.h"
 #include "subvol/probe.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
 namespace subvol::cli {
 namespace {
-
-constexpr std::size_t kMostLines = 30;  // places that people see; the others are in files
-
-Json numbers(const Vec3& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
-/// One number, or an array of the channels.
-template <class Value>
-Json each_channel(const ProbedField& field, const Value& value) {
-    if (field.channels == 1) return value(0);
-    Json all = Json::array();
-    for (std::size_t c = 0; c < field.channels; ++c) all.push_back(value(c));
-    return all;
-}
 
 class ProbeVerb : public Verb {
 public:
@@ -69,15 +53,21 @@ public:
         app()
             .add_option("-o,--output", output_, "a table of all fields (.csv), or a plot along the line (.svg)")
             ->type_name("FILE");
-        scheme_.add_scheme_to(app());
+        scheme_.add_to(app(), "tetoct, boxspline: the level whose volume is probed (default 2)");
         set_essentials({"--at", "--line", "--count", "--points", "--stats", "--output", "--field", "--json"});
     }
 
     int run(Report& report) override {
         const std::vector<Vec3> places = collect_places();
         check_outputs();
+        const TetRefinement tets(scheme_);
+        if (scheme_.levels) {
+            throw Error(ErrorCode::InvalidInput, "the limit of " + scheme_.scheme + " is probed, not a level", "--levels",
+                        "--scheme tetoct or boxspline, whose volume is that of a level");
+        }
         const LimitOptions limit{.scheme = scheme_.options(0, report).scheme, .progress = report.progress()};
         if (is_bricks_input(input_)) {
+            tets.refuse_bricks(input_);
             probe_the_bricks(places, limit, report);
             return 0;
         }
@@ -86,8 +76,13 @@ public:
         const HexMesh mesh = used_mesh(std::move(read.mesh), common());
         const HexMesh chosen = with_chosen_first(mesh, report);
         report["cells"] = mesh.cells.size();
-        if (!places.empty()) probe(chosen, places, limit, report);
-        if (stats_) measure(chosen, read.blocks, limit.scheme, report);
+        if (tets.asked()) {
+            probe_tets(tets, chosen, places, report);
+            if (stats_ && read.blocks.size() > 1) report.warn("tetoct and boxspline measure the whole, not its blocks");
+        } else {
+            if (!places.empty()) probe(chosen, places, limit, report);
+            if (stats_) measure(chosen, read.blocks, limit.scheme, report);
+        }
         if (!output_.empty()) report["output"] = output_;
         return 0;
     }
@@ -147,147 +142,39 @@ private:
                 quiet.progress = nullptr;
                 return probe_bricks(bricks, places, {.limit = quiet}, chosen_first, report.progress());
             });
-            show(found, places, report);
+            show_probed(found, places, output_, common().json, report);
         }
         if (stats_) {
-            say_stats(report.timed("measure",
-                                   [&] {
-                                       return measure_limit(
-                                           bricks, {.scheme = limit.scheme, .bins = bins_, .progress = report.progress()},
-                                           chosen_first);
-                                   }),
-                      report);
+            show_measured(report.timed("measure",
+                                       [&] {
+                                           return measure_limit(
+                                               bricks, {.scheme = limit.scheme, .bins = bins_, .progress = report.progress()},
+                                               chosen_first);
+                                       }),
+                          report);
         }
         if (!output_.empty()) report["output"] = output_;
     }
 
     void probe(const HexMesh& mesh, const std::vector<Vec3>& places, const LimitOptions& limit, Report& report) const {
         const auto probe = report.timed("prepare", [&] { return LimitProbe(mesh, {.limit = limit}); });
-        show(report.timed("probe", [&] { return probe.at(places, report.progress()); }), places, report);
+        const ProbeResult found = report.timed("probe", [&] { return probe.at(places, report.progress()); });
+        show_probed(found, places, output_, common().json, report);
     }
 
-    void show(const ProbeResult& found, const std::vector<Vec3>& places, Report& report) const {
-        std::size_t inside = 0;
-        for (std::size_t p = 0; p < places.size(); ++p) inside += found.inside(p) ? 1 : 0;
-        report["places"] = places.size();
-        report["inside"] = inside;
-        Json values = Json::array();
-        if (common().json) {
-            for (std::size_t p = 0; p < places.size(); ++p) values.push_back(as_json(found, p, places[p]));
-            report["values"] = std::move(values);
+    /// The volume of a scheme of tetrahedra: linear between the vertices of a level, which are on the limit.
+    void probe_tets(const TetRefinement& tets, const HexMesh& mesh, const std::vector<Vec3>& places, Report& report) const {
+        std::vector<Index> cells;
+        const MixedMesh fine = tets.refined(mesh, 2, Vertices::OnTheLimit, report, &cells);
+        if (!places.empty()) {
+            const auto probe = report.timed("prepare", [&] { return MixedProbe(fine, cells, 0, report.progress()); });
+            const ProbeResult found = report.timed("probe", [&] { return probe.at(places, report.progress()); });
+            show_probed(found, places, output_, common().json, report);
         }
-        say(found, places, report);
-        if (inside < places.size()) {
-            report.note(
-                text(count_text(places.size() - inside), " of ", counted(places.size(), "place"), " lie outside the volume"));
-        }
-        if (output_.ends_with(".csv")) write_csv(found, places);
-        if (output_.ends_with(".svg")) write_plot(found, places);
-    }
-
-    static Json as_json(const ProbeResult& found, std::size_t p, const Vec3& at) {
-        Json one;
-        one["at"] = numbers(at);
-        one["inside"] = found.inside(p);
-        if (!found.inside(p)) {
-            for (const char* key : {"value", "gradient", "cell", "parameters", "fields"}) one[key] = nullptr;
-            return one;
-        }
-        const auto value = [&](const ProbedField& field) {
-            return each_channel(field, [&](std::size_t c) -> Json { return field.values[p * field.channels + c]; });
-        };
-        const auto gradient = [&](const ProbedField& field) {
-            return each_channel(field, [&](std::size_t c) { return numbers(field.gradients[p * field.channels + c]); });
-        };
-        one["value"] = value(found.fields.front());
-        one["gradient"] = gradient(found.fields.front());
-        one["cell"] = found.cells[p];
-        one["parameters"] = numbers(found.parameters[p]);
-        for (const ProbedField& field : found.fields) {
-            one["fields"][field.name] = {{"value", value(field)}, {"gradient", gradient(field)}};
-        }
-        return one;
-    }
-
-    static void say(const ProbeResult& found, const std::vector<Vec3>& places, Report& report) {
-        using detail::number_text;
-        Lines lines;
-        for (std::size_t p = 0; p < std::min(places.size(), kMostLines); ++p) {
-            std::string words = found.inside(p) ? "" : "outside";
-            if (found.inside(p)) {
-                for (const ProbedField& field : found.fields) {
-                    words += (words.empty() ? "" : "  ") + field.name + " ";
-                    for (std::size_t c = 0; c < field.channels; ++c) {
-                        words += (c == 0 ? "" : ",") + number_text(field.values[p * field.channels + c]);
-                    }
-                }
-                words += text("  (cell ", found.cells[p], ")");
-            }
-            const Vec3& x = places[p];
-            lines.emplace_back(number_text(x.x) + "," + number_text(x.y) + "," + number_text(x.z), words);
-        }
-        report.say(aligned(lines));
-        if (places.size() > kMostLines) {
-            report.say(text("and ", count_text(places.size() - kMostLines), " more (--json or -o FILE.csv has all)"));
-        }
-        report.all_said();
-    }
-
-    void write_csv(const ProbeResult& found, const std::vector<Vec3>& places) const {
-        using detail::exact_text;
-        std::string table = "x,y,z,inside,cell,u,v,w";
-        for (const ProbedField& field : found.fields) {
-            for (std::size_t c = 0; c < field.channels; ++c) {
-                const std::string name = field.name + (field.channels > 1 ? text(".", c) : "");
-                for (const char* end : {"", "_dx", "_dy", "_dz"}) table += "," + quoted(name + end);
-            }
-        }
-        table += "\n";
-        const auto put = [&](const Vec3& v) { table += exact_text(v.x) + "," + exact_text(v.y) + "," + exact_text(v.z); };
-        for (std::size_t p = 0; p < places.size(); ++p) {
-            put(places[p]);
-            table += found.inside(p) ? text(",1,", found.cells[p], ",") : ",0,,,,";
-            if (found.inside(p)) put(found.parameters[p]);
-            for (const ProbedField& field : found.fields) {
-                for (std::size_t c = 0; c < field.channels; ++c) {
-                    table += found.inside(p) ? "," + exact_text(field.values[p * field.channels + c]) + "," : ",,,,";
-                    if (found.inside(p)) put(field.gradients[p * field.channels + c]);
-                }
-            }
-            table += "\n";
-        }
-        detail::write_text_file(output_, table);
-    }
-
-    static std::string quoted(const std::string& name) {
-        if (name.find_first_of(",\"\n") == std::string::npos) return name;
-        std::string words = "\"";
-        for (const char c : name) words += c == '"' ? std::string("\"\"") : std::string(1, c);
-        return words + "\"";
-    }
-
-    /// The chosen field over the distance from the line's first end, with gaps where the line is outside.
-    void write_plot(const ProbeResult& found, const std::vector<Vec3>& places) const {
-        const ProbedField& field = found.fields.front();
-        PlotLine line{field.name, {}, {}};
-        bool gap = false;
-        for (std::size_t p = 0; p < places.size(); ++p) {
-            if (!found.inside(p)) {
-                gap = true;
-                continue;
-            }
-            if (gap && !line.x.empty()) line.breaks.push_back(line.x.size());
-            gap = false;
-            line.x.push_back(glm::distance(places[p], places.front()));
-            line.y.push_back(field.values[p * field.channels]);
-        }
-        if (line.x.empty()) throw Error(ErrorCode::InvalidInput, "all of the line is outside the volume", "--line");
-        detail::write_text_file(output_, plot_svg_file({.title = "",
-                                                        .x_label = "distance along the line",
-                                                        .y_label = field.name,
-                                                        .log_x = false,
-                                                        .log_y = false,
-                                                        .lines = {line}}));
+        if (!stats_) return;
+        show_measured(
+            report.timed("measure", [&] { return measure_limit(fine, cells, {.bins = bins_, .progress = report.progress()}); }),
+            report);
     }
 
     void measure(const HexMesh& mesh, const std::vector<MeshBlock>& blocks, const SchemeOptions& scheme, Report& report) const {
@@ -298,52 +185,7 @@ private:
                 mesh,
                 {.scheme = scheme, .bins = bins_, .groups = parts.groups, .names = parts.names, .progress = report.progress()});
         });
-        say_stats(found, report);
-    }
-
-    static void say_stats(const LimitMeasure& found, Report& report) {
-        report["stats"] = {{"whole", as_json(found.whole)}, {"parts", Json::array()}, {"pieces", found.pieces}};
-        for (const PartMeasure& part : found.parts) report["stats"]["parts"].push_back(as_json(part));
-        say(found.whole, "", report);
-        for (const PartMeasure& part : found.parts) say(part, part.name, report);
-        report.all_said();
-    }
-
-    static Json as_json(const PartMeasure& part) {
-        Json one;
-        if (!part.name.empty()) one["name"] = part.name;
-        one["cells"] = part.cells;
-        one["volume"] = part.volume;
-        one["fields"] = Json::array();
-        for (const FieldMeasure& field : part.fields) {
-            one["fields"].push_back({{"name", field.name},
-                                     {"integral", field.integral},
-                                     {"mean", field.mean},
-                                     {"min", field.min.value},
-                                     {"min_at", numbers(field.min.place)},
-                                     {"min_cell", field.min.cell},
-                                     {"max", field.max.value},
-                                     {"max_at", numbers(field.max.place)},
-                                     {"max_cell", field.max.cell},
-                                     {"histogram", field.histogram}});
-        }
-        return one;
-    }
-
-    static void say(const PartMeasure& part, const std::string& name, Report& report) {
-        using detail::number_text;
-        Lines lines{{"volume", number_text(part.volume)}};
-        if (!name.empty()) lines.insert(lines.begin(), {"block", text(name, " (", counted(part.cells, "cell"), ")")});
-        for (const FieldMeasure& field : part.fields) {
-            const auto at = [](const LimitExtreme& extreme) {
-                const Vec3& x = extreme.place;
-                return number_text(extreme.value) + " at " + number_text(x.x, 4) + "," + number_text(x.y, 4) + "," +
-                       number_text(x.z, 4);
-            };
-            lines.emplace_back(field.name, "mean " + number_text(field.mean) + "  integral " + number_text(field.integral));
-            lines.emplace_back("", "min " + at(field.min) + "  max " + at(field.max));
-        }
-        report.say(aligned(lines));
+        show_measured(found, report);
     }
 
     std::string input_, line_, points_, output_;

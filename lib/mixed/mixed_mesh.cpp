@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cut_cells.h"
+#include "mixed_parents.h"
 #include "mixed_shapes.h"
 #include "subvol/error.h"
 
@@ -87,7 +88,9 @@ std::array<Index, 4> by_numbers(const std::array<Index, 4>& tet) {
     return result;
 }
 
-void cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& q, std::vector<std::array<Index, 4>>& tets) {
+}  // namespace
+
+void detail::cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& q, std::vector<std::array<Index, 4>>& tets) {
     std::size_t best = 0;
     double shortest = std::numeric_limits<double>::infinity();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -102,8 +105,6 @@ void cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& q, std::v
     const std::array<std::size_t, 4> ring{2, 4, 3, 5};
     for (std::size_t k = 0; k < 4; ++k) tets.push_back({corner(1), corner(0), corner(ring[k]), corner(ring[(k + 1) % 4])});
 }
-
-}  // namespace
 
 void validate(const MixedMesh& mesh) {
     if (mesh.cells() == 0) throw Error(ErrorCode::InvalidInput, "the mesh has no cells");
@@ -168,12 +169,7 @@ MixedMesh in_tetrahedra(MixedMesh mesh) {
 }
 
 HexMesh in_hexahedra(const MixedMesh& mesh) {
-    MixedCells others;
-    others.tets = mesh.tets;
-    others.prisms = mesh.prisms;
-    others.pyramids = mesh.pyramids;
-    for (const auto& octahedron : mesh.octahedra) cut_octahedron(mesh, octahedron, others.tets);
-    return split_into_hexes({mesh.points, mesh.hexes, mesh.attributes, {}, {}}, others);
+    return hexahedra_of(mesh).mesh;
 }
 
 MixedShape measure_cells(const MixedMesh& mesh) {

@@ -83,4 +83,7 @@ template <class Cell>
     return {at(cell, face[0]), at(cell, face[1]), at(cell, face[2]), face[3] < 0 ? kNone : at(cell, face[3])};
 }
 
+/// Cuts an octahedron into four tetrahedra along the shortest of its diagonals, the first of those that are equally short.
+void cut_octahedron(const MixedMesh& mesh, const std::array<Index, 6>& corners, std::vector<std::array<Index, 4>>& tets);
+
 }  // namespace subvol::detail

@@ -153,4 +153,11 @@ MixedInterpolation interpolate_vertices(const MixedMesh& given, TetScheme scheme
     return result;
 }
 
+MixedVolume volume_through(const MixedMesh& given, const MixedRefineOptions& options, double tolerance, int most_steps) {
+    MixedRefineOptions creases = options;
+    creases.levels = 0;  // the control mesh with its creases, which the interpolation must know
+    MixedInterpolation through = interpolate_vertices(refine(given, creases), options.scheme, tolerance, most_steps);
+    return {on_limit(refine(through.mesh, options), options.scheme), through.left};
+}
+
 }  // namespace subvol

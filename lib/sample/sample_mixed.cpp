@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/sample_mixed.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <atomic>
 
 #include "mixed_boundary.h"
 #include "mixed_shapes.h"
+#include "point_quadratics.h"
 #include "subvol/detail/parallel_each.h"
 #include "subvol/error.h"
 
@@ -17,38 +15,9 @@ namespace subvol {
 
 namespace {
 
-/// The points at the other ends of the edges, and of the shortest diagonals of octahedra, of each point.
-struct Neighbors {
-    std::vector<std::size_t> offsets;
-    std::vector<std::array<Index, 2>> pairs;  // of a point and a neighbour, sorted
-
-    explicit Neighbors(const MixedMesh& mesh) {
-        const auto add = [&](Index a, Index b) {
-            pairs.push_back({a, b});
-            pairs.push_back({b, a});
-        };
-        detail::each_kind_of(mesh, [&](detail::CellKind kind, const auto& cells) {
-            for (const auto& cell : cells) {
-                for (const auto& ends : detail::table_of(kind).edges) add(detail::at(cell, ends[0]), detail::at(cell, ends[1]));
-            }
-        });
-        tbb::parallel_sort(pairs.begin(), pairs.end());
-        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-        offsets.assign(mesh.points.size() + 1, 0);
-        for (const auto& pair : pairs) ++offsets[pair[0] + 1];
-        for (std::size_t p = 0; p < mesh.points.size(); ++p) offsets[p + 1] += offsets[p];
-    }
-
-    template <class Call>
-    void each(Index p, const Call& call) const {
-        for (std::size_t i = offsets[p]; i < offsets[p + 1]; ++i) call(pairs[i][1]);
-    }
-};
-
 /// A regular lattice has JJᵀ = 2.2 to 3 times the mean of d dᵀ over its edges: body-centred 2.2, face-centred 2.4, cubic 3.
 constexpr double kMomentToSpacing = 2.4;
-constexpr double kFlatTol = 1e-3;             // a frame that is thinner than this part of its longest axis is thickened
-constexpr std::size_t kEnoughNeighbors = 14;  // as in the lattice of the box spline: nine unknowns and some to spare
+constexpr double kFlatTol = 1e-3;  // a frame that is thinner than this part of its longest axis is thickened
 
 class Fitter {
 public:
@@ -84,50 +53,18 @@ private:
         return axes.eigenvectors() * axes.eigenvalues().cwiseMax(least).asDiagonal() * axes.eigenvectors().transpose();
     }
 
-    /// The quadratic f + g·d + ½ dᵀHd with the least sum of squares, each neighbour weighted by 1/|d|²; in units of the mean
-    /// |d|.
     void fit_values(Index p, const Eigen::Matrix3d& frame) const {
-        std::vector<Index> around;
-        neighbors_.each(p, [&](Index q) { around.push_back(q); });
-        if (around.size() < kEnoughNeighbors) {
-            const std::size_t own = around.size();
-            for (std::size_t i = 0; i < own; ++i) neighbors_.each(around[i], [&](Index q) { around.push_back(q); });
-            std::sort(around.begin(), around.end());
-            around.erase(std::unique(around.begin(), around.end()), around.end());
-            std::erase(around, p);
-        }
-        const auto rows = static_cast<Eigen::Index>(around.size());
-        double unit = 0;
-        for (const Index q : around) unit += glm::length(mesh_.points[q] - mesh_.points[p]);
-        unit /= static_cast<double>(around.size());
-        if (!(unit > 0)) return;
-        Eigen::Matrix<double, Eigen::Dynamic, 9> design(rows, 9);
-        Eigen::VectorXd weights(rows);
-        for (Eigen::Index r = 0; r < rows; ++r) {
-            const Vec3 d = (mesh_.points[around[static_cast<std::size_t>(r)]] - mesh_.points[p]) / unit;
-            weights[r] = 1 / std::max(glm::dot(d, d), 1e-12);
-            design.row(r) << d.x, d.y, d.z, d.x * d.x / 2, d.x * d.y, d.x * d.z, d.y * d.y / 2, d.y * d.z, d.z * d.z / 2;
-            design.row(r) *= weights[r];
-        }
-        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-        solver.setThreshold(1e-6);
-        solver.compute(design);
+        std::vector<detail::PointQuadratic> found;
+        detail::fit_quadratics(mesh_, neighbors_, p, found);
         const Eigen::Matrix3d inverse = frame.inverse();
-        for (std::size_t c = 0; c < mesh_.attributes.size(); ++c) {
-            const auto& values = mesh_.attributes[c].values;
-            Eigen::VectorXd right(rows);
-            for (Eigen::Index r = 0; r < rows; ++r) {
-                right[r] = weights[r] * (values[around[static_cast<std::size_t>(r)]] - values[p]);
-            }
-            const Eigen::VectorXd x = solver.solve(right);
+        for (std::size_t c = 0; c < found.size(); ++c) {
             RbfChannel& channel = volume_.channels[c];
-            for (std::size_t k = 0; k < 3; ++k) {
-                channel.gradients[p][k] = static_cast<float>(x[static_cast<Eigen::Index>(k)] / unit);
-            }
+            for (int k = 0; k < 3; ++k)
+                channel.gradients[p][static_cast<std::size_t>(k)] = static_cast<float>(found[c].gradient[k]);
             if (options_.correction == Correction::Gradient) continue;
+            const auto& x = found[c].second;
             Eigen::Matrix3d hessian;
-            hessian << x[3], x[4], x[5], x[4], x[6], x[7], x[5], x[7], x[8];
-            hessian /= unit * unit;
+            hessian << x[0], x[1], x[2], x[1], x[3], x[4], x[2], x[4], x[5];
             const double moment = (hessian * frame).trace() / 6;
             channel.moments[p] = static_cast<float>(moment);
             if (options_.correction != Correction::Full) continue;
@@ -139,7 +76,7 @@ private:
     }
 
     const MixedMesh& mesh_;
-    Neighbors neighbors_;
+    detail::PointNeighbors neighbors_;
     const MixedSampleOptions& options_;
     RbfVolume& volume_;
     double radius_;

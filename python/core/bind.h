@@ -19,6 +19,7 @@
 #include "subvol/optics.h"
 #include "subvol/progress.h"
 #include "subvol/refine.h"
+#include "subvol/refine_mixed.h"
 
 namespace subvol::python {
 
@@ -95,6 +96,16 @@ template <class Work>
 
 /// Words of the command for the library's enumerators. throws: Error(InvalidInput) that lists the words
 [[nodiscard]] Scheme scheme_named(const std::string& name);
+/// The schemes of tetrahedra; none: another name
+[[nodiscard]] std::optional<TetScheme> tet_scheme_named(const std::string& name);
+/// The volume of a scheme of tetrahedra, as the command makes it.
+///
+/// crease_angle: none: 60 degrees
+/// through:      whether it passes through the points and values of the mesh, on the limit
+/// cells:        gets the control cells of its cells; null: they are not asked for
+[[nodiscard]] MixedMesh refined_tets(const HexMesh& mesh, TetScheme scheme, int levels,
+                                     const std::optional<double>& crease_angle, bool through, Progress* progress,
+                                     std::vector<Index>* cells = nullptr);
 [[nodiscard]] RefineOptions refine_options(const std::string& scheme, int levels, double tension,
                                            const std::optional<double>& crease_angle);
 [[nodiscard]] Error unknown_word(const std::string& word, const std::string& where, const std::string& allowed);

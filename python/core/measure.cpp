@@ -5,6 +5,7 @@
 #include "subvol/limit_slice.h"
 #include "subvol/limit_surface.h"
 #include "subvol/measure.h"
+#include "subvol/mixed_probe.h"
 #include "subvol/points_error.h"
 #include "subvol/probe.h"
 
@@ -44,13 +45,21 @@ void put_fields(std::vector<ProbedField> fields, const std::vector<Index>* cells
 }
 
 py::dict probe(const HexMesh& mesh, const py::object& given, const std::string& scheme, double tension,
-               const std::optional<double>& crease_angle, double reach, const py::object& progress) {
+               const std::optional<double>& crease_angle, double reach, int levels, const py::object& progress) {
     const std::vector<Vec3> places = vectors(given, "places");
-    ProbeOptions options{.limit = {.scheme = scheme_of(scheme, tension, crease_angle)}, .reach_world = reach};
+    const auto tets = tet_scheme_named(scheme);
+    ProbeOptions options{.reach_world = reach};
+    if (!tets) options.limit.scheme = scheme_of(scheme, tension, crease_angle);
     ProbeResult found = result_of(progress, [&](Progress* listener) {
+        if (tets) {
+            std::vector<Index> cells;
+            const MixedMesh fine = refined_tets(mesh, *tets, levels, crease_angle, true, listener, &cells);
+            return MixedProbe(fine, std::move(cells), reach, listener).at(places, listener);
+        }
         options.limit.progress = listener;
         return LimitProbe(mesh, options).at(places, listener);
     });
+    if (tets) found.parameters.assign(places.size(), Vec3(std::numeric_limits<double>::quiet_NaN()));
     py::dict result;
     put_fields(std::move(found.fields), &found.cells, result);
     result["cells"] = cells_of(found.cells, {length(places.size())});
@@ -162,7 +171,7 @@ py::dict surface(const HexMesh& mesh, const std::string& field, std::vector<doub
 
 void bind_measure(py::module_& module) {
     module.def("probe", &probe, py::arg("mesh"), py::arg("places"), py::arg("scheme"), py::arg("tension"),
-               py::arg("crease_angle"), py::arg("reach"), py::arg("progress"));
+               py::arg("crease_angle"), py::arg("reach"), py::arg("levels"), py::arg("progress"));
     module.def("points_error", &error_of_points, py::arg("volume"), py::arg("mesh"), py::arg("field"), py::arg("scheme"),
                py::arg("tension"), py::arg("crease_angle"), py::arg("channel"), py::arg("progress"));
     module.def("measure", &measure, py::arg("mesh"), py::arg("scheme"), py::arg("tension"), py::arg("crease_angle"),

@@ -67,7 +67,17 @@ Scheme scheme_named(const std::string& name) {
     if (name == "cc") return Scheme::CatmullClark;
     if (name == "bsxw") return Scheme::Bsxw;
     if (name == "linear") return Scheme::Linear;
+    if (tet_scheme_named(name)) {
+        throw Error(ErrorCode::InvalidInput, "'" + name + "' refines tetrahedra, and this call has hexahedra only", "scheme",
+                    "scheme='linear' of subdivide(mesh, 2, '" + name + "', on_limit=True)");
+    }
     throw unknown_word(name, "scheme", "mcq, cc, bsxw or linear");
+}
+
+std::optional<TetScheme> tet_scheme_named(const std::string& name) {
+    if (name == "tetoct") return TetScheme::Tetoct;
+    if (name == "boxspline") return TetScheme::Boxspline;
+    return std::nullopt;
 }
 
 RefineOptions refine_options(const std::string& scheme, int levels, double tension, const std::optional<double>& crease_angle) {

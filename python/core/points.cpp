@@ -8,6 +8,7 @@
 #include "subvol/points_io.h"
 #include "subvol/reduce.h"
 #include "subvol/sample.h"
+#include "subvol/sample_mixed.h"
 #include "subvol/visible_points.h"
 
 namespace subvol::python {
@@ -124,6 +125,16 @@ py::tuple sample(const HexMesh& mesh, const std::string& scheme, double tension,
     return py::make_tuple(std::move(result.volume), result.report.flat_frames, result.report.largest_error);
 }
 
+py::tuple sample_tets(const HexMesh& mesh, const std::string& correction, const std::string& kernel,
+                      const py::object& progress) {
+    MixedSampleOptions options{.correction = correction_named(correction), .kernel = kernel_from_json(kernel)};
+    SampleResult result = result_of(progress, [&](Progress* listener) {
+        options.progress = listener;
+        return sample_rbf_points(join_split_cells(mesh), options);
+    });
+    return py::make_tuple(std::move(result.volume), result.report.flat_frames);
+}
+
 py::dict as_dict(const ErrorAtSamples& error) {
     py::dict figures;
     figures["rmse"] = error.rmse;
@@ -233,6 +244,7 @@ void bind_points(py::module_& module) {
                py::arg("per_edge"), py::arg("centers"), py::arg("spacing_world"), py::arg("tolerance"), py::arg("correction"),
                py::arg("values"), py::arg("kernel"), py::arg("boundary_levels"), py::arg("footprint"),
                py::arg("footprint_size"), py::arg("progress"));
+    module.def("sample_tets", &sample_tets, py::arg("mesh"), py::arg("correction"), py::arg("kernel"), py::arg("progress"));
     module.def("reduce", &reduce, py::arg("mesh"), py::arg("field"), py::arg("rmse"), py::arg("kernel"), py::arg("overlap"),
                py::arg("max_points"), py::arg("move"), py::arg("scheme"), py::arg("progress"));
     module.def(

@@ -14,6 +14,11 @@ HexMesh moved(HexMesh mesh, bool to_limit, Scheme scheme) {
 
 HexMesh subdivide(const HexMesh& mesh, int levels, const std::string& scheme, double tension,
                   const std::optional<double>& crease_angle, bool to_limit, const py::object& progress) {
+    if (const auto tets = tet_scheme_named(scheme)) {
+        return result_of(progress, [&](Progress* listener) {
+            return in_hexahedra(refined_tets(mesh, *tets, levels, crease_angle, to_limit, listener));
+        });
+    }
     RefineOptions options = refine_options(scheme, levels, tension, crease_angle);
     return result_of(progress, [&](Progress* listener) {
         options.progress = listener;
@@ -184,6 +189,18 @@ py::dict limit_of(const HexMesh& mesh, const py::object& cells, const py::object
 }
 
 }  // namespace
+
+MixedMesh refined_tets(const HexMesh& mesh, TetScheme scheme, int levels, const std::optional<double>& crease_angle,
+                       bool through, Progress* progress, std::vector<Index>* cells) {
+    constexpr double kCreaseAngleDeg = 60;  // as of the command
+    MixedMesh control = join_split_cells(mesh);
+    if (scheme == TetScheme::Boxspline) control = in_tetrahedra(std::move(control));
+    const MixedRefineOptions options{
+        .scheme = scheme, .levels = levels, .crease_angle_deg = crease_angle.value_or(kCreaseAngleDeg), .progress = progress};
+    MixedMesh fine = through ? volume_through(control, options).mesh : refine(control, options);
+    if (cells != nullptr) *cells = control_cells(control, levels);
+    return fine;
+}
 
 void bind_refine(py::module_& module) {
     module.def("subdivide", &subdivide, py::arg("mesh"), py::arg("levels"), py::arg("scheme"), py::arg("tension"),

@@ -13,6 +13,8 @@ from ._errors import InvalidInput, SubvolWarning
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 Kernel = Union[str, Mapping[str, Any]]
 
+TET_SCHEMES = ("tetoct", "boxspline")  # of tetrahedra as tetrahedra
+
 
 def path_bytes(path: Path) -> bytes:
     """The name of a file as the system has it."""

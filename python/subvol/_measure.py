@@ -11,7 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import TET_SCHEMES
 from ._core import HexMesh, RbfVolume
+from ._errors import InvalidInput
 from ._points import _selected
 from ._progress import Progress, listening
 
@@ -56,15 +58,20 @@ def points_error(volume: RbfVolume, mesh: HexMesh, field: Optional[str] = None, 
 
 
 def probe(mesh: HexMesh, places: npt.ArrayLike, *, scheme: str = "mcq", tension: float = 1 / 16, crease_angle: Optional[float] = None,
-          reach: float = 0, progress: Progress = None) -> ProbeSamples:
+          reach: float = 0, levels: Optional[int] = None, progress: Progress = None) -> ProbeSamples:
     """All fields of the limit, with their gradients, at places in the world, (n,3): exact, not interpolated in cells.
 
-    reach: places outside that are no farther than this from the boundary get the values of its nearest point
+    scheme: also "tetoct", "boxspline": of tetrahedra, whose volume is linear between the vertices of a level (docs/schemes.md); cells are
+            those tetrahedra, and there are no parameters (nan)
+    reach:  places outside that are no farther than this from the boundary get the values of its nearest point
+    levels: of "tetoct" and "boxspline", 0 to 8; None: 2
     """
     places = np.asarray(places)
+    if levels is not None and scheme not in TET_SCHEMES:
+        raise InvalidInput("levels: the limit is probed, not a level", "levels", "None, or the scheme tetoct or boxspline")
     with listening(progress) as listener:
         found: dict[str, Any] = _core.probe(mesh, np.empty((0, 3)) if places.size == 0 else places, scheme, tension, crease_angle, reach,
-                                            listener)
+                                            2 if levels is None else levels, listener)
     return ProbeSamples(**found)
 
 

@@ -79,12 +79,14 @@ def subdivide(mesh: HexMesh, levels: int = 1, scheme: str = "mcq", *, tension: f
     """Refines a mesh: each level splits a cell into eight. Points and fields follow the scheme.
 
     levels:       0 to 10
-    scheme:       "mcq" (through the control points), "cc" (Catmull-Clark), "bsxw", "linear"
+    scheme:       "mcq" (through the control points), "cc" (Catmull-Clark), "bsxw", "linear"; of tetrahedra as tetrahedra "tetoct",
+                  "boxspline": the cells come back in hexahedra, whose linear volume is theirs
     tension:      of mcq: 0 is linear; cubics are reproduced at 1/16
-    crease_angle: keep boundary edges sharp that bend by more than this, in degrees
-    on_limit:     also move the points to the limit (those of mcq and linear lie on it)
+    crease_angle: keep boundary edges sharp that bend by more than this, in degrees ("tetoct", "boxspline": None is 60)
+    on_limit:     also move the points to the limit (those of mcq and linear lie on it); of "tetoct" and "boxspline" the limit that
+                  passes through the points and values of the mesh
 
-    The children of cell c are 8c to 8c+7. The same bits for any number of threads.
+    The children of cell c are 8c to 8c+7, but of "tetoct" and "boxspline". The same bits for any number of threads.
     """
     with listening(progress) as listener:
         return _core.subdivide(mesh, levels, scheme, tension, crease_angle, on_limit, listener)

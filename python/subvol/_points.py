@@ -6,7 +6,7 @@ import json
 from typing import Any, Optional
 
 from . import _core
-from ._arguments import Kernel, Path, extension, kernel_json, path_bytes, warn
+from ._arguments import TET_SCHEMES, Kernel, Path, extension, kernel_json, path_bytes, warn
 from ._core import Camera, HexMesh, RbfVolume
 from ._errors import InvalidInput
 from ._progress import Progress, listening
@@ -33,10 +33,20 @@ def sample(mesh: HexMesh, field: Optional[str] = None, per_edge: int = 1, *, cen
     tolerance:  instead: as many intervals as an error below this needs, in the field's unit
     footprint:  instead: at most 1.5 pixels apart as this camera sees them in a picture of `footprint_size`
     levels:     sample the trilinear cells of this level instead of the limit
+    scheme:     also "tetoct", "boxspline": one kernel at each point of a level of tetrahedra, of `levels` (None: 1)
     correction: what a kernel has beside its value: "none", "gradient", "second", "full"
     values:     between control points: "scheme", "cubic" or "paper"
     """
     chosen = _selected(mesh, field)
+    if scheme in TET_SCHEMES:
+        if per_edge != 1 or centers or spacing > 0 or tolerance > 0 or footprint is not None or values != "scheme":
+            raise InvalidInput("the schemes of tetrahedra have one kernel at each point of a level", "scheme", "levels makes more of them")
+        with listening(progress) as listener:
+            fine = _core.subdivide(chosen, 1 if levels is None else levels, scheme, tension, crease_angle, True, listener)
+            volume, flat = _core.sample_tets(fine, correction, kernel_json(kernel), listener)
+        if flat > 0:
+            warn(f"{flat} points lie where cells are flat; their kernels were thickened")
+        return volume
     if levels is not None:
         chosen = _core.subdivide(chosen, levels, scheme, tension, crease_angle, True, None)
         scheme, boundary_levels = "linear", 0

@@ -69,6 +69,70 @@ class Tetrahedra(InFolder):
         against = self.run_ok("compare", "tets.exr", "splat.exr", "--json").json()
         self.assertLess(against["rmse"], 0.01)
 
+    # In all products the volume is that of level 2, linear between its vertices.
+    def test_places_have_the_values_of_the_other_products(self):
+        for scheme in ("tetoct", "boxspline"):
+            asked = ("--scheme", scheme, "--density", "sin(2*x)*y+z*z")
+            self.run_ok("vdb", "box.mesh", "-o", "box.vdb", "--resolution", 24, *asked)
+            places = [(x, y, z) for x in (.25, 1.125, 2.625) for y in (.375, 1.625) for z in (.875, 2.125)]  # of voxels
+            at = [word for place in places for word in ("--at", ",".join(map(str, place)))]
+            voxels = self.run_ok("info", "box.vdb", *at, "--json").json()["at"]
+            probed = self.run_ok("probe", "box.mesh", *at, *asked, "--json").json()
+            for place, voxel, here in zip(places, voxels, probed["values"]):
+                self.assertTrue(here["inside"])
+                self.assertAlmostEqual(here["value"], voxel["value"], delta=.01)  # the grid is off by up to 1e-3 of the range of 13
+                self.assertIsNone(here["parameters"])
+                # The tetrahedra of a cube follow each other.
+                x, y, z = map(int, place)
+                self.assertEqual(here["cell"] // 6, z + SIDE * (y + SIDE * x))
+            outside = self.run_ok("probe", "box.mesh", "--at", "3.1,1,1", *asked, "--json").json()["values"][0]
+            self.assertEqual((outside["inside"], outside["value"], outside["cell"]), (False, None, None))
+
+    def test_gradients_of_linear_fields_are_theirs(self):
+        asked = ("--scheme", "tetoct", "--density", "2*x-y+3*z")
+        probed = self.run_ok("probe", "box.mesh", "--line", "0,.1,.2,3,2.8,2.9", "--count", 40, "-o", "line.csv", *asked,
+                             "--json").json()
+        for here in probed["values"]:
+            x, y, z = here["at"]
+            self.assertAlmostEqual(here["value"], 2 * x - y + 3 * z, delta=1e-5)
+            for got, right in zip(here["gradient"], (2, -1, 3)):
+                self.assertAlmostEqual(got, right, delta=1e-5)
+        rows = (self.folder / "line.csv").read_text().splitlines()
+        self.assertEqual(len({row.count(",") for row in rows}), 1)
+        stats = self.run_ok("probe", "box.mesh", "--stats", *asked, "--json").json()["stats"]["whole"]
+        self.assertEqual(stats["cells"], 6 * SIDE ** 3)
+        self.assertAlmostEqual(stats["volume"], SIDE ** 3, delta=1e-6)
+        self.assertAlmostEqual(stats["fields"][0]["max"], 5 * SIDE, delta=1e-4)
+        self.assertLess(stats["fields"][0]["max_cell"], 6 * SIDE ** 3)
+
+    def test_levels_say_how_exact_the_probed_volume_is(self):
+        asked = ("probe", "box.mesh", "--line", ".1,.2,.3,2.9,2.7,2.2", "--count", 50, "--scheme", "tetoct", "--density",
+                 "sin(2*x)*y+z*z", "--json")
+        values = [[here["value"] for here in self.run_ok(*asked, "--levels", level).json()["values"]] for level in (0, 1, 3)]
+        off = lambda level: sum((a - b) ** 2 for a, b in zip(values[level], values[2]))
+        self.assertLess(off(1), off(0) / 6)  # 1/16, as the error is that of h²
+        self.refused("--levels", "probe", "box.mesh", "--at", "1,1,1", "--levels", 2)
+
+    def test_info_has_the_figures_of_the_refined_cells(self):
+        cells = 6 * SIDE ** 3
+        done = self.run_ok("info", "box.mesh", "--scheme", "tetoct", "--json").json()
+        refined = done["refined"]
+        self.assertEqual((refined["control_cells"], refined["levels"]), (cells, 2))
+        self.assertEqual((refined["tets"], refined["octahedra"]), (24 * cells, 10 * cells))
+        self.assertEqual(refined["inverted_cells"], 0)
+        self.assertAlmostEqual(refined["volume"], SIDE ** 3, delta=1e-6)
+        self.assertEqual(done["cells"], 4 * cells)  # those of the mesh stay what they were
+        said = self.run_ok("info", "box.mesh", "--scheme", "boxspline", "--levels", 1).out
+        self.assertIn("boxspline", said)
+        self.assertIn("level 1", said)
+        self.refused("tetoct", "info", "box.mesh", "--scheme", "cc")
+        self.refused("--scheme", "info", "box.mesh", "--scheme", "tetoct", "--list-fields")
+
+    def test_a_page_has_a_kernel_at_each_point(self):
+        done = self.run_ok("page", "box.mesh", "-o", "box.html", "--scheme", "tetoct", "--density", "x*y", "--no-reference",
+                           "--json").json()
+        self.assertEqual(done["points"], (2 * SIDE + 1) ** 3)
+
     def test_hexahedra_are_refined_too(self):
         done = self.run_ok("subdivide", "cube.mesh", "-o", "fine.vtu", "--scheme", "tetoct", "--json").json()
         self.assertEqual((done["cells"], done["tets"]), (8, 0))
@@ -76,7 +140,7 @@ class Tetrahedra(InFolder):
         self.assertEqual((done["control_cells"], done["tets"], done["octahedra"]), (6, 24, 6))
 
     def test_what_cannot_be_done_is_said_in_one_sentence(self):
-        self.refused("refines tetrahedra", "probe", "box.mesh", "--at", "1,1,1", "--scheme", "tetoct")
+        self.refused("refines tetrahedra", "view", "box.mesh", "--screenshot", "a.png", "--scheme", "tetoct")
         self.refused("--levels", "points", "box.mesh", "-o", "a.ply", "--scheme", "tetoct", "--per-edge", 2)
         self.refused(".vtu", "subdivide", "box.mesh", "-o", "a.mesh", "--scheme", "boxspline")
         self.refused("levels", "subdivide", "box.mesh", "-o", "a.vtu", "--scheme", "boxspline", "--levels", 9)

@@ -76,3 +76,65 @@ def test_what_makes_no_sense_is_refused(ball):
                  lambda: subvol.surface(ball, np.nan), lambda: subvol.surface(ball, 0, path="a.xyz")):
         with pytest.raises(subvol.InvalidInput):
             call()
+
+
+@pytest.fixture
+def tetrahedra(tmp_path):
+    """A box of 2³ cubes in six tetrahedra each, in its file and as the mesh with a field."""
+    from itertools import permutations
+
+    side, points, cells = 2, [], []
+    number = lambda x, y, z: 1 + x + (side + 1) * (y + (side + 1) * z)
+    for z in range(side + 1):
+        points += [f"{x} {y} {z} 0" for y in range(side + 1) for x in range(side + 1)]
+    for x, y, z in np.ndindex(side, side, side):
+        for path in permutations(range(3)):
+            at = np.array([x, y, z])
+            corners = [number(*at)]
+            for axis in path:
+                at[axis] += 1
+                corners.append(number(*at))
+            cells.append(" ".join(map(str, corners)) + " 0")
+    file = tmp_path / "box.mesh"
+    file.write_text("\n".join(["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(points)), *points, "Tetrahedra",
+                               str(len(cells)), *cells, "End", ""]))
+    with pytest.warns(subvol.SubvolWarning):
+        mesh = subvol.read_mesh(file)
+    x, y, z = mesh.points.T
+    return file, subvol.HexMesh(mesh.points, mesh.cells, {"density": x * y + z * z, "x": x})
+
+
+@pytest.mark.parametrize("scheme", ["tetoct", "boxspline"])
+def test_tetrahedra_are_refined_as_such(tetrahedra, scheme):
+    _, mesh = tetrahedra
+    fine = subvol.subdivide(mesh, 2, scheme, on_limit=True)
+    assert len(fine.cells) == 48 * 4 * (24 + 4 * 10)  # 24 tetrahedra and 10 octahedra of level 2, four hexahedra a tetrahedron
+    assert np.ptp(fine.points, axis=0) == pytest.approx([2, 2, 2])  # right angles stay
+    np.testing.assert_allclose(fine.fields["x"], fine.points[:, 0], atol=1e-12)
+    at = fine.points[fine.cells[::97, 0]]  # corners of the tetrahedra
+    found = subvol.probe(mesh, at, scheme=scheme)
+    np.testing.assert_allclose(found.fields["density"], fine.fields["density"][fine.cells[::97, 0]], atol=1e-6)
+    np.testing.assert_allclose(found.gradients["x"], np.tile([1, 0, 0], (len(at), 1)), atol=1e-6)
+    assert found.cells.max() < 48 and np.isnan(found.parameters).all()
+    same = subvol.probe(fine, at, scheme="linear")
+    np.testing.assert_allclose(found.fields["density"], same.fields["density"], atol=1e-9)
+    points = subvol.sample(mesh, "density", scheme=scheme)
+    assert len(points) == 5 ** 3
+    for call in (lambda: subvol.sample(mesh, "x", 2, scheme=scheme), lambda: subvol.probe(mesh, at, levels=1),
+                 lambda: subvol.measure(mesh, scheme=scheme), lambda: subvol.probe(mesh, at, scheme=scheme, levels=9)):
+        with pytest.raises(subvol.InvalidInput):
+            call()
+
+
+def test_tetrahedra_are_those_of_the_command(tetrahedra, command, tmp_path):
+    import json
+
+    file, mesh = tetrahedra
+    asked = ("--scheme", "tetoct", "--density", "x*y+z*z")
+    command("points", file, "-o", tmp_path / "a.ply", *asked)
+    subvol.write_points(subvol.sample(mesh, "density", scheme="tetoct"), tmp_path / "b.ply")
+    assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
+    theirs = json.loads(command("probe", file, "--at", ".3,.4,1.2", *asked, "--levels", 3, "--json"))["values"][0]
+    ours = subvol.probe(mesh, [[.3, .4, 1.2]], scheme="tetoct", levels=3)
+    assert (theirs["value"], theirs["cell"]) == (ours.fields["density"][0], ours.cells[0])
+    assert theirs["gradient"] == ours.gradients["density"][0].tolist()

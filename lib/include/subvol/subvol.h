@@ -47,6 +47,7 @@
 #include "subvol/mixed_cells.h"
 #include "subvol/mixed_file.h"
 #include "subvol/mixed_mesh.h"
+#include "subvol/mixed_probe.h"
 #include "subvol/model.h"
 #include "subvol/optics.h"
 #include "subvol/overlay.h"

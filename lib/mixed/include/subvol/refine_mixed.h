@@ -82,4 +82,24 @@ struct MixedInterpolation {
 [[nodiscard]] MixedInterpolation interpolate_vertices(const MixedMesh& given, TetScheme scheme, double tolerance = 1e-6,
                                                       int most_steps = 60);
 
+/// The level of a mesh on the limit that passes through the mesh's points and values.
+///
+/// left: as of MixedInterpolation
+struct MixedVolume {
+    MixedMesh mesh;
+    double left = 0;
+};
+
+/// Interpolates the mesh with its creases, refines it and puts the vertices on the limit: between them the volume is taken as
+/// linear.
+///
+/// tolerance, most_steps: as of `interpolate_vertices`
+/// throws:                as `refine`, `limit_table`
+[[nodiscard]] MixedVolume volume_through(const MixedMesh& given, const MixedRefineOptions& options, double tolerance = 1e-4,
+                                         int most_steps = 100);
+
+/// The control cell of each cell of a level. Both are counted through the tetrahedra, octahedra, prisms, pyramids and
+/// hexahedra.
+[[nodiscard]] std::vector<Index> control_cells(const MixedMesh& control, int levels);
+
 }  // namespace subvol

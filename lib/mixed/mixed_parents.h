@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "subvol/mixed_mesh.h"
+
+namespace subvol::detail {
+
+/// A mixed mesh in hexahedra (`in_hexahedra`), and the cell that each of these is in.
+///
+/// cells: counted through the tetrahedra, octahedra, prisms, pyramids and hexahedra
+struct HexesOfMixed {
+    HexMesh mesh;
+    std::vector<Index> cells;
+};
+
+[[nodiscard]] HexesOfMixed hexahedra_of(const MixedMesh& mesh);
+
+}  // namespace subvol::detail
