@@ -110,15 +110,14 @@ struct Evaluation {
 
     /// keep:    what had to be refined, for the next call
     /// targets: if not empty, positions that the queries approach; moved: by how much they have
-    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, const LimitOptions& wanted, bool keep,
-                                  std::span<const Vec3> targets = {}, std::span<Vec3> moved = {}) const {
-        check(wanted);
+    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, bool keep, std::span<const Vec3> targets = {},
+                                  std::span<Vec3> moved = {}) const {
         check(control, queries);
         LimitSamples samples = make_samples(control, queries.size());
         const auto order = sorted_by_cells(queries, control.cells.size());
         const auto cells = places_of_cells(queries, order);
-        const auto rest = descents.run({control, queries, order, wanted, scales, samples, targets, moved}, cells, keep);
-        if (!rest.empty()) refine_rest(control, queries, rest, wanted, scales, samples);
+        const auto rest = descents.run({control, queries, order, options, scales, samples, targets, moved}, cells, keep);
+        if (!rest.empty()) refine_rest(control, queries, rest, options, scales, samples);
         return samples;
     }
 
@@ -140,10 +139,8 @@ LimitEvaluator::~LimitEvaluator() = default;
 LimitEvaluator::LimitEvaluator(LimitEvaluator&&) noexcept = default;
 LimitEvaluator& LimitEvaluator::operator=(LimitEvaluator&&) noexcept = default;
 
-LimitSamples LimitEvaluator::at(std::span<const LimitQuery> queries, std::optional<double> tolerance) const {
-    LimitOptions options = state_->evaluation.options;
-    if (tolerance) options.tolerance = *tolerance;
-    return state_->evaluation.at(queries, options, true);
+LimitSamples LimitEvaluator::at(std::span<const LimitQuery> queries) const {
+    return state_->evaluation.at(queries, true);
 }
 
 LimitSamples LimitEvaluator::approach(std::span<LimitQuery> queries, std::span<const Vec3> positions) const {
@@ -153,7 +150,7 @@ LimitSamples LimitEvaluator::approach(std::span<LimitQuery> queries, std::span<c
     }
     std::vector<Vec3> moved(queries.size(), Vec3(0.0));
     const Evaluation& evaluation = state_->evaluation;
-    LimitSamples samples = evaluation.at(queries, evaluation.options, true, positions, moved);
+    LimitSamples samples = evaluation.at(queries, true, positions, moved);
     for (std::size_t q = 0; q < queries.size(); ++q) {
         queries[q].uvw = glm::clamp(queries[q].uvw + moved[q], Vec3(0.0), Vec3(1.0));
     }
@@ -161,7 +158,7 @@ LimitSamples LimitEvaluator::approach(std::span<LimitQuery> queries, std::span<c
 }
 
 LimitSamples evaluate_limit(const HexMesh& mesh, std::span<const LimitQuery> queries, const LimitOptions& options) {
-    return Evaluation(mesh, options).at(queries, options, false);
+    return Evaluation(mesh, options).at(queries, false);
 }
 
 }  // namespace subvol

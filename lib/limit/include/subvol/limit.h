@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -80,11 +79,8 @@ public:
 
     /// What `evaluate_limit` returns for these places, bit for bit. Several threads may call it.
     ///
-    /// tolerance: instead of that of the options
-    /// throws:    Error(InvalidInput) if a query names a cell that does not exist or lies outside [0,1]³, or if the tolerance
-    /// is
-    ///            negative
-    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries, std::optional<double> tolerance = {}) const;
+    /// throws: Error(InvalidInput) if a query names a cell that does not exist or lies outside [0,1]³
+    [[nodiscard]] LimitSamples at(std::span<const LimitQuery> queries) const;
 
     /// `at`, but each place first moves towards where the limit has a given position: by Newton's method on the coarse levels,
     /// within its cell. From a place that is near, most end within 1e-3 of a cell; what is left is a step by the Jacobian.
