@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "gmsh_numbers.h"
 #include "gmsh_values.h"
 #include "mesh_file.h"
 

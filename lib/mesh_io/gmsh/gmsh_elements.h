@@ -3,7 +3,16 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gmsh_values.h"
+#include "mesh_file.h"
+#include "sharp_groups.h"
+#include "subvol/mesh_io.h"
 
 namespace subvol::detail {
 
@@ -50,5 +59,79 @@ inline const std::map<std::int64_t, GmshElement> kGmshElements{
     {91, {75, "quartic prism", "quartic prisms", GmshShape::Prism}},
     {92, {64, "cubic hexahedron", "cubic hexahedra", GmshShape::Hexahedron}},
     {93, {125, "quartic hexahedron", "quartic hexahedra", GmshShape::Hexahedron}}};
+
+/// The physical groups of a Gmsh file, and which of them the user wants to be sharp. They are of curves (dimension 1) and
+/// surfaces (2).
+class GmshGroups {
+public:
+    explicit GmshGroups(std::span<const std::string> wanted) : wanted_(wanted) {}
+
+    /// Whether any are wanted; if not, the sections of groups need not be read.
+    [[nodiscard]] bool any() const { return wanted_.any(); }
+
+    /// Reads the section $PhysicalNames, whose keyword was the last word.
+    void read_names(TextScanner& in);
+
+    /// Reads the section $Entities, whose keyword was the last word.
+    ///
+    /// places: points of the geometry have their coordinates there, as in version 4.1, and no box
+    void read_entities(GmshValues& values, bool places);
+
+    /// Whether the user wants a group. group: negative where the element is turned round
+    [[nodiscard]] bool is_sharp(std::int64_t dimension, std::int64_t group);
+
+    /// Whether the user wants one of the groups that an entity of the geometry is in.
+    [[nodiscard]] bool has_sharp(std::int64_t dimension, std::int64_t entity);
+
+    /// To be called after the last element. throws: as SharpGroups::check
+    void check(std::string_view file) const { wanted_.check(file); }
+
+private:
+    using Key = std::pair<std::int64_t, std::int64_t>;  // dimension and number
+
+    SharpGroups wanted_;
+    std::map<Key, std::string> names_;
+    std::map<Key, std::vector<std::int64_t>> groups_of_;  // of an entity of the geometry
+    std::map<Key, bool> sharp_;                           // groups that occurred
+};
+
+/// 1 to 3; other elements than lines, triangles and quads count as solid.
+[[nodiscard]] std::int64_t dimension_of(const GmshElement& element);
+
+/// Puts the elements of a Gmsh file where they belong: cells, sheets and curves, tags of sharp groups. Counts what is left out.
+class GmshCells {
+public:
+    /// All are referred to.
+    GmshCells(TextScanner& in, GmshValues& values, const GmshNumbers& nodes, const ReadOptions& options, MeshFile& found)
+        : in_(in), values_(values), nodes_(nodes), options_(options), found_(found) {}
+
+    /// Reads the nodes of an element.
+    ///
+    /// number:  in the order of the file, from 0
+    /// sharp:   whether it is in a group that the user wants to be sharp
+    /// type:    of the nodes' numbers
+    /// returns: whether it is read as a cell
+    bool take(const GmshElement& element, std::size_t number, bool sharp, NumberType type, const Place& place);
+
+    /// To be called after the last element: warnings of what is left out.
+    void list_left_out(std::string_view file);
+
+private:
+    Index read_corner(const Place& place, NumberType type);
+    void take_tag(const GmshElement& element, NumberType type, const Place& place);
+    template <std::size_t N>
+    void take_sheet(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type, const Place& place);
+    template <std::size_t N>
+    bool take_as(FileCells<N>& into, const GmshElement& element, std::size_t number, NumberType type, const Place& place);
+    void leave_out(const GmshElement& element, std::size_t how_many);
+
+    TextScanner& in_;
+    GmshValues& values_;
+    const GmshNumbers& nodes_;
+    const ReadOptions& options_;
+    MeshFile& found_;
+    std::size_t curved_ = 0;
+    std::map<std::string_view, std::pair<std::size_t, std::string_view>> left_out_;
+};
 
 }  // namespace subvol::detail

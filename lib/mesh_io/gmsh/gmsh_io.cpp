@@ -3,10 +3,8 @@
 
 #include "assemble.h"
 #include "formats.h"
-#include "gmsh_cells.h"
 #include "gmsh_data.h"
 #include "gmsh_elements.h"
-#include "gmsh_groups.h"
 
 namespace subvol::detail {
 
