@@ -8,12 +8,12 @@
 #include <numeric>
 #include <optional>
 
-#include "all_cells.h"
 #include "cell_refiner.h"
 #include "dense_block.h"
 #include "patch.h"
 #include "refine_steps.h"
 #include "run_nested.h"
+#include "subvol/detail/all_cells.h"
 #include "subvol/error.h"
 #include "subvol/limit.h"
 

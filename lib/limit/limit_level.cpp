@@ -8,9 +8,9 @@
 #include <mutex>
 #include <numeric>
 
-#include "all_cells.h"
 #include "node_steps.h"
 #include "subvol/dense_cells.h"
+#include "subvol/detail/all_cells.h"
 
 namespace subvol {
 
