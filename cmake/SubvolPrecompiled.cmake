@@ -37,7 +37,8 @@ function(subvol_use_precompiled target name)
   add_dependencies(${target} subvol_precompiled_${name})
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources EXCLUDE REGEX "[$]<")
-  foreach(batch RANGE 99) # the sources of unity builds; what is not there does no harm
+  list(LENGTH sources most)
+  foreach(batch RANGE ${most}) # the sources of unity builds; what is not there does no harm
     list(APPEND sources ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/Unity/unity_${batch}_cxx.cxx)
   endforeach()
   set_property(SOURCE ${sources} APPEND PROPERTY OBJECT_DEPENDS ${header}.gch) # objects of two targets have no order else

@@ -6,39 +6,21 @@
 
 #include "subvol/subvol.h"
 
-namespace {
-
-std::vector<double> coordinates(const std::vector<subvol::Vec3>& points) {
-    std::vector<double> values;
-    for (const auto& p : points) values.insert(values.end(), {p.x, p.y, p.z});
-    return values;
-}
-
-}  // namespace
-
 int main() try {
     // A mesh with fine bumps, as a scan or a simulation would give it.
     subvol::HexMesh fine = subvol::refine(subvol::make_model("ball", 3), {.levels = 2});
     for (auto& p : fine.points) p *= 1 + .02 * std::sin(20 * p.x) * std::sin(20 * p.y) * std::sin(20 * p.z);
 
-    const subvol::MeshHierarchy hierarchy = subvol::find_hierarchy(fine, {.levels = 2});
-    const subvol::WaveletBasis basis = subvol::wavelet_basis(build_topology(hierarchy.coarse), {.levels = hierarchy.levels});
-    subvol::WaveletField shape = analyze(basis, in_hierarchy(hierarchy, coordinates(fine.points), 3), 3);
-    std::printf("%zu points are %zu control points and %zu details\n", fine.points.size(), basis.control_points,
-                fine.points.size() - basis.control_points);
-
-    // Twist the control points about z. The details turn with their surroundings.
-    turn_details_to_shape(basis, shape);
-    for (std::size_t i = 0; i < shape.coarse.size(); i += 3) {
-        const double x = shape.coarse[i], y = shape.coarse[i + 1], angle = shape.coarse[i + 2];
-        shape.coarse[i] = std::cos(angle) * x - std::sin(angle) * y;
-        shape.coarse[i + 1] = std::sin(angle) * x + std::cos(angle) * y;
+    // Twist its control points two levels coarser about z. The details turn with their surroundings.
+    subvol::CoarseEdit edit(fine, 2);
+    subvol::HexMesh coarse = edit.coarse();
+    std::printf("%zu points are %zu control points and %zu details\n", fine.points.size(), coarse.points.size(),
+                fine.points.size() - coarse.points.size());
+    for (auto& p : coarse.points) {
+        const double angle = p.z;
+        p = {std::cos(angle) * p.x - std::sin(angle) * p.y, std::sin(angle) * p.x + std::cos(angle) * p.y, p.z};
     }
-    turn_details_to_world(basis, shape);
-    const std::vector<double> twisted = synthesize(basis, shape);
-    for (std::size_t i = 0; i < hierarchy.points.size(); ++i) {
-        fine.points[hierarchy.points[i]] = {twisted[3 * i], twisted[3 * i + 1], twisted[3 * i + 2]};
-    }
+    fine = edit.change(coarse);
     write_mesh("twisted.vtu", fine);
 
     const subvol::WaveletFileReport report = write_wavelet_file("twisted.svw", fine, {.tolerance = 1e-3});

@@ -18,18 +18,16 @@ namespace {
 /// mesh with its topology, which becomes eight new cells.
 constexpr double kBytesPerCell = 70 + 600.0 / 8;
 
-/// A few levels too many would fill the memory, and the system would kill the program without a message.
-void check_memory(std::size_t cells, int levels) {
-    const double fine_cells = static_cast<double>(cells) * std::pow(8.0, levels);
+}  // namespace
+
+void check_memory(int level, double cells, double bytes_per_cell) {
     const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-    if (levels == 0 || fine_cells * kBytesPerCell < memory) return;
+    if (level == 0 || cells * bytes_per_cell < memory) return;
     throw Error(ErrorCode::MissingCapability,
-                text("level ", levels, " has ", fine_cells, " cells, which need about ",
-                     std::ceil(fine_cells * kBytesPerCell / 1e9), " GB of memory; this machine has ", std::floor(memory / 1e9)),
+                text("level ", level, " has ", cells, " cells, which need about ", std::ceil(cells * bytes_per_cell / 1e9),
+                     " GB of memory; this machine has ", std::floor(memory / 1e9)),
                 "--levels");
 }
-
-}  // namespace
 
 Scheme scheme_named(const std::string& name) {
     if (name == "tetoct" || name == "boxspline") {
@@ -70,7 +68,7 @@ RefineOptions RefineArguments::options(int default_levels, Report& report) const
 }
 
 HexMesh refine_reported(const HexMesh& mesh, const RefineOptions& options, Vertices vertices, Report& report) {
-    check_memory(mesh.cells.size(), options.levels);
+    check_memory(options.levels, static_cast<double>(mesh.cells.size()) * std::pow(8.0, options.levels), kBytesPerCell);
     HexMesh fine = report.timed("refine", [&] {
         HexMesh refined = refine(mesh, options);
         return vertices == Vertices::OnTheLimit ? on_limit(std::move(refined), options.scheme.kind) : refined;

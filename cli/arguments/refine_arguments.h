@@ -32,6 +32,12 @@ struct RefineArguments {
     [[nodiscard]] RefineOptions options(int default_levels, Report& report) const;
 };
 
+/// A few levels too many would fill the memory, and the system would kill the program without a message.
+///
+/// cells:  of that level
+/// throws: Error(MissingCapability) if the machine does not have the memory for it; level 0 is always taken
+void check_memory(int level, double cells, double bytes_per_cell);
+
 enum class Vertices { OfTheLevel, OnTheLimit };
 
 /// `refine`, timed and with the number of cells in the report. The vertices are those of the level, or moved to the limit

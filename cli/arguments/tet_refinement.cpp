@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tet_refinement.h"
 
+#include <cmath>
+
 #include "subvol/error.h"
 #include "text.h"
 
@@ -10,6 +12,8 @@ namespace {
 // An edge of a box may have two tetrahedra or more, so the rule of hexahedra, sharp where one cell is, does not find it. A
 // ball of some hundred points bends by 20 degrees at its edges.
 constexpr double kCreaseAngleDeg = 60;
+
+constexpr double kBytesPerTet = 300;  // of eight for each cell and level, while the finest is made
 
 }  // namespace
 
@@ -56,6 +60,7 @@ MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertic
         if (*scheme_ == TetScheme::Boxspline) control = in_tetrahedra(std::move(control));
         figures["control_points"] = control.points.size();
         figures["control_cells"] = control.cells();
+        check_memory(options.levels, static_cast<double>(control.cells()) * std::pow(8.0, options.levels), kBytesPerTet);
         if (parents != nullptr) *parents = control_cells(control, options.levels);
         if (vertices == Vertices::OfTheLevel) return refine(control, options);
         MixedVolume volume = volume_through(control, options);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mesh_figures.h"
 #include "quantities.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/detail/number_text.h"
@@ -15,10 +16,6 @@ namespace {
 
 constexpr std::size_t kMostLines = 30;  // places that people see; the others are in files
 
-Json numbers(const Vec3& v) {
-    return Json::array({v.x, v.y, v.z});
-}
-
 /// One number, or an array of the channels.
 template <class Value>
 Json each_channel(const ProbedField& field, const Value& value) {
@@ -30,7 +27,7 @@ Json each_channel(const ProbedField& field, const Value& value) {
 
 Json as_json(const ProbeResult& found, std::size_t p, const Vec3& at) {
     Json one;
-    one["at"] = numbers(at);
+    one["at"] = json_of(at);
     one["inside"] = found.inside(p);
     if (!found.inside(p)) {
         for (const char* key : {"value", "gradient", "cell", "parameters", "fields"}) one[key] = nullptr;
@@ -40,12 +37,12 @@ Json as_json(const ProbeResult& found, std::size_t p, const Vec3& at) {
         return each_channel(field, [&](std::size_t c) -> Json { return field.values[p * field.channels + c]; });
     };
     const auto gradient = [&](const ProbedField& field) {
-        return each_channel(field, [&](std::size_t c) { return numbers(field.gradients[p * field.channels + c]); });
+        return each_channel(field, [&](std::size_t c) { return json_of(field.gradients[p * field.channels + c]); });
     };
     one["value"] = value(found.fields.front());
     one["gradient"] = gradient(found.fields.front());
     one["cell"] = found.cells[p];
-    one["parameters"] = found.parameters.empty() ? Json() : numbers(found.parameters[p]);
+    one["parameters"] = found.parameters.empty() ? Json() : json_of(found.parameters[p]);
     for (const ProbedField& field : found.fields) {
         one["fields"][field.name] = {{"value", value(field)}, {"gradient", gradient(field)}};
     }
@@ -148,10 +145,10 @@ Json as_json(const PartMeasure& part) {
                                  {"integral", field.integral},
                                  {"mean", field.mean},
                                  {"min", field.min.value},
-                                 {"min_at", numbers(field.min.place)},
+                                 {"min_at", json_of(field.min.place)},
                                  {"min_cell", field.min.cell},
                                  {"max", field.max.value},
-                                 {"max_at", numbers(field.max.place)},
+                                 {"max_at", json_of(field.max.place)},
                                  {"max_cell", field.max.cell},
                                  {"histogram", field.histogram}});
     }

@@ -102,7 +102,7 @@ private:
         tets_ = TetRefinement(refine_);
         if (list_fields_ || input_.empty() || shares(share_) || is_bricks_input(input_) || holds_points(input_) ||
             is_vdb_file(input_)) {
-            throw Error(ErrorCode::InvalidInput, "is of a mesh in one piece and one process", "--scheme", "no --scheme");
+            throw Error(ErrorCode::InvalidInput, "needs a mesh in one piece, and one process", "--scheme", "no --scheme");
         }
     }
 

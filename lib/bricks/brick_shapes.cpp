@@ -17,7 +17,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kShapesOfChunk = std::size_t{1} << 16;  // cells whose centres are looked at together
+constexpr std::size_t kCentersOfChunk = std::size_t{1} << 16;  // cells whose centres are looked at together
 
 /// Cuts a range of cells into bricks of about equal size, across the longest side of their box.
 class Cutter {
@@ -36,9 +36,9 @@ private:
     /// Calls call(cell, coordinate) for all cells in their order.
     template <class Call>
     void each_center(int axis, std::span<const Index> cells, const Call& call) const {
-        std::vector<double> values(std::min(cells.size(), kShapesOfChunk));
-        for (std::size_t begin = 0; begin < cells.size(); begin += kShapesOfChunk) {
-            const auto some = cells.subspan(begin, std::min(kShapesOfChunk, cells.size() - begin));
+        std::vector<double> values(std::min(cells.size(), kCentersOfChunk));
+        for (std::size_t begin = 0; begin < cells.size(); begin += kCentersOfChunk) {
+            const auto some = cells.subspan(begin, std::min(kCentersOfChunk, cells.size() - begin));
             centers_.read(axis, some, std::span(values).first(some.size()));
             for (std::size_t i = 0; i < some.size(); ++i) call(some[i], values[i]);
         }

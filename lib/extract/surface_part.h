@@ -23,8 +23,7 @@ void check_surface_options(const SurfaceOptions& options);
 ///
 /// part:        its points and cells have the order that they have in the whole
 /// owned:       a flag for each cell that a surface may be cut from; all `surface_candidates` of the whole are owned, and have
-/// their
-///              halo about them
+///              their halo about them
 /// longest_side: of the box of the whole
 /// returns:     nothing if the surface leads into a cell that is not owned
 [[nodiscard]] std::optional<LimitSurface> limit_surface_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,

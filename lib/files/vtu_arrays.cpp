@@ -24,12 +24,12 @@ std::string_view format_of(const pugi::xml_node& array) {
 template <class T>
 void each_word(TextScanner in, const std::string& name, const std::function<void(std::span<const T>)>& take,
                T (TextScanner::*read)(const Place&)) {
-    constexpr std::size_t kAtOnce = 1 << 14;
+    constexpr std::size_t kWordsAtOnce = 1 << 14;
     const std::string what = "array " + name + ": value";
     std::vector<T> values;
     for (std::int64_t number = 0; !in.at_end(); ++number) {
         values.push_back((in.*read)({what, number}));
-        if (values.size() < kAtOnce) continue;
+        if (values.size() < kWordsAtOnce) continue;
         take(values);
         values.clear();
     }

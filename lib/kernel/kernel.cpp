@@ -139,8 +139,8 @@ KernelCode detail::kernel_code(const Kernel& kernel) {
 }
 
 std::string detail::kernel_glsl() {
-    return std::string("#define real float\n#define real3 vec3\n#define real4 vec4\nfloat kernel_table(int i);\n#line 1\n") +
-           kShader_kernel_formulas_glsl;
+    std::string code = "#define real float\n#define real3 vec3\n#define real4 vec4\nfloat kernel_table(int i);\n#line 1\n";
+    return code += kShader_kernel_formulas_glsl;
 }
 
 void validate(const Kernel& kernel) {

@@ -21,7 +21,7 @@ namespace subvol {
 
 namespace {
 
-constexpr std::size_t kTurn = 512;  // blocks that are in memory together, besides those in the cache
+constexpr std::size_t kBlocksOfTurn = 512;  // blocks that are in memory together, besides those in the cache
 
 /// A set of numbers that knows for each of them how many are less.
 class RankedSet {
@@ -188,9 +188,9 @@ struct KernelFile::State {
     /// Calls body(k) for k < count, some of them at once, and trims the cache between.
     template <class Body>
     void in_turns(std::size_t count, Progress* progress, const char* stage, const Body& body) {
-        for (std::size_t first = 0; first < count; first += kTurn) {
+        for (std::size_t first = 0; first < count; first += kBlocksOfTurn) {
             report_progress(progress, stage, static_cast<double>(first) / static_cast<double>(count));
-            tbb::parallel_for(first, std::min(first + kTurn, count), body);
+            tbb::parallel_for(first, std::min(first + kBlocksOfTurn, count), body);
             cache.trim();
         }
     }

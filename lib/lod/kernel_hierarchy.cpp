@@ -22,10 +22,10 @@ KernelHierarchy build(const RbfVolume& volume, Progress* progress) {
     hierarchy.order = detail::median_order(volume.centers, leaves);
     const detail::NodeMerger merger(volume);
     merger.allocate(hierarchy, volume.size() == 0 ? 0 : 2 * leaves - 1);
-    constexpr std::size_t kTurn = 1 << 14;  // leaves between two reports of progress
-    for (std::size_t first = 0; first < leaves && volume.size() > 0; first += kTurn) {
+    constexpr std::size_t kLeavesOfTurn = 1 << 14;  // leaves between two reports of progress
+    for (std::size_t first = 0; first < leaves && volume.size() > 0; first += kLeavesOfTurn) {
         report_progress(progress, "merge kernels", 0.5 * static_cast<double>(first) / static_cast<double>(leaves));
-        const std::size_t count = std::min(kTurn, leaves - first);
+        const std::size_t count = std::min(kLeavesOfTurn, leaves - first);
         detail::parallel_each(count, [&](std::size_t leaf) {
             const std::size_t node = leaves - 1 + first + leaf;
             const auto [begin, end] = hierarchy.slots(node);

@@ -55,10 +55,10 @@ public:
         out_.write_boundary(volume_.boundary);
         KernelHierarchy top;
         merger_.allocate(top, 2 * layout.blocks() - 1);
-        constexpr std::size_t kTurn = 128;  // blocks that are in memory together
-        for (std::size_t first = 0; first < layout.blocks(); first += kTurn) {
+        constexpr std::size_t kWrittenInTurn = 128;  // blocks that are in memory together
+        for (std::size_t first = 0; first < layout.blocks(); first += kWrittenInTurn) {
             report_progress(progress_, "merge kernels", static_cast<double>(first) / static_cast<double>(layout.blocks()));
-            std::vector<Block> blocks(std::min(kTurn, layout.blocks() - first));
+            std::vector<Block> blocks(std::min(kWrittenInTurn, layout.blocks() - first));
             tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) { blocks[b] = make_block(first + b); });
             for (std::size_t b = 0; b < blocks.size(); ++b) {
                 detail::copy_node(blocks[b].tree, 0, top, layout.blocks() - 1 + first + b);

@@ -36,8 +36,7 @@ private:
 /// already stay as they are.
 ///
 /// sources: the points of the file whose mean each point of the mesh is, if its cells were split; null if they are the same.
-/// The
-///          tags are split too
+///          The tags are split too
 /// throws:  Error(InvalidInput) if a face is not one of a cell, or an edge is not on the boundary or on a sharp face
 void add_sharp_tags(HexMesh& mesh, FileTags&& tags, const IndexRows* sources, std::string_view file, const EntityNames& names);
 

@@ -13,8 +13,8 @@ using namespace detail;
 namespace {
 
 constexpr double kThroat = 0.21;      // radius where the gas is as fast as sound
-constexpr double kBore = 0.5;         // half the side of the core square, relative to the radius
-constexpr double kBulgeOfWall = 0.5;  // how far the core square is rounded towards a disk, in [0,1]
+constexpr double kHalfCore = 0.5;     // half the side of the core square, relative to the radius
+constexpr double kBulgeOfCore = 0.5;  // how far the core square is rounded towards a disk, in [0,1]
 constexpr double kBoundaryLayer = 6;  // exponent of the profile across the flow: the layer takes about a tenth of the radius
 
 constexpr std::array<model::Deformation, 2> kNozzleDeformation{
@@ -81,7 +81,7 @@ void add_rings(Section& section, const std::vector<Index>& inner, Index rings) {
         const double t = static_cast<double>(layer) / static_cast<double>(rings);
         for (const Index id : inner) {
             const Vec2 square = section.points[id], disk = disk_from_square(square);
-            section.points.push_back(glm::mix(kBore * glm::mix(square, disk, kBulgeOfWall), disk, t));
+            section.points.push_back(glm::mix(kHalfCore * glm::mix(square, disk, kBulgeOfCore), disk, t));
         }
         for (Index k = 0; k < around; ++k) {
             const Index next = (k + 1) % around;
@@ -96,7 +96,7 @@ Section o_grid(Index across, Index rings) {
     const std::size_t core = section.points.size();
     add_rings(section, rim(across), rings);
     for (std::size_t p = 0; p < core; ++p) {
-        section.points[p] = kBore * glm::mix(section.points[p], disk_from_square(section.points[p]), kBulgeOfWall);
+        section.points[p] = kHalfCore * glm::mix(section.points[p], disk_from_square(section.points[p]), kBulgeOfCore);
     }
     return section;
 }

@@ -7,7 +7,7 @@
 namespace subvol::detail::model {
 namespace {
 
-/// A disk with a groove between rim and hub, about an axle across the whole steam_train. center.y: of the wheel, > 0
+/// A disk with a groove between rim and hub, about an axle across the whole train. center.y: of the wheel, > 0
 double wheel(const Vec3& m, const Vec3& center, double radius) {
     const Vec3 q = m - center;
     const double groove = ring(q - Vec3(0, 2.4, 0), 1, 0.58 * radius, 0.2 * radius);

@@ -31,19 +31,19 @@ public:
         const auto properties = [&](const char* type, const auto& names, const std::string& suffix = {}) {
             for (const auto name : names) text += std::string("property ") + type + " " + std::string(name) + suffix + "\n";
         };
-        using Names = std::initializer_list<const char*>;
-        properties(with_splats_ ? "float" : "double", Names{"x", "y", "z"});
+        using List = std::initializer_list<const char*>;
+        properties(with_splats_ ? "float" : "double", List{"x", "y", "z"});
         if (with_splats_) {
             properties("float", kSplatProperties);
-            properties("double", Names{"cx", "cy", "cz"});
+            properties("double", List{"cx", "cy", "cz"});
         }
         for (std::size_t c = 0; c < volume_.channels.size(); ++c) {
             const std::string suffix = c == 0 ? "" : "_" + std::to_string(c);
-            properties("float", Names{"value", "gx", "gy", "gz", "moment"}, suffix);
+            properties("float", List{"value", "gx", "gy", "gz", "moment"}, suffix);
             if (volume_.channels[c].hessians.empty()) continue;
-            properties("float", Names{"hxx", "hxy", "hxz", "hyy", "hyz", "hzz"}, suffix);
+            properties("float", List{"hxx", "hxy", "hxz", "hyy", "hyz", "hzz"}, suffix);
         }
-        properties("float", Names{"sxx", "sxy", "sxz", "syy", "syz", "szz"});
+        properties("float", List{"sxx", "sxy", "sxz", "syy", "syz", "szz"});
         return text;
     }
 

@@ -16,7 +16,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr Corner kUnknown = 255;
+constexpr CornerNumber kUnknown = 255;
 
 enum Kind : std::uint8_t { OldPoint, EdgePoint, FacePoint, CellPoint, NoPoint };
 
@@ -41,7 +41,7 @@ public:
 private:
     /// Decides the cells that hang together with one.
     bool choose_part(Index first, std::string& why) {
-        for (Corner k = 0; k < 8; ++k) {
+        for (CornerNumber k = 0; k < 8; ++k) {
             std::string reason;
             if (spread(first, k, reason) && complete(reason)) return true;
             if (k == 0 || why.empty()) why = reason;
@@ -66,7 +66,7 @@ private:
         return true;
     }
 
-    bool spread(Index first, Corner corner, std::string& why) {
+    bool spread(Index first, CornerNumber corner, std::string& why) {
         part_.assign(1, first);
         marked_.clear();
         old_corner_[first] = corner;
@@ -86,13 +86,13 @@ private:
     }
 
     /// A face of a small cell has either its old point or the point of a cell.
-    [[nodiscard]] Corner corner_across(Index cell, Index face, Index other) const {
+    [[nodiscard]] CornerNumber corner_across(Index cell, Index face, Index other) const {
         const Index old_point = t_.cells[cell][old_corner_[cell]];
         const auto& quad = t_.faces[face];
         if (std::find(quad.begin(), quad.end(), old_point) != quad.end()) {
-            return static_cast<Corner>(slot_of(t_.cells[other], old_point));
+            return static_cast<CornerNumber>(slot_of(t_.cells[other], old_point));
         }
-        return static_cast<Corner>(across(slot_of(t_.cells[other], t_.cells[cell][across(old_corner_[cell])])));
+        return static_cast<CornerNumber>(across(slot_of(t_.cells[other], t_.cells[cell][across(old_corner_[cell])])));
     }
 
     bool complete(std::string& why) const {
@@ -169,7 +169,7 @@ private:
             ends[a][1 - side] = opposite;
         }
         std::array<Index, 8> corners, children;
-        std::array<std::array<Corner, 8>, 8> turned{};
+        std::array<std::array<CornerNumber, 8>, 8> turned{};
         corners.fill(kNone);
         for (const Index c : cells) {
             std::size_t bits = 0;
@@ -194,7 +194,7 @@ private:
                 for (std::size_t a = 0; a < 3; ++a) {
                     if (side_of(q, a) != side_of(k, a)) corner = flip(corner, local[a]);
                 }
-                turned[k][q] = static_cast<Corner>(corner);
+                turned[k][q] = static_cast<CornerNumber>(corner);
             }
         }
         for (std::size_t k = 0; k < 8; ++k) {
@@ -269,8 +269,8 @@ private:
 
     const HexMesh& fine_;
     const Topology& t_;
-    std::vector<Corner> old_corner_;  // of each cell
-    std::vector<Kind> kind_;          // of each point
+    std::vector<CornerNumber> old_corner_;  // of each cell
+    std::vector<Kind> kind_;                // of each point
     std::vector<Index> part_, marked_;
     CoarserMesh coarse_;
 };

@@ -13,7 +13,7 @@ namespace subvol::detail {
 /// points:   for each coarse point the finer point that it is
 /// children: for each coarse cell and each of its corners the finer cell there
 /// corners:  of that finer cell, for each corner of a cell in the coarse cell's orientation, the corner as the finer cell has
-/// it
+///           it
 struct CoarserMesh {
     HexMesh mesh;
     std::vector<Index> points;

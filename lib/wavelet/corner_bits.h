@@ -6,7 +6,7 @@
 
 namespace subvol::detail {
 
-using Corner = std::uint8_t;
+using CornerNumber = std::uint8_t;
 
 /// Corners as numbers with a bit for each axis, and back: the same map.
 constexpr std::size_t swapped(std::size_t corner) {

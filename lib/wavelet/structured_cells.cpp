@@ -12,12 +12,12 @@ namespace subvol::detail {
 std::optional<StructuredCells> structured_cells(const Topology& t) {
     const std::size_t n = t.cells.size();
     using Place = std::array<std::int64_t, 3>;
-    std::vector<std::array<Corner, 8>> corners(n);
+    std::vector<std::array<CornerNumber, 8>> corners(n);
     std::vector<Place> place(n);
     std::vector<std::uint8_t> seen(n, 0);
     std::vector<Index> order{0};
     seen[0] = 1;
-    for (Corner k = 0; k < 8; ++k) corners[0][k] = k;
+    for (CornerNumber k = 0; k < 8; ++k) corners[0][k] = k;
     for (std::size_t next = 0; next < order.size(); ++next) {
         const Index c = order[next];
         for (std::size_t a = 0; a < 3; ++a) {
@@ -40,14 +40,14 @@ std::optional<StructuredCells> structured_cells(const Topology& t) {
                     if (same) other = t.face_cells[f][0] == c ? t.face_cells[f][1] : t.face_cells[f][0];
                 }
                 if (other == kNone) continue;
-                std::array<Corner, 8> turned{};
+                std::array<CornerNumber, 8> turned{};
                 for (std::size_t i = 0; i < 4; ++i) {
                     const std::size_t near = slot_of(t.cells[other], quad[i]);
-                    turned[flip(on_side[i], a)] = static_cast<Corner>(near);
+                    turned[flip(on_side[i], a)] = static_cast<CornerNumber>(near);
                     for (std::size_t b = 0; b < 3; ++b) {  // its neighbour that is not on the face
                         const Index p = t.cells[other][flip(near, b)];
                         if (std::find(quad.begin(), quad.end(), p) == quad.end()) {
-                            turned[on_side[i]] = static_cast<Corner>(flip(near, b));
+                            turned[on_side[i]] = static_cast<CornerNumber>(flip(near, b));
                         }
                     }
                 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "coordinates.h"
 #include "output_file.h"
 #include "subvol/error.h"
 #include "subvol/hierarchy.h"
@@ -118,13 +119,6 @@ double range_of(std::span<const double> values, std::size_t channels, std::span<
 
 /// How often the tolerance of points is divided by 3 to keep cells from being inverted.
 constexpr int kMostAttempts = 8;
-
-std::vector<double> coordinates(const std::vector<Vec3>& points) {
-    std::vector<double> values;
-    values.reserve(3 * points.size());
-    for (const Vec3& p : points) values.insert(values.end(), {p.x, p.y, p.z});
-    return values;
-}
 
 std::size_t kept_numbers(const QuantizedWavelets& numbers) {
     const auto kept = [](const std::vector<std::int64_t>& of) {

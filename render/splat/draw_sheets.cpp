@@ -75,10 +75,6 @@ struct Drawn {
     int top = 0, bottom = -1;
 };
 
-double side(const Vec2& a, const Vec2& b, const Vec2& p) {
-    return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-}
-
 /// The first triangle that each ray meets.
 class SheetRaster {
 public:

@@ -27,9 +27,8 @@ struct ToVoxels {
 /// on_limit:    the refined vertices are moved to the limit
 /// curved:      positions and values are triquadratic between the vertices of the next level
 /// cell_levels: null, or for each control cell the level of its vertices, which replaces the next one; at least 1
-/// pieces:      null, or the curved cells' pieces, with the values of the fields: then nothing is refined, and `cell_levels` is
-/// not
-///              used
+/// pieces:      null, or the curved cells' pieces, with the values of the fields: then nothing is refined, and `cell_levels`
+///              is not used
 /// slack_voxels: of curved cells: what two neighbours' ideas of their shared side may differ by
 /// tables:      null, or tables that do to this mesh what `refine` (with one more level if curved) and `on_limit` do
 struct CellRequest {

@@ -21,23 +21,33 @@ using Session = ViewSession::State;
 constexpr std::size_t kMostSteps = 50;  // that can be undone
 constexpr double kMost = 1e18;
 
+void check_cells(const Session& session) {
+    if (session.body->points.volume) throw Error(ErrorCode::InvalidInput, "points have no control mesh to edit");
+}
+
 const Selection& chosen(const Session& session) {
     if (session.selection.empty())
         throw Error(ErrorCode::InvalidInput, "no control point is selected", {}, "select comes first");
     return session.selection;
 }
 
-/// Changes a copy of the mesh, which takes the mesh's place if all goes well.
+/// Changes a copy of the mesh, or of the coarser level that is edited, which takes its place if all goes well.
 template <class Edit>
 void edit(Session& session, const Edit& change) {
-    HexMesh next = session.body->mesh;
+    HexMesh next = session.handles();
     change(next);
     for (const Vec3& p : next.points) {
         if (!(glm::dot(p, p) < kMost * kMost))
             throw Error(ErrorCode::InvalidInput, "moves a point too far", {}, "at most 1e18");
     }
     if (!session.grabbed) session.remember();
-    session.replace(std::move(next));
+    session.replace(session.coarse ? session.coarse->change(std::move(next)) : std::move(next));
+}
+
+/// Shows a mesh from before or after; the level that is edited is then that of this mesh.
+void restore(Session& session, HexMesh mesh) {
+    session.replace(std::move(mesh));
+    if (session.coarse) session.coarse->take(session.body->mesh);
 }
 
 /// The points around the place that the picture shows at a pixel.
@@ -57,11 +67,11 @@ Selection under_brush(const Session& session, const Vec2& pixel, double radius_p
     if (!std::isfinite(depth)) throw Error(ErrorCode::InvalidInput, "nothing is under the brush");
     const Ray ray = view.ray(pixel.x, pixel.y);
     const double radius = radius_px * view.pixel() * (view.perspective() ? depth : 1);
-    return select_ball(session.body->mesh, ray.origin + depth * ray.direction, radius);
+    return select_ball(session.handles(), ray.origin + depth * ray.direction, radius);
 }
 
 Vec3 center_of(const Session& session, const Json& value) {
-    return value.contains("center") ? vector(value["center"]) : middle_of(session.body->mesh, session.selection);
+    return value.contains("center") ? vector(value["center"]) : middle_of(session.handles(), session.selection);
 }
 
 Vec3 axis_of(const Json& value) {
@@ -76,9 +86,22 @@ double angle_of(const Json& value) {
 
 }  // namespace
 
+void edit_level(Session& session, const Json& value) {
+    const int level = whole_number(value, 0, 10);
+    check_cells(session);
+    if (level == session.edit_level) return;
+    if (level == 0) {
+        session.coarse.reset();
+    } else {
+        session.coarse = CoarseEdit(session.body->mesh, level, session.settings.sample.scheme);
+    }
+    session.edit_level = level;
+    session.selection.clear();
+}
+
 void select(Session& session, const Json& value) {
-    const HexMesh& mesh = session.body->mesh;
-    if (session.body->points.volume) throw Error(ErrorCode::InvalidInput, "points have no control mesh to edit");
+    check_cells(session);
+    const HexMesh& mesh = session.handles();
     if (value.is_null()) {
         session.selection.clear();
         return;
@@ -126,7 +149,7 @@ void move(Session& session, const Json& value) {
 void drag(Session& session, const Json& value) {
     const auto n = numbers(value, 2);
     const View view = seen_view(session.state, *session.body);
-    const double depth = view.to_eye(middle_of(session.body->mesh, chosen(session))).z;
+    const double depth = view.to_eye(middle_of(session.handles(), chosen(session))).z;
     const double height = view.height() * view.pixel() * (view.perspective() ? depth : 1);
     const Vec3 by = height * (n[0] * view.axes()[0] + n[1] * view.axes()[1]);
     edit(session, [&](HexMesh& mesh) { move_points(mesh, session.selection, by); });
@@ -142,7 +165,7 @@ void rotate(Session& session, const Json& value) {
 void scale(Session& session, const Json& value) {
     (void)chosen(session);
     const Vec3 factors = value.is_array() ? vector(value) : Vec3(number(value, -1e6, 1e6));
-    const Vec3 center = middle_of(session.body->mesh, session.selection);
+    const Vec3 center = middle_of(session.handles(), session.selection);
     edit(session, [&](HexMesh& mesh) { scale_points_about(mesh, session.selection, center, factors); });
 }
 
@@ -173,7 +196,7 @@ void undo(Session& session, const Json& value) {
     session.after.push_back(session.body->mesh);
     HexMesh mesh = std::move(session.before.back());
     session.before.pop_back();
-    session.replace(std::move(mesh));
+    restore(session, std::move(mesh));
 }
 
 void redo(Session& session, const Json& value) {
@@ -181,7 +204,7 @@ void redo(Session& session, const Json& value) {
     session.before.push_back(session.body->mesh);
     HexMesh mesh = std::move(session.after.back());
     session.after.pop_back();
-    session.replace(std::move(mesh));
+    restore(session, std::move(mesh));
 }
 
 void save_mesh(Session& session, const Json& value) {

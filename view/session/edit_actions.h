@@ -5,7 +5,8 @@
 
 namespace subvol::detail {
 
-// Actions on the mesh: choose control points, move them, paint; undo.
+// Actions on the mesh: choose a level and its control points, move them, paint; undo.
+void edit_level(ViewSession::State& session, const Json& value);
 void select(ViewSession::State& session, const Json& value);
 void grab(ViewSession::State& session, const Json& value);
 void move(ViewSession::State& session, const Json& value);

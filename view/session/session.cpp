@@ -62,6 +62,8 @@ void ViewSession::State::choose_body() {
     state.field = chosen->field();
     body = std::move(chosen);
     picked_field.reset();
+    coarse.reset();
+    edit_level = 0;
     selection.clear();  // points, and what was done to them, are those of the mesh before
     before.clear();
     after.clear();
@@ -244,6 +246,14 @@ Image ViewSession::composed(const DrawnPicture& picture) const {
 
 const Selection& ViewSession::selection() const {
     return state_->selection;
+}
+
+const HexMesh& ViewSession::handles() const {
+    return state_->handles();
+}
+
+int ViewSession::edit_level() const {
+    return state_->edit_level;
 }
 
 bool ViewSession::busy() const {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 
+#include "subvol/coarse_edit.h"
 #include "subvol/detail/window_look.h"
 #include "subvol/edit_mesh.h"
 #include "subvol/probe.h"
@@ -79,6 +80,8 @@ struct ViewSession::State {
     [[nodiscard]] std::function<void()> writer(const std::string& path) const;
     [[nodiscard]] std::shared_ptr<const DrawnPicture> wait();
     void note_wait();
+    /// The mesh whose control points are edited.
+    [[nodiscard]] const HexMesh& handles() const { return coarse ? coarse->coarse() : body->mesh; }
     /// Keeps the mesh for `undo`.
     void remember();
     /// Shows another shape of the body's mesh.
@@ -92,7 +95,9 @@ struct ViewSession::State {
     ViewState state;
     std::shared_ptr<const ViewBody> body;
     std::shared_ptr<const detail::PickedField> picked_field;  // of `body`
-    Selection selection;                                      // empty: nothing
+    std::optional<CoarseEdit> coarse;                         // the level that is edited; none: the mesh itself
+    int edit_level = 0;                                       // how much coarser it is
+    Selection selection;                                      // of `handles`; empty: nothing
     std::vector<HexMesh> before, after;                       // for undo and redo
     std::uint64_t shape = 0;                                  // of the cells that are edited; 0: none yet
     bool grabbed = false;                                     // a motion in many small edits, which are undone as one

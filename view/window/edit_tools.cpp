@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "panel.h"
 
@@ -127,6 +128,10 @@ void draw_sculpt(WindowHost& host, WindowMemory& memory) {
     if (ImGui::SliderFloat("brush", &radius, 5, 300, "%.0f px")) host.look().brush_px = double{radius};
     ImGui::SetNextItemWidth(label);
     ImGui::DragFloat("paints", &memory.paint_value, 0.01F, 0, 0, "%.4g");
+    int level = host.edit_level();
+    ImGui::SetNextItemWidth(label);
+    if (ImGui::InputInt("level", &level)) run(host, memory, "edit_level", std::to_string(std::clamp(level, 0, 10)));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("0: the control points; 1 and more: those of coarser levels; details follow");
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
     const auto button = [&](const char* text, const char* action, const char* value) {
         if (ImGui::Button(text, {half, 0})) run(host, memory, action, value);

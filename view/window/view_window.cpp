@@ -114,6 +114,8 @@ public:
         return optics_of(session_.state(), session_.body()).function().opacity;
     }
 
+    [[nodiscard]] int edit_level() const override { return session_.edit_level(); }
+
     [[nodiscard]] std::vector<Vec3> selected_pixels() const override {
         constexpr std::size_t kMost = 3000;  // more would hide the body
         const Selection& selection = session_.selection();
@@ -125,7 +127,7 @@ public:
         std::size_t found = 0;
         for (std::size_t p = 0; p < selection.size(); ++p) {
             if (selection[p] == 0 || found++ % step != 0) continue;
-            const Vec3 eye = view.to_eye(session_.body().mesh.points[p]);
+            const Vec3 eye = view.to_eye(session_.handles().points[p]);
             if (view.perspective() && !(eye.z > 0)) continue;
             pixels.emplace_back(view.to_pixels(eye), selection[p]);
         }

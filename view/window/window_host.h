@@ -59,6 +59,8 @@ public:
     /// The colour map at equally spaced values.
     [[nodiscard]] virtual std::vector<CurvePlace> curve(const ValueRange& range, std::size_t count) const = 0;
     [[nodiscard]] virtual std::vector<TransferFunction::OpacityKnot> opacity() const = 0;
+    /// How much coarser the level is that is edited.
+    [[nodiscard]] virtual int edit_level() const = 0;
     /// Where selected control points are in the picture (column, row) and their shares.
     [[nodiscard]] virtual std::vector<Vec3> selected_pixels() const = 0;
     [[nodiscard]] virtual std::vector<CutHandle> cut_handles() const = 0;

@@ -17,6 +17,7 @@
 #include "subvol/clamp_channel.h"
 #include "subvol/clamped.h"
 #include "subvol/clip.h"
+#include "subvol/coarse_edit.h"
 #include "subvol/color_map_file.h"
 #include "subvol/dense_cells.h"
 #include "subvol/error.h"

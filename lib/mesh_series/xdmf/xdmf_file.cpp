@@ -13,7 +13,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr int kMostGrids = 16;
+constexpr int kMostNestedItems = 16;
 constexpr std::size_t kLongestPath = 300;
 
 std::size_t product(const std::vector<std::size_t>& sizes) {
@@ -77,7 +77,7 @@ std::vector<pugi::xml_node> XdmfFile::included(const pugi::xml_node& node) const
     std::string path = node.attribute("xpointer").as_string();
     if (path.starts_with("xpointer(") && path.ends_with(")")) path = path.substr(9, path.size() - 10);
     const bool plain = path.size() <= kLongestPath && path.starts_with("/") && path.find("//", 1) == std::string::npos &&
-                       std::ranges::count(path, '[') <= kMostGrids && path.find("..") == std::string::npos;
+                       std::ranges::count(path, '[') <= kMostNestedItems && path.find("..") == std::string::npos;
     if (!plain || node.attribute("href")) fail_at(node, "what it includes is not a part of this file");
     std::vector<pugi::xml_node> nodes;
     try {
@@ -92,7 +92,7 @@ std::vector<pugi::xml_node> XdmfFile::included(const pugi::xml_node& node) const
 
 // An element may stand for another one, by its path.
 pugi::xml_node XdmfFile::resolved(pugi::xml_node node) const {
-    for (int depth = 0; depth < kMostGrids; ++depth) {
+    for (int depth = 0; depth < kMostNestedItems; ++depth) {
         const auto reference = node.attribute("Reference");
         if (!reference) return node;
         std::string path(trimmed(reference.as_string()));
@@ -244,7 +244,7 @@ std::vector<double> XdmfFile::of_slab(const pugi::xml_node& item) {
 
 std::vector<double> XdmfFile::values(const pugi::xml_node& given) {
     const pugi::xml_node item = resolved(given);
-    if (depth_ > kMostGrids) fail_at(item, "data items are nested too deeply");
+    if (depth_ > kMostNestedItems) fail_at(item, "data items are nested too deeply");
     ++depth_;
     const std::string kind = kind_of(item, {"ItemType", "Type"}), format = kind_of(item, {"Format"});
     std::vector<double> found;

@@ -124,7 +124,9 @@ TEST(Report, TablesOfLatexHaveItsSignsEscaped) {
     for (const char* part :
          {"\\begin{tabular}{rrrr}", "RMSE \\& more", "2 & $\\leq$ 0.001 & $\\geq$ 60 & 0.5 \\\\", "\\bottomrule"})
         EXPECT_NE(tex.find(part), std::string::npos) << part << tex;
-    StudyTable words{.columns = {"a_b", "50 %"}, .rows = {{std::string("x{y}\\z"), 1e300}}};
+    StudyTable words;
+    words.columns = {"a_b", "50 %"};
+    words.rows = {{std::string("x{y}\\z"), 1e300}};
     const std::string escaped = as_tex(words);
     for (const char* part : {"a\\_b", "50 \\%", "x\\{y\\}\\textbackslash{}z", "{lr}"})
         EXPECT_NE(escaped.find(part), std::string::npos) << part << escaped;

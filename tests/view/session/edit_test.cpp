@@ -9,6 +9,7 @@
 #include "subvol/error.h"
 #include "subvol/mesh_io.h"
 #include "subvol/model.h"
+#include "subvol/refine.h"
 #include "subvol/view_session.h"
 
 namespace subvol {
@@ -91,6 +92,79 @@ TEST_F(Editing, ADragInManyStepsIsUndoneAsOne) {
     EXPECT_EQ(other.wait()->image.rgba, dragged->image.rgba);
     session.run(R"({"undo": true})");
     EXPECT_EQ(session.body().mesh.points, before.points);
+}
+
+class EditingLevels : public testing::Test {
+protected:
+    EditingLevels() {
+        for (std::size_t p = 0; p < mesh.points.size(); ++p) mesh.points[p] *= 1 + 0.002 * static_cast<double>(p % 7);
+    }
+
+    HexMesh mesh = refine(make_model("ball", 2), {.levels = 2});
+    ViewSession session{
+        {.input = "ball", .read = [this](std::size_t) { return mesh; }},
+        mesh,
+        {.camera = fit_camera(bounds(mesh), {-1, 1, -1}), .width = 64, .height = 64, .look = {.look = Look::Solid}},
+        {.splat = {.method = SplatMethod::Cpu}}};
+};
+
+TEST_F(EditingLevels, ATurnOfAllControlPointsTurnsTheDetails) {
+    session.run(R"({"edit_level": 2})");
+    EXPECT_EQ(session.handles().cells.size() * 64, mesh.cells.size());
+    session.run(R"({"select": "all"})");
+    session.run(R"({"rotate": {"angle": 90, "center": [0, 0, 0]}})");
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        const Vec3 was = mesh.points[p], is = session.body().mesh.points[p];
+        EXPECT_LT(glm::distance(is, Vec3(-was.y, was.x, was.z)), 1e-9);
+    }
+}
+
+TEST_F(EditingLevels, UndoAndAnotherLevelGoOnFromTheMeshAsItIs) {
+    session.run(R"({"edit_level": 1})");
+    session.run(R"({"select": {"ball": [0, 0, 1, 0.7]}})");
+    const auto move = [&] {
+        session.run(R"({"grab": true})");
+        for (int k = 0; k < 5; ++k) session.run(R"({"move": [0, 0, 0.05]})");
+        session.run(R"({"grab": false})");
+    };
+    move();
+    const std::vector<Vec3> moved = session.body().mesh.points;
+    const auto top = std::ranges::max_element(mesh.points, {}, &Vec3::z) - mesh.points.begin();
+    const auto low = std::ranges::min_element(mesh.points, {}, &Vec3::z) - mesh.points.begin();
+    EXPECT_GT(moved[static_cast<std::size_t>(top)].z, mesh.points[static_cast<std::size_t>(top)].z + 0.1);
+    EXPECT_LT(glm::distance(moved[static_cast<std::size_t>(low)], mesh.points[static_cast<std::size_t>(low)]), kRounding);
+    session.run(R"({"undo": true})");
+    EXPECT_EQ(session.body().mesh.points, mesh.points);
+    move();  // the level is that of the mesh before again
+    for (std::size_t p = 0; p < moved.size(); ++p) {
+        EXPECT_LT(glm::distance(session.body().mesh.points[p], moved[p]), kRounding);
+    }
+    session.run(R"({"edit_level": 2})");
+    EXPECT_TRUE(session.selection().empty());
+    session.run(R"({"select": "all"})");
+    session.run(R"({"move": [1, 0, 0]})");
+    for (std::size_t p = 0; p < moved.size(); ++p) {
+        EXPECT_LT(glm::distance(session.body().mesh.points[p], moved[p] + Vec3(1, 0, 0)), 1e-9);
+    }
+}
+
+TEST_F(EditingLevels, PaintsTheControlValues) {
+    session.run(R"({"edit_level": 2})");
+    session.run(R"({"select": "all"})");
+    session.run(R"({"paint": {"value": 3}})");
+    const std::vector<double>& painted = session.body().mesh.attributes.front().values;
+    double mean = 0, spread = 0;
+    for (const double v : painted) mean += v / static_cast<double>(painted.size());
+    for (const double v : painted) spread = std::max(spread, std::abs(v - 3));
+    EXPECT_GT(spread, 0);  // the finer details of the field are still there
+    EXPECT_NEAR(mean, 3, spread);
+}
+
+TEST_F(EditingLevels, RefusesALevelThatIsNotThere) {
+    for (const char* wrong : {R"({"edit_level": 3})", R"({"edit_level": -1})", R"({"edit_level": "fine"})"}) {
+        EXPECT_THROW(session.run(wrong), Error) << wrong;
+    }
+    EXPECT_EQ(session.edit_level(), 0);
 }
 
 TEST_F(Editing, PaintChangesValuesAndTheMeshGoesToAFile) {

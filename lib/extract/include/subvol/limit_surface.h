@@ -79,9 +79,8 @@ struct LimitSurface {
 /// limit, by Newton's method. The level is raised until the triangles are within tolerance.
 ///
 /// field:  name of an attribute with one channel; empty: the first
-/// throws: Error(InvalidInput) as `evaluate_limit` and `scalar_field`, if neither an isovalue nor the boundary is asked for, or
-/// if
-///         an option is out of range; Error(Cancelled)
+/// throws: Error(InvalidInput) as `evaluate_limit` and `scalar_field`, if neither an isovalue nor the boundary is asked for,
+///         or if an option is out of range; Error(Cancelled)
 /// cost:   parallel; the same bits for any number of threads. Memory: some 300 bytes for each triangle, and the topology of the
 ///         mesh
 [[nodiscard]] LimitSurface limit_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options);

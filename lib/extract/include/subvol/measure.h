@@ -66,8 +66,7 @@ struct LimitMeasure {
 /// values at the nodes and Gauss points of the pieces.
 ///
 /// throws: Error(InvalidInput) as `evaluate_limit`, or if an option is out of range; Error(MissingCapability) if the pieces
-/// take
-///         more than 4 GB
+///         take more than 4 GB
 /// cost:   parallel; the same bits for any number of threads
 [[nodiscard]] LimitMeasure measure_limit(const HexMesh& mesh, const MeasureOptions& options = {});
 

@@ -21,8 +21,7 @@ namespace subvol {
 class MixedProbe {
 public:
     /// numbers:     what the cells of the mesh are called in results, as by `control_cells`; none: by their own numbers,
-    /// counted
-    ///              through the tetrahedra, octahedra, prisms, pyramids and hexahedra
+    ///              counted through the tetrahedra, octahedra, prisms, pyramids and hexahedra
     /// reach_world: as of ProbeOptions
     /// throws:      Error(InvalidInput) as `validate`, or if there is not a number for each cell
     /// cost:        parallel; a quadratic for each point, and about 1.5 kB for each of the hexahedra

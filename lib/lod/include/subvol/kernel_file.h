@@ -41,7 +41,7 @@ struct KernelFileContents {
 ///
 /// throws: Error(InvalidInput) as `build_kernel_hierarchy`, or if there are no kernels; Error(Io)
 /// cost:   as `build_kernel_hierarchy`, with 4 bytes per kernel and some blocks of memory; the same bytes for any number of
-/// threads
+///         threads
 KernelFileContents write_kernel_file(const std::filesystem::path& path, const RbfVolume& volume, Progress* progress = nullptr);
 
 /// The kernels for a view, with the boundary: those of `choose_level`, in the same order.

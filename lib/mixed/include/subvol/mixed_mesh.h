@@ -14,10 +14,10 @@ namespace subvol {
 ///
 /// All cells are right-handed; `make_mixed_mesh` makes them so.
 ///
-/// tets:      (p1−p0, p2−p0, p3−p0) is right-handed. The edges 0–1 and 2–3 are the two of which the box spline joins the
-/// middles octahedra: three pairs of opposite corners, +x −x +y −y +z −z; the box spline uses the diagonal 0–1 prisms,
-/// pyramids: as in MixedCells creases:   boundary edges to be kept sharp, besides those that the default rule finds; two point
-/// ids each, smaller first
+/// tets:      (p1−p0, p2−p0, p3−p0) is right-handed; the box spline joins the middles of the edges 0–1 and 2–3
+/// octahedra: three pairs of opposite corners, +x −x +y −y +z −z; the box spline uses the diagonal 0–1
+/// prisms, pyramids: as in MixedCells
+/// creases:   boundary edges to be kept sharp, besides those that the default rule finds; two point ids, smaller first
 struct MixedMesh {
     std::vector<Vec3> points;
     std::vector<std::array<Index, 4>> tets;
@@ -35,9 +35,8 @@ struct MixedMesh {
 
 /// Checks a mesh.
 ///
-/// throws: Error(InvalidInput) if there is no cell, a corner is out of range or twice in a cell, a used point or a value there
-/// is
-///         not finite, or an attribute has the wrong length; names the cell or point (counted from 0)
+/// throws: Error(InvalidInput) if there is no cell, a corner is out of range or twice in a cell, a used point or a value
+///         there is not finite, or an attribute has the wrong length; names the cell or point (counted from 0)
 void validate(const MixedMesh& mesh);
 
 /// A mixed mesh of the cells of a file: right-handed, without unused points. The corners of a tetrahedron are ordered by their
@@ -62,10 +61,9 @@ void validate(const MixedMesh& mesh);
 /// cut into tetrahedra, then all cells are split by `split_into_hexes`. Creases are left out.
 [[nodiscard]] HexMesh in_hexahedra(const MixedMesh& mesh);
 
-/// inverted: cells with a corner at which the edges are left-handed, of octahedra one whose eight parts are not all
-/// right-handed worst:    the least of the volumes of the tetrahedra at the corners, divided by (root mean square edge)³ and
-/// scaled so that
-///           that of a regular tetrahedron is 1; of octahedra, prisms, pyramids and hexahedra so that theirs is 1
+/// inverted: cells with a corner at which the edges are left-handed; octahedra with a part that is not right-handed
+/// worst:    the least of the volumes of the tetrahedra at the corners, divided by (root mean square edge)³ and scaled so
+///           that that of a regular tetrahedron is 1; of octahedra, prisms, pyramids and hexahedra so that theirs is 1
 struct MixedShape {
     std::size_t inverted = 0;
     double worst = 1;

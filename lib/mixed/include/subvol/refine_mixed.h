@@ -51,8 +51,7 @@ struct MixedTables {
 /// kind in the order of the sorted corners. It does not depend on the order of the cells, and neither do the weights.
 ///
 /// throws: Error(InvalidInput) as `validate`, if a face has more than two cells, a crease is not on the boundary, options are
-/// out
-///         of range, or Boxspline meets a prism, pyramid or hexahedron (cut them: `in_tetrahedra`)
+///         out of range, or Boxspline meets a prism, pyramid or hexahedron (cut them: `in_tetrahedra`)
 /// cost:   parallel; bitwise the same for any number of threads
 [[nodiscard]] MixedTables refinement_tables(const MixedMesh& mesh, const MixedRefineOptions& options = {});
 

@@ -18,9 +18,8 @@ namespace subvol {
 /// Sheets: one sheet buffer after the other, drawn and composited by OpenGL, also by software: the method of the EuroVis 2007
 ///         paper, for comparison
 /// Footprints: the method of [westover1990], for comparison: kernels are coloured first, by the value at their centre, and
-/// composited
-///         one by one by the integrals of their weights along rays. Another picture: blurred, and not cut off at the boundary.
-///         By the CPU, for radial kernels, without cuts and shadows
+///         composited one by one by the integrals of their weights along rays. Another picture: blurred, and not cut off at
+///         the boundary. By the CPU, for radial kernels, without cuts and shadows
 enum class SplatMethod { Auto, Cpu, Gl, Sheets, Footprints };
 
 /// Light on surfaces: the model of Blinn and Phong, with a light at the eye and a key light. Inside the volume surfaces are
@@ -46,8 +45,7 @@ struct Shading {
 /// color_channel: a channel for the colours that is not that of the opacities; its colours are not pre-integrated
 /// clip:          how the volume is cut open; Splatter::set_clip changes it later
 /// shadows:       whether the volume shadows itself from the key light (of `shading`, else of `Shading{}`); where no light of
-/// it
-///                arrives, the part Shading::ambient of colours without light on surfaces is left. Not with Sheets
+///                it arrives, the part Shading::ambient of colours without light on surfaces is left. Not with Sheets
 /// ambient_occlusion: > 0: darkens places from which less than half of the directions are open over this distance, in parts
 ///                of the volume's diagonal, at most 1. Not with Sheets
 /// normalized:    whether sums are divided by the sum of weights; if not, kernels add up as they are

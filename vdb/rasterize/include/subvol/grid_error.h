@@ -21,9 +21,8 @@ struct GridErrorOptions {
 /// grid:     of floats, named NAME_error, with the active voxels of the other: an upper bound of |value − limit| at each centre
 /// max, rms: over its active voxels, in the field's unit
 /// outside:  voxels whose centre lies outside the limit, by less than the grid's tolerance of positions or by its rounding;
-/// they
-///           are compared with the nearest place of the boundary, or if that is not within a voxel, have the field's whole
-///           range
+///           they are compared with the nearest place of the boundary, or if that is not within a voxel, have the field's
+///           whole range
 struct GridError {
     VdbGrid grid;
     double max = 0, rms = 0;
@@ -37,8 +36,7 @@ struct GridError {
 /// field:  of the mesh, with one channel
 /// throws: Error(InvalidInput) if the voxels are not floats, or as `LimitProbe`; Error(Cancelled)
 /// cost:   as `LimitProbe::at` for all active voxels; memory for some million of them at a time. Parallel; the same bits for
-/// any
-///         number of threads
+///         any number of threads
 [[nodiscard]] GridError grid_error(const VdbGrid& grid, const HexMesh& mesh, std::string_view field,
                                    const GridErrorOptions& options = {});
 

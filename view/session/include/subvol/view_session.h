@@ -24,8 +24,8 @@ namespace subvol {
 /// times:         one for each step; at least one
 /// write_picture: writes a picture over a background; empty: the action `screenshot` is refused
 /// more_words:    further words of the render command: options that no action changes
-/// points:        shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a mesh
-/// is
+/// points:        shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a
+///                mesh is
 struct ViewSource {
     std::string input{};
     std::function<HexMesh(std::size_t step)> read{};
@@ -80,7 +80,11 @@ public:
     /// The methods that can draw it.
     [[nodiscard]] std::vector<std::string> methods() const { return methods_of(body()); }
     [[nodiscard]] const DrawWorker& worker() const;
-    /// The control points that edits move; empty: none.
+    /// The mesh whose control points are edited: that of the body, or a coarser level of it (`CoarseEdit`).
+    [[nodiscard]] const HexMesh& handles() const;
+    /// How much coarser it is.
+    [[nodiscard]] int edit_level() const;
+    /// The control points of `handles` that edits move; empty: none.
     [[nodiscard]] const Selection& selection() const;
     /// What the last action `pick` found; none: it missed the volume.
     [[nodiscard]] const std::optional<Picked>& picked() const;
