@@ -94,13 +94,19 @@ TEST_F(Editing, ADragInManyStepsIsUndoneAsOne) {
     EXPECT_EQ(session.body().mesh.points, before.points);
 }
 
+/// A refined ball with fine bumps, also of its field.
+HexMesh bumpy_ball() {
+    HexMesh mesh = refine(make_model("ball", 2), {.levels = 2});
+    for (std::size_t p = 0; p < mesh.points.size(); ++p) {
+        mesh.points[p] *= 1 + 0.002 * static_cast<double>(p % 7);
+        mesh.attributes.front().values[p] += 0.01 * static_cast<double>(p % 5);
+    }
+    return mesh;
+}
+
 class EditingLevels : public testing::Test {
 protected:
-    EditingLevels() {
-        for (std::size_t p = 0; p < mesh.points.size(); ++p) mesh.points[p] *= 1 + 0.002 * static_cast<double>(p % 7);
-    }
-
-    HexMesh mesh = refine(make_model("ball", 2), {.levels = 2});
+    HexMesh mesh = bumpy_ball();
     ViewSession session{
         {.input = "ball", .read = [this](std::size_t) { return mesh; }},
         mesh,
