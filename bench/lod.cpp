@@ -8,52 +8,19 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <string>
 #include <vector>
 
-#include "subvol/field_expression.h"
+#include "lod_scene.h"
 #include "subvol/image_metrics.h"
 #include "subvol/kernel_hierarchy.h"
-#include "subvol/mesh_io.h"
-#include "subvol/model.h"
 #include "subvol/sample.h"
 #include "subvol/splat.h"
 
 namespace {
 
 using namespace subvol;
-
-/// The least of several runs.
-template <class Work>
-double cpu_seconds_of(const Work& work, int repeats) {
-    double best = 1e30;
-    for (int i = 0; i < repeats; ++i) {
-        const std::clock_t begin = std::clock();
-        work();
-        best = std::min(best, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-    }
-    return best;
-}
-
-HexMesh mesh_named(const std::string& name) {
-    const std::size_t colon = name.find(':');
-    const std::string model = name.substr(0, colon);
-    for (const auto& known : list_models()) {
-        if (known.name == model) return make_model(model, colon == std::string::npos ? 0 : std::atoi(name.c_str() + colon + 1));
-    }
-    HexMesh mesh = read_mesh(name).mesh;
-    const Vec3 scale = Vec3(2 / bounds(mesh).diagonal()), middle = bounds(mesh).center();
-    for (Vec3& p : mesh.points) p = scale * (p - middle);
-    mesh.attributes = {field_of(mesh, "f", "sin(9*x)+cos(11*y)*z")};
-    return mesh;
-}
-
-View view_at(const Box& box, double distance, int size) {
-    Camera camera = fit_camera(box, Vec3(-1, 1, -.6));
-    camera.eye = camera.target + distance * (camera.eye - camera.target);
-    return {camera, size, size};
-}
+using namespace subvol::bench;
 
 class Study {
 public:
@@ -64,7 +31,7 @@ public:
           mesh_(mesh_named(name)),
           volume_(sample_rbf_points(mesh_, {.per_edge = per_edge}).volume),
           splatter_(volume_, options_),
-          optics_(make_optics()) {
+          optics_(optics_with_peak(mesh_)) {
         seconds_build_ = cpu_seconds_of([&] { hierarchy_ = build_kernel_hierarchy(volume_); }, 1);
         std::printf("%s: %zu cells, %zu kernels; hierarchy: %.2f s, %zu nodes\n", name_.c_str(), mesh_.cells.size(),
                     volume_.size(), seconds_build_, hierarchy_.nodes.size());
@@ -151,14 +118,6 @@ private:
             "%.4f  %6.1f s\n",
             pixels, mean_rmse, most_rmse, jump, most, seconds);
         std::fflush(stdout);
-    }
-
-    [[nodiscard]] Optics make_optics() const {
-        const auto [low, high] = std::ranges::minmax(mesh_.attributes[0].values);
-        const double mid = 0.5 * (low + high), peak = 0.05 * (high - low);
-        return Optics({.color = {{low, {.1, .2, .9}}, {mid, {.9, .9, .9}}, {high, {.9, .2, .1}}},
-                       .opacity = {{low, 0}, {mid - peak, 0.01}, {mid, .8}, {mid + peak, .02}, {high, .1}}},
-                      volume_.bounds.diagonal() / 100);
     }
 
     std::string name_;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "lod_scene.h"
 #include "measure.h"
 #include "subvol/image_metrics.h"
 #include "subvol/kernel_file.h"
@@ -22,24 +23,14 @@
 namespace {
 
 using namespace subvol;
+using namespace subvol::bench;
 
 double cpu_seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-View view_at(const Box& box, double distance, int size) {
-    Camera camera = fit_camera(box, Vec3(-1, 1, -.6));
-    camera.eye = camera.target + distance * (camera.eye - camera.target);
-    return {camera, size, size};
-}
-
-/// Colours with a narrow peak of opacity, as those of `lod`.
 Optics optics_of(const KernelFileContents& contents) {
-    const double low = contents.channels[0].min, high = contents.channels[0].max;
-    const double mid = 0.5 * (low + high), peak = 0.05 * (high - low);
-    return Optics({.color = {{low, {.1, .2, .9}}, {mid, {.9, .9, .9}}, {high, {.9, .2, .1}}},
-                   .opacity = {{low, 0}, {mid - peak, 0.01}, {mid, .8}, {mid + peak, .02}, {high, .1}}},
-                  contents.bounds.diagonal() / 100);
+    return optics_with_peak(contents.channels[0].min, contents.channels[0].max, contents.bounds);
 }
 
 struct Drawn {

@@ -90,13 +90,16 @@ void write_mesh_pictures(const HexMesh& mesh, const std::vector<View>& views, co
     const RefineArguments& refine = arguments.refine;
     if (mesh.attributes.size() == 1) work.options.color_channel.reset();  // the field of the colours is --field itself
     if (arguments.method == "tets" || arguments.method == "pt") {
-        const HexMesh fine = refine_reported(mesh, refine.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-        const Surface boundary = skin_of(mesh, arguments, report).surface;
-        if (arguments.method == "tets") {
-            write_tets(fine, boundary, views, optics, reference, output, report);
-        } else {
-            write_projected_tets(fine, boundary, views, optics, reference, splat.device, splat.seconds, output, report);
-        }
+        const auto draw = [&](const auto& fine) {
+            const Surface boundary = skin_of(mesh, arguments, report).surface;
+            if (arguments.method == "tets") {
+                return write_tets(TetsRenderer(fine), boundary, views, optics, reference, output, report);
+            }
+            ProjectedRenderer renderer(fine, {}, splat.device);
+            write_projected_tets(renderer, boundary, views, optics, reference, splat.seconds, output, report);
+        };
+        if (arguments.tets.asked()) return draw(join_split_cells(mesh));
+        draw(refine_reported(mesh, refine.options(kTetsLevel, report), Vertices::OnTheLimit, report));
     } else if (arguments.method == "dense") {
         const RefineOptions options = refine.options(0, report);
         const auto draw = [&](const View& view, Progress* progress) {

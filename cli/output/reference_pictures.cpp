@@ -144,9 +144,8 @@ DrawPicture lit(DrawPicture draw, Surface boundary, const ReferenceArguments& ar
     };
 }
 
-void write_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
+void write_tets(const TetsRenderer& renderer, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
                 const ReferenceArguments& arguments, PictureOutput& output, Report& report) {
-    const TetsRenderer renderer(mesh);
     report.add_seconds("prepare", renderer.seconds_build());
     const auto draw = [&](const View& view, Progress* progress) {
         return draw_tets(renderer, view, optics, arguments, progress, report);
@@ -154,10 +153,9 @@ void write_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<
     output.write(views, lit(draw, boundary, arguments), report);
 }
 
-void write_projected_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
-                          const ReferenceArguments& arguments, std::optional<int> device, std::optional<double> seconds,
+void write_projected_tets(ProjectedRenderer& renderer, const Surface& boundary, const std::vector<View>& views,
+                          const Optics& optics, const ReferenceArguments& arguments, std::optional<double> seconds,
                           PictureOutput& output, Report& report) {
-    ProjectedRenderer renderer(mesh, {}, device);
     report.add_seconds("prepare", renderer.seconds_build());
     const auto draw = [&](const View& view, Progress* progress) {
         return draw_projected_tets(renderer, view, optics, arguments, seconds, progress, report);

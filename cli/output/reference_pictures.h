@@ -39,14 +39,12 @@ namespace subvol::cli {
 /// Draws and writes a picture by `draw_tets` for each view.
 ///
 /// boundary: of `lit`
-void write_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
+void write_tets(const TetsRenderer& renderer, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
                 const ReferenceArguments& arguments, PictureOutput& output, Report& report);
 
 /// Draws and writes a picture by `draw_projected_tets` for each view.
-///
-/// device: of OpenGL; none: the first
-void write_projected_tets(const HexMesh& mesh, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
-                          const ReferenceArguments& arguments, std::optional<int> device, std::optional<double> seconds,
+void write_projected_tets(ProjectedRenderer& renderer, const Surface& boundary, const std::vector<View>& views,
+                          const Optics& optics, const ReferenceArguments& arguments, std::optional<double> seconds,
                           PictureOutput& output, Report& report);
 
 }  // namespace subvol::cli

@@ -65,7 +65,9 @@ std::size_t most_fragments(std::size_t list_bytes, const GlDevice& device, GlTet
 }  // namespace
 
 struct ProjectedRenderer::State {
-    State(const HexMesh& mesh, const Attribute& field, const std::optional<int>& device, Progress* progress);
+    /// build: gives the tetrahedra
+    template <class Build>
+    State(const std::optional<int>& device, Progress* progress, const Build& build);
     ~State() {
         const detail::GlScope scope(context);
         lists.reset();
@@ -90,13 +92,13 @@ struct ProjectedRenderer::State {
     std::optional<detail::GlTetLists> lists;
 };
 
-ProjectedRenderer::State::State(const HexMesh& mesh, const Attribute& field, const std::optional<int>& device,
-                                Progress* progress)
+template <class Build>
+ProjectedRenderer::State::State(const std::optional<int>& device, Progress* progress, const Build& build)
     : context(checked_device(device)) {
     report_progress(progress, "build", 0);
-    tets = build_tet_mesh(mesh, field.values);
+    tets = build();
     check_count("tetrahedra", tets.tets.size(), kMostTets);
-    box = bounds(mesh);
+    box = bounds_of(tets);
     drawer.emplace();
     lists.emplace(*drawer);
     context.release();
@@ -177,10 +179,17 @@ Image ProjectedRenderer::State::draw_samples(const ProjectedOptions& options, Pr
 
 ProjectedRenderer::ProjectedRenderer(const HexMesh& mesh, std::string_view field, std::optional<int> device,
                                      Progress* progress) {
-    validate(mesh);
-    const Attribute& shown = scalar_field(mesh, field);
     const KeepCurrent keep;
-    state_ = std::make_unique<State>(mesh, shown, device, progress);
+    state_ = std::make_unique<State>(device, progress, [&] {
+        validate(mesh);
+        return build_tet_mesh(mesh, scalar_field(mesh, field).values);
+    });
+}
+
+ProjectedRenderer::ProjectedRenderer(const MixedMesh& mesh, std::string_view field, std::optional<int> device,
+                                     Progress* progress) {
+    const KeepCurrent keep;
+    state_ = std::make_unique<State>(device, progress, [&] { return build_tet_mesh(mesh, field); });
 }
 
 ProjectedRenderer::~ProjectedRenderer() = default;

@@ -47,6 +47,24 @@ void draw_tile(const View& view, int samples, const PixelRect& tile, TetPacketTr
 }  // namespace
 
 struct TetsRenderer::State {
+    /// build: gives the tetrahedra
+    template <class Build>
+    State(Progress* progress, const Build& build) {
+        const Stopwatch watch;
+        report_progress(progress, "build", 0);
+        tets = build();
+        report_progress(progress, "build", 0.8);
+        box = bounds_of(tets);
+        scene.emplace(tets, box);
+        report_progress(progress, "build", 1);
+        built.tets = tets.tets.size();
+        built.degenerate_tets = tets.degenerate_tets;
+        built.inverted_tets = tets.inverted_tets;
+        built.bytes = tets.tets.size() * (sizeof(TetMesh::Tet) + sizeof(tets.links[0])) +
+                      tets.points.size() * sizeof(TetMesh::Point) + tets.boundary.size() * sizeof(TetFace);
+        built.seconds_build = watch.seconds();
+    }
+
     TetMesh tets;
     Box box;
     std::optional<BoundaryScene> scene;
@@ -54,24 +72,14 @@ struct TetsRenderer::State {
 };
 
 TetsRenderer::TetsRenderer(const HexMesh& mesh, std::string_view field, Progress* progress)
-    : state_(std::make_unique<State>()) {
-    validate(mesh);
-    const Attribute& shown = scalar_field(mesh, field);
-    const Stopwatch watch;
-    report_progress(progress, "build", 0);
-    TetMesh& tets = state_->tets;
-    tets = build_tet_mesh(mesh, shown.values);
-    report_progress(progress, "build", 0.8);
-    state_->box = bounds(mesh);
-    state_->scene.emplace(tets, state_->box);
-    report_progress(progress, "build", 1);
-    TetsReport& built = state_->built;
-    built.tets = tets.tets.size();
-    built.degenerate_tets = tets.degenerate_tets;
-    built.inverted_tets = tets.inverted_tets;
-    built.bytes = tets.tets.size() * (sizeof(TetMesh::Tet) + sizeof(tets.links[0])) +
-                  tets.points.size() * sizeof(TetMesh::Point) + tets.boundary.size() * sizeof(TetFace);
-    built.seconds_build = watch.seconds();
+    : state_(std::make_unique<State>(progress, [&] {
+          validate(mesh);
+          return build_tet_mesh(mesh, scalar_field(mesh, field).values);
+      })) {
+}
+
+TetsRenderer::TetsRenderer(const MixedMesh& mesh, std::string_view field, Progress* progress)
+    : state_(std::make_unique<State>(progress, [&] { return build_tet_mesh(mesh, field); })) {
 }
 
 TetsRenderer::~TetsRenderer() = default;

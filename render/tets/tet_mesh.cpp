@@ -49,43 +49,46 @@ void link(TetMesh& mesh, TetFace one, TetFace other) {
     link_of(mesh, other) = {one / 4, mesh.tets[one / 4].corner[one % 4]};
 }
 
-constexpr std::size_t kFacesPerCell = 4 * kTetsPerCell;
-
 /// The faces of a cell's tetrahedra, sorted, and which of them lie inside the cell, two at the same place.
-struct CellFaces {
-    CellFaces(const TetMesh& mesh, std::size_t cell) {
-        for (std::size_t k = 0; k < kFacesPerCell; ++k) {
-            records[k] = record_of(mesh, static_cast<TetFace>(kFacesPerCell * cell + k));
-        }
-        std::sort(records.begin(), records.end());
-        for (std::size_t k = 0; k + 1 < kFacesPerCell; ++k) {
-            if (records[k].ids == records[k + 1].ids) inside[k] = inside[k + 1] = true;
+///
+/// cell: `tets` tetrahedra that follow each other
+class CellFaces {
+public:
+    CellFaces(const TetMesh& mesh, std::size_t cell, std::size_t tets) : count_(4 * tets) {
+        for (std::size_t k = 0; k < count_; ++k) records_[k] = record_of(mesh, static_cast<TetFace>(count_ * cell + k));
+        std::sort(records_.begin(), records_.begin() + static_cast<std::ptrdiff_t>(count_));
+        for (std::size_t k = 0; k + 1 < count_; ++k) {
+            if (records_[k].ids == records_[k + 1].ids) inside_[k] = inside_[k + 1] = true;
         }
     }
-    std::array<FaceRecord, kFacesPerCell> records;
-    std::array<bool, kFacesPerCell> inside{};
-};
 
-/// Half of the faces lie inside a cell and find each other there. The others, on the cells' sides, are sorted.
-void connect(TetMesh& mesh) {
-    mesh.links.resize(mesh.tets.size());
-    const std::size_t cells = mesh.tets.size() / kTetsPerCell;
-    parallel_each(cells, [&](std::size_t c) {
-        const CellFaces faces(mesh, c);
-        for (std::size_t k = 0; k + 1 < kFacesPerCell; ++k) {
-            if (faces.records[k].ids != faces.records[k + 1].ids) continue;
-            link(mesh, faces.records[k].face, faces.records[k + 1].face);
+    void link_inside(TetMesh& mesh) const {
+        for (std::size_t k = 0; k + 1 < count_; ++k) {
+            if (!inside_[k]) continue;
+            link(mesh, records_[k].face, records_[k + 1].face);
             ++k;
         }
-    });
+    }
+    template <class Sink>
+    void each_side(const Sink& sink) const {
+        for (std::size_t k = 0; k < count_; ++k) {
+            if (!inside_[k]) sink(records_[k]);
+        }
+    }
+
+private:
+    std::size_t count_;
+    std::array<FaceRecord, 4 * kTetsPerCell> records_{};
+    std::array<bool, 4 * kTetsPerCell> inside_{};
+};
+
+/// Faces inside a cell find each other there. The others, on the cells' sides, are sorted.
+void connect(TetMesh& mesh, std::size_t tets_per_cell) {
+    mesh.links.resize(mesh.tets.size());
+    const std::size_t cells = mesh.tets.size() / tets_per_cell;
+    if (tets_per_cell > 1) parallel_each(cells, [&](std::size_t c) { CellFaces(mesh, c, tets_per_cell).link_inside(mesh); });
     const auto sides = bucket_sort<FaceRecord>(
-        cells, mesh.points.size(),
-        [&](std::size_t c, const auto& sink) {
-            const CellFaces faces(mesh, c);
-            for (std::size_t k = 0; k < kFacesPerCell; ++k) {
-                if (!faces.inside[k]) sink(faces.records[k]);
-            }
-        },
+        cells, mesh.points.size(), [&](std::size_t c, const auto& sink) { CellFaces(mesh, c, tets_per_cell).each_side(sink); },
         [](const FaceRecord& face) { return face.ids[0]; });
     tbb::enumerable_thread_specific<std::vector<TetFace>> boundaries;
     parallel_each(mesh.points.size(), [&](std::size_t p) {
@@ -135,27 +138,69 @@ void count_shapes(TetMesh& mesh) {
     mesh.inverted_tets = counts[1];
 }
 
+void check_count(std::size_t count, std::size_t most, const char* what) {
+    if (count <= most) return;
+    throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(count) + what, {}, "at most " + std::to_string(most));
+}
+
+TetMesh points_with(const std::vector<Vec3>& points, std::span<const double> values) {
+    check_count(points.size(), TetLink::kBoundary, " points");
+    TetMesh mesh;
+    mesh.points.resize(points.size());
+    parallel_each(points.size(), [&](std::size_t p) { mesh.points[p] = {points[p], values[p]}; });
+    return mesh;
+}
+
+const Attribute& scalar_of(const MixedMesh& mesh, std::string_view field) {
+    for (const Attribute& attribute : mesh.attributes) {
+        if (field.empty() || attribute.name == field) {
+            if (attribute.channels == 1) return attribute;
+            throw Error(ErrorCode::InvalidInput, "has " + std::to_string(attribute.channels) + " channels", attribute.name,
+                        "1");
+        }
+    }
+    throw Error(ErrorCode::InvalidInput, "the mesh has no such field", std::string(field));
+}
+
 }  // namespace
 
+Box bounds_of(const TetMesh& mesh) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), Box{},
+        [&](const auto& range, Box box) {
+            for (std::size_t t = range.begin(); t < range.end(); ++t) {
+                for (const Index p : mesh.tets[t].corner) box.add(mesh.points[p].position);
+            }
+            return box;
+        },
+        [](Box a, const Box& b) {
+            a.add(b);
+            return a;
+        });
+}
+
 TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
-    if (hexes.cells.size() > kMaxCells) {
-        throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.cells.size()) + " cells", {},
-                    "at most " + std::to_string(kMaxCells));
-    }
-    if (hexes.points.size() > TetLink::kBoundary) {
-        throw Error(ErrorCode::InvalidInput, "the mesh has " + std::to_string(hexes.points.size()) + " points", {},
-                    "at most " + std::to_string(TetLink::kBoundary));
-    }
-    TetMesh mesh;
-    mesh.points.resize(hexes.points.size());
-    parallel_each(mesh.points.size(), [&](std::size_t p) { mesh.points[p] = {hexes.points[p], values[p]}; });
+    check_count(hexes.cells.size(), kMaxCells, " cells");
+    TetMesh mesh = points_with(hexes.points, values);
     mesh.tets.resize(kTetsPerCell * hexes.cells.size());
     parallel_each(hexes.cells.size(), [&](std::size_t c) {
         const auto split = split_cell(hexes.cells[c]);
         for (std::size_t k = 0; k < kTetsPerCell; ++k) mesh.tets[kTetsPerCell * c + k] = {split[k]};
     });
     count_shapes(mesh);
-    connect(mesh);
+    connect(mesh, kTetsPerCell);
+    return mesh;
+}
+
+TetMesh build_tet_mesh(const MixedMesh& mixed, std::string_view field) {
+    validate(mixed);
+    const MixedMesh cut = in_tetrahedra(mixed);
+    check_count(cut.tets.size(), kTetsPerCell * kMaxCells, " tetrahedra");
+    TetMesh mesh = points_with(cut.points, scalar_of(cut, field).values);
+    mesh.tets.resize(cut.tets.size());
+    parallel_each(cut.tets.size(), [&](std::size_t t) { mesh.tets[t] = {cut.tets[t]}; });
+    count_shapes(mesh);
+    connect(mesh, 1);
     return mesh;
 }
 

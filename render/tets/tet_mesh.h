@@ -4,9 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "subvol/hex_mesh.h"
+#include "subvol/mixed_mesh.h"
 
 namespace subvol::detail {
 
@@ -67,6 +69,9 @@ struct TetMesh {
     [[nodiscard]] const Point& point(Index id) const { return points[id]; }
 };
 
+/// Of the points that tetrahedra use.
+[[nodiscard]] Box bounds_of(const TetMesh& mesh);
+
 /// Splits every cell into 6 and finds the neighbours by sorting the faces on the sides of cells. A face of more than two
 /// tetrahedra is a boundary face of each of them.
 ///
@@ -75,5 +80,11 @@ struct TetMesh {
 /// throws: Error(InvalidInput) if the mesh has more cells than 32-bit faces can number, or more points than 32 bits can
 /// cost:   O(n), parallel; about 90 bytes for each tetrahedron while it sorts, 55 afterwards
 [[nodiscard]] TetMesh build_tet_mesh(const HexMesh& mesh, std::span<const double> values);
+
+/// The same of tetrahedra as they are; all other cells are cut into tetrahedra (`in_tetrahedra`).
+///
+/// field:  the attribute whose values are taken, of one channel; empty: the first
+/// throws: as above, and Error(InvalidInput) as validate(mesh), or if there is no such attribute
+[[nodiscard]] TetMesh build_tet_mesh(const MixedMesh& mesh, std::string_view field);
 
 }  // namespace subvol::detail

@@ -133,6 +133,12 @@ class Tetrahedra(InFolder):
                            "--json").json()
         self.assertEqual(done["points"], (2 * SIDE + 1) ** 3)
 
+    def test_rays_go_through_the_tetrahedra_themselves(self):
+        done = self.run_ok("render", "box.mesh", "-o", "box.png", "--method", "tets", "--scheme", "tetoct", "--size", "64x64",
+                           "--json").json()
+        self.assertEqual(done["tets"], 64 * 6 * SIDE ** 3)  # of level 2, with four in each octahedron
+        self.assertEqual((done["inverted_tets"], done["lost_rays"]), (0, 0))
+
     def test_hexahedra_are_refined_too(self):
         done = self.run_ok("subdivide", "cube.mesh", "-o", "fine.vtu", "--scheme", "tetoct", "--json").json()
         self.assertEqual((done["cells"], done["tets"]), (8, 0))

@@ -86,6 +86,9 @@ public:
     ///         Error(MissingCapability) if there is no OpenGL 4.5, or the device has no room
     explicit ProjectedRenderer(const HexMesh& mesh, std::string_view field = {}, std::optional<int> device = {},
                                Progress* progress = nullptr);
+    /// Tetrahedra as they are; all other cells are cut into tetrahedra (`in_tetrahedra`).
+    explicit ProjectedRenderer(const MixedMesh& mesh, std::string_view field = {}, std::optional<int> device = {},
+                               Progress* progress = nullptr);
     ~ProjectedRenderer();
     ProjectedRenderer(ProjectedRenderer&&) noexcept;
     ProjectedRenderer& operator=(ProjectedRenderer&&) noexcept;

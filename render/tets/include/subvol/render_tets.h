@@ -9,6 +9,7 @@
 #include "subvol/clip.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
+#include "subvol/mixed_mesh.h"
 #include "subvol/optics.h"
 #include "subvol/progress.h"
 
@@ -51,6 +52,8 @@ public:
     /// throws: Error(InvalidInput) as validate(mesh) and scalar_field, or if the mesh has too many cells or points;
     ///         Error(MissingCapability) if Embree cannot be started or has not enough memory
     explicit TetsRenderer(const HexMesh& mesh, std::string_view field = {}, Progress* progress = nullptr);
+    /// Tetrahedra as they are, with the value linear in each; all other cells are cut into tetrahedra (`in_tetrahedra`).
+    explicit TetsRenderer(const MixedMesh& mesh, std::string_view field = {}, Progress* progress = nullptr);
     ~TetsRenderer();
     TetsRenderer(TetsRenderer&&) noexcept;
     TetsRenderer& operator=(TetsRenderer&&) noexcept;
