@@ -24,15 +24,17 @@ BrickMesh read_with(const Bricks& bricks, std::size_t b, const BrickFields& fiel
     return brick;
 }
 
-/// The numbers of the cells that a surface may pass through, and of `layers` of cells about them.
+/// The numbers of the cells that a surface may pass through, and of `layers` of cells about them. whole: becomes the extent of
+/// all bricks
 std::vector<std::uint64_t> wanted_cells(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
-                                        const BrickFields& fields, int layers) {
+                                        const BrickFields& fields, int layers, LimitExtent& whole) {
     SurfaceOptions quiet = options;
     quiet.progress = nullptr;
     std::vector<std::uint64_t> wanted;
     for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
         say(options, "look", b, bricks);
         const BrickMesh brick = read_with(bricks, b, fields);
+        whole.add(limit_extent(brick.mesh));
         std::vector<std::uint8_t> here = surface_candidates(brick.mesh, field, quiet);
         for (std::size_t c = 0; c < here.size(); ++c) here[c] = here[c] && brick.owned_cells[c];
         grow(brick.mesh, here, layers);
@@ -71,13 +73,13 @@ LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const S
                            const BrickFields& fields) {
     check_surface_options(options);
     check_halo_of_limit(bricks);
-    const Vec3 size = bricks.bounds.size();
     // The boundary leads nowhere; an isosurface may lead out of the cells that the first look finds.
     for (int layers = options.isos.empty() ? 0 : 1; layers <= bricks.halo_layers; ++layers) {
-        const std::vector<std::uint64_t> wanted = wanted_cells(bricks, field, options, fields, layers);
+        LimitExtent whole;
+        const std::vector<std::uint64_t> wanted = wanted_cells(bricks, field, options, fields, layers, whole);
         if (wanted.empty()) return {};
         const BrickMesh part = with_halos(bricks, wanted, options, fields);
-        auto surface = limit_surface_of_part(part.mesh, part.owned_cells, std::max({size.x, size.y, size.z}), field, options);
+        auto surface = limit_surface_of_part(part.mesh, part.owned_cells, whole, field, options);
         if (!surface) continue;
         for (LimitQuery& place : surface->places) {
             const std::uint64_t number = part.cell_numbers[place.cell];

@@ -17,6 +17,7 @@ namespace subvol {
 
 using detail::check_surface_options;
 using detail::Cut;
+using detail::LimitExtent;
 using detail::SettledPoints;
 using detail::SurfaceSoup;
 
@@ -26,18 +27,24 @@ constexpr int kFirstLevel = 1;
 constexpr std::size_t kPointsAtOnce = std::size_t{1} << 20;  // points whose fields are evaluated at a time
 constexpr double kCrease = 0.9;  // cosine: normals of the limit and of the triangles that differ by more are on a crease
 
+double longest_side(const Box& box) {
+    const Vec3 size = box.size();
+    return std::max({size.x, size.y, size.z});
+}
+
 class Extractor {
 public:
-    Extractor(const HexMesh& mesh, std::string_view field, std::span<const std::uint8_t> owned, double longest_side,
+    Extractor(const HexMesh& mesh, std::string_view field, std::span<const std::uint8_t> owned, LimitExtent whole,
               const SurfaceOptions& options)
         : mesh_(mesh),
           options_(options),
+          whole_(std::move(whole)),
           field_(field_number(field)),
           topology_(build_topology(mesh)),
           scalar_(with_field_only(mesh, field_)),
           cutter_(scalar_, topology_, owned, options.scheme, options.progress),
-          settler_(scalar_, topology_, options.scheme, options.progress),
-          tolerance_world_(options.tolerance * std::max(longest_side, 1e-300)) {}
+          settler_(scalar_, topology_, extent_of_field(), options.scheme, options.progress),
+          tolerance_world_(options.tolerance * std::max(longest_side(whole_.box), 1e-300)) {}
 
     [[nodiscard]] std::vector<std::uint8_t> candidates() const {
         std::vector<std::uint8_t> flags(mesh_.cells.size(), 0);
@@ -67,6 +74,12 @@ private:
     [[nodiscard]] std::optional<std::size_t> field_number(std::string_view name) const {
         if (options_.isos.empty()) return std::nullopt;
         return static_cast<std::size_t>(&scalar_field(mesh_, name) - mesh_.attributes.data());
+    }
+
+    [[nodiscard]] LimitExtent extent_of_field() const {
+        LimitExtent extent{.box = whole_.box};
+        if (field_) extent.ranges.push_back(whole_.ranges[*field_]);
+        return extent;
     }
 
     static HexMesh with_field_only(const HexMesh& mesh, std::optional<std::size_t> field) {
@@ -182,7 +195,7 @@ private:
                 {attribute.name, channels, std::vector<double>(count * channels), std::vector<Vec3>(count * channels)});
         }
         if (all.fields.empty()) return;
-        const LimitEvaluator limit(mesh_, {.scheme = options_.scheme});
+        const LimitEvaluator limit(mesh_, {.scheme = options_.scheme}, whole_);
         for (std::size_t begin = 0; begin < count; begin += kPointsAtOnce) {
             const auto places = std::span(all.places).subspan(begin, std::min(kPointsAtOnce, count - begin));
             const LimitSamples samples = limit.at(places);
@@ -199,6 +212,7 @@ private:
 
     const HexMesh& mesh_;
     const SurfaceOptions& options_;
+    LimitExtent whole_;
     std::optional<std::size_t> field_;
     Topology topology_;
     HexMesh scalar_;
@@ -218,11 +232,6 @@ struct Tagged {
     HexMesh mesh;
     SurfaceOptions options;
 };
-
-double longest_side(const Box& box) {
-    const Vec3 size = box.size();
-    return std::max({size.x, size.y, size.z});
-}
 
 }  // namespace
 
@@ -244,20 +253,20 @@ LimitSurface limit_surface(const HexMesh& mesh, std::string_view field, const Su
     check_surface_options(options);
     validate(mesh);
     const Tagged tagged(mesh, options);
-    return Extractor(tagged.mesh, field, {}, longest_side(bounds(mesh)), tagged.options).run();
+    return Extractor(tagged.mesh, field, {}, detail::limit_extent(mesh), tagged.options).run();
 }
 
 std::vector<std::uint8_t> detail::surface_candidates(const HexMesh& part, std::string_view field,
                                                      const SurfaceOptions& options) {
     const Tagged tagged(part, options);
-    return Extractor(tagged.mesh, field, {}, 1, tagged.options).candidates();
+    return Extractor(tagged.mesh, field, {}, detail::limit_extent(part), tagged.options).candidates();
 }
 
 std::optional<LimitSurface> detail::limit_surface_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
-                                                          double longest_side, std::string_view field,
+                                                          const LimitExtent& whole, std::string_view field,
                                                           const SurfaceOptions& options) {
     const Tagged tagged(part, options);
-    Extractor extractor(tagged.mesh, field, owned, longest_side, tagged.options);
+    Extractor extractor(tagged.mesh, field, owned, whole, tagged.options);
     LimitSurface surface = extractor.run();
     if (extractor.leads_out()) return {};
     return surface;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "soup_cutter.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/limit.h"
 
 namespace subvol::detail {
@@ -15,9 +16,11 @@ struct SettledPoints {
 /// Moves the points of a soup along their edges to the limit, and measures how far its triangles are from it.
 class PointSettler {
 public:
-    /// mesh: its first attribute is the field, if the cuts have isovalues. The topology is kept by reference
-    PointSettler(const HexMesh& mesh, const Topology& topology, const SchemeOptions& scheme, Progress* progress)
-        : topology_(topology), limit_(mesh, {.scheme = scheme}), progress_(progress) {}
+    /// mesh:  its first attribute is the field, if the cuts have isovalues. The topology is kept by reference
+    /// whole: the extent of the mesh that it is a part of
+    PointSettler(const HexMesh& mesh, const Topology& topology, const LimitExtent& whole, const SchemeOptions& scheme,
+                 Progress* progress)
+        : topology_(topology), limit_(mesh, {.scheme = scheme}, whole), progress_(progress) {}
 
     [[nodiscard]] SettledPoints settle(const SurfaceSoup& soup, const Cut& cut, int level) const;
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/limit_surface.h"
 
 namespace subvol::detail {
@@ -19,15 +20,15 @@ void check_surface_options(const SurfaceOptions& options);
 [[nodiscard]] std::vector<std::uint8_t> surface_candidates(const HexMesh& part, std::string_view field,
                                                            const SurfaceOptions& options);
 
-/// `limit_surface` of a mesh of which only a part is there.
+/// `limit_surface` of a mesh of which only a part is there: the same bits.
 ///
-/// part:        its points and cells have the order that they have in the whole
-/// owned:       a flag for each cell that a surface may be cut from; all `surface_candidates` of the whole are owned, and have
-///              their halo about them
-/// longest_side: of the box of the whole
-/// returns:     nothing if the surface leads into a cell that is not owned
+/// part:    its points and cells have the order that they have in the whole
+/// owned:   a flag for each cell that a surface may be cut from; all `surface_candidates` of the whole are owned, and have
+///          their halo about them
+/// whole:   the extent of the whole
+/// returns: nothing if the surface leads into a cell that is not owned
 [[nodiscard]] std::optional<LimitSurface> limit_surface_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
-                                                                double longest_side, std::string_view field,
+                                                                const LimitExtent& whole, std::string_view field,
                                                                 const SurfaceOptions& options);
 
 }  // namespace subvol::detail

@@ -11,12 +11,14 @@
 #include "limit_descents.h"
 #include "refine_steps.h"
 #include "run_nested.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/error.h"
 
 namespace subvol {
 
 using detail::BatchEvaluator;
 using detail::CellPlaces;
+using detail::LimitExtent;
 
 namespace {
 
@@ -40,13 +42,12 @@ void check(const HexMesh& mesh, std::span<const LimitQuery> queries) {
 
 /// The scale of each channel that tolerances are relative to. It is not 0 for a constant field, whose values differ by
 /// rounding.
-std::vector<double> channel_scales(const HexMesh& mesh) {
-    const Box box = bounds(mesh);
-    std::vector<double> scales(3, std::max(box.diagonal(), 1e-6 * glm::length(box.center())));
-    for (const auto& attribute : mesh.attributes) {
-        const auto [low, high] = std::minmax_element(attribute.values.begin(), attribute.values.end());
-        const double scale = std::max(*high - *low, 1e-6 * std::max(std::abs(*low), std::abs(*high)));
-        scales.insert(scales.end(), static_cast<std::size_t>(attribute.channels), scale);
+std::vector<double> channel_scales(const HexMesh& mesh, const LimitExtent& extent) {
+    std::vector<double> scales(3, std::max(extent.box.diagonal(), 1e-6 * glm::length(extent.box.center())));
+    for (std::size_t a = 0; a < mesh.attributes.size(); ++a) {
+        const auto& [low, high] = extent.ranges[a];
+        const double scale = std::max(high - low, 1e-6 * std::max(std::abs(low), std::abs(high)));
+        scales.insert(scales.end(), static_cast<std::size_t>(mesh.attributes[a].channels), scale);
     }
     return scales;
 }
@@ -102,11 +103,12 @@ void refine_rest(const HexMesh& control, std::span<const LimitQuery> queries, st
 
 /// What calls for one mesh have in common.
 struct Evaluation {
-    Evaluation(const HexMesh& mesh, const LimitOptions& with)
+    /// whole: the extent of the mesh that this is a part of, or none
+    Evaluation(const HexMesh& mesh, const LimitOptions& with, const LimitExtent* whole = nullptr)
         : options((check(with), with)),
           control(detail::control_mesh(mesh, options.scheme)),
-          scales(channel_scales(control)),
-          descents(control, options.scheme) {}
+          scales(channel_scales(control, whole != nullptr ? *whole : detail::limit_extent(control))),
+          descents(control, options.scheme, /*by_frequency=*/whole == nullptr) {}
 
     /// keep:    what had to be refined, for the next call
     /// targets: if not empty, positions that the queries approach; moved: by how much they have
@@ -129,11 +131,40 @@ struct Evaluation {
 
 }  // namespace
 
+void detail::LimitExtent::add(const LimitExtent& more) {
+    box.add(more.box);
+    if (ranges.empty()) ranges = more.ranges;
+    for (std::size_t a = 0; a < more.ranges.size(); ++a) {
+        ranges[a] = {std::min(ranges[a][0], more.ranges[a][0]), std::max(ranges[a][1], more.ranges[a][1])};
+    }
+}
+
+LimitExtent detail::limit_extent(const HexMesh& mesh) {
+    std::vector<std::uint8_t> used(mesh.points.size(), 0);
+    for (const auto& cell : mesh.cells) {
+        for (const Index p : cell) used[p] = 1;
+    }
+    LimitExtent extent{.box = bounds(mesh)};
+    for (const Attribute& attribute : mesh.attributes) {
+        const auto channels = static_cast<std::size_t>(attribute.channels);
+        auto& [low, high] = extent.ranges.emplace_back(std::array{HUGE_VAL, -HUGE_VAL});
+        for (std::size_t i = 0; i < attribute.values.size(); ++i) {
+            if (used[i / channels] == 0) continue;
+            low = std::min(low, attribute.values[i]);
+            high = std::max(high, attribute.values[i]);
+        }
+    }
+    return extent;
+}
+
 struct LimitEvaluator::State {
     Evaluation evaluation;
 };
 
 LimitEvaluator::LimitEvaluator(const HexMesh& mesh, const LimitOptions& options) : state_(new State{{mesh, options}}) {
+}
+LimitEvaluator::LimitEvaluator(const HexMesh& mesh, const LimitOptions& options, const LimitExtent& whole)
+    : state_(new State{{mesh, options, &whole}}) {
 }
 LimitEvaluator::~LimitEvaluator() = default;
 LimitEvaluator::LimitEvaluator(LimitEvaluator&&) noexcept = default;

@@ -20,8 +20,9 @@ constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of the classes' t
 }  // namespace
 
 struct LimitDescents::State {
-    State(const HexMesh& given, const SchemeOptions& with)
+    State(const HexMesh& given, const SchemeOptions& with, bool by_frequency)
         : mesh(given, with),
+          has_common(!by_frequency),
           graph(std::make_shared<ClassGraph>(with)),
           walks([this] { return NeighborhoodWalk(mesh.control, mesh.links); }) {}
 
@@ -119,7 +120,7 @@ struct LimitDescents::State {
 
     DescentMesh mesh;
     std::mutex common_mutex;
-    bool has_common = false;
+    bool has_common;               // they have been looked for, or are not wanted
     std::vector<ClassKey> common;  // sorted; filled once
     std::optional<RefinedStore> store;
     std::mutex mutex;
@@ -128,8 +129,8 @@ struct LimitDescents::State {
     tbb::enumerable_thread_specific<Neighborhood> abouts;
 };
 
-LimitDescents::LimitDescents(const HexMesh& control, const SchemeOptions& scheme)
-    : state_(std::make_unique<State>(control, scheme)) {
+LimitDescents::LimitDescents(const HexMesh& control, const SchemeOptions& scheme, bool by_frequency)
+    : state_(std::make_unique<State>(control, scheme, by_frequency)) {
 }
 LimitDescents::~LimitDescents() = default;
 

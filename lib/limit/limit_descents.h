@@ -21,7 +21,10 @@ namespace subvol::detail {
 class LimitDescents {
 public:
     /// What is the same for all places: topology, and the classes that have been met. The mesh is kept by reference.
-    LimitDescents(const HexMesh& control, const SchemeOptions& scheme);
+    ///
+    /// by_frequency: cells of common classes have tables from level 0 on, which changes last bits; otherwise no result depends
+    ///               on what else is in the mesh
+    LimitDescents(const HexMesh& control, const SchemeOptions& scheme, bool by_frequency);
     ~LimitDescents();
     LimitDescents(const LimitDescents&) = delete;
     LimitDescents& operator=(const LimitDescents&) = delete;

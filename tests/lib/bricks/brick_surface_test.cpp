@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces of a mesh in bricks have the triangles of the mesh in one piece.
+// Surfaces of a mesh in bricks have the bits of the mesh in one piece.
 #include "subvol/brick_surface.h"
 
 #include <gmock/gmock.h>
@@ -17,27 +17,31 @@ using testing::HasSubstr;
 
 class BrickSurface : public test::TempFolder {
 protected:
-    /// Places are those of the limit to its tolerance: 1e-6 of the diagonal. (The order of a crossing's digits is smaller:
-    /// Newton's method ends with a step of at most 1e-3 of an edge, which leaves its square.)
     void expect_same(const HexMesh& mesh, const SplitOptions& split, const SurfaceOptions& options) const {
         const LimitSurface whole = limit_surface(mesh, "f", options);
         const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
         const LimitSurface found = limit_surface(bricks, "f", options);
         ASSERT_GT(whole.surface.triangles.size(), 100U);
         EXPECT_EQ(found.surface.triangles, whole.surface.triangles);
-        ASSERT_EQ(found.surface.points.size(), whole.surface.points.size());
-        const double near = 1e-6 * bounds(mesh).diagonal();
-        for (std::size_t p = 0; p < whole.surface.points.size(); ++p) {
-            EXPECT_LT(glm::distance(found.surface.points[p], whole.surface.points[p]), near);
+        EXPECT_EQ(found.surface.points, whole.surface.points);
+        EXPECT_EQ(found.normals, whole.normals);
+        ASSERT_EQ(found.places.size(), whole.places.size());
+        for (std::size_t p = 0; p < whole.places.size(); ++p) {
             EXPECT_EQ(found.places[p].cell, whole.places[p].cell);
+            EXPECT_EQ(found.places[p].uvw, whole.places[p].uvw);
         }
-        ASSERT_EQ(found.fields.size(), whole.fields.size());
-        EXPECT_EQ(found.fields[1].name, "g");
+        ASSERT_EQ(found.fields.size(), 2U);
+        for (std::size_t f = 0; f < 2; ++f) {
+            EXPECT_EQ(found.fields[f].name, whole.fields[f].name);
+            EXPECT_EQ(found.fields[f].values, whole.fields[f].values);
+            EXPECT_EQ(found.fields[f].gradients, whole.fields[f].gradients);
+        }
         EXPECT_EQ(found.report.level, whole.report.level);
+        EXPECT_EQ(found.report.deviation_world, whole.report.deviation_world);
         EXPECT_EQ(found.report.cells, whole.report.cells);
         EXPECT_EQ(found.report.watertight, whole.report.watertight);
         EXPECT_EQ(found.report.euler, whole.report.euler);
-        EXPECT_NEAR(found.report.volume, whole.report.volume, 1e-6 * std::abs(whole.report.volume));
+        EXPECT_EQ(found.report.volume, whole.report.volume);
     }
 };
 
@@ -50,7 +54,7 @@ HexMesh ball() {
     return mesh;
 }
 
-TEST_F(BrickSurface, HasTheTrianglesOfTheWhole) {
+TEST_F(BrickSurface, HasTheBitsOfTheWhole) {
     const HexMesh mesh = ball();
     for (const BrickShape shape : {BrickShape::Blocks, BrickShape::Random}) {
         const SplitOptions split{.bricks = 5, .shape = shape};

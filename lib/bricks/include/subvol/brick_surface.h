@@ -8,8 +8,7 @@
 
 namespace subvol {
 
-/// Isosurfaces and the boundary of a mesh in bricks, as `limit_surface` of the whole: the same triangles, with positions and
-/// fields to the tolerance of the limit (`LimitOptions`), relative to the part of the mesh that is gathered.
+/// Isosurfaces and the boundary of a mesh in bricks: the same bits as those of `limit_surface` of the whole.
 ///
 /// Each brick is looked at for cells that a surface may pass through; these are then gathered with their halos, and the surface
 /// is cut from them alone.

@@ -10,6 +10,10 @@
 
 namespace subvol {
 
+namespace detail {
+struct LimitExtent;
+}
+
 /// A place in a control cell: uvw in [0,1]³, u along corners 0→1, v along 0→3, w along 0→4.
 struct LimitQuery {
     Index cell = 0;
@@ -73,6 +77,10 @@ public:
     ///
     /// throws: Error(InvalidInput) as `refine`, or if an option is out of range
     explicit LimitEvaluator(const HexMesh& mesh, const LimitOptions& options = {});
+
+    /// Of a mesh that may be a part of another one, whose extent is given: results depend on the cells about a place alone, and so
+    /// have the same bits in the part and in the whole. Tables that pay where many neighbourhoods are alike are not used.
+    LimitEvaluator(const HexMesh& mesh, const LimitOptions& options, const detail::LimitExtent& whole);
     ~LimitEvaluator();
     LimitEvaluator(LimitEvaluator&&) noexcept;
     LimitEvaluator& operator=(LimitEvaluator&&) noexcept;
