@@ -91,9 +91,14 @@ void write_mesh_pictures(const HexMesh& mesh, const std::vector<View>& views, co
     if (mesh.attributes.size() == 1) work.options.color_channel.reset();  // the field of the colours is --field itself
     if (arguments.method == "tets" || arguments.method == "pt") {
         const HexMesh fine = refine_reported(mesh, refine.options(kTetsLevel, report), Vertices::OnTheLimit, report);
-        const Surface boundary = skin_of(mesh, arguments, report).surface;
+        const Surface boundary = work.rows.finished() ? skin_of(mesh, arguments, report).surface : Surface{};
         if (arguments.method == "tets") {
-            write_tets(fine, boundary, views, optics, reference, output, report);
+            const TetsRenderer renderer(fine);
+            report.add_seconds("prepare", renderer.seconds_build());
+            const auto draw = [&](const View& view, const TetsOptions& options) {
+                return renderer.draw(view, optics, options);
+            };
+            write_tets(draw, boundary, views, reference, work.rows, output, report);
         } else {
             write_projected_tets(fine, boundary, views, optics, reference, splat.device, splat.seconds, output, report);
         }

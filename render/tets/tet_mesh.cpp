@@ -105,9 +105,9 @@ void connect(TetMesh& mesh) {
 
 enum class Shape { Regular, Degenerate, Inverted };
 
-Shape shape_of(const TetMesh& mesh, const TetMesh::Tet& tet) {
+Shape shape_of(const HexMesh& mesh, const std::array<Index, 4>& tet) {
     std::array<Vec3, 4> p;
-    for (std::size_t k = 0; k < 4; ++k) p[k] = mesh.points[tet.corner[k]].position;
+    for (std::size_t k = 0; k < 4; ++k) p[k] = mesh.points[tet[k]];
     const Vec3 a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
     const double longest =
         std::sqrt(std::max({dot(a, a), dot(b, b), dot(c, c), dot(b - a, b - a), dot(c - a, c - a), dot(c - b, c - b)}));
@@ -116,26 +116,25 @@ Shape shape_of(const TetMesh& mesh, const TetMesh::Tet& tet) {
     return volume < 0 ? Shape::Inverted : Shape::Regular;
 }
 
-void count_shapes(TetMesh& mesh) {
-    using Counts = std::array<std::size_t, 2>;
-    const auto counts = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), Counts{},
-        [&](const auto& range, Counts sum) {
-            for (std::size_t t = range.begin(); t < range.end(); ++t) {
-                const Shape shape = shape_of(mesh, mesh.tets[t]);
-                if (shape == Shape::Degenerate) ++sum[0];
-                if (shape == Shape::Inverted) ++sum[1];
+}  // namespace
+
+TetShapes tet_shapes(const HexMesh& mesh) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, mesh.cells.size(), 1024), TetShapes{},
+        [&](const auto& range, TetShapes sum) {
+            for (std::size_t c = range.begin(); c < range.end(); ++c) {
+                for (const auto& tet : split_cell(mesh.cells[c])) {
+                    const Shape shape = shape_of(mesh, tet);
+                    if (shape == Shape::Degenerate) ++sum.degenerate;
+                    if (shape == Shape::Inverted) ++sum.inverted;
+                }
             }
             return sum;
         },
-        [](const Counts& a, const Counts& b) {
-            return Counts{a[0] + b[0], a[1] + b[1]};
+        [](const TetShapes& a, const TetShapes& b) {
+            return TetShapes{a.degenerate + b.degenerate, a.inverted + b.inverted};
         });
-    mesh.degenerate_tets = counts[0];
-    mesh.inverted_tets = counts[1];
 }
-
-}  // namespace
 
 TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
     if (hexes.cells.size() > kMaxCells) {
@@ -154,7 +153,7 @@ TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
         const auto split = split_cell(hexes.cells[c]);
         for (std::size_t k = 0; k < kTetsPerCell; ++k) mesh.tets[kTetsPerCell * c + k] = {split[k]};
     });
-    count_shapes(mesh);
+    mesh.shapes = tet_shapes(hexes);
     connect(mesh);
     return mesh;
 }

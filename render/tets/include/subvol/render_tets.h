@@ -10,15 +10,18 @@
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
 #include "subvol/optics.h"
+#include "subvol/pixel_rows.h"
 #include "subvol/progress.h"
 
 namespace subvol {
 
 /// samples: n × n rays for each pixel on a regular grid, 1..16
 /// clip:    how the volume is cut open
+/// rows:    of the picture that are drawn; the others stay empty
 struct TetsOptions {
     int samples = 1;
     Clip clip{};
+    PixelRows rows{};
     Progress* progress = nullptr;
 };
 
