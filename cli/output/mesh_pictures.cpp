@@ -91,9 +91,14 @@ void write_mesh_pictures(const HexMesh& mesh, const std::vector<View>& views, co
     if (mesh.attributes.size() == 1) work.options.color_channel.reset();  // the field of the colours is --field itself
     if (arguments.method == "tets" || arguments.method == "pt") {
         const auto draw = [&](const auto& fine) {
-            const Surface boundary = skin_of(mesh, arguments, report).surface;
+            const Surface boundary = work.rows.finished() ? skin_of(mesh, arguments, report).surface : Surface{};
             if (arguments.method == "tets") {
-                return write_tets(TetsRenderer(fine), boundary, views, optics, reference, output, report);
+                const TetsRenderer renderer(fine);
+                report.add_seconds("prepare", renderer.seconds_build());
+                const auto draw_rows = [&](const View& view, const TetsOptions& options) {
+                    return renderer.draw(view, optics, options);
+                };
+                return write_tets(draw_rows, boundary, views, reference, work.rows, output, report);
             }
             ProjectedRenderer renderer(fine, {}, splat.device);
             write_projected_tets(renderer, boundary, views, optics, reference, splat.seconds, output, report);

@@ -116,4 +116,11 @@ void gather_rows(Picture& picture, Ranks& ranks) {
     }
 }
 
+void add_up(const OwnRows& rows, std::span<std::size_t> counts) {
+    if (!rows.gathered()) return;
+    std::vector<std::int64_t> sums(counts.begin(), counts.end());
+    rows.ranks->sum(sums);
+    std::ranges::copy(sums, counts.begin());
+}
+
 }  // namespace subvol::cli

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <span>
+
 #include "picture_notes.h"
 #include "ranks.h"
 #include "share.h"
@@ -11,6 +15,21 @@ namespace subvol::cli {
 
 /// The rows of a share of a picture: whole bands of `kBandRows`.
 [[nodiscard]] PixelRows rows_of(const Share& share, int height);
+
+/// The rows of a picture that this process draws.
+///
+/// share: none: all of them
+/// ranks: the processes that draw the other rows; null: this one is alone
+struct OwnRows {
+    std::optional<Share> share{};
+    Ranks* ranks = nullptr;
+
+    [[nodiscard]] PixelRows of(int height) const { return share ? rows_of(*share, height) : PixelRows{}; }
+    /// Whether rank 0 puts the rows of all ranks together.
+    [[nodiscard]] bool gathered() const { return share && ranks != nullptr; }
+    /// Whether this process gets a finished picture.
+    [[nodiscard]] bool finished() const { return !gathered() || ranks->first(); }
+};
 
 /// The kernels of a volume without those that touch no row of a share; all of them if a pixel may depend on any kernel: without
 /// a boundary, and with shadows or ambient occlusion. The picture of these has the bits of the whole one in the share's rows.
@@ -36,5 +55,8 @@ struct ShippedKernels {
 
 /// Puts each rank's rows of a picture together, at rank 0; elsewhere the picture stays as it is.
 void gather_rows(Picture& picture, Ranks& ranks);
+
+/// What all ranks have counted for their rows together; of one process its own.
+void add_up(const OwnRows& rows, std::span<std::size_t> counts);
 
 }  // namespace subvol::cli

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reference_pictures.h"
 
+#include <array>
 #include <utility>
 
 #include "subvol/boundary_shading.h"
@@ -61,17 +62,21 @@ void report_tets(const ProjectedReport& pt, ProjectedOrder order, Report& report
 
 }  // namespace
 
-Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& optics, const ReferenceArguments& arguments,
+Picture draw_tets(const DrawTets& draw_rows, const View& view, const ReferenceArguments& arguments, const OwnRows& rows,
                   Progress* progress, Report& report) {
-    TetsResult drawn =
-        renderer.draw(view, optics, {.samples = arguments.samples, .clip = arguments.clip, .progress = progress});
+    TetsResult drawn = draw_rows(
+        view, {.samples = arguments.samples, .clip = arguments.clip, .rows = rows.of(view.height()), .progress = progress});
+    std::array counts{drawn.report.rays, drawn.report.lost_rays};
+    add_up(rows, counts);
     report_method("tets", "cpu", report);
     report.add_seconds("draw", drawn.report.seconds_draw);
     report["tets"] = drawn.report.tets;
     report["degenerate_tets"] = drawn.report.degenerate_tets;
     report["inverted_tets"] = drawn.report.inverted_tets;
-    report_rays(drawn.report.rays, drawn.report.lost_rays, report);
-    return Picture{std::move(drawn.image)};
+    report_rays(counts[0], counts[1], report);
+    Picture picture{std::move(drawn.image)};
+    if (rows.gathered()) gather_rows(picture, *rows.ranks);
+    return picture;
 }
 
 Picture draw_projected_tets(ProjectedRenderer& renderer, const View& view, const Optics& optics,
@@ -144,11 +149,10 @@ DrawPicture lit(DrawPicture draw, Surface boundary, const ReferenceArguments& ar
     };
 }
 
-void write_tets(const TetsRenderer& renderer, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
-                const ReferenceArguments& arguments, PictureOutput& output, Report& report) {
-    report.add_seconds("prepare", renderer.seconds_build());
+void write_tets(const DrawTets& draw_rows, const Surface& boundary, const std::vector<View>& views,
+                const ReferenceArguments& arguments, const OwnRows& rows, PictureOutput& output, Report& report) {
     const auto draw = [&](const View& view, Progress* progress) {
-        return draw_tets(renderer, view, optics, arguments, progress, report);
+        return draw_tets(draw_rows, view, arguments, rows, progress, report);
     };
     output.write(views, lit(draw, boundary, arguments), report);
 }

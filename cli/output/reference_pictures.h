@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
 #include "picture_output.h"
+#include "ranked_splats.h"
 #include "reference_arguments.h"
 #include "report.h"
 #include "subvol/refine.h"
@@ -15,9 +17,14 @@
 
 namespace subvol::cli {
 
+/// Draws tetrahedra in some rows of a picture: those of a mesh in one piece or in bricks.
+using DrawTets = std::function<TetsResult(const View&, const TetsOptions&)>;
+
 /// One picture by a reference method. Its counts and seconds go into the report; lost rays become a warning.
-[[nodiscard]] Picture draw_tets(const TetsRenderer& renderer, const View& view, const Optics& optics,
-                                const ReferenceArguments& arguments, Progress* progress, Report& report);
+///
+/// rows: that this process draws; rank 0 gets those of all ranks
+[[nodiscard]] Picture draw_tets(const DrawTets& draw_rows, const View& view, const ReferenceArguments& arguments,
+                                const OwnRows& rows, Progress* progress, Report& report);
 
 /// seconds: a time limit; none: the whole picture, whatever time it takes
 [[nodiscard]] Picture draw_projected_tets(ProjectedRenderer& renderer, const View& view, const Optics& optics,
@@ -39,8 +46,8 @@ namespace subvol::cli {
 /// Draws and writes a picture by `draw_tets` for each view.
 ///
 /// boundary: of `lit`
-void write_tets(const TetsRenderer& renderer, const Surface& boundary, const std::vector<View>& views, const Optics& optics,
-                const ReferenceArguments& arguments, PictureOutput& output, Report& report);
+void write_tets(const DrawTets& draw_rows, const Surface& boundary, const std::vector<View>& views,
+                const ReferenceArguments& arguments, const OwnRows& rows, PictureOutput& output, Report& report);
 
 /// Draws and writes a picture by `draw_projected_tets` for each view.
 void write_projected_tets(ProjectedRenderer& renderer, const Surface& boundary, const std::vector<View>& views,

@@ -2,6 +2,7 @@
 #include "splat_pictures.h"
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "ranked_bricks.h"
@@ -31,16 +32,16 @@ SplatResult draw_rows(const RbfVolume& volume, const BoundaryValues& skin, const
         if (!skin.values.empty()) splatter.set_boundary_colors(skin.surface, skin.values.back());
         return splatter.draw(view, optics, progress);
     };
-    if (work.ranks == nullptr) {
-        const RbfVolume band = kernels_of_rows(volume, *work.rows, view, optics, options);
+    if (work.rows.ranks == nullptr) {
+        const RbfVolume band = kernels_of_rows(volume, *work.rows.share, view, optics, options);
         return drawn_of(band);
     }
-    const auto [begin, end] = work.rows->range(volume.size());
+    const auto [begin, end] = work.rows.share->range(volume.size());
     RbfVolume own = detail::kernels_between(volume, begin, end);
     own.boundary = volume.boundary;
     ShippedKernels shipped;
-    const RbfVolume band = ship_kernels(own, view, optics, options, *work.ranks, shipped);
-    report_shipped(shipped, *work.ranks, report);
+    const RbfVolume band = ship_kernels(own, view, optics, options, *work.rows.ranks, shipped);
+    report_shipped(shipped, *work.rows.ranks, report);
     SplatResult drawn = drawn_of(band);
     drawn.report.points = volume.size();
     return drawn;
@@ -60,16 +61,16 @@ void write_splats(LevelOfDetail& levels, const BoundaryValues& skin, const std::
         splatter.emplace(volume, work.options);
         if (!skin.values.empty()) splatter->set_boundary_colors(skin.surface, skin.values.back());
     };
-    if (!work.rows && levels.all() != nullptr) prepare(*levels.all());
+    if (!work.rows.share && levels.all() != nullptr) prepare(*levels.all());
     const auto draw = [&](const View& view, Progress* progress) {
         const RbfVolume& shown = levels.of(view, report);
         if (splatter && levels.has_changed()) splatter->set_kernels(shown);
-        if (!splatter && !work.rows) prepare(shown);
+        if (!splatter && !work.rows.share) prepare(shown);
         SplatResult drawn =
             splatter ? splatter->draw(view, optics, progress) : draw_rows(shown, skin, view, optics, work, progress, report);
         report_drawn(drawn.report, work, report);
         Picture picture{std::move(drawn.image), std::move(drawn.depth)};
-        if (work.rows && work.ranks != nullptr) gather_rows(picture, *work.ranks);
+        if (work.rows.gathered()) gather_rows(picture, *work.rows.ranks);
         return picture;
     };
     output.write(views, draw, report);
@@ -83,14 +84,14 @@ void write_splats(const RbfVolume& volume, double lod, const BoundaryValues& ski
 
 void write_splats(BricksToSplats what, const std::vector<View>& views, const Optics& optics, const SplatWork& work,
                   PictureOutput& output, Report& report) {
-    if (work.rows) what.options.rows = rows_of(*work.rows, views.front().height());
-    const bool ranked = work.rows && work.ranks != nullptr;
+    what.options.rows = work.rows.of(views.front().height());
+    const bool ranked = work.rows.gathered();
     const auto draw = [&](const View& view, Progress*) {
         Surface own = views.size() > 1 ? what.boundary : std::move(what.boundary);
         ShippedKernels shipped;
         SplatResult drawn = report.timed("draw", [&] {
             return ranked ? render_bricks_ranked(what.bricks, what.fields, std::move(own), view, optics, what.options,
-                                                 *work.ranks, shipped)
+                                                 *work.rows.ranks, shipped)
                           : render_bricks(what.bricks, what.fields, std::move(own), view, optics, what.options);
         });
         report["method"] = work.method;
@@ -98,8 +99,8 @@ void write_splats(BricksToSplats what, const std::vector<View>& views, const Opt
         report_splats(drawn.report, report);
         Picture picture{std::move(drawn.image), std::move(drawn.depth)};
         if (ranked) {
-            report_shipped(shipped, *work.ranks, report);
-            gather_rows(picture, *work.ranks);
+            report_shipped(shipped, *work.rows.ranks, report);
+            gather_rows(picture, *work.rows.ranks);
         }
         const BoundaryValues& skin = what.skin;
         if (!skin.values.empty()) {

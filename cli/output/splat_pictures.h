@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "level_of_detail.h"
 #include "picture_output.h"
-#include "ranks.h"
+#include "ranked_splats.h"
 #include "report.h"
-#include "share.h"
 #include "subvol/boundary_values.h"
 #include "subvol/render_bricks.h"
 #include "subvol/sample.h"
@@ -20,13 +18,10 @@ namespace subvol::cli {
 /// How kernels are drawn.
 ///
 /// method: for the report
-/// rows:   the share of a picture's rows that this process draws; none: all of them
-/// ranks:  the processes that draw the other rows; null: this one is alone
 struct SplatWork {
     std::string method;
     SplatOptions options;
-    std::optional<Share> rows{};
-    Ranks* ranks = nullptr;
+    OwnRows rows{};
 };
 
 /// Draws and writes a picture of kernels for each view.

@@ -86,14 +86,15 @@ public:
     }
 
 private:
-    /// Shares are of frames; of a single picture they are of rows, which only splats can be drawn in.
+    /// Shares are of frames; of a single picture they are of rows, which only splats and tetrahedra can be drawn in.
     void set_share(PictureOutput& output, bool frames) {
         if (!shares(share_)) return;
         const Share share = share_of(share_);
-        if (!frames && (!is_of_splats(arguments_.method) || arguments_.method == "footprints" || arguments_.splat.seconds)) {
+        const bool in_rows = is_of_splats(arguments_.method) ? arguments_.method != "footprints" : arguments_.method == "tets";
+        if (!frames && (!in_rows || arguments_.splat.seconds)) {
             throw Error(ErrorCode::InvalidInput, "is not drawn in shares",
                         arguments_.splat.seconds ? "--seconds" : "--method " + arguments_.method,
-                        "--method splat, or shares of frames: --turntable N, --step all");
+                        "--method splat or tets, or shares of frames: --turntable N, --step all");
         }
         by_rows_ = !frames;
         if (ranks() == nullptr || frames) {
@@ -283,7 +284,8 @@ private:
     }
 
     [[nodiscard]] SplatWork splat_work() const {
-        return {arguments_.method, arguments_.options, by_rows_ ? std::optional(share_of(share_)) : std::nullopt, ranks()};
+        return {arguments_.method, arguments_.options,
+                OwnRows{by_rows_ ? std::optional(share_of(share_)) : std::nullopt, ranks()}};
     }
 
     /// Kernels without a boundary that has its own colours.

@@ -104,8 +104,8 @@ ProjectedRenderer::State::State(const std::optional<int>& device, Progress* prog
     context.release();
     built.device = context.renderer();
     built.tets = tets.tets.size();
-    built.degenerate_tets = tets.degenerate_tets;
-    built.inverted_tets = tets.inverted_tets;
+    built.degenerate_tets = tets.shapes.degenerate;
+    built.inverted_tets = tets.shapes.inverted;
     report_progress(progress, "build", 1);
     built.seconds_build = build_watch.seconds();
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "subvol/pixel_rows.h"
+
 namespace subvol::detail {
 
 /// Pixels x0 ≤ x < x1, y0 ≤ y < y1; (0,0) is the top left.
@@ -18,5 +20,10 @@ struct PixelRect {
         return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
     }
 };
+
+/// Whole rows of a picture; none if they lie beyond it.
+[[nodiscard]] inline PixelRect rect_of(const PixelRows& rows, int width, int height) {
+    return {0, std::clamp(rows.first, 0, height), width, std::clamp(rows.end, 0, height)};
+}
 
 }  // namespace subvol::detail

@@ -53,6 +53,7 @@ inline void write_pixel(Image& image, int x, int y, const Segment& seen) {
 /// Calls draw_tile(PixelRect) for all tiles of a part of a picture, on all threads.
 template <class DrawTile>
 void for_each_tile(const PixelRect& part, Progress* progress, const DrawTile& draw_tile) {
+    if (part.empty()) return;
     constexpr int kTile = 16;
     const int columns = (part.x1 - part.x0 + kTile - 1) / kTile;
     const int rows = (part.y1 - part.y0 + kTile - 1) / kTile;

@@ -20,6 +20,8 @@ void RayEnds::find(const RayPlane& plane, const Ray& ray) {
     hits_.clear();
     ends_.clear();
     scene_->find_crossed(ray, hits_);
+    std::ranges::sort(hits_);  // so that what is found does not depend on Embree's tree, which other faces change
+    hits_.erase(std::unique(hits_.begin(), hits_.end()), hits_.end());
     for (const TetFace face : hits_) {
         const auto before = ends_.size();
         add(plane, face);

@@ -108,9 +108,9 @@ void connect(TetMesh& mesh, std::size_t tets_per_cell) {
 
 enum class Shape { Regular, Degenerate, Inverted };
 
-Shape shape_of(const TetMesh& mesh, const TetMesh::Tet& tet) {
+Shape shape_of(const std::vector<Vec3>& points, const std::array<Index, 4>& tet) {
     std::array<Vec3, 4> p;
-    for (std::size_t k = 0; k < 4; ++k) p[k] = mesh.points[tet.corner[k]].position;
+    for (std::size_t k = 0; k < 4; ++k) p[k] = points[tet[k]];
     const Vec3 a = p[1] - p[0], b = p[2] - p[0], c = p[3] - p[0];
     const double longest =
         std::sqrt(std::max({dot(a, a), dot(b, b), dot(c, c), dot(b - a, b - a), dot(c - a, c - a), dot(c - b, c - b)}));
@@ -119,23 +119,24 @@ Shape shape_of(const TetMesh& mesh, const TetMesh::Tet& tet) {
     return volume < 0 ? Shape::Inverted : Shape::Regular;
 }
 
-void count_shapes(TetMesh& mesh) {
-    using Counts = std::array<std::size_t, 2>;
-    const auto counts = tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, mesh.tets.size(), 4096), Counts{},
-        [&](const auto& range, Counts sum) {
-            for (std::size_t t = range.begin(); t < range.end(); ++t) {
-                const Shape shape = shape_of(mesh, mesh.tets[t]);
-                if (shape == Shape::Degenerate) ++sum[0];
-                if (shape == Shape::Inverted) ++sum[1];
+/// tets_of: gives the tetrahedra of a cell
+template <class TetsOf>
+TetShapes count_shapes(const std::vector<Vec3>& points, std::size_t cells, const TetsOf& tets_of) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, cells, 1024), TetShapes{},
+        [&](const auto& range, TetShapes sum) {
+            for (std::size_t c = range.begin(); c < range.end(); ++c) {
+                for (const auto& tet : tets_of(c)) {
+                    const Shape shape = shape_of(points, tet);
+                    if (shape == Shape::Degenerate) ++sum.degenerate;
+                    if (shape == Shape::Inverted) ++sum.inverted;
+                }
             }
             return sum;
         },
-        [](const Counts& a, const Counts& b) {
-            return Counts{a[0] + b[0], a[1] + b[1]};
+        [](const TetShapes& a, const TetShapes& b) {
+            return TetShapes{a.degenerate + b.degenerate, a.inverted + b.inverted};
         });
-    mesh.degenerate_tets = counts[0];
-    mesh.inverted_tets = counts[1];
 }
 
 void check_count(std::size_t count, std::size_t most, const char* what) {
@@ -179,6 +180,10 @@ Box bounds_of(const TetMesh& mesh) {
         });
 }
 
+TetShapes tet_shapes(const HexMesh& mesh) {
+    return count_shapes(mesh.points, mesh.cells.size(), [&](std::size_t c) { return split_cell(mesh.cells[c]); });
+}
+
 TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
     check_count(hexes.cells.size(), kMaxCells, " cells");
     TetMesh mesh = points_with(hexes.points, values);
@@ -187,7 +192,7 @@ TetMesh build_tet_mesh(const HexMesh& hexes, std::span<const double> values) {
         const auto split = split_cell(hexes.cells[c]);
         for (std::size_t k = 0; k < kTetsPerCell; ++k) mesh.tets[kTetsPerCell * c + k] = {split[k]};
     });
-    count_shapes(mesh);
+    mesh.shapes = tet_shapes(hexes);
     connect(mesh, kTetsPerCell);
     return mesh;
 }
@@ -199,7 +204,7 @@ TetMesh build_tet_mesh(const MixedMesh& mixed, std::string_view field) {
     TetMesh mesh = points_with(cut.points, scalar_of(cut, field).values);
     mesh.tets.resize(cut.tets.size());
     parallel_each(cut.tets.size(), [&](std::size_t t) { mesh.tets[t] = {cut.tets[t]}; });
-    count_shapes(mesh);
+    mesh.shapes = count_shapes(cut.points, cut.tets.size(), [&](std::size_t t) { return std::array{cut.tets[t]}; });
     connect(mesh, 1);
     return mesh;
 }

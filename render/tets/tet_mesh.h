@@ -32,6 +32,11 @@ private:
     std::uint64_t bits_ = ~std::uint64_t{0};
 };
 
+/// How many tetrahedra have zero volume, and how many are inverted.
+struct TetShapes {
+    std::size_t degenerate = 0, inverted = 0;
+};
+
 /// A mesh of tetrahedra with their neighbours.
 ///
 /// links: for each tetrahedron one link for each face, half a cache line in all, by the rank of the opposite corner's id among
@@ -48,8 +53,7 @@ struct TetMesh {
     std::vector<Tet> tets;
     std::vector<std::array<TetLink, 4>> links;
     std::vector<TetFace> boundary;
-    std::size_t degenerate_tets = 0;
-    std::size_t inverted_tets = 0;
+    TetShapes shapes{};
 
     [[nodiscard]] std::array<Index, 3> corners(TetFace face) const {
         const auto& corner = tets[face / 4].corner;
@@ -71,6 +75,9 @@ struct TetMesh {
 
 /// Of the points that tetrahedra use.
 [[nodiscard]] Box bounds_of(const TetMesh& mesh);
+
+/// Of the tetrahedra into which `build_tet_mesh` splits the cells.
+[[nodiscard]] TetShapes tet_shapes(const HexMesh& mesh);
 
 /// Splits every cell into 6 and finds the neighbours by sorting the faces on the sides of cells. A face of more than two
 /// tetrahedra is a boundary face of each of them.

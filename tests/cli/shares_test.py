@@ -41,7 +41,8 @@ class Parts(Shared):
         self.assertEqual(self.bytes_of("joined.exr"), self.bytes_of("one.exr"))
 
     def test_rows_of_shares_are_the_picture_of_one_process(self):
-        for options in ([], ["--look", "volume"], ["--samples", "2", "--edges"], ["--legend"]):
+        for options in ([], ["--look", "volume"], ["--samples", "2", "--edges"], ["--legend"], ["--method", "tets"],
+                        ["--method", "tets", "--levels", "0", "--samples", "2", "--clip", "0,0,0,1,1,0"]):
             self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
             self.run_ok("render", "model:ball:4", "-o", "one.png", *PICTURE, *options)
             for count in COUNTS if not options else (3,):
@@ -73,7 +74,7 @@ class Parts(Shared):
             self.refused("points", "model:ball:4", "-o", "p.ply", "--part", share)
         self.assertIn(".exr", self.refused("render", "model:ball:4", "-o", "p.png", "--part", "1/2"))
         self.assertIn("join", self.refused("points", "model:ball:4", "-o", "p.vdb", "--part", "1/2"))
-        self.assertIn("tets", self.refused("render", "model:ball:4", "-o", "p.exr", "--method", "tets", "--part", "1/2"))
+        self.assertIn("dense", self.refused("render", "model:ball:4", "-o", "p.exr", "--method", "dense", "--part", "1/2"))
         self.assertIn("--json", self.refused("info", "model:ball:4", "--part", "1/2"))
 
     def test_wrong_parts_are_refused(self):
@@ -129,7 +130,7 @@ class Ranks(WithRanks):
             self.assertEqual(self.grids("ranks.vdb"), self.grids("one.vdb"), count)
 
     def test_pictures(self):
-        for options in ([], ["--look", "volume", "--samples", "2"]):
+        for options in ([], ["--look", "volume", "--samples", "2"], ["--method", "tets"]):
             self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
             for count in COUNTS[1:] if not options else (3,):
                 self.ranks(count, "render", "model:ball:4", "-o", "ranks.exr", *PICTURE, *options)

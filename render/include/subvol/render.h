@@ -6,6 +6,7 @@
 #include "subvol/boundary_shading.h"
 #include "subvol/draw_sheets.h"
 #include "subvol/gl_device.h"
+#include "subvol/pixel_rows.h"
 #include "subvol/progressive.h"
 #include "subvol/render_bricks.h"
 #include "subvol/render_dense.h"

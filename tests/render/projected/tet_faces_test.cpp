@@ -52,7 +52,7 @@ TEST(TetFaces, CoverTellsTheSideOfTheTetrahedron) {
 
 TEST(TetFaces, WhereCellsFoldOverFacesAreOuter) {
     const TetMesh mesh = split(test::jittered_box(5, 0.9, 4));
-    ASSERT_GT(mesh.inverted_tets, 0u);
+    ASSERT_GT(mesh.shapes.inverted, 0u);
     const TetFaces faces = find_faces(mesh);
     EXPECT_GT(faces.outer, mesh.boundary.size());
     for (std::size_t i = 0; i < faces.outer; ++i) EXPECT_NE(faces.faces[i].cover, 2u);

@@ -93,7 +93,7 @@ TEST(TetOrder, CentroidsGoFromBackToFront) {
 TEST(TetOrder, EveryTetrahedronComesOnceWhereCellsFoldOver) {
     // Points are moved by more than a cell: no order is right, but the work has to end.
     const TetMesh mesh = split(test::jittered_box(6, 1.5, 3));
-    EXPECT_GT(mesh.inverted_tets, 0u);
+    EXPECT_GT(mesh.shapes.inverted, 0u);
     const TetOrder order = order_topologically(mesh, perspective());
     (void)places(order, mesh.tets.size());
     EXPECT_GT(order.cycles, 0u);

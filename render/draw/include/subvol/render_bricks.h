@@ -3,20 +3,15 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "subvol/brick_points.h"
+#include "subvol/pixel_rows.h"
 #include "subvol/splat.h"
 
 namespace subvol {
-
-/// Rows of pixels, from `first` to before `end`.
-struct PixelRows {
-    int first = 0, end = std::numeric_limits<int>::max() / 2;
-};
 
 /// rows:         of the picture that are drawn, whole bands of `kBandRows`; the others stay empty, or have some kernels only
 /// memory_bytes: about the most that kernels take while a part of the picture is drawn; besides there are the boundary and a

@@ -11,15 +11,18 @@
 #include "subvol/image.h"
 #include "subvol/mixed_mesh.h"
 #include "subvol/optics.h"
+#include "subvol/pixel_rows.h"
 #include "subvol/progress.h"
 
 namespace subvol {
 
 /// samples: n × n rays for each pixel on a regular grid, 1..16
 /// clip:    how the volume is cut open
+/// rows:    of the picture that are drawn; the others stay empty
 struct TetsOptions {
     int samples = 1;
     Clip clip{};
+    PixelRows rows{};
     Progress* progress = nullptr;
 };
 
