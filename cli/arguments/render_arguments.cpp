@@ -29,7 +29,7 @@ void RenderArguments::add_to(CLI::App& app) {
     refine.add_to(app, "draw the refined mesh of this level (default for tets and pt: 1; for the others: the limit)");
     splat.add_to(app);
     app.add_option("--memory", memory_bytes,
-                   "of bricks: what kernels take while a part of the picture is drawn; of .svk files with --lod: "
+                   "of bricks: what kernels or cells take while a part of the picture is drawn; of .svk files with --lod: "
                    "what is kept for the next frame (default 1G)")
         ->type_name("BYTES")
         ->transform(CLI::AsSizeValue(false));

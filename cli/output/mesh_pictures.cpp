@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "ranked_bricks.h"
 #include "reference_pictures.h"
 #include "render_method.h"
 #include "sampled_points.h"
@@ -29,13 +30,17 @@ void check_points(const std::vector<Vec3>& points) {
     }
 }
 
+/// Whether there is light, which the reference methods have on the boundary only.
+bool has_light(const RenderArguments& arguments) {
+    if (!arguments.picture.lit()) return false;
+    if (arguments.picture.look == Look::Solid) return true;
+    throw Error(ErrorCode::InvalidInput, "method " + arguments.method + " lights the boundary only", "--look isosurface",
+                "use --method splat or sheets, or --tf isosurface for surfaces without light");
+}
+
 /// The surface that is lit, if there is light, and the values on it.
 BoundaryValues skin_of(const HexMesh& mesh, const RenderArguments& arguments, Report& report) {
-    if (!arguments.picture.lit()) return {};
-    if (arguments.picture.look != Look::Solid) {
-        throw Error(ErrorCode::InvalidInput, "method " + arguments.method + " lights the boundary only", "--look isosurface",
-                    "use --method splat or sheets, or --tf isosurface for surfaces without light");
-    }
+    if (!has_light(arguments)) return {};
     const int levels = picture_levels(mesh, arguments.tets.asked() ? std::optional(0) : arguments.refine.levels);
     RefineOptions options = arguments.refine.options(levels, report);
     options.levels = levels;
@@ -124,6 +129,29 @@ void write_mesh_pictures(const HexMesh& mesh, const std::vector<View>& views, co
                                      : sample_reported(mesh, arguments.sample, refine, optics.function(), report);
         write_splats(volume, reference.lod.value_or(0), skin, views, optics, work, output, report);
     }
+}
+
+void write_brick_tets(const Bricks& bricks, const BrickFields& fields, std::optional<BrickHull> hull,
+                      const std::vector<View>& views, const Optics& optics, const RenderArguments& arguments,
+                      const OwnRows& rows, PictureOutput& output, Report& report) {
+    BrickTetsOptions options{.refine = arguments.refine.options(kTetsLevel, report), .memory_bytes = arguments.memory_bytes};
+    options.tets.progress = report.progress();
+    Surface boundary;
+    if (has_light(arguments) && rows.finished()) {
+        boundary = report.timed("boundary",
+                                [&] { return boundary_values(*hull, options.refine.scheme, arguments.refine.levels).surface; });
+    }
+    hull.reset();
+    const BrickTets all = report.timed("measure", [&] { return measure_tets(bricks, options, rows); });
+    report["levels"] = options.refine.levels;
+    report["cells"] = all.tets / 6;
+    const auto draw = [&](const View& view, const TetsOptions& tets) {
+        options.tets = tets;
+        TetsResult drawn = render_tets(bricks, fields, all, view, optics, options);
+        report.add_seconds("prepare", drawn.report.seconds_build);
+        return drawn;
+    };
+    write_tets(draw, boundary, views, arguments.reference, rows, output, report);
 }
 
 }  // namespace subvol::cli

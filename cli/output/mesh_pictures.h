@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "render_arguments.h"
 #include "report.h"
 #include "splat_pictures.h"
+#include "subvol/bricks.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/sheets.h"
 
@@ -47,5 +49,12 @@ struct ShownMesh {
 void write_mesh_pictures(const HexMesh& mesh, const std::vector<View>& views, const Optics& optics,
                          const RenderArguments& arguments, SplatWork work, const CLI::App& app, PictureOutput& output,
                          Report& report);
+
+/// Draws and writes a picture of the tetrahedra of a mesh in bricks for each view.
+///
+/// hull: for a body that is lit
+void write_brick_tets(const Bricks& bricks, const BrickFields& fields, std::optional<BrickHull> hull,
+                      const std::vector<View>& views, const Optics& optics, const RenderArguments& arguments,
+                      const OwnRows& rows, PictureOutput& output, Report& report);
 
 }  // namespace subvol::cli

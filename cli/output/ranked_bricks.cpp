@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <optional>
+#include <type_traits>
 
 #include "subvol/detail/kernel_bytes.h"
 #include "subvol/detail/ply_rows.h"
@@ -38,6 +39,36 @@ NumberedKernels unpacked(const std::string& bytes) {
     std::memcpy(kernels.numbers.data(), bytes.data() + sizeof count, count * sizeof count);
     kernels.volume = detail::kernels_from_bytes(std::string_view(bytes).substr((count + 1) * sizeof count));
     return kernels;
+}
+
+/// The figures of bricks, then their number and their boxes.
+struct PackedTets {
+    Box bounds;
+    double overhang = 0;
+    std::size_t tets = 0, degenerate_tets = 0, inverted_tets = 0, bricks = 0;
+};
+static_assert(std::is_trivially_copyable_v<PackedTets>);
+
+std::string packed(const BrickTets& of) {
+    const PackedTets figures{of.bounds, of.overhang, of.tets, of.degenerate_tets, of.inverted_tets, of.of_bricks.size()};
+    std::string bytes(reinterpret_cast<const char*>(&figures), sizeof figures);
+    return bytes.append(reinterpret_cast<const char*>(of.of_bricks.data()), of.of_bricks.size() * sizeof(Box));
+}
+
+/// at: where they begin; gets where they end
+BrickTets unpacked_tets(const std::string& bytes, std::size_t& at) {
+    PackedTets of;
+    std::memcpy(&of, bytes.data() + at, sizeof of);
+    at += sizeof of;
+    BrickTets tets{.bounds = of.bounds,
+                   .of_bricks = std::vector<Box>(of.bricks),
+                   .overhang = of.overhang,
+                   .tets = of.tets,
+                   .degenerate_tets = of.degenerate_tets,
+                   .inverted_tets = of.inverted_tets};
+    if (of.bricks > 0) std::memcpy(tets.of_bricks.data(), bytes.data() + at, of.bricks * sizeof(Box));
+    at += of.bricks * sizeof(Box);
+    return tets;
 }
 
 /// Samples this rank's bricks. All ranks take as many rounds, so that they can exchange kernels in each; those that have no
@@ -129,6 +160,17 @@ SplatResult render_bricks_ranked(const Bricks& bricks, const BrickFields& fields
     SplatResult drawn = picture.draw(finest);
     drawn.report.points = count;
     return drawn;
+}
+
+BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, const OwnRows& rows) {
+    if (!rows.gathered()) return subvol::measure_tets(bricks, options, 0, bricks.bricks.size());
+    const auto [begin, end] = rows.share->range(bricks.bricks.size());
+    std::string all;
+    for (const std::string& bytes : rows.ranks->gather(packed(subvol::measure_tets(bricks, options, begin, end)))) all += bytes;
+    all = rows.ranks->broadcast(std::move(all));
+    BrickTets sum;
+    for (std::size_t at = 0; at < all.size();) sum.add(unpacked_tets(all, at));
+    return sum;
 }
 
 }  // namespace subvol::cli

@@ -6,6 +6,7 @@
 #include "ranked_splats.h"
 #include "ranks.h"
 #include "subvol/brick_points.h"
+#include "subvol/render_brick_tets.h"
 #include "subvol/render_bricks.h"
 
 namespace subvol::cli {
@@ -20,5 +21,8 @@ BrickPointsReport write_points_ranked(const std::filesystem::path& path, const B
 [[nodiscard]] SplatResult render_bricks_ranked(const Bricks& bricks, const BrickFields& fields, Surface boundary,
                                                const View& view, const Optics& optics, BrickSplatOptions options, Ranks& ranks,
                                                ShippedKernels& shipped);
+
+/// `measure_tets` of all bricks: of ranks that draw one picture together, each measures a range of them.
+[[nodiscard]] BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, const OwnRows& rows);
 
 }  // namespace subvol::cli

@@ -194,11 +194,13 @@ private:
     }
 
     void draw_bricks(PictureOutput& output, Report& report) {
-        if (arguments_.method != "splat") {
-            throw Error(ErrorCode::InvalidInput, "a folder of bricks can only be splatted", "--method " + arguments_.method,
-                        "splat");
+        const bool by_tets = arguments_.method == "tets";
+        if (!by_tets && arguments_.method != "splat") {
+            throw Error(ErrorCode::InvalidInput, "a folder of bricks is not drawn by this method",
+                        "--method " + arguments_.method, "splat or tets");
         }
-        refuse_options(app(), {"--levels", "--threshold", "--reduce", "--seconds", "--edges", "--color-field", "--lod"},
+        if (!by_tets) refuse_options(app(), {"--levels"}, "needs the whole mesh in memory; this is a folder of bricks");
+        refuse_options(app(), {"--threshold", "--reduce", "--seconds", "--edges", "--color-field", "--lod"},
                        "needs the whole mesh in memory; this is a folder of bricks");
         const Bricks bricks = open_bricks_input(input_, app(), report);
         const StreamedField field = select_brick_field(bricks, common(), report);
@@ -206,10 +208,14 @@ private:
         const ShownField what{report.json().at("field"), {field.min, field.max}};
         show(bricks.bounds, what, what, output, report, [&](const ShownColors& shown) {
             output.set_notes(make_notes(picture_, shown, nullptr));
-            std::optional<BrickHull> hull =
-                report.timed("hull", [&] { return gather_hull(bricks, fields, report.progress()); });
-            const std::vector<View> views =
-                picture_.make_views(bricks.bounds, picture_.look == Look::Solid ? hull->mesh.points : std::vector<Vec3>());
+            const bool solid = picture_.look == Look::Solid;
+            std::optional<BrickHull> hull;
+            if (solid || !by_tets) hull = report.timed("hull", [&] { return gather_hull(bricks, fields, report.progress()); });
+            const std::vector<View> views = picture_.make_views(bricks.bounds, solid ? hull->mesh.points : std::vector<Vec3>());
+            if (by_tets) {
+                return write_brick_tets(bricks, fields, std::move(hull), views, shown.optics, arguments_, splat_work().rows,
+                                        output, report);
+            }
             const RefineOptions refine = arguments_.refine.options(0, report);
             BrickSplatOptions options{.sample = arguments_.sample.options(bricks.bounds, refine),
                                       .splat = arguments_.options,

@@ -6,17 +6,12 @@
 #include <vector>
 
 #include "subvol/bricks.h"
+#include "subvol/detail/gather_cells.h"
 
 namespace subvol::detail {
 
 /// Adds layers of cells: each has all cells that share a point with a cell before. cells: a flag for each cell of the mesh
 void grow(const HexMesh& mesh, std::vector<std::uint8_t>& cells, int layers);
-
-/// Layers of cells about a cell that values and gradients of its limit depend on.
-inline constexpr int kHaloOfLimit = 3;
-
-/// throws: Error(InvalidInput) if the bricks have fewer layers of halo
-void check_halo_of_limit(const Bricks& bricks);
 
 /// For each cell of a mesh a box that its limit does not leave: that of the cell and those about it, and a quarter more. The
 /// weights of interpolating schemes are partly negative, but their sum over absolute values is below 1.5.

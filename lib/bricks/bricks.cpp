@@ -47,22 +47,14 @@ BrickMesh read_brick(const Bricks& bricks, std::size_t brick) {
 }
 
 BrickMesh gather(const Bricks& bricks, const Box& box) {
-    std::vector<BrickMesh> parts;
-    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        if (!touch(bricks.bricks[b].reach, box)) continue;
-        BrickMesh brick = read_brick(bricks, b);
+    const auto reads = [&](std::size_t b) { return touch(bricks.bricks[b].reach, box); };
+    const auto chooses = [&](const BrickMesh& brick) {
         const CellReaches reaches(brick.mesh);
-        bool any = false;
-        for (std::size_t c = 0; c < brick.owned_cells.size(); ++c) {
-            brick.owned_cells[c] = brick.owned_cells[c] && touch(reaches(c), box);
-            any = any || brick.owned_cells[c];
-        }
-        if (!any) continue;
-        std::vector<std::uint8_t> kept = brick.owned_cells;
-        grow(brick.mesh, kept, bricks.halo_layers);
-        parts.push_back(subset(brick, kept));
-    }
-    return merged(std::move(parts));
+        std::vector<std::uint8_t> chosen = brick.owned_cells;
+        for (std::size_t c = 0; c < chosen.size(); ++c) chosen[c] = chosen[c] && touch(reaches(c), box);
+        return chosen;
+    };
+    return *gather_cells(bricks, {.reads = reads, .chooses = chooses, .layers = bricks.halo_layers});
 }
 
 MeshShare detail::inspect_share(const Bricks& bricks, std::size_t begin, std::size_t end, std::size_t inverted_at_most,

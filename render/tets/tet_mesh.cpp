@@ -204,7 +204,7 @@ TetMesh build_tet_mesh(const MixedMesh& mixed, std::string_view field) {
     TetMesh mesh = points_with(cut.points, scalar_of(cut, field).values);
     mesh.tets.resize(cut.tets.size());
     parallel_each(cut.tets.size(), [&](std::size_t t) { mesh.tets[t] = {cut.tets[t]}; });
-    mesh.shapes = count_shapes(cut.points, cut.tets.size(), [&](std::size_t t) { return std::array{cut.tets[t]}; });
+    mesh.shapes = count_shapes(cut.points, cut.tets.size(), [&](std::size_t t) { return std::span(&cut.tets[t], 1); });
     connect(mesh, 1);
     return mesh;
 }

@@ -46,6 +46,21 @@ class SameAsTheWhole(InFolder):
                 self.run_ok("render", "b.bricks", "-o", "parts.exr", "--memory", "100K", *options)
                 self.assertEqual(self.bytes_of("parts.exr"), self.bytes_of("whole.exr"), f"{cut} {look} in parts")
 
+    def test_pictures_of_tetrahedra(self):
+        small = ["--size", "96x80", "--method", "tets"]
+        for options, cuts in ((["--view", "iso"], [(1, "blocks"), (7, "random")]),
+                              (["--look", "volume", "--clip", "0,0,0,1,1,0", "--levels", "0"], [(3, "slabs")]),
+                              (["--look", "volume", "--camera", "0,0,0,1,.3,.2,0,0,1,70"], [(7, "blocks")]),  # from within
+                              (["--crease-angle", "30", "--scheme", "linear", "--views", "4"], [(4, "random")])):
+            whole = self.run_ok("render", BALL, "-o", "whole.exr", *small, *options, "--json").json()
+            for cut in self.cuts(cuts):
+                for memory in ("1G", "10M"):
+                    parts = self.run_ok("render", "b.bricks", "-o", "parts.exr", *small, *options, "--memory", memory,
+                                        "--json").json()
+                    self.assertEqual(self.bytes_of("parts.exr"), self.bytes_of("whole.exr"), f"{cut} {options} {memory}")
+                    for key in ("levels", "cells", "tets", "degenerate_tets", "inverted_tets", "rays", "lost_rays", "field"):
+                        self.assertEqual(parts[key], whole[key], f"{cut} {key}")
+
     def test_grids(self):
         for options, cuts in ((["--resolution", 70], [(2, "blocks"), (7, "random")]),
                               (["--resolution", 50, "--levels", 1], [(3, "slabs")]),
@@ -215,7 +230,12 @@ class WhatGoesWrong(InFolder):
         self.assert_said("whole mesh in memory", "points", "t.bricks", "-o", "a.ply", "--levels", 1)
         self.assert_said("--per-edge 1", "points", "t.bricks", "-o", "a.ply", "--per-edge", 2)
         self.assert_said("binary .ply only", "points", "t.bricks", "-o", "a.vtp")
-        self.assert_said("can only be splatted", "render", "t.bricks", "-o", "a.png", "--method", "tets")
+        self.assert_said("is not drawn by this method", "render", "t.bricks", "-o", "a.png", "--method", "dense")
+        tets = ["render", "t.bricks", "-o", "a.png", "--method", "tets"]
+        self.assert_said("mcq or linear", *tets, "--scheme", "cc")
+        self.assert_said("has hexahedra only", *tets, "--scheme", "tetoct")
+        self.assert_said("a larger --memory", *tets, "--memory", "10K")
+        self.assert_said("lights the boundary only", *tets, "--look", "isosurface")
         self.assert_said("split with --halo 4", "points", "t.bricks", "-o", "a.ply", "--correction", "full")
         self.assert_said("settled when a mesh is split", "points", "t.bricks", "-o", "a.ply", "--weld")
         self.assert_said("is not refined by", "surface", "t.bricks", "-o", "a.ply", "--scheme", "tetoct")

@@ -50,7 +50,7 @@ class PartsOfBricks(Shared):
         self.assertEqual(self.grids("joined.vdb"), self.grids("one.vdb"))
 
     def test_pictures(self):
-        for options in ([], ["--look", "volume", "--samples", "2"]):
+        for options in ([], ["--look", "volume", "--samples", "2"], ["--method", "tets"]):
             self.run_ok("render", BALL, "-o", "one.exr", *PICTURE, *options)
             for count in COUNTS if not options else (3,):
                 names = self.parts("render", "b.bricks", ".exr", count, *PICTURE, *options)
@@ -132,10 +132,11 @@ class RanksOfBricks(WithRanks):
             self.assertEqual(self.grids("ranks.vdb"), self.grids("one.vdb"), count)
 
     def test_pictures(self):
-        for options in ([], ["--look", "volume", "--samples", "2"]):
+        for options in ([], ["--look", "volume", "--samples", "2"], ["--method", "tets"]):
             self.run_ok("render", BALL, "-o", "one.exr", *PICTURE, *options)
             for count in COUNTS[1:] if not options else (3,):
-                self.ranks(count, "render", "b.bricks", "-o", "ranks.exr", *PICTURE, *options, "--memory", "100K")
+                memory = "10M" if "tets" in options else "100K"  # several parts for each rank
+                self.ranks(count, "render", "b.bricks", "-o", "ranks.exr", *PICTURE, *options, "--memory", memory)
                 self.assertEqual(self.bytes_of("ranks.exr"), self.bytes_of("one.exr"), (options, count))
 
     def test_frames_are_divided(self):

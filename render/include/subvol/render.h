@@ -8,6 +8,7 @@
 #include "subvol/gl_device.h"
 #include "subvol/pixel_rows.h"
 #include "subvol/progressive.h"
+#include "subvol/render_brick_tets.h"
 #include "subvol/render_bricks.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_field.h"

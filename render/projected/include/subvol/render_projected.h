@@ -11,6 +11,7 @@
 #include "subvol/gl_device.h"
 #include "subvol/hex_mesh.h"
 #include "subvol/image.h"
+#include "subvol/mixed_mesh.h"
 #include "subvol/optics.h"
 #include "subvol/progress.h"
 

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "subvol/bricks.h"
+#include "subvol/refine.h"
+#include "subvol/render_tets.h"
+
+namespace subvol {
+
+/// refine:       of the mesh; the schemes MCQ and linear
+/// tets:         as for a mesh in one piece
+/// memory_bytes: about the most that the cells of a part of the picture take; besides there is a brick
+struct BrickTetsOptions {
+    RefineOptions refine{};
+    TetsOptions tets{};
+    std::uint64_t memory_bytes = std::uint64_t{1} << 30;
+};
+
+/// What every picture of the tetrahedra of a refined mesh in bricks depends on.
+///
+/// bounds:    of the refined points
+/// of_bricks: the same of each brick
+/// overhang:  how far a refined cell reaches out of the box of its control cell at most, as a part of that box's diagonal
+struct BrickTets {
+    Box bounds{};
+    std::vector<Box> of_bricks{};
+    double overhang = 0;
+    std::size_t tets = 0, degenerate_tets = 0, inverted_tets = 0;
+
+    /// Adds those of the next bricks.
+    void add(const BrickTets& other);
+};
+
+/// Measures the tetrahedra of some bricks, from `begin` to before `end`. Each brick is read and refined once.
+///
+/// throws: as `read_brick` and `refine`; Error(InvalidInput) for other schemes, or if the bricks have fewer than three layers
+/// of
+///         halo; Error(Cancelled)
+[[nodiscard]] BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, std::size_t begin, std::size_t end);
+
+/// Draws a mesh in bricks: the picture has the bits of `render_tets` of the whole mesh, refined. For each part of the picture
+/// the cells that its rays may cross are gathered and refined; parts are halved until these cells fit into the memory.
+///
+/// fields:  leaves one field of one channel in a brick
+/// all:     `measure_tets` of all bricks in their order
+/// returns: without the bytes of tetrahedra; the seconds of all parts
+/// throws:  as `measure_tets` and `render_tets`; Error(InvalidInput) if the cells of one pixel do not fit into the memory
+/// cost:    each brick is read once for each part of the picture that it may be seen in
+[[nodiscard]] TetsResult render_tets(const Bricks& bricks, const BrickFields& fields, const BrickTets& all, const View& view,
+                                     const Optics& optics, const BrickTetsOptions& options = {});
+
+}  // namespace subvol
