@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A table of hashes: points, grids and pictures of one mesh, cut and divided in every way, against those of one process.
+"""A table of hashes: points, grids, pictures and surfaces of one mesh, cut and divided in every way, against those of one process.
 
     bench/equality.py [build/release/bin/subvol] [--counts 1,2,3,4,7] [--resolution 4]
 
@@ -23,7 +23,9 @@ from pathlib import Path
 
 SHAPES = ("slabs", "blocks", "random")
 VERBS = {"points": (".ply", []), "vdb": (".vdb", ["--resolution", "48"]),
-         "render": (".exr", ["--size", "160x128", "--backend", "cpu"])}
+         "render": (".exr", ["--size", "160x128", "--backend", "cpu"]),
+         "surface": (".ply", ["--iso", "0.3", "--cap", "--boundary"])}
+OF_SHARES = {"surface": ".svshare"}  # where a share is another file
 RANKS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
@@ -121,7 +123,7 @@ def hashes(runner, source, verb, counts, with_ranks):
         runner.run(verb, source, "-o", "one" + extension, *options, "--quiet")
         found["one process"] = runner.hash_of("one" + extension)
     for count in counts:
-        parts = [f"p{part}{extension}" for part in range(1, count + 1)]
+        parts = [f"p{part}{OF_SHARES.get(verb, extension)}" for part in range(1, count + 1)]
         for part, name in enumerate(parts, 1):
             runner.run(verb, source, "-o", name, "--part", f"{part}/{count}", *options, "--quiet")
         runner.run("join", *parts, "-o", "joined" + extension, "--quiet")

@@ -14,6 +14,7 @@
 #include "subvol/detail/picture_part.h"
 #include "subvol/detail/points_range.h"
 #include "subvol/detail/surface_io.h"
+#include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/join_grids.h"
@@ -21,6 +22,7 @@
 #include "subvol/points_io.h"
 #include "subvol/vdb_contents.h"
 #include "subvol/vdb_points.h"
+#include "surface_output.h"
 #include "text.h"
 #include "vdb_output.h"
 #include "verb.h"
@@ -34,15 +36,15 @@ public:
         : Verb(program, "join", "Put the parts together that --part made.",
                "  subvol join part1.vdb part2.vdb part3.vdb -o big.vdb\n"
                "  subvol join part*.ply -o big.ply\n"
+               "  subvol join part*.svshare -o iso.stl\n"
                "\n"
                "The result is that of one process without --part: the same points, the same leaves. The list of files that "
                "`vdb --memory` and `vdb` of bricks write is one PART.",
                Reads::NoMesh) {
         app()
-            .add_option(
-                "PART", parts_,
-                "the parts, in any order: .vdb of `vdb`, .ply or .vtp of `points`, .exr of `render`, JSON of `info`; or "
-                "the list (.json) of a grid in several files")
+            .add_option("PART", parts_,
+                        "the parts, in any order: .vdb of `vdb`, .ply or .vtp of `points`, .exr of `render`, .svshare of "
+                        "`surface`, JSON of `info`; or the list (.json) of a grid in several files")
             ->required()
             ->expected(1, -1);
         app().add_option("-o,--output", output_, "the file to write")->type_name("FILE")->required();
@@ -60,13 +62,15 @@ public:
             join_points(report);
         } else if (extension == ".exr") {
             join_pictures(report);
+        } else if (extension == detail::kSurfaceShareExtension) {
+            join_surfaces(report);
         } else if (extension == ".json" && output_.ends_with(".vdb")) {
             join_listed_grids(report);
         } else if (extension == ".json") {
             join_figures(report);
         } else {
             throw Error(ErrorCode::InvalidInput, "is not a part that can be joined", parts_.front(),
-                        ".vdb, .ply, .vtp, .exr or .json");
+                        ".vdb, .ply, .vtp, .exr, .svshare or .json");
         }
         return 0;
     }
@@ -238,6 +242,31 @@ private:
         if (background.size() != 3) throw Error(ErrorCode::InvalidInput, "its note has no background", parts_[order.front()]);
         report.timed("write", [&] { write_image(output_, image, {background[0], background[1], background[2]}, depth); });
         report["output"] = output_;
+    }
+
+    void join_surfaces(Report& report) {
+        check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb"});
+        std::vector<detail::SurfaceShareFile> read;
+        report.timed("read", [&] {
+            for (const std::string& part : parts_) read.push_back(detail::read_surface_share(part));
+        });
+        std::size_t at = 0;
+        const std::vector<std::size_t> order =
+            ordered([&](const std::string&) { return std::optional<std::string>(read[at++].note); });
+        const SurfaceOutput output = surface_output_from(how_, parts_.front());
+        if (output.file.color && output_.ends_with(".stl")) {
+            throw Error(ErrorCode::InvalidInput, ".stl has no colours", output_, ".ply, .vtp, .obj, .glb");
+        }
+        std::vector<std::string> shares, names;
+        for (const std::size_t p : order) {
+            shares.push_back(std::move(read[p].bytes));
+            names.push_back(parts_[p]);
+        }
+        const LimitSurface surface =
+            report.timed("join", [&] { return detail::join_surface(std::move(shares), names, report.progress()); });
+        check_not_empty(surface, output);
+        if (output.file.color && *output.file.color >= surface.fields.size()) fail_note(parts_.front());
+        write_reported(output_, surface, output, report);
     }
 
     /// The figures that `info` finds in one process, in a file and as the report.

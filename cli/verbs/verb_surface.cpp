@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "bricks_input.h"
 #include "input.h"
 #include "outputs.h"
+#include "part_note.h"
 #include "picture_arguments.h"
 #include "quantities.h"
 #include "refine_arguments.h"
 #include "subvol/brick_surface.h"
+#include "subvol/detail/surface_share.h"
 #include "subvol/error.h"
 #include "subvol/limit_sheets.h"
 #include "subvol/limit_surface.h"
+#include "surface_output.h"
 #include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
@@ -28,13 +32,14 @@ public:
                "  subvol surface part.vtu -o hot.stl --iso 350 --cap --tolerance 3e-4\n"
                "  subvol surface part.vtu -o skin.glb --boundary --color-field Temp --tf viridis\n"
                "  subvol surface big.bricks -o iso.ply --iso 300\n"
+               "  subvol surface big.vtu -o part2.svshare --iso 300 --part 2/4   a share, for join\n"
                "\n"
                "The points lie on the limit, with normals from its exact gradients. Cells are refined where the surface is, "
                "until the triangles are within the tolerance. JSON: points, triangles, area, volume (of what a watertight "
                "surface encloses), watertight, euler, components, min_angle (degrees), deviation (world), level.") {
         app().add_option("FILE", input_, input_help())->required();
         app()
-            .add_option("-o,--output", output_, "the surface to write (.ply, .stl, .vtp, .obj, .glb)")
+            .add_option("-o,--output", output_, "the surface to write (.ply, .stl, .vtp, .obj, .glb; .svshare with --part)")
             ->type_name("FILE")
             ->required();
         auto* iso = app().add_option("--iso", isos_, "the value of an isosurface (repeatable)");
@@ -58,11 +63,19 @@ public:
             .add_option("--tf", function_, "the colours: a preset, or a colour map of ParaView (default viridis)")
             ->type_name("FILE|NAME");
         scheme_.add_scheme_to(app());
+        share_.add_to(app(), "a range of the cells that the surface passes");
         set_essentials({"--output", "--iso", "--boundary", "--cap", "--tolerance", "--color-field", "--field", "--json"});
     }
 
+    [[nodiscard]] bool works_in_ranks() const override { return true; }
+
     int run(Report& report) override {
-        check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb"});
+        if (share_.given()) {
+            (void)share_of(share_);
+            check_output(output_, {".svshare"});
+        } else {
+            check_output(output_, {".ply", ".stl", ".vtp", ".obj", ".glb"});
+        }
         if (output_.ends_with(".stl") && !color_field_.empty()) {
             throw Error(ErrorCode::InvalidInput, ".stl has no colours", "--color-field", ".ply, .vtp, .obj, .glb");
         }
@@ -89,29 +102,59 @@ public:
         for (const Attribute& attribute : mesh.attributes) {
             if (attribute.name != field) chosen.attributes.push_back(attribute);
         }
-        SurfaceFileOptions file;
+        if (share_.given() && !sheets.empty()) {
+            throw Error(ErrorCode::InvalidInput, "sheets are written with the whole surface", "--part",
+                        "one process, or mpirun");
+        }
+        SurfaceOutput output{.field = field, .range = field_range(chosen), .isos = isos_.size()};
         if (!color_field_.empty()) {
             const std::size_t number = add_color_field(chosen);
-            file = {number, find_transfer_function(function_, field_range(chosen, number))};
+            output.file = {number, find_transfer_function(function_, field_range(chosen, number))};
         }
-        LimitSurface surface = report.timed("surface", [&] { return limit_surface(chosen, field, options); });
-        if (surface.surface.triangles.empty()) throw nothing(field, field_range(chosen));
-        const std::size_t of_volume = surface.surface.triangles.size();
+        std::optional<LimitSurface> surface =
+            made([&] { return limit_surface(chosen, field, options); },
+                 [&](const auto& share) { return detail::share_of_surface(chosen, field, options, share); }, output, report);
+        if (!surface) return 0;
+        check_not_empty(*surface, output);
+        const std::size_t of_volume = surface->surface.triangles.size();
         if (!sheets.empty()) {
             sheets = with_fields_of(std::move(sheets), chosen);
             report.timed("sheets", [&] {
-                const int level = std::clamp(surface.report.level, 3, 4);  // a flat body may carry a bent sheet
-                add_sheets(surface, limit_sheets(chosen, sheets, {.scheme = options.scheme, .levels = level}));
+                const int level = std::clamp(surface->report.level, 3, 4);  // a flat body may carry a bent sheet
+                add_sheets(*surface, limit_sheets(chosen, sheets, {.scheme = options.scheme, .levels = level}));
             });
-            report["sheet_triangles"] = surface.surface.triangles.size() - of_volume;
+            report["sheet_triangles"] = surface->surface.triangles.size() - of_volume;
             if (!sheets.lines.empty()) report.warn("curves have no surface: they are not written");
         }
-        report.timed("write", [&] { write_limit_surface(output_, surface, file); });
-        put(surface, report);
+        write_reported(output_, *surface, output, report);
         return 0;
     }
 
 private:
+    /// The whole surface, of one process or of all ranks; nothing if this process has only a share of it, which is written or
+    /// sent to rank 0.
+    template <class Whole, class Part>
+    [[nodiscard]] std::optional<LimitSurface> made(const Whole& whole, const Part& part, const SurfaceOutput& output,
+                                                   Report& report) {
+        if (!shares(share_)) return report.timed("surface", whole);
+        const Share share = share_of(share_);
+        const detail::SurfaceShareOf own{static_cast<std::size_t>(share.part - 1), static_cast<std::size_t>(share.of)};
+        std::string bytes = report.timed("surface", [&] { return part(own); });
+        if (share_.given()) {
+            const std::string note = text_of(make_note(app(), input_, share, json_of(output)));
+            report["part"] = share.name();
+            report["output"] = output_;
+            report["bytes"] = bytes.size();
+            report.timed("write", [&] { detail::write_surface_share(output_, {note, std::move(bytes)}); });
+            return std::nullopt;
+        }
+        std::vector<std::string> all = report.timed("gather", [&] { return ranks()->gather(std::move(bytes)); });
+        if (!ranks()->first()) return std::nullopt;
+        std::vector<std::string> names;
+        for (std::size_t rank = 0; rank < all.size(); ++rank) names.push_back(text("rank ", rank));
+        return report.timed("join", [&] { return detail::join_surface(std::move(all), names, report.progress()); });
+    }
+
     /// As of a mesh in one piece, with the ranges that the index has.
     void extract_from_bricks(const SurfaceOptions& options, Report& report) {
         const Bricks bricks = open_bricks_input(input_, app(), report);
@@ -127,16 +170,18 @@ private:
             return brick;
         };
         HexMesh like = chosen(stand_in(bricks));
-        SurfaceFileOptions file;
+        const std::string name = like.attributes.front().name;
+        SurfaceOutput output{.field = name, .range = {field.min, field.max}, .isos = isos_.size()};
         if (!color_field_.empty()) {
             const StreamedField color = named_brick_field(bricks, color_field_, false);
-            file = {add_color_field(like), find_transfer_function(function_, {color.min, color.max})};
+            output.file = {add_color_field(like), find_transfer_function(function_, {color.min, color.max})};
         }
-        const std::string name = like.attributes.front().name;
-        const LimitSurface surface = report.timed("surface", [&] { return limit_surface(bricks, name, options, chosen); });
-        if (surface.surface.triangles.empty()) throw nothing(name, {field.min, field.max});
-        report.timed("write", [&] { write_limit_surface(output_, surface, file); });
-        put(surface, report);
+        const std::optional<LimitSurface> surface = made(
+            [&] { return limit_surface(bricks, name, options, chosen); },
+            [&](const auto& share) { return detail::share_of_surface(bricks, name, options, share, chosen); }, output, report);
+        if (!surface) return;
+        check_not_empty(*surface, output);
+        write_reported(output_, *surface, output, report);
     }
 
     /// The number of the attribute with the colours' values, one for each point; it is added if there is none.
@@ -150,40 +195,13 @@ private:
         return number;
     }
 
-    [[nodiscard]] Error nothing(const std::string& field, const Range& range) const {
-        return {ErrorCode::InvalidInput,
-                text("the limit does not take ", isos_.size() == 1 ? "this value" : "these values", "; ", field,
-                     " has control values from ", range.min, " to ", range.max),
-                "--iso"};
-    }
-
-    void put(const LimitSurface& surface, Report& report) const {
-        const SurfaceReport& found = surface.report;
-        report["output"] = output_;
-        report["points"] = surface.surface.points.size();
-        report["triangles"] = surface.surface.triangles.size();
-        report["area"] = found.area;
-        report["volume"] = found.volume;
-        report["watertight"] = found.watertight;
-        report["euler"] = found.euler;
-        report["components"] = found.components;
-        report["min_angle"] = found.min_angle_deg;
-        report["angles_below_10"] = found.small_angles;
-        report["deviation"] = found.deviation_world;
-        report["level"] = found.level;
-        report["cells"] = found.cells;
-        if (!found.converged) {
-            report.warn(text("the triangles may be ", found.deviation_world, " from the limit, more than the tolerance (level ",
-                             found.level, "; --max-level, or a larger --tolerance)"));
-        }
-    }
-
     std::string input_, output_, color_field_, function_ = "viridis";
     std::vector<double> isos_;
     bool boundary_ = false, cap_ = false, keep_slivers_ = false;
     double tolerance_ = 1e-3;
     int max_level_ = 6;
     RefineArguments scheme_;
+    ShareArgument share_;
 };
 
 }  // namespace

@@ -67,6 +67,31 @@ BrickMesh with_halos(const Bricks& bricks, const std::vector<std::uint64_t>& wan
     return merged(std::move(parts));
 }
 
+/// The cells that a surface may pass through, with `layers` of cells about them, their halos, and the extent of the whole.
+struct AboutSurface {
+    BrickMesh part;
+    LimitExtent whole;
+};
+std::optional<AboutSurface> about_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
+                                          const BrickFields& fields, int layers) {
+    AboutSurface about;
+    const std::vector<std::uint64_t> wanted = wanted_cells(bricks, field, options, fields, layers, about.whole);
+    if (wanted.empty()) return {};
+    about.part = with_halos(bricks, wanted, options, fields);
+    return about;
+}
+
+/// From cells of a part to those of the whole.
+void rename(LimitQuery& place, const BrickMesh& part) {
+    const std::uint64_t number = part.cell_numbers[place.cell];
+    place.cell = number < kNone ? static_cast<Index>(number) : kNone;
+}
+
+[[noreturn]] void fail_far(const Bricks& bricks, const char* than, const char* allowed) {
+    throw Error(ErrorCode::InvalidInput, std::string("an isosurface leads farther than ") + than, bricks.path.string(),
+                allowed);
+}
+
 }  // namespace
 
 LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
@@ -75,20 +100,29 @@ LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const S
     check_halo_of_limit(bricks);
     // The boundary leads nowhere; an isosurface may lead out of the cells that the first look finds.
     for (int layers = options.isos.empty() ? 0 : 1; layers <= bricks.halo_layers; ++layers) {
-        LimitExtent whole;
-        const std::vector<std::uint64_t> wanted = wanted_cells(bricks, field, options, fields, layers, whole);
-        if (wanted.empty()) return {};
-        const BrickMesh part = with_halos(bricks, wanted, options, fields);
-        auto surface = limit_surface_of_part(part.mesh, part.owned_cells, whole, field, options);
+        const auto about = about_surface(bricks, field, options, fields, layers);
+        if (!about) return {};
+        const BrickMesh& part = about->part;
+        auto surface = limit_surface_of_part(part.mesh, part.owned_cells, about->whole, field, options);
         if (!surface) continue;
-        for (LimitQuery& place : surface->places) {
-            const std::uint64_t number = part.cell_numbers[place.cell];
-            place.cell = number < kNone ? static_cast<Index>(number) : kNone;
-        }
+        for (LimitQuery& place : surface->places) rename(place, part);
         return std::move(*surface);
     }
-    throw Error(ErrorCode::InvalidInput, "an isosurface leads farther than the halo of its bricks", bricks.path.string(),
-                "split with a larger --halo");
+    fail_far(bricks, "the halo of its bricks", "split with a larger --halo");
+}
+
+std::string detail::share_of_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
+                                     const SurfaceShareOf& share, const BrickFields& fields) {
+    check_surface_options(options);
+    check_halo_of_limit(bricks);
+    // All shares must look at the same cells, so that none can look farther when the surface leads out there.
+    const auto about = about_surface(bricks, field, options, fields, options.isos.empty() ? 0 : 2);
+    if (!about) return empty_surface_share();
+    const BrickMesh& part = about->part;
+    auto bytes = share_of_part(part.mesh, part.owned_cells, about->whole, field, options, share,
+                               [&](LimitQuery& place) { rename(place, part); });
+    if (!bytes) fail_far(bricks, "its shares look", "one process: without --part and mpirun");
+    return std::move(*bytes);
 }
 
 }  // namespace subvol

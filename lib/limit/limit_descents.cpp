@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <mutex>
 #include <optional>
 
@@ -20,9 +21,10 @@ constexpr std::size_t kMostBytes = std::size_t{256} << 20;  // of the classes' t
 }  // namespace
 
 struct LimitDescents::State {
-    State(const HexMesh& given, const SchemeOptions& with, bool by_frequency)
-        : mesh(given, with),
-          has_common(!by_frequency),
+    State(const HexMesh& given, const SchemeOptions& with, bool wanted)
+        : mesh(given, with, wanted ? 3 : 2),
+          by_frequency(wanted),
+          has_common(!wanted),
           graph(std::make_shared<ClassGraph>(with)),
           walks([this] { return NeighborhoodWalk(mesh.control, mesh.links); }) {}
 
@@ -100,10 +102,35 @@ struct LimitDescents::State {
         if (kLeastPart * of_common < seen - without) common.clear();
     }
 
+    /// Whether a cell may be in a box of a grid, by how many cells meet at its corners.
+    [[nodiscard]] bool may_be_in_box(Index cell) const {
+        return std::ranges::all_of(mesh.control.cells[cell],
+                                   [&](Index p) { return std::has_single_bit(mesh.links.cells_at[p]); });
+    }
+
+    /// Whether there are as many cells and points about a cell as in a box of a grid: such classes are few, and those at the
+    /// hull of most meshes.
+    [[nodiscard]] static bool fills_box(std::size_t cells, std::size_t points) {
+        constexpr std::size_t kMostAcross = 5;
+        for (std::size_t a = 1; a <= kMostAcross; ++a) {
+            for (std::size_t b = a; b <= kMostAcross; ++b) {
+                for (std::size_t c = b; c <= kMostAcross; ++c) {
+                    if (cells == a * b * c && points == (a + 1) * (b + 1) * (c + 1)) return true;
+                }
+            }
+        }
+        return false;
+    }
+
     /// The places of a control cell of a common class; false if it is not of one.
     bool run_common(const CellPlaces& in, ClassGraph& classes, DescentWorker& with) {
+        if (!by_frequency && !may_be_in_box(in.cell)) return false;
         Neighborhood& about = abouts.local();
-        if (!walks.local().find(in.cell, 2, about) || !std::ranges::binary_search(common, key_of(about))) return false;
+        NeighborhoodWalk& walk = walks.local();
+        if (!walk.find(in.cell, 2, about)) return false;
+        const bool is_common = by_frequency ? std::ranges::binary_search(common, key_of(about))
+                                            : fills_box(walk.visited().size(), about.points.size());
+        if (!is_common) return false;
         gather(about.points, with);
         with.begin(classes.class_of(about), about.turn, 0, with.open(in), classes);
         return true;
@@ -119,6 +146,7 @@ struct LimitDescents::State {
     }
 
     DescentMesh mesh;
+    bool by_frequency;
     std::mutex common_mutex;
     bool has_common;               // they have been looked for, or are not wanted
     std::vector<ClassKey> common;  // sorted; filled once
@@ -154,7 +182,7 @@ std::vector<std::size_t> LimitDescents::run(const DescentTask& task, std::span<c
     };
     run_each(0, [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_at_once(in, classes, with); });
     if (std::ranges::find(done, 0) != done.end()) state.find_common();
-    if (!state.common.empty()) {
+    if (!state.common.empty() || !state.by_frequency) {
         run_each(0.3,
                  [&](const CellPlaces& in, ClassGraph& classes, auto& with) { return state.run_common(in, classes, with); });
     }

@@ -22,8 +22,9 @@ class LimitDescents {
 public:
     /// What is the same for all places: topology, and the classes that have been met. The mesh is kept by reference.
     ///
-    /// by_frequency: cells of common classes have tables from level 0 on, which changes last bits; otherwise no result depends
-    ///               on what else is in the mesh
+    /// by_frequency: classes with many cells have tables from level 0 on, which changes last bits. Otherwise those of cells in
+    /// a
+    ///               box of a grid have them, and a result depends on nothing but the three layers of cells about its own
     LimitDescents(const HexMesh& control, const SchemeOptions& scheme, bool by_frequency);
     ~LimitDescents();
     LimitDescents(const LimitDescents&) = delete;

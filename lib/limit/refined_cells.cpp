@@ -28,12 +28,12 @@ std::size_t bytes_of(const std::vector<T>& values) {
 
 }  // namespace
 
-DescentMesh::DescentMesh(const HexMesh& mesh, const SchemeOptions& with)
+DescentMesh::DescentMesh(const HexMesh& mesh, const SchemeOptions& with, int color_rounds)
     : control(mesh),
       scheme(with),
       stride(Channels(mesh).stride()),
       topology(build_topology(mesh)),
-      links(build_links(mesh, topology)),
+      links(build_links(mesh, topology, color_rounds)),
       rows(rows_of(mesh, stride)) {
 }
 

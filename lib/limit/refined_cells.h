@@ -18,7 +18,8 @@ struct DescentMesh {
     CellLinks links;
     std::vector<double> rows;
 
-    DescentMesh(const HexMesh& mesh, const SchemeOptions& with);
+    /// color_rounds: of the links
+    DescentMesh(const HexMesh& mesh, const SchemeOptions& with, int color_rounds);
 
     /// Loads a cell, by its regular grid if it has one. Returns whether it has.
     [[nodiscard]] bool load(Index cell, CellJets& jets) const;

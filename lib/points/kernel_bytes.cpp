@@ -1,64 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/detail/kernel_bytes.h"
 
-#include <cstdint>
-#include <cstring>
-#include <type_traits>
+#include <algorithm>
+#include <array>
 
-#include "subvol/error.h"
+#include "subvol/detail/byte_lists.h"
 
 namespace subvol::detail {
 
-namespace {
-
-/// Appends lists, each after its number of items.
-class Packer {
-public:
-    template <class Items>
-    void put(const Items& items) {
-        using Item = typename Items::value_type;
-        static_assert(std::is_trivially_copyable_v<Item>);
-        const std::uint64_t count = items.size();
-        bytes_.append(reinterpret_cast<const char*>(&count), sizeof count);
-        bytes_.append(reinterpret_cast<const char*>(items.data()), items.size() * sizeof(Item));
-    }
-    [[nodiscard]] std::string take() { return std::move(bytes_); }
-
-private:
-    std::string bytes_;
-};
-
-class Unpacker {
-public:
-    explicit Unpacker(std::string_view bytes) : left_(bytes) {}
-
-    template <class Items>
-    void take(Items& items) {
-        using Item = typename Items::value_type;
-        std::uint64_t count = 0;
-        std::memcpy(&count, bytes(sizeof count), sizeof count);
-        if (count > left_.size() / sizeof(Item)) refuse();
-        items.resize(count);
-        if (count > 0) std::memcpy(static_cast<void*>(items.data()), bytes(count * sizeof(Item)), count * sizeof(Item));
-    }
-
-private:
-    [[noreturn]] static void refuse() { throw Error(ErrorCode::InvalidInput, "these bytes are no kernels"); }
-
-    const char* bytes(std::size_t count) {
-        if (count > left_.size()) refuse();
-        const char* first = left_.data();
-        left_.remove_prefix(count);
-        return first;
-    }
-
-    std::string_view left_;
-};
-
-}  // namespace
-
 std::string bytes_of_kernels(const RbfVolume& volume, bool with_boundary) {
-    Packer out;
+    BytePacker out;
     out.put(to_json(volume.kernel));
     out.put(std::array{volume.bounds.lower, volume.bounds.upper});
     out.put(volume.centers);
@@ -77,7 +28,7 @@ std::string bytes_of_kernels(const RbfVolume& volume, bool with_boundary) {
 }
 
 RbfVolume kernels_from_bytes(std::string_view bytes) {
-    Unpacker in(bytes);
+    ByteUnpacker in(bytes, "these bytes are no kernels");
     RbfVolume volume;
     std::string kernel;
     in.take(kernel);

@@ -79,7 +79,8 @@ def prepare(inputs):
     (inputs / "ffmpeg").chmod(0o755)
     for words in ("render model:ball:3 -o a.png --size 256 --backend cpu", "render model:ball:4 -o b.png --size 256 --backend cpu",
                   "points model:ball:4 -o a.ply", "vdb model:ball:3 -o a.vdb --resolution 40", "model ball --resolution 4 -o a.vtu",
-                  "split model:ball:4 -o b.bricks --bricks 3"):
+                  "split model:ball:4 -o b.bricks --bricks 3", "surface model:ball:8 -o 1.svshare --part 1/2",
+                  "surface model:ball:8 -o 2.svshare --part 2/2"):
         subprocess.run([COMMAND, *words.split()], cwd=inputs, check=True, capture_output=True)
 
 
@@ -98,6 +99,8 @@ def commands(inputs):
         Command("vdb", "vdb model:ball:4 -o a.vdb --resolution 80"),
         Command("vdb --memory", "vdb model:ball:4 -o a.vdb --resolution 80 --memory 1M"),
         Command("surface", "surface model:ball:6 -o a.ply --iso 0.3 --cap"),
+        Command("surface --part", "surface model:ball:6 -o a.svshare --iso 0.3 --cap --part 1/2"),
+        Command("join surfaces", f"join {inputs}/1.svshare {inputs}/2.svshare -o a.ply"),
         Command("points of bricks", f"points {inputs}/b.bricks -o a.ply"),
         Command("vdb of bricks", f"vdb {inputs}/b.bricks -o a.vdb --resolution 80 --memory 2M"),
         Command("render bricks", f"render {inputs}/b.bricks --size 160 -o a.png --backend cpu"),

@@ -15,6 +15,7 @@ BALL = "model:ball:4"
 MPIRUN = shutil.which("mpirun")
 AS_ROOT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 PICTURE = ["--size", "160x128", "--backend", "cpu", "--quiet"]
+SURFACES = ([], ["--iso", "0.3", "--color-field", "density", "--tolerance", "3e-3"], ["--iso", "0.1", "--iso", "0.4", "--cap", "--crease-angle", "40"])
 
 
 def without_times(report):

@@ -10,7 +10,7 @@ import time
 import unittest
 
 from command import COMMAND, children
-from shares import AS_ROOT, BALL, COUNTS, PICTURE, Shared, WithRanks, end_of, in_ranks, rank_of, run_in_ranks, without_times
+from shares import AS_ROOT, BALL, COUNTS, PICTURE, SURFACES, Shared, WithRanks, end_of, in_ranks, rank_of, run_in_ranks, without_times
 
 
 class PartsOfBricks(Shared):
@@ -56,6 +56,14 @@ class PartsOfBricks(Shared):
                 names = self.parts("render", "b.bricks", ".exr", count, *PICTURE, *options)
                 self.run_ok("join", *names, "-o", "joined.exr")
                 self.assertEqual(self.bytes_of("joined.exr"), self.bytes_of("one.exr"), (count, options))
+
+    def test_surfaces(self):
+        for options in SURFACES:
+            self.run_ok("surface", BALL, "-o", "one.ply", *options)
+            for count in COUNTS if options == SURFACES[1] else (3,):
+                names = self.parts("surface", "b.bricks", ".svshare", count, *options)
+                self.run_ok("join", *names, "-o", "joined.ply")
+                self.assertEqual(self.bytes_of("joined.ply"), self.bytes_of("one.ply"), (count, options))
 
     def test_figures(self):
         one = without_times(self.run_ok("info", "b.bricks", "--json").json())
@@ -130,6 +138,12 @@ class RanksOfBricks(WithRanks):
             self.assertEqual(self.bytes_of("ranks.ply"), self.bytes_of("one.ply"), count)
             self.ranks(count, "vdb", "b.bricks", "-o", "ranks.vdb", *grids, "--memory", "4M")
             self.assertEqual(self.grids("ranks.vdb"), self.grids("one.vdb"), count)
+
+    def test_surfaces(self):
+        self.run_ok("surface", BALL, "-o", "one.ply", *SURFACES[1])
+        for count in COUNTS[1:]:
+            self.ranks(count, "surface", "b.bricks", "-o", "ranks.ply", *SURFACES[1])
+            self.assertEqual(self.bytes_of("ranks.ply"), self.bytes_of("one.ply"), count)
 
     def test_pictures(self):
         for options in ([], ["--look", "volume", "--samples", "2"], ["--method", "tets"]):

@@ -4,7 +4,7 @@
 import json
 import unittest
 
-from shares import COUNTS, PICTURE, Shared, WithRanks, without_times
+from shares import COUNTS, PICTURE, SURFACES, Shared, WithRanks, without_times
 
 
 class Parts(Shared):
@@ -56,6 +56,41 @@ class Parts(Shared):
             one = without_times(self.run_ok("info", source, "--json").json())
             for count in COUNTS:
                 self.assertEqual(self.figures(count, source), one, (source, count))
+
+    def test_surfaces_of_shares_are_those_of_one_process(self):
+        for options in SURFACES:
+            one = self.run_ok("surface", "model:ball:4", "-o", "one.ply", *options, "--json").json()
+            for count in COUNTS if options == SURFACES[0] else (3,):
+                names = self.parts("surface", "model:ball:4", ".svshare", count, *options)
+                joined = self.run_ok("join", *reversed(names), "-o", "joined.ply", "--json").json()
+                self.assertEqual(self.bytes_of("joined.ply"), self.bytes_of("one.ply"), (options, count))
+                for key in ("points", "triangles", "area", "volume", "euler", "components", "deviation", "level", "cells"):
+                    self.assertEqual(joined[key], one[key], (options, count, key))
+        for extension in (".vtp", ".obj", ".glb"):
+            self.run_ok("surface", "model:ball:4", "-o", "one" + extension, *options)
+            self.run_ok("join", *names, "-o", "joined" + extension)
+            self.assertEqual(self.bytes_of("joined" + extension), self.bytes_of("one" + extension))
+        self.assertIn("no colours", self.refused("join", *self.parts("surface", "model:ball:4", ".svshare", 2, *SURFACES[1]), "-o", "j.stl"))
+
+    def test_wrong_surfaces_are_refused(self):
+        one, two = self.parts("surface", "model:ball:4", ".svshare", 2)
+        self.run_ok("surface", "model:ball:5", "-o", "foreign.svshare", "--part", "2/2")
+        self.run_ok("points", "model:ball:4", "-o", "points.ply", "--part", "2/2")
+        self.assertIn(".svshare", self.refused("surface", "model:ball:4", "-o", "p.ply", "--part", "1/2"))
+        self.assertIn(".ply", self.refused("surface", "model:ball:4", "-o", "p.svshare"))
+        self.assertIn(".ply", self.refused("join", one, two, "-o", "j.vdb"))
+        self.assertIn("part 2/2 of this work is missing", self.refused("join", one, "-o", "j.ply"))
+        self.assertIn("and so is", self.refused("join", one, two, two, "-o", "j.ply"))
+        self.assertIn("belongs to other work", self.refused("join", one, "foreign.svshare", "-o", "j.ply"))
+        self.assertIn("is no share of a surface", self.refused("join", one, "points.ply", "-o", "j.ply"))
+        self.assertIn("the limit does not take this value", self.refused(
+            "join", *self.parts("surface", "model:ball:4", ".svshare", 3, "--iso", "99"), "-o", "j.ply"))
+        sound = self.bytes_of(two)
+        for changed, said in ((sound[:10], "is no share"), (sound[:2000], "is cut off"), (sound[:-1], "is cut off"),
+                              (sound + b"x", "is damaged"), (sound.replace(b'"of":2', b'"of":3', 1), "is damaged")):
+            (self.folder / "wrong.svshare").write_bytes(changed)
+            self.assertIn(said, self.refused("join", one, "wrong.svshare", "-o", "j.ply"))
+        self.assertFalse((self.folder / "j.ply").exists())
 
     def test_frames_are_divided(self):
         self.run_ok("render", "model:ball:2", "-o", "all_##.png", "--turntable", "5", *PICTURE)
@@ -143,6 +178,13 @@ class Ranks(WithRanks):
             self.assertEqual(report["ranks"], count)
             self.assertEqual(without_times(report), one, count)
 
+    def test_surfaces(self):
+        for options in SURFACES:
+            self.run_ok("surface", "model:ball:4", "-o", "one.ply", *options)
+            for count in COUNTS[1:] if options == SURFACES[0] else (3,):
+                self.ranks(count, "surface", "model:ball:4", "-o", "ranks.ply", *options)
+                self.assertEqual(self.bytes_of("ranks.ply"), self.bytes_of("one.ply"), (options, count))
+
     def test_bytes_sent_are_those_of_the_model(self):
         """Points: 68 bytes a kernel of a rank other than 0; pictures: 72 bytes a kernel and band, 20 a pixel."""
         report = json.loads(self.ranks(4, "points", "model:twist:20", "-o", "r.ply", "--json").stdout)
@@ -156,7 +198,8 @@ class Ranks(WithRanks):
     def test_one_sentence_for_all(self):
         for arguments in (["points", "nothing.vtk", "-o", "a.ply"], ["points", "model:ball:4", "-o", "nowhere/a.ply"],
                           ["vdb", "model:ball:4", "-o", "a.vdb", "--error"], ["subdivide", "model:ball:4", "-o", "a.vtk"],
-                          ["points", "model:ball:4", "-o", "a.ply", "--part", "1/2"]):
+                          ["points", "model:ball:4", "-o", "a.ply", "--part", "1/2"],
+                          ["surface", "model:ball:4", "-o", "a.ply", "--iso", "99"]):
             done = self.mpirun(3, *arguments, folder=self.folder)
             self.assertEqual(done.returncode, 2, (arguments, done.stderr))
             said = [line for line in done.stderr.splitlines() if line.startswith("subvol:")]

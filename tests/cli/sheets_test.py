@@ -73,6 +73,11 @@ class Sheets(InFolder):
         self.assertEqual(told["triangles"], alone["triangles"] + told["sheet_triangles"])
         self.assertEqual((told["area"], told["watertight"]), (alone["area"], True))
 
+    def test_shares_of_a_surface_have_no_sheets(self):
+        done = subvol("surface", "with.vtk", "-o", "a.svshare", "--boundary", "--part", "1/2", folder=self.folder)
+        self.assertEqual(done.code, 2)
+        self.assertIn("sheets are written with the whole surface", done.err)
+
     def test_every_method_draws_them(self):
         for method in "splat", "dense", "tets":
             self.run_ok("render", "with.vtk", "-o", "with.png", "--method", method, *VIEW)

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "subvol/bricks.h"
+#include "subvol/detail/surface_share.h"
 #include "subvol/limit_surface.h"
 
 namespace subvol {
@@ -20,5 +21,15 @@ namespace subvol {
 /// cost:   memory: a brick with its topology; then some 2 kB for each cell that the surface passes, and 300 bytes a triangle
 [[nodiscard]] LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
                                          const BrickFields& fields = {});
+
+namespace detail {
+
+/// The same for one share of a surface. Every share looks at all bricks and gathers the same cells.
+///
+/// throws: also Error(InvalidInput) if an isosurface leads two cells farther than the first look finds
+[[nodiscard]] std::string share_of_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
+                                           const SurfaceShareOf& share, const BrickFields& fields = {});
+
+}  // namespace detail
 
 }  // namespace subvol

@@ -7,12 +7,27 @@
 namespace subvol::detail {
 
 /// Triangles whose corners are points on edges, before and after these have been moved to the limit.
+///
+/// points:    in the order of their ends
+/// triangles: cell by cell; hull: of each, whether it is part of the hull
+/// cells:     those with triangles, ascending; ends: of each, where its triangles end
+/// leads_out: the surface goes on in a cell that may not be cut
 struct SurfaceSoup {
     std::vector<SurfacePoint> points;
     std::vector<std::array<Index, 3>> triangles;
-    std::vector<std::uint8_t> hull;  // of each triangle
-    std::size_t cells = 0;
-    bool leads_out = false;  // the surface goes on in a cell that may not be cut
+    std::vector<std::uint8_t> hull;
+    std::vector<Index> cells;
+    std::vector<std::size_t> ends;
+    bool leads_out = false;
+};
+
+/// How far a surface is followed from the cells that are given.
+///
+/// follow:   into the neighbours that it leads to
+/// not_into: but not into these: they are cut elsewhere
+struct SurfaceReach {
+    bool follow = true;
+    std::span<const Index> not_into{};
 };
 
 /// Cuts a surface out of the cells of a mesh at some level, where it passes.
@@ -24,8 +39,8 @@ public:
                Progress* progress)
         : mesh_(mesh), topology_(topology), owned_(owned), scheme_(scheme), progress_(progress) {}
 
-    /// active: the control cells where the surface is; nothing before the first call for a cut
-    [[nodiscard]] SurfaceSoup cut(const Cut& cut, int level, std::optional<std::vector<Index>>& active) const;
+    /// cells: without repetition
+    [[nodiscard]] SurfaceSoup cut(const Cut& cut, int level, std::vector<Index> cells, const SurfaceReach& reach = {}) const;
 
     /// The cells through which the surface may pass, by the values at the vertices of level 1.
     [[nodiscard]] std::vector<Index> candidates(const Cut& cut) const;

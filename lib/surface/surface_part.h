@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "subvol/detail/limit_of_part.h"
+#include "subvol/detail/surface_share.h"
 #include "subvol/limit_surface.h"
 
 namespace subvol::detail {
@@ -30,5 +33,16 @@ void check_surface_options(const SurfaceOptions& options);
 [[nodiscard]] std::optional<LimitSurface> limit_surface_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
                                                                 const LimitExtent& whole, std::string_view field,
                                                                 const SurfaceOptions& options);
+
+/// The same for `share_of_surface`. All shares must have the same part.
+///
+/// rename: changes each place after all that is to be known there
+[[nodiscard]] std::optional<std::string> share_of_part(const HexMesh& part, std::span<const std::uint8_t> owned,
+                                                       const LimitExtent& whole, std::string_view field,
+                                                       const SurfaceOptions& options, const SurfaceShareOf& share,
+                                                       const std::function<void(LimitQuery&)>& rename);
+
+/// A share of a surface that no cell may have.
+[[nodiscard]] std::string empty_surface_share();
 
 }  // namespace subvol::detail

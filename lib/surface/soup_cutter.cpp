@@ -31,7 +31,7 @@ SurfaceSoup join(const std::vector<Index>& cells, const std::vector<CellTriangle
     }
     tbb::parallel_sort(named.begin(), named.end());
     SurfaceSoup soup;
-    soup.cells = cells.size();
+    soup.cells = cells;
     std::vector<Index> numbers(named.size());
     for (std::size_t i = 0; i < named.size(); ++i) {
         const bool again = i > 0 && named[i].a == named[i - 1].a && named[i].b == named[i - 1].b;
@@ -46,6 +46,7 @@ SurfaceSoup join(const std::vector<Index>& cells, const std::vector<CellTriangle
             soup.triangles.push_back({numbers[starts[c] + t[0]], numbers[starts[c] + t[1]], numbers[starts[c] + t[2]]});
         }
         soup.hull.insert(soup.hull.end(), part.hull.begin(), part.hull.end());
+        soup.ends.push_back(soup.triangles.size());
     }
     return soup;
 }
@@ -83,16 +84,16 @@ bool SoupCutter::has_hull(Index cell) const {
     return std::ranges::any_of(topology_.cell_faces[cell], [&](Index f) { return topology_.face_on_hull(f); });
 }
 
-/// Cuts the candidates, and neighbours into which the surface leads from them, until no more are found.
-SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::optional<std::vector<Index>>& active) const {
-    if (!active) active = candidates(cut);
+/// Cuts the cells, and neighbours into which the surface leads from them, until no more are found.
+SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::vector<Index> todo, const SurfaceReach& reach) const {
     const GridNumbers numbers(topology_, level);
     // Cells that share a vertex must agree on which side of the isovalue it is. On the hull only its number counts.
     const DenseCells dense(mesh_, {.scheme = scheme_, .levels = level, .progress = progress_}, true,
                            cut.iso ? DenseBits::OfRefine : DenseBits::ToRounding);
     std::vector<Index> slots(mesh_.cells.size(), kNone);
+    for (const Index cell : reach.not_into) slots[cell] = 0;  // as if it had been cut
     std::vector<CellTriangles> parts;
-    std::vector<Index> cells, todo = *active;
+    std::vector<Index> cells;
     bool leads_out = false;
     while (!todo.empty()) {
         for (const Index cell : todo) {
@@ -105,6 +106,7 @@ SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::optional<std::vector
                 !mesh_.attributes.empty() && cut.iso ? cell.values[0] : std::span<const double>();
             parts[slots[cell.cell]] = cut_cell(cell, values, cut, topology_, numbers);
         });
+        if (!reach.follow) break;
         todo = reached(cells, parts, todo.size(), slots, level);
         const std::size_t before = todo.size();
         std::erase_if(todo, [&](Index cell) { return !may_cut(cell); });
@@ -112,7 +114,6 @@ SurfaceSoup SoupCutter::cut(const Cut& cut, int level, std::optional<std::vector
     }
     std::erase_if(cells, [&](Index cell) { return parts[slots[cell]].triangles.empty(); });
     std::ranges::sort(cells);
-    active = cells;
     SurfaceSoup soup = join(cells, parts, slots);
     soup.leads_out = leads_out;
     return soup;

@@ -76,7 +76,8 @@ struct LimitSurface {
 /// The control cells that a surface passes through are refined, all to the same level, and each of their children is cut into
 /// six tetrahedra, which fit together from cell to cell: a surface between the signs of their corners is closed (but for the
 /// volume's boundary) and manifold, whatever the mesh. Its points are then moved along the edges of the tetrahedra on to the
-/// limit, by Newton's method. The level is raised until the triangles are within tolerance.
+/// limit, by Newton's method. The level is raised until the triangles are within tolerance; of more than 2048 cells some stand
+/// for all.
 ///
 /// field:  name of an attribute with one channel; empty: the first
 /// throws: Error(InvalidInput) as `evaluate_limit` and `scalar_field`, if neither an isovalue nor the boundary is asked for,

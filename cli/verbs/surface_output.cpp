@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "surface_output.h"
+
+#include "part_note.h"
+#include "subvol/error.h"
+#include "text.h"
+
+namespace subvol::cli {
+
+Json json_of(const SurfaceOutput& output) {
+    Json json{{"field", output.field}, {"min", output.range.min}, {"max", output.range.max}, {"isos", output.isos}};
+    if (!output.file.color) return json;
+    json["color"] = *output.file.color;
+    json["colors"] = Json::array();
+    for (const auto& [value, rgb] : output.file.function.color) json["colors"].push_back({value, rgb.x, rgb.y, rgb.z});
+    return json;
+}
+
+SurfaceOutput surface_output_from(const Json& json, const std::string& file) {
+    SurfaceOutput output{.field = how_of(json, "field", std::string(), file),
+                         .range = {how_of(json, "min", 0.0, file), how_of(json, "max", 0.0, file)},
+                         .isos = how_of(json, "isos", std::size_t{0}, file)};
+    if (!json.contains("color")) return output;
+    output.file.color = how_of(json, "color", std::size_t{0}, file);
+    for (const auto& [value, r, g, b] : how_of(json, "colors", std::vector<std::array<double, 4>>(), file)) {
+        output.file.function.color.push_back({value, {r, g, b}});
+    }
+    output.file.function.opacity = {{0, 1}};  // of a surface nobody asks
+    try {
+        validate(output.file.function);
+    } catch (const Error&) {
+        fail_note(file);
+    }
+    return output;
+}
+
+void check_not_empty(const LimitSurface& surface, const SurfaceOutput& output) {
+    if (!surface.surface.triangles.empty()) return;
+    throw Error(ErrorCode::InvalidInput,
+                text("the limit does not take ", output.isos == 1 ? "this value" : "these values", "; ", output.field,
+                     " has control values from ", output.range.min, " to ", output.range.max),
+                "--iso");
+}
+
+void write_reported(const std::string& path, const LimitSurface& surface, const SurfaceOutput& output, Report& report) {
+    report.timed("write", [&] { write_limit_surface(path, surface, output.file); });
+    const SurfaceReport& found = surface.report;
+    report["output"] = path;
+    report["points"] = surface.surface.points.size();
+    report["triangles"] = surface.surface.triangles.size();
+    report["area"] = found.area;
+    report["volume"] = found.volume;
+    report["watertight"] = found.watertight;
+    report["euler"] = found.euler;
+    report["components"] = found.components;
+    report["min_angle"] = found.min_angle_deg;
+    report["angles_below_10"] = found.small_angles;
+    report["deviation"] = found.deviation_world;
+    report["level"] = found.level;
+    report["cells"] = found.cells;
+    if (found.converged) return;
+    report.warn(text("the triangles may be ", found.deviation_world, " from the limit, more than the tolerance (level ",
+                     found.level, "; --max-level, or a larger --tolerance)"));
+}
+
+}  // namespace subvol::cli

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "picture_arguments.h"
+#include "report.h"
+#include "subvol/limit_surface.h"
+
+namespace subvol::cli {
+
+/// How a surface is written, and what the error says if there is none.
+///
+/// field: that isosurfaces are of, with the range of its control values; isos: how many isovalues were asked for
+struct SurfaceOutput {
+    SurfaceFileOptions file{};
+    std::string field{};
+    Range range{};
+    std::size_t isos = 0;
+};
+
+/// For the note of a share.
+[[nodiscard]] Json json_of(const SurfaceOutput& output);
+
+/// file: with the note, named in the error
+/// throws: Error(InvalidInput) unless `json_of` has written it
+[[nodiscard]] SurfaceOutput surface_output_from(const Json& json, const std::string& file);
+
+/// throws: Error(InvalidInput) if the surface has no triangle
+void check_not_empty(const LimitSurface& surface, const SurfaceOutput& output);
+
+/// Writes a surface, and puts its figures into the report.
+void write_reported(const std::string& path, const LimitSurface& surface, const SurfaceOutput& output, Report& report);
+
+}  // namespace subvol::cli

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "subvol/limit_surface.h"
+
+namespace subvol::detail {
+
+/// One of several shares of a surface. part: from 0
+struct SurfaceShareOf {
+    std::size_t part = 0, of = 1;
+};
+
+/// A share of a surface as bytes: what is cut out of a range of the cells that it passes, with points on the limit and their
+/// fields. Every share finds these cells and the level by itself.
+///
+/// throws: as `limit_surface`
+/// cost:   memory: the topology of the mesh; some 300 bytes for each triangle of the share, and of the whole at level 1
+[[nodiscard]] std::string share_of_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options,
+                                           const SurfaceShareOf& share);
+
+/// All shares of a surface as `limit_surface` returns it, bit by bit: slivers are mended, and the whole is measured.
+///
+/// shares: in their order
+/// names:  of the shares, for errors
+/// throws: Error(InvalidInput) if a share is damaged, or not of the same surface; Error(Cancelled)
+/// cost:   memory: the shares twice, and some 300 bytes a triangle
+[[nodiscard]] LimitSurface join_surface(std::vector<std::string> shares, std::span<const std::string> names,
+                                        Progress* progress = nullptr);
+
+/// A share in a file. note: says which share of which work it is
+struct SurfaceShareFile {
+    std::string note, bytes;
+};
+
+/// The extension of such files.
+inline constexpr const char* kSurfaceShareExtension = ".svshare";
+
+/// throws: Error(Io)
+void write_surface_share(const std::filesystem::path& path, const SurfaceShareFile& share);
+
+/// throws: Error(Io); Error(InvalidInput) if it is another file, or not complete
+[[nodiscard]] SurfaceShareFile read_surface_share(const std::filesystem::path& path);
+
+}  // namespace subvol::detail

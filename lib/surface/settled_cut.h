@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "point_settler.h"
+
+namespace subvol::detail {
+
+/// What has been cut out of cells at one level, its points moved to the limit.
+///
+/// deviation_world: of the whole surface, as far as the cells that were looked at show it
+struct SettledCut {
+    int level = 0;
+    double deviation_world = 0;
+    bool converged = false;
+    SurfaceSoup soup;
+    SettledPoints settled;
+};
+
+/// A point of one of several parts of a surface.
+struct PointOrigin {
+    std::uint32_t part;
+    Index at;
+};
+
+/// Parts of one surface as one. Each has some of its cells; cells and points that several have are in the result once.
+///
+/// origins: become those of the points of the result
+[[nodiscard]] SettledCut joined(std::vector<SettledCut> parts, std::vector<PointOrigin>& origins);
+
+/// Adds a surface to others: with normals where sides meet, fewer slivers, and no points that no triangle uses.
+///
+/// improve: slivers are mended; slack_world: how far new edges may bend away from the limit
+/// returns: the points of the cut that are used, ascending
+std::vector<Index> add_cut(const SettledCut& cut, bool improve, double slack_world, LimitSurface& all);
+
+}  // namespace subvol::detail
