@@ -60,7 +60,8 @@ MixedMesh TetRefinement::refined(const HexMesh& mesh, int default_levels, Vertic
         if (*scheme_ == TetScheme::Boxspline) control = in_tetrahedra(std::move(control));
         figures["control_points"] = control.points.size();
         figures["control_cells"] = control.cells();
-        check_memory(options.levels, static_cast<double>(control.cells()) * std::pow(8.0, options.levels), kBytesPerTet);
+        if (options.levels <= kMostTetLevels)
+            check_memory(options.levels, static_cast<double>(control.cells()) * std::pow(8.0, options.levels), kBytesPerTet);
         if (parents != nullptr) *parents = control_cells(control, options.levels);
         if (vertices == Vertices::OfTheLevel) return refine(control, options);
         MixedVolume volume = volume_through(control, options);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <numeric>
+#include <string>
 
 #include "mixed_cells_split.h"
 #include "mixed_shapes.h"
@@ -54,7 +55,13 @@ void repeat(const std::vector<Index>& cells, std::size_t times, std::vector<Inde
 
 }  // namespace
 
+void detail::check_tet_levels(int levels) {
+    if (levels >= 0 && levels <= kMostTetLevels) return;
+    throw Error(ErrorCode::InvalidInput, "levels: " + std::to_string(levels), {}, "0 to " + std::to_string(kMostTetLevels));
+}
+
 std::vector<Index> control_cells(const MixedMesh& control, int levels) {
+    detail::check_tet_levels(levels);
     struct Kinds {
         std::vector<Index> tets, octahedra, prisms, pyramids, hexes;
     };

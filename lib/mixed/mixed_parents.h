@@ -17,4 +17,7 @@ struct HexesOfMixed {
 
 [[nodiscard]] HexesOfMixed hexahedra_of(const MixedMesh& mesh);
 
+/// throws: Error(InvalidInput) unless schemes of tetrahedra refine so often
+void check_tet_levels(int levels);
+
 }  // namespace subvol::detail

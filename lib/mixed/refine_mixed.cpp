@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "mixed_parents.h"
 #include "mixed_rows.h"
 #include "mixed_shapes.h"
 #include "subvol/error.h"
@@ -14,8 +15,6 @@ namespace subvol {
 using namespace detail;
 
 namespace {
-
-constexpr int kMostLevels = 8;
 
 MixedMesh cells_alone(const MixedMesh& mesh) {
     return {{}, mesh.tets, mesh.octahedra, mesh.prisms, mesh.pyramids, mesh.hexes, {}, {}};
@@ -62,10 +61,7 @@ std::vector<double> MixedTables::apply(std::span<const double> control, std::siz
 }
 
 MixedTables refinement_tables(const MixedMesh& mesh, const MixedRefineOptions& options) {
-    if (options.levels < 0 || options.levels > kMostLevels) {
-        throw Error(ErrorCode::InvalidInput, "levels: " + std::to_string(options.levels), {},
-                    "0 to " + std::to_string(kMostLevels));
-    }
+    detail::check_tet_levels(options.levels);
     MixedLevel level = level_of(mesh, options.scheme, options.crease_angle_deg);
     MixedTables result;
     result.control_points = mesh.points.size();

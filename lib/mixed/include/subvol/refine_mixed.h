@@ -18,7 +18,9 @@ namespace subvol {
 /// The boundary is Loop's surface [loop1987] for the first two, and Catmull-Clark's where it is made of quads.
 enum class TetScheme { Tetoct, Boxspline, Linear };
 
-/// levels:           0 to 8
+inline constexpr int kMostTetLevels = 8;
+
+/// levels:           0 to kMostTetLevels
 /// crease_angle_deg: boundary edges bent by more than this become creases too; (0,180)
 struct MixedRefineOptions {
     TetScheme scheme = TetScheme::Tetoct;
@@ -99,6 +101,8 @@ struct MixedVolume {
 
 /// The control cell of each cell of a level. Both are counted through the tetrahedra, octahedra, prisms, pyramids and
 /// hexahedra.
+///
+/// throws: Error(InvalidInput) if the level is out of range
 [[nodiscard]] std::vector<Index> control_cells(const MixedMesh& control, int levels);
 
 }  // namespace subvol
