@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A table of hashes: points, grids, pictures and surfaces of one mesh, cut and divided in every way, against those of one process.
 
-    bench/equality.py [build/release/bin/subvol] [--counts 1,2,3,4,7] [--resolution 4]
+    bench/equality.py [build/release/bin/subvol] [--counts 1,2,3,4,7] [--resolution 4] [--columns points,vdb,render,tets,surface]
 
 The mesh is `ball` in pieces (.pvtu) by slabs, by blocks or at random, a cell at a time: with a layer of ghost cells, with the
 points between pieces in each of them, with a piece that is empty; points and cells have their global numbers. It is read as it
@@ -22,9 +22,10 @@ import tempfile
 from pathlib import Path
 
 SHAPES = ("slabs", "blocks", "random")
-VERBS = {"points": (".ply", []), "vdb": (".vdb", ["--resolution", "48"]),
-         "render": (".exr", ["--size", "160x128", "--backend", "cpu"]),
-         "surface": (".ply", ["--iso", "0.3", "--cap", "--boundary"])}
+PICTURE = ["--size", "160x128", "--backend", "cpu"]
+COLUMNS = {"points": ("points", ".ply", []), "vdb": ("vdb", ".vdb", ["--resolution", "48"]),
+           "render": ("render", ".exr", PICTURE), "tets": ("render", ".exr", ["--method", "tets", *PICTURE]),
+           "surface": ("surface", ".ply", ["--iso", "0.3", "--cap", "--boundary"])}
 OF_SHARES = {"surface": ".svshare"}  # where a share is another file
 RANKS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
@@ -115,9 +116,9 @@ def write_pieces(folder, points, cells, values, shape):
     return f"{shape}.pvtu"
 
 
-def hashes(runner, source, verb, counts, with_ranks):
+def hashes(runner, source, column, counts, with_ranks):
     """One process (of bricks, what it writes as one file), then shares, then ranks."""
-    extension, options = VERBS[verb]
+    verb, extension, options = COLUMNS[column]
     found = {}
     if verb != "vdb" or not source.endswith(".bricks"):  # of bricks one process writes a list of blocks
         runner.run(verb, source, "-o", "one" + extension, *options, "--quiet")
@@ -139,16 +140,20 @@ def main():
     options.add_argument("program", nargs="?", default="build/release/bin/subvol")
     options.add_argument("--counts", default="1,2,3,4,7")
     options.add_argument("--resolution", type=int, default=4)
+    options.add_argument("--columns", default=",".join(COLUMNS))
     asked = options.parse_args()
     counts = [int(count) for count in asked.counts.split(",")]
+    columns = asked.columns.split(",")
+    if unknown := set(columns) - set(COLUMNS):
+        sys.exit(f"--columns: there is no {', '.join(sorted(unknown))} ({','.join(COLUMNS)})")
     with_ranks = shutil.which("mpirun") is not None
     different = 0
     with tempfile.TemporaryDirectory() as folder:
         runner = Runner(asked.program, folder)
         runner.run("model", "ball", "--resolution", asked.resolution, "-o", "ball.mesh", "--quiet")
         points, cells, values = read_medit(runner.folder / "ball.mesh")
-        print("| cut | read as | " + " | ".join(f"`{verb}`" for verb in VERBS) + " |")
-        print("|---|---|" + "---|" * len(VERBS))
+        print("| cut | read as | " + " | ".join(f"`{column}`" for column in columns) + " |")
+        print("|---|---|" + "---|" * len(columns))
         first = {}
         for shape in SHAPES:
             pieces = write_pieces(runner.folder, points, cells, values, shape)
@@ -156,9 +161,9 @@ def main():
             runner.run("split", pieces, "-o", bricks, "--bricks", 5, "--by", shape, "--quiet")
             for source, form in ((pieces, "pieces"), (bricks, "bricks")):
                 row = []
-                for verb in VERBS:
-                    found = hashes(runner, source, verb, counts, with_ranks)
-                    expected = first.setdefault(verb, found.get("one process"))
+                for column in columns:
+                    found = hashes(runner, source, column, counts, with_ranks)
+                    expected = first.setdefault(column, found.get("one process"))
                     wrong = [way for way, value in found.items() if value != expected]
                     different += len(wrong)
                     row.append(f"{expected}" + (f" **but not {', '.join(wrong)}**" if wrong else ""))

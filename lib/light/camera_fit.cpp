@@ -101,14 +101,14 @@ Camera fit_camera_to_points(const Camera& camera, std::span<const Vec3> points, 
     Camera fitted = fit(camera, points, box, aspect);
     for (int step = 0; step < kSteps; ++step) {
         Vec2 low(std::numeric_limits<double>::infinity()), high(-low);
-        double depth = 0;
+        // Of the box, so that points inside the outline change nothing: parts of a mesh may lack them.
+        const double depth = glm::dot(axes[2], box.center() - fitted.eye);
         for (const Vec3& point : points) {
             const Vec3 d = point - fitted.eye;
             const double z = glm::dot(axes[2], d), scale = camera.ortho_height == 0 ? 1 / std::max(z, 1e-300) : 1;
             const Vec2 seen = scale * Vec2(glm::dot(axes[0], d), glm::dot(axes[1], d));
             low = glm::min(low, seen);
             high = glm::max(high, seen);
-            depth += z / static_cast<double>(points.size());
         }
         const Vec2 off = (camera.ortho_height == 0 ? depth : 1) * 0.5 * (low + high);
         Camera moved = fitted;

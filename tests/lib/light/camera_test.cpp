@@ -10,6 +10,7 @@
 
 #include "lib/expect_error.h"
 #include "lib/temp_folder.h"
+#include "subvol/camera_fit.h"
 
 namespace subvol {
 namespace camera_test {
@@ -165,6 +166,26 @@ TEST(FitCamera, MakesOrthographicCameras) {
     EXPECT_NEAR(orthographic_camera(parse_camera("-y", {{-1, -1, -1}, {1, 1, 1}}), {{-1, -1, -1}, {1, 1, 1}}).ortho_height, 2.1,
                 kRounding);
     EXPECT_GT(orthographic_camera(kBenchmark, {{1, 1, 1}, {1, 1, 1}}).ortho_height, 0);
+}
+
+// The outline is in the middle of the picture, and points inside it change not even a bit: bricks do not have them.
+TEST(FitCamera, OfPointsDependsOnTheirOutlineOnly) {
+    std::vector<Vec3> points{{0, 0, 0}, {3, 0.2, 0}, {0.1, 2, 0.3}, {0, 0.4, 1}};
+    const Camera camera = fit_camera_to_points(kBenchmark, points, 1.5);
+    Vec2 low(INFINITY), high(-INFINITY);
+    const View view(camera, 1500, 1000);
+    for (const Vec3& p : points) {
+        const Vec2 pixel = view.to_pixels(view.to_eye(p));
+        low = glm::min(low, pixel);
+        high = glm::max(high, pixel);
+    }
+    constexpr double kFewSteps_px = 10;  // twice the distance from the middle that four steps leave
+    EXPECT_NEAR(low.x + high.x, 1500, kFewSteps_px);
+    EXPECT_NEAR(low.y + high.y, 1000, kFewSteps_px);
+    points.insert(points.begin() + 2, {Vec3(0.4, 0.4, 0.2), Vec3(1, 0.3, 0.1)});
+    const Camera same = fit_camera_to_points(kBenchmark, points, 1.5);
+    EXPECT_EQ(same.eye, camera.eye);
+    EXPECT_EQ(same.target, camera.target);
 }
 
 TEST(Turntable, TurnsAboutUpThroughTheCentre) {
