@@ -13,7 +13,7 @@ namespace {
 // ball of some hundred points bends by 20 degrees at its edges.
 constexpr double kCreaseAngleDeg = 60;
 
-constexpr double kBytesPerTet = 300;  // of eight for each cell and level, while the finest is made
+constexpr double kBytesPerTet = 400;  // of eight for each cell and level, while the finest is put on its limit
 
 }  // namespace
 

@@ -166,6 +166,8 @@ private:
     void probe_tets(const TetRefinement& tets, const HexMesh& mesh, const std::vector<Vec3>& places, Report& report) const {
         std::vector<Index> cells;
         const MixedMesh fine = tets.refined(mesh, 2, Vertices::OnTheLimit, report, &cells);
+        const std::size_t hexes = 4 * fine.tets.size() + 16 * fine.octahedra.size();  // of others it is as many as they are
+        check_memory(report.json().at("levels").get<int>(), static_cast<double>(hexes), 1700);
         if (!places.empty()) {
             const auto probe = report.timed("prepare", [&] { return MixedProbe(fine, cells, 0, report.progress()); });
             const ProbeResult found = report.timed("probe", [&] { return probe.at(places, report.progress()); });
