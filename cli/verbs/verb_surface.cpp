@@ -32,7 +32,7 @@ public:
                "  subvol surface part.vtu -o hot.stl --iso 350 --cap --tolerance 3e-4\n"
                "  subvol surface part.vtu -o skin.glb --boundary --color-field Temp --tf viridis\n"
                "  subvol surface big.bricks -o iso.ply --iso 300\n"
-               "  subvol surface big.vtu -o part2.svshare --iso 300 --part 2/4   a share, for join\n"
+               "  subvol surface big.vtu -o part2.svshare --part 2/4     a share, for join\n"
                "\n"
                "The points lie on the limit, with normals from its exact gradients. Cells are refined where the surface is, "
                "until the triangles are within the tolerance. JSON: points, triangles, area, volume (of what a watertight "
