@@ -87,11 +87,6 @@ void rename(LimitQuery& place, const BrickMesh& part) {
     place.cell = number < kNone ? static_cast<Index>(number) : kNone;
 }
 
-[[noreturn]] void fail_far(const Bricks& bricks, const char* than, const char* allowed) {
-    throw Error(ErrorCode::InvalidInput, std::string("an isosurface leads farther than ") + than, bricks.path.string(),
-                allowed);
-}
-
 }  // namespace
 
 LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
@@ -108,20 +103,20 @@ LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const S
         for (LimitQuery& place : surface->places) rename(place, part);
         return std::move(*surface);
     }
-    fail_far(bricks, "the halo of its bricks", "split with a larger --halo");
+    throw Error(ErrorCode::InvalidInput, "an isosurface leads farther than the halo of its bricks", bricks.path.string(),
+                "split with a larger --halo");
 }
 
 std::string detail::share_of_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
                                      const SurfaceShareOf& share, const BrickFields& fields) {
     check_surface_options(options);
     check_halo_of_limit(bricks);
-    // All shares must look at the same cells, so that none can look farther when the surface leads out there.
-    const auto about = about_surface(bricks, field, options, fields, options.isos.empty() ? 0 : 2);
+    const auto about = about_surface(bricks, field, options, fields, layers_of_shares(options));
     if (!about) return empty_surface_share();
     const BrickMesh& part = about->part;
     auto bytes = share_of_part(part.mesh, part.owned_cells, about->whole, field, options, share,
                                [&](LimitQuery& place) { rename(place, part); });
-    if (!bytes) fail_far(bricks, "its shares look", "one process: without --part and mpirun");
+    if (!bytes) fail_far_share(bricks.path.string());
     return std::move(*bytes);
 }
 
