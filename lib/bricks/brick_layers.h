@@ -5,13 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "mesh_subset.h"
 #include "subvol/bricks.h"
 #include "subvol/detail/gather_cells.h"
 
 namespace subvol::detail {
-
-/// Adds layers of cells: each has all cells that share a point with a cell before. cells: a flag for each cell of the mesh
-void grow(const HexMesh& mesh, std::vector<std::uint8_t>& cells, int layers);
 
 /// For each cell of a mesh a box that its limit does not leave: that of the cell and those about it, and a quarter more. The
 /// weights of interpolating schemes are partly negative, but their sum over absolute values is below 1.5.
@@ -32,9 +30,6 @@ private:
 
 /// Parts of one mesh as one; what they have in common is in the result once, and owned if one of them owns it.
 [[nodiscard]] BrickMesh merged(std::vector<BrickMesh> parts);
-
-/// Leaves out tags whose edges and faces are not of the mesh's cells.
-void keep_own_tags(HexMesh& mesh);
 
 /// The points of owned cells that lie on the hull of the whole mesh. There must be a layer of halo at least.
 [[nodiscard]] std::vector<std::uint8_t> hull_points_of_owned(const BrickMesh& part);

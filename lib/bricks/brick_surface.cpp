@@ -13,17 +13,6 @@ using namespace detail;
 
 namespace {
 
-/// The stages of a surface are those of the whole; what is before them is said by this.
-void say(const SurfaceOptions& options, const char* stage, std::size_t brick, const Bricks& bricks) {
-    report_progress(options.progress, stage, static_cast<double>(brick) / static_cast<double>(bricks.bricks.size()));
-}
-
-BrickMesh read_with(const Bricks& bricks, std::size_t b, const BrickFields& fields) {
-    BrickMesh brick = read_brick(bricks, b);
-    if (fields) brick.mesh = fields(std::move(brick.mesh));
-    return brick;
-}
-
 /// The numbers of the cells that a surface may pass through, and of `layers` of cells about them. whole: becomes the extent of
 /// all bricks
 std::vector<std::uint64_t> wanted_cells(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
@@ -32,8 +21,9 @@ std::vector<std::uint64_t> wanted_cells(const Bricks& bricks, std::string_view f
     quiet.progress = nullptr;
     std::vector<std::uint64_t> wanted;
     for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        say(options, "look", b, bricks);
-        const BrickMesh brick = read_with(bricks, b, fields);
+        report_progress(options.progress, "look", static_cast<double>(b) / static_cast<double>(bricks.bricks.size()));
+        BrickMesh brick = read_brick(bricks, b);
+        if (fields) brick.mesh = fields(std::move(brick.mesh));
         whole.add(limit_extent(brick.mesh));
         std::vector<std::uint8_t> here = surface_candidates(brick.mesh, field, quiet);
         for (std::size_t c = 0; c < here.size(); ++c) here[c] = here[c] && brick.owned_cells[c];
@@ -47,26 +37,6 @@ std::vector<std::uint64_t> wanted_cells(const Bricks& bricks, std::string_view f
     return wanted;
 }
 
-/// These cells as owned ones, with their halos.
-BrickMesh with_halos(const Bricks& bricks, const std::vector<std::uint64_t>& wanted, const SurfaceOptions& options,
-                     const BrickFields& fields) {
-    std::vector<BrickMesh> parts;
-    for (std::size_t b = 0; b < bricks.bricks.size(); ++b) {
-        say(options, "gather", b, bricks);
-        BrickMesh brick = read_with(bricks, b, fields);
-        bool any = false;
-        for (std::size_t c = 0; c < brick.owned_cells.size(); ++c) {
-            brick.owned_cells[c] = brick.owned_cells[c] && std::ranges::binary_search(wanted, brick.cell_numbers[c]);
-            any = any || brick.owned_cells[c];
-        }
-        if (!any) continue;
-        std::vector<std::uint8_t> kept = brick.owned_cells;
-        grow(brick.mesh, kept, kHaloOfLimit);
-        parts.push_back(subset(brick, kept));
-    }
-    return merged(std::move(parts));
-}
-
 /// The cells that a surface may pass through, with `layers` of cells about them, their halos, and the extent of the whole.
 struct AboutSurface {
     BrickMesh part;
@@ -77,7 +47,15 @@ std::optional<AboutSurface> about_surface(const Bricks& bricks, std::string_view
     AboutSurface about;
     const std::vector<std::uint64_t> wanted = wanted_cells(bricks, field, options, fields, layers, about.whole);
     if (wanted.empty()) return {};
-    about.part = with_halos(bricks, wanted, options, fields);
+    const auto chosen = [&](const BrickMesh& brick) {
+        std::vector<std::uint8_t> flags = brick.owned_cells;
+        for (std::size_t c = 0; c < flags.size(); ++c) {
+            flags[c] = flags[c] && std::ranges::binary_search(wanted, brick.cell_numbers[c]);
+        }
+        return flags;
+    };
+    about.part = *gather_cells(
+        bricks, {.reads = [](std::size_t) { return true; }, .chooses = chosen, .fields = fields, .progress = options.progress});
     return about;
 }
 
@@ -85,11 +63,6 @@ std::optional<AboutSurface> about_surface(const Bricks& bricks, std::string_view
 void rename(LimitQuery& place, const BrickMesh& part) {
     const std::uint64_t number = part.cell_numbers[place.cell];
     place.cell = number < kNone ? static_cast<Index>(number) : kNone;
-}
-
-[[noreturn]] void fail_far(const Bricks& bricks, const char* than, const char* allowed) {
-    throw Error(ErrorCode::InvalidInput, std::string("an isosurface leads farther than ") + than, bricks.path.string(),
-                allowed);
 }
 
 }  // namespace
@@ -108,20 +81,20 @@ LimitSurface limit_surface(const Bricks& bricks, std::string_view field, const S
         for (LimitQuery& place : surface->places) rename(place, part);
         return std::move(*surface);
     }
-    fail_far(bricks, "the halo of its bricks", "split with a larger --halo");
+    throw Error(ErrorCode::InvalidInput, "an isosurface leads farther than the halo of its bricks", bricks.path.string(),
+                "split with a larger --halo");
 }
 
 std::string detail::share_of_surface(const Bricks& bricks, std::string_view field, const SurfaceOptions& options,
                                      const SurfaceShareOf& share, const BrickFields& fields) {
     check_surface_options(options);
     check_halo_of_limit(bricks);
-    // All shares must look at the same cells, so that none can look farther when the surface leads out there.
-    const auto about = about_surface(bricks, field, options, fields, options.isos.empty() ? 0 : 2);
+    const auto about = about_surface(bricks, field, options, fields, layers_of_shares(options));
     if (!about) return empty_surface_share();
     const BrickMesh& part = about->part;
     auto bytes = share_of_part(part.mesh, part.owned_cells, about->whole, field, options, share,
                                [&](LimitQuery& place) { rename(place, part); });
-    if (!bytes) fail_far(bricks, "its shares look", "one process: without --part and mpirun");
+    if (!bytes) fail_far_share(bricks.path.string());
     return std::move(*bytes);
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/limit_surface.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "mesh_subset.h"
 #include "subvol/error.h"
 #include "surface_maker.h"
 #include "surface_shape.h"
@@ -16,16 +18,52 @@ using detail::SettledCut;
 
 namespace {
 
+constexpr int kMostLayers = 3;  // of cells about those that the first look finds; beyond, the mesh is taken as it is
+
 /// Creases are found once, so that all stages have the same.
-struct Tagged {
-    Tagged(const HexMesh& from, const SurfaceOptions& wanted) : mesh(from), options(wanted) {
+class Tagged {
+public:
+    /// The mesh is kept by reference.
+    Tagged(const HexMesh& from, const SurfaceOptions& wanted) : options(wanted), from_(from) {
         if (!options.scheme.crease_angle_deg) return;
-        tag_creases(mesh, *options.scheme.crease_angle_deg);
+        copy_ = from;
+        tag_creases(*copy_, *options.scheme.crease_angle_deg);
         options.scheme.crease_angle_deg.reset();
     }
-    HexMesh mesh;
+    [[nodiscard]] const HexMesh& mesh() const { return copy_ ? *copy_ : from_; }
+
     SurfaceOptions options;
+
+private:
+    const HexMesh& from_;
+    std::optional<HexMesh> copy_;
 };
+
+/// The cells that a surface may pass through, with three layers about them: nothing else is needed of the mesh.
+///
+/// owned: a flag for each cell that the surface may be cut from
+struct NearSurface {
+    detail::MeshSubset part;
+    std::vector<std::uint8_t> owned;
+};
+
+/// wanted: a flag for each cell of the mesh
+NearSurface near_surface(const HexMesh& mesh, const std::vector<std::uint8_t>& wanted) {
+    std::vector<std::uint8_t> kept = wanted;
+    detail::grow(mesh, kept, detail::kHaloOfLimit);
+    NearSurface near{.part = detail::subset(mesh, kept), .owned = {}};
+    for (const Index c : near.part.cells) near.owned.push_back(wanted[c]);
+    return near;
+}
+
+LimitSurface no_surface(const HexMesh& mesh) {
+    LimitSurface none;
+    none.report.converged = true;
+    for (const Attribute& attribute : mesh.attributes) {
+        none.fields.push_back({attribute.name, static_cast<std::size_t>(attribute.channels), {}, {}});
+    }
+    return none;
+}
 
 }  // namespace
 
@@ -46,21 +84,52 @@ void detail::check_surface_options(const SurfaceOptions& options) {
 LimitSurface limit_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options) {
     check_surface_options(options);
     validate(mesh);
-    return *detail::limit_surface_of_part(mesh, {}, detail::limit_extent(mesh), field, options);
+    const Tagged tagged(mesh, options);
+    const detail::LimitExtent whole = detail::limit_extent(mesh);
+    std::vector<std::uint8_t> wanted = detail::surface_candidates(tagged.mesh(), field, tagged.options);
+    if (std::ranges::find(wanted, 1) == wanted.end()) return no_surface(mesh);
+    // The boundary leads nowhere; an isosurface may lead out of the cells that the first look finds.
+    for (int layers = 0; layers <= kMostLayers; ++layers) {
+        if (layers > 0 || !options.isos.empty()) detail::grow(tagged.mesh(), wanted, 1);
+        const NearSurface near = near_surface(tagged.mesh(), wanted);
+        auto surface = detail::limit_surface_of_part(near.part.mesh, near.owned, whole, field, tagged.options);
+        if (!surface) continue;
+        for (LimitQuery& place : surface->places) place.cell = near.part.cells[place.cell];
+        return std::move(*surface);
+    }
+    return *detail::limit_surface_of_part(tagged.mesh(), {}, whole, field, tagged.options);
 }
 
 std::string detail::share_of_surface(const HexMesh& mesh, std::string_view field, const SurfaceOptions& options,
                                      const SurfaceShareOf& share) {
     check_surface_options(options);
     validate(mesh);
-    return *detail::share_of_part(mesh, {}, detail::limit_extent(mesh), field, options, share, [](LimitQuery&) {});
+    const Tagged tagged(mesh, options);
+    std::vector<std::uint8_t> wanted = surface_candidates(tagged.mesh(), field, tagged.options);
+    if (std::ranges::find(wanted, 1) == wanted.end()) return empty_surface_share();
+    grow(tagged.mesh(), wanted, layers_of_shares(options));
+    const NearSurface near = near_surface(tagged.mesh(), wanted);
+    auto bytes = share_of_part(near.part.mesh, near.owned, limit_extent(mesh), field, tagged.options, share,
+                               [&](LimitQuery& place) { place.cell = near.part.cells[place.cell]; });
+    if (!bytes) fail_far_share("surface");
+    return std::move(*bytes);
+}
+
+int detail::layers_of_shares(const SurfaceOptions& options) {
+    return options.isos.empty() ? 0 : 2;
+}
+
+void detail::fail_far_share(const std::string& where) {
+    throw Error(ErrorCode::InvalidInput, "an isosurface leads farther than its shares look", where,
+                "one process: without --part and mpirun");
 }
 
 std::vector<std::uint8_t> detail::surface_candidates(const HexMesh& part, std::string_view field,
                                                      const SurfaceOptions& options) {
     const Tagged tagged(part, options);
-    const HexMesh scalar = with_field_only(tagged.mesh, number_of_field(tagged.mesh, field, options));
-    const Topology topology = build_topology(scalar);
+    const HexMesh scalar = with_field_only(tagged.mesh(), number_of_field(tagged.mesh(), field, options));
+    const bool any_hull = options.boundary || options.cap;
+    const Topology topology = any_hull ? build_topology(scalar) : Topology();
     const SoupCutter cutter(scalar, topology, {}, tagged.options.scheme, options.progress);
     std::vector<std::uint8_t> flags(part.cells.size(), 0);
     for (const Cut& cut : cuts_of(options)) {
@@ -73,7 +142,7 @@ std::optional<LimitSurface> detail::limit_surface_of_part(const HexMesh& part, s
                                                           const LimitExtent& whole, std::string_view field,
                                                           const SurfaceOptions& options) {
     const Tagged tagged(part, options);
-    const SurfaceMaker maker(tagged.mesh, owned, whole, field, tagged.options);
+    const SurfaceMaker maker(tagged.mesh(), owned, whole, field, tagged.options);
     LimitSurface all;
     all.report.converged = true;
     for (const Cut& cut : cuts_of(options)) {
@@ -92,7 +161,7 @@ std::optional<std::string> detail::share_of_part(const HexMesh& part, std::span<
                                                  const SurfaceOptions& options, const SurfaceShareOf& share,
                                                  const std::function<void(LimitQuery&)>& rename) {
     const Tagged tagged(part, options);
-    const SurfaceMaker maker(tagged.mesh, owned, whole, field, tagged.options);
+    const SurfaceMaker maker(tagged.mesh(), owned, whole, field, tagged.options);
     SurfaceShare made{.improve = options.improve, .slack_world = tolerance_world(options, whole)};
     std::vector<LimitQuery> places;
     for (const Cut& cut : cuts_of(options)) {

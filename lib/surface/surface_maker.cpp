@@ -27,8 +27,7 @@ std::vector<Index> some_of(const std::vector<Index>& cells) {
 }  // namespace
 
 HexMesh with_field_only(const HexMesh& mesh, std::optional<std::size_t> field) {
-    HexMesh scalar = mesh;
-    scalar.attributes.clear();
+    HexMesh scalar{mesh.points, mesh.cells, {}, mesh.creases, mesh.sharp_faces};
     if (field) scalar.attributes.push_back(mesh.attributes[*field]);
     return scalar;
 }

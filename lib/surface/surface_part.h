@@ -42,6 +42,11 @@ void check_surface_options(const SurfaceOptions& options);
                                                        const SurfaceOptions& options, const SurfaceShareOf& share,
                                                        const std::function<void(LimitQuery&)>& rename);
 
+/// How many layers of cells about the candidates a share looks at: the same for all, so that none can look farther if the
+/// surface leads out there.
+[[nodiscard]] int layers_of_shares(const SurfaceOptions& options);
+[[noreturn]] void fail_far_share(const std::string& where);
+
 /// A share of a surface that no cell may have.
 [[nodiscard]] std::string empty_surface_share();
 

@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "subvol/bricks.h"
+#include "subvol/detail/limit_of_part.h"
 
 namespace subvol::detail {
-
-/// Layers of cells about a cell that values and gradients of its limit depend on.
-inline constexpr int kHaloOfLimit = 3;
 
 /// throws: Error(InvalidInput) if the bricks have fewer layers of halo
 void check_halo_of_limit(const Bricks& bricks);

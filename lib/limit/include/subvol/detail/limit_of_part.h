@@ -9,6 +9,9 @@
 
 namespace subvol::detail {
 
+/// Layers of cells about a cell that values and gradients of its limit depend on.
+inline constexpr int kHaloOfLimit = 3;
+
 /// What tolerances of the limit are relative to.
 ///
 /// box:    of the points that cells use
