@@ -104,6 +104,7 @@ def commands(inputs):
         Command("points of bricks", f"points {inputs}/b.bricks -o a.ply"),
         Command("vdb of bricks", f"vdb {inputs}/b.bricks -o a.vdb --resolution 80 --memory 2M"),
         Command("render bricks", f"render {inputs}/b.bricks --size 160 -o a.png --backend cpu"),
+        Command("render bricks, tets", f"render {inputs}/b.bricks --size 160 -o a.png --method tets --memory 10M"),
         Command("slice", "slice model:ball:6 -o a.png --plane 0,0,0,0,0,1"),
         Command("slice .csv", "slice model:ball:6 -o a.csv --plane 0,0,0,0,0,1 --resolution 200"),
         Command("probe", "probe model:ball:6 -o a.csv --line -1,0,0,1,0,0 --count 5000"),
