@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
         std::printf("  distance %2.0f: all %8zu tets  build %.2f s  draw %.3f s\n", distance, mesh.tets.size(), build_all,
                     draw_all);
         for (const double pixels : {1.0, 2.0, 4.0}) {
-            for (const double error : {0.001, 0.01}) {
+            for (const double error : {0.0, 0.003}) {
                 MixedMesh few;
                 const double choose = cpu_seconds_of([&] { few = hierarchy->cut(view, pixels, error); }, 2);
                 std::optional<TetsRenderer> of_view;
