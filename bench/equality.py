@@ -24,7 +24,7 @@ from pathlib import Path
 SHAPES = ("slabs", "blocks", "random")
 VERBS = {"points": (".ply", []), "vdb": (".vdb", ["--resolution", "48"]),
          "render": (".exr", ["--size", "160x128", "--backend", "cpu"]),
-         "surface": (".ply", ["--iso", "0.3", "--cap", "--boundary"])}
+         "surface": (".obj", ["--iso", "0.3", "--cap", "--boundary", "--color-field", "density", "--tolerance", "3e-3"])}
 OF_SHARES = {"surface": ".svshare"}  # where a share is another file
 RANKS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
