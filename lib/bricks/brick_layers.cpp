@@ -49,7 +49,8 @@ bool touch(const Box& a, const Box& b) {
 
 BrickMesh subset(const BrickMesh& part, std::span<const std::uint8_t> cells) {
     MeshSubset some = subset(part.mesh, cells);
-    BrickMesh result{.mesh = std::move(some.mesh)};
+    BrickMesh result;
+    result.mesh = std::move(some.mesh);
     for (const Index c : some.cells) {
         result.cell_numbers.push_back(part.cell_numbers[c]);
         result.owned_cells.push_back(part.owned_cells[c]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "point_settler.h"
+#include "subvol/limit_surface.h"
 
 namespace subvol::detail {
 
