@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,7 @@ struct SplatArguments {
     bool shadows = false;
     double ambient_occlusion = 0;
     bool plain_sums = false;
+    std::string sheet_sums = "auto";
     std::optional<std::string> color_field;
     std::optional<double> seconds;
 
@@ -36,6 +38,14 @@ struct SplatArguments {
     /// throws: Error(InvalidInput) if a name is unknown, or the backend cannot draw so
     [[nodiscard]] SplatOptions options(const std::string& method) const;
 };
+
+/// Whether a picture is summed in fixed point.
+///
+/// sheet_sums: of --sheet-sums: auto, floats, fixed
+/// kernels:    of the whole picture
+/// bounded:    there is a boundary
+[[nodiscard]] bool sums_in_fixed_point(const std::string& sheet_sums, std::uint64_t kernels, bool bounded,
+                                       const SplatOptions& options);
 
 /// Adds the seconds, the backend and the device of a splatted picture to the report.
 void report_splats(const SplatReport& splats, Report& report);
