@@ -40,8 +40,9 @@ public:
             ->transform(CLI::AsSizeValue(false))
             ->excludes(bricks);
         app()
-            .add_option("--halo", options_.halo_layers,
-                        "layers of cells about each brick (default 3; --correction full needs 4)")
+            .add_option(
+                "--halo", options_.halo_layers,
+                "layers of cells about each brick (default 3; kernels of cc and bsxw need 4, and --correction full one more)")
             ->type_name("N")
             ->check(CLI::Range(1, 16));
         app()

@@ -15,10 +15,14 @@
 
 #include "child_topology.h"
 #include "incident.h"
+#include "patch.h"
+#include "refine_steps.h"
 #include "regular_grid.h"
 #include "run_nested.h"
 #include "scheme_rows.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/limit.h"
+#include "topology_parts.h"
 
 namespace subvol {
 
@@ -175,6 +179,23 @@ private:
     mutable std::unique_ptr<SchemeRows> child_rows_;
 };
 
+HexMesh moved_to_limit(HexMesh mesh, Scheme scheme, detail::InteriorCreases interior) {
+    if (interpolates(scheme)) return mesh;
+    validate(mesh);
+    const StencilTable table = limit_stencils(detail::build_topology(mesh, interior), scheme);
+    std::vector<Vec3> points(mesh.points.size());
+    table.apply(std::span<const double>(&mesh.points[0].x, 3 * points.size()), 3,
+                std::span<double>(&points[0].x, 3 * points.size()));
+    mesh.points = std::move(points);
+    for (auto& attribute : mesh.attributes) {
+        std::vector<double> values(attribute.values.size());
+        table.apply(std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels),
+                    std::span<double>(values));
+        attribute.values = std::move(values);
+    }
+    return mesh;
+}
+
 }  // namespace
 
 StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
@@ -204,20 +225,24 @@ StencilTable limit_stencils(const Topology& topology, Scheme scheme) {
 }
 
 HexMesh on_limit(HexMesh mesh, Scheme scheme) {
-    if (interpolates(scheme)) return mesh;
-    validate(mesh);
-    const StencilTable table = limit_stencils(build_topology(mesh), scheme);
-    std::vector<Vec3> points(mesh.points.size());
-    table.apply(std::span<const double>(&mesh.points[0].x, 3 * points.size()), 3,
-                std::span<double>(&points[0].x, 3 * points.size()));
-    mesh.points = std::move(points);
-    for (auto& attribute : mesh.attributes) {
-        std::vector<double> values(attribute.values.size());
-        table.apply(std::span<const double>(attribute.values), static_cast<std::size_t>(attribute.channels),
-                    std::span<double>(values));
-        attribute.values = std::move(values);
-    }
-    return mesh;
+    return moved_to_limit(std::move(mesh), scheme, detail::InteriorCreases::Refuse);
+}
+
+HexMesh detail::on_limit_of_part(HexMesh part, Scheme scheme) {
+    return moved_to_limit(std::move(part), scheme, InteriorCreases::Ignore);
+}
+
+HexMesh detail::limit_of_cells(const HexMesh& mesh, std::span<const Index> cells, const RefineOptions& options) {
+    if (interpolates(options.scheme.kind)) return refine_cells(mesh, cells, options);
+    if (cells.empty()) return {};
+    const HexMesh control = control_mesh(mesh, options.scheme, options.levels);
+    // The limit of a vertex depends on the cells about it, so a layer of these is refined, too.
+    Patch patch = refine_patch(PatchSource(control), cells, options.scheme, options.levels, 1);
+    HexMesh fine = on_limit_of_part(std::move(patch.mesh), options.scheme.kind);
+    fine.cells.resize(patch.wanted);
+    fine.creases.clear();
+    fine.sharp_faces.clear();
+    return without_unused_points(std::move(fine));
 }
 
 }  // namespace subvol

@@ -12,6 +12,7 @@
 #include "sample_counts.h"
 #include "sample_ways.h"
 #include "subvol/boundary_values.h"
+#include "subvol/detail/limit_of_part.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/sample_part.h"
 #include "subvol/error.h"
@@ -153,12 +154,15 @@ SampledLevel refined_level(HexMesh control, int number, const SampleOptions& opt
 
 SampleResult sample_level(HexMesh control, int number, const SampleOptions& options) {
     report_progress(options.progress, "topology", 0);
+    // Bricks know the box of the control points, not that of their limit.
+    std::optional<double> diagonal;
+    if (number == 0) diagonal = bounds(control).diagonal();
     SampledLevel level =
         number == 0 ? control_level(std::move(control), options) : refined_level(std::move(control), number, options);
     if (!interpolates(options.scheme.kind)) level.mesh = on_limit(std::move(level.mesh), options.scheme.kind);
     level.mesh.cells = std::vector<std::array<Index, 8>>();
     SampleResult result =
-        detail::sample_at_points(std::move(level.mesh), level.lines, options.scheme.kind != Scheme::Linear, options);
+        detail::sample_at_points(std::move(level.mesh), level.lines, options.scheme.kind != Scheme::Linear, options, diagonal);
     result.volume.boundary = std::move(level.boundary);
     level.counts.points = result.report.points;
     level.counts.flat_frames = result.report.flat_frames;
@@ -207,9 +211,8 @@ Box bounds_of(const RbfVolume& volume) {
 
 void check_part(const SampleOptions& options) {
     check(options);
-    if (level_of_samples(options) != 0 || !interpolates(options.scheme.kind)) {
-        throw Error(ErrorCode::InvalidInput, "parts of a mesh are sampled at their points only", {},
-                    "--per-edge 1, --scheme mcq or linear");
+    if (level_of_samples(options) != 0) {
+        throw Error(ErrorCode::InvalidInput, "parts of a mesh are sampled at their points only", {}, "--per-edge 1");
     }
 }
 
@@ -218,6 +221,7 @@ void check_part(const SampleOptions& options) {
 SampleResult detail::sample_part(HexMesh part, const SampleOptions& options, double diagonal) {
     check_part(options);
     SampledLevel level = control_level(control_mesh(std::move(part), options.scheme), options, false);
+    level.mesh = on_limit_of_part(std::move(level.mesh), options.scheme.kind);
     level.mesh.cells = std::vector<std::array<Index, 8>>();
     SampleResult result =
         sample_at_points(std::move(level.mesh), level.lines, options.scheme.kind != Scheme::Linear, options, diagonal);
@@ -234,7 +238,8 @@ Surface detail::sample_hull(HexMesh hull, const std::vector<std::uint8_t>& on_hu
 int detail::layers_of_samples(const SampleOptions& options) {
     // A derivative at a point takes up to three points ahead on a line: the line through the second of them is known from all
     // its cells. A Hessian takes the gradients of the neighbours too.
-    return options.correction == Correction::Full ? 4 : 3;
+    // The limit of a vertex depends on the cells about it: where the scheme does not interpolate, one layer more.
+    return (options.correction == Correction::Full ? 4 : 3) + (interpolates(options.scheme.kind) ? 0 : 1);
 }
 
 struct SampleTables::State {

@@ -58,10 +58,6 @@ void check(const Bricks& bricks, const BrickTetsOptions& options) {
     if (options.refine.levels < 0 || options.refine.levels > 10) {
         throw Error(ErrorCode::InvalidInput, "the number of levels is " + std::to_string(options.refine.levels), {}, "0 to 10");
     }
-    if (!interpolates(options.refine.scheme.kind)) {
-        throw Error(ErrorCode::InvalidInput, "bricks are drawn as tetrahedra by schemes that interpolate", bricks.path.string(),
-                    "--scheme mcq or linear");
-    }
     if (cells_at_once(options) == 0) fail_memory("the tetrahedra of one cell");
 }
 
@@ -202,7 +198,7 @@ public:
         const BrickMesh own = chosen_cells(control, chosen, kHaloOfLimit);
         const std::vector<Index> cells = owned_cells(own);
         progress_.begin(part);
-        if (!cells.empty()) trace(part, refine_cells(own.mesh, cells, quiet()), build);
+        if (!cells.empty()) trace(part, limit_of_cells(own.mesh, cells, quiet()), build);
         progress_.end();
         return true;
     }
@@ -278,7 +274,7 @@ BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, st
             const double done = static_cast<double>(b - begin) + static_cast<double>(first) / static_cast<double>(cells.size());
             report_progress(options.tets.progress, "measure", done / static_cast<double>(end - begin));
             const auto some = std::span(cells).subspan(first, std::min(most, cells.size() - first));
-            const HexMesh fine = refine_cells(brick.mesh, some, refine);
+            const HexMesh fine = limit_of_cells(brick.mesh, some, refine);
             const TetShapes shapes = tet_shapes(fine);
             own.add({.bounds = bounds(fine),
                      .overhang = overhang_of(brick.mesh, some, fine),

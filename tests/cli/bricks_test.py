@@ -61,10 +61,25 @@ class SameAsTheWhole(InFolder):
                     for key in ("levels", "cells", "tets", "degenerate_tets", "inverted_tets", "rays", "lost_rays", "field"):
                         self.assertEqual(parts[key], whole[key], f"{cut} {key}")
 
+    def test_schemes_that_do_not_interpolate(self):
+        small = ["--size", "96x80", "--quiet"]
+        for scheme, count, shape in (("cc", 5, "blocks"), ("bsxw", 4, "random")):
+            own = ["--scheme", scheme]
+            self.run_ok("split", BALL, "-o", "b.bricks", "--bricks", count, "--by", shape, "--halo", 4, "--quiet")
+            for name, verb, *options in (("p.ply", "points"), ("s.exr", "render", *small, "--backend", "cpu"),
+                                         ("l.exr", "render", *small, "--backend", "cpu", "--look", "solid"),
+                                         ("t.exr", "render", *small, "--method", "tets"),
+                                         ("b.ply", "surface", "--boundary"), ("i.ply", "surface", "--iso", 0.1)):
+                self.run_ok(verb, BALL, "-o", f"whole_{name}", *own, *options)
+                memory = ["--memory", "10M"] if name == "t.exr" else []  # so that it is drawn in parts
+                self.run_ok(verb, "b.bricks", "-o", name, *own, *options, *memory)
+                self.assertEqual(self.bytes_of(name), self.bytes_of(f"whole_{name}"), f"{scheme} {verb} {options}")
+
     def test_grids(self):
         for options, cuts in ((["--resolution", 70], [(2, "blocks"), (7, "random")]),
                               (["--resolution", 50, "--levels", 1], [(3, "slabs")]),
-                              (["--resolution", 50, "--scheme", "cc"], [(4, "blocks")])):
+                              (["--resolution", 50, "--scheme", "cc"], [(4, "blocks")]),
+                              (["--resolution", 50, "--scheme", "bsxw"], [(3, "random")])):
             whole = self.run_ok("vdb", BALL, "-o", "whole.vdb", *options, "--json").json()
             for cut in self.cuts(cuts):
                 parts = self.run_ok("vdb", "b.bricks", "-o", "parts.vdb", "--memory", "4M", *options, "--json").json()
@@ -230,7 +245,8 @@ class WhatGoesWrong(InFolder):
         self.assert_said("binary .ply only", "points", "t.bricks", "-o", "a.vtp")
         self.assert_said("is not drawn by this method", "render", "t.bricks", "-o", "a.png", "--method", "dense")
         tets = ["render", "t.bricks", "-o", "a.png", "--method", "tets"]
-        self.assert_said("mcq or linear", *tets, "--scheme", "cc")
+        self.assert_said("these kernels need 4", "points", "t.bricks", "-o", "a.ply", "--scheme", "cc")
+        self.assert_said("split with --halo 4", "render", "t.bricks", "-o", "a.png", "--scheme", "bsxw")
         self.assert_said("has hexahedra only", *tets, "--scheme", "tetoct")
         self.assert_said("a larger --memory", *tets, "--memory", "10K")
         self.assert_said("lights the boundary only", *tets, "--look", "isosurface")

@@ -104,6 +104,39 @@ TEST_F(BricksTest, PointsHaveTheSameBytes) {
     }
 }
 
+constexpr std::array kSplines{Scheme::CatmullClark, Scheme::Bsxw};
+
+TEST_F(BricksTest, PointsOnTheLimitHaveTheSameBytes) {
+    for (const HexMesh& mesh : {irregular_ball(), tagged()}) {
+        for (const Scheme scheme : kSplines) {
+            for (const Correction correction : {Correction::Second, Correction::Full}) {
+                const SampleOptions options{.scheme = {scheme}, .correction = correction};
+                write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
+                const std::string whole = read_bytes(path("whole.ply"));
+                for (const BrickShape shape : kShapes) {
+                    const SplitOptions split{
+                        .bricks = 5, .shape = shape, .halo_layers = correction == Correction::Full ? 5 : 4};
+                    const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
+                    (void)write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
+                    EXPECT_TRUE(read_bytes(path("bricks.ply")) == whole) << int(scheme) << " shape " << int(shape);
+                }
+            }
+        }
+    }
+}
+
+TEST_F(BricksTest, PointsOnTheLimitNeedOneLayerMore) {
+    const Bricks bricks = split_mesh(path("m.bricks"), irregular_ball(), {.bricks = 2}).bricks;
+    for (const Scheme scheme : kSplines) {
+        for (const auto& [correction, said] :
+             {std::pair{Correction::Second, "split with --halo 4"}, {Correction::Full, "split with --halo 5"}}) {
+            const SampleOptions options{.scheme = {scheme}, .correction = correction};
+            EXPECT_NE(error_of([&] { (void)sample_brick(bricks, read_brick(bricks, 0), options); }).find(said),
+                      std::string::npos);
+        }
+    }
+}
+
 /// Writes the parts of some shares; returns their names.
 std::vector<std::filesystem::path> write_shares(const std::filesystem::path& folder, const Bricks& bricks, std::size_t count,
                                                 const SampleOptions& options) {
@@ -182,11 +215,13 @@ TEST_F(BricksTest, FiguresOfSharesAreThoseOfAll) {
 
 TEST_F(BricksTest, CreasesByAngleAndRefinedBoundariesToo) {
     const HexMesh mesh = irregular_ball();
-    const SampleOptions options{.scheme = {.crease_angle_deg = 20}, .boundary_levels = 2};
-    write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
-    const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 6}).bricks;
-    (void)write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
-    EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply")));
+    const Bricks bricks = split_mesh(path("m.bricks"), mesh, {.bricks = 6, .halo_layers = 4}).bricks;
+    for (const Scheme scheme : {Scheme::Mcq, Scheme::CatmullClark, Scheme::Bsxw}) {
+        const SampleOptions options{.scheme = {.kind = scheme, .crease_angle_deg = 20}, .boundary_levels = 2};
+        write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
+        (void)write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
+        EXPECT_TRUE(read_bytes(path("bricks.ply")) == read_bytes(path("whole.ply"))) << int(scheme);
+    }
 }
 
 TEST_F(BricksTest, RealMeshes) {

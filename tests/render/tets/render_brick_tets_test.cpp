@@ -11,6 +11,7 @@
 #include "lib/temp_folder.h"
 #include "pixel_wedge.h"
 #include "render/hex_meshes.h"
+#include "subvol/limit.h"
 #include "subvol/refine.h"
 #include "subvol/split.h"
 #include "subvol/topology.h"
@@ -52,13 +53,15 @@ HexMesh as_it_is(HexMesh brick) {
 class RenderBrickTets : public test::TempFolder {
 protected:
     void expect_same(const HexMesh& mesh, const SplitOptions& split, const BrickTetsOptions& options) const {
-        const TetsRenderer renderer(refine(mesh, options.refine));
+        const TetsRenderer renderer(on_limit(refine(mesh, options.refine), options.refine.scheme.kind));
         const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
         const std::size_t count = bricks.bricks.size();
         BrickTets all = measure_tets(bricks, options, 0, count / 2);
         all.add(measure_tets(bricks, options, count / 2, count));
         EXPECT_LT(all.overhang, 0.5);  // of cells that are nearly cubes
-        EXPECT_EQ(all.overhang > 0, options.refine.levels > 0 && options.refine.scheme.kind == Scheme::Mcq);
+        if (interpolates(options.refine.scheme.kind)) {
+            EXPECT_EQ(all.overhang > 0, options.refine.levels > 0 && options.refine.scheme.kind == Scheme::Mcq);
+        }
         for (const View& view : views()) {
             const TetsResult whole = renderer.draw(view, optics(), options.tets);
             const TetsResult found = render_tets(bricks, as_it_is, all, view, optics(), options);
@@ -88,6 +91,18 @@ TEST_F(RenderBrickTets, HasTheBitsOfTheWhole) {
     expect_same(mesh, split, {.refine = {.scheme = {.kind = Scheme::Linear}}, .memory_bytes = kSmall});
     const Clip clip{.planes = {{{0.5, 0.5, 0.5}, {1, 0.2, 0}}}, .box = Box{{0.1, 0.2, -9}, {9, 0.8, 0.9}}};
     expect_same(mesh, split, {.tets = {.clip = clip, .rows = {8, 24}}, .memory_bytes = kSmall});
+}
+
+TEST_F(RenderBrickTets, HasTheBitsOfTheLimitOfSplines) {
+    HexMesh creased = body();
+    tag_creases(creased, 40);
+    for (const Scheme scheme : {Scheme::CatmullClark, Scheme::Bsxw}) {
+        for (const SplitOptions& split : {SplitOptions{.bricks = 5, .shape = BrickShape::Slabs}, SplitOptions{.bricks = 8},
+                                          SplitOptions{.bricks = 5, .shape = BrickShape::Random}}) {
+            expect_same(body(), split, {.refine = {.scheme = {scheme}}, .memory_bytes = 4 << 20});
+        }
+        for (const int levels : {0, 2}) expect_same(creased, {.bricks = 6}, {.refine = {.scheme = {scheme}, .levels = levels}});
+    }
 }
 
 TEST_F(RenderBrickTets, KeepsSharpEdges) {
@@ -124,8 +139,6 @@ TEST_F(RenderBrickTets, HasWhatLeavesTheControlCells) {
 TEST_F(RenderBrickTets, SaysWhatItCannotDo) {
     const Bricks bricks = split_mesh(path("b"), body(), {.bricks = 2}).bricks;
     const auto measured = [&](const BrickTetsOptions& options) { return measure_tets(bricks, options, 0, 2); };
-    test::expect_error(ErrorCode::InvalidInput, "mcq or linear",
-                       [&] { (void)measured({.refine = {.scheme = {.kind = Scheme::CatmullClark}}}); });
     test::expect_error(ErrorCode::InvalidInput, "0 to 10", [&] { (void)measured({.refine = {.levels = 11}}); });
     test::expect_error(ErrorCode::InvalidInput, "a larger --memory", [&] { (void)measured({.refine = {.levels = 10}}); });
     const BrickTets all = measured({});

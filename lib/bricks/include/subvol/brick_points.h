@@ -26,7 +26,7 @@ struct BrickPoints {
 /// Samples the points that a brick owns.
 ///
 /// brick:   as `read_brick` returns it, perhaps with other attributes
-/// options: one interval per edge, values of the scheme; the schemes MCQ and linear
+/// options: one interval per edge, values of the scheme
 /// throws:  Error(InvalidInput) as `sample_rbf_points`, for other options, and if the bricks have too few layers of halo
 [[nodiscard]] BrickPoints sample_brick(const Bricks& bricks, BrickMesh brick, const SampleOptions& options = {});
 

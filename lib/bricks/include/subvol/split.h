@@ -23,7 +23,8 @@ enum class BrickShape { Blocks, Slabs, Random };
 
 /// bricks:      how many; 0: as many as `memory_bytes` asks for
 /// memory_bytes: about the most that a command takes for one brick; some 1,000 bytes a cell
-/// halo_layers: 1 to 16. Values, gradients and kernels of the schemes MCQ and linear need 3, all others 4
+/// halo_layers: 1 to 16. Values and gradients of the limit need 3, and so do kernels of the schemes MCQ and linear; those of
+///              other schemes need 4. Kernels with the correction `Full` need one more
 /// seed:        of random bricks
 struct SplitOptions {
     std::size_t bricks = 0;

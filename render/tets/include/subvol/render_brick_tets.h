@@ -11,7 +11,7 @@
 
 namespace subvol {
 
-/// refine:       of the mesh; the schemes MCQ and linear
+/// refine:       of the mesh, onto the limit where the scheme does not interpolate
 /// tets:         as for a mesh in one piece
 /// memory_bytes: about the most that the cells of a part of the picture take; besides there is a brick
 struct BrickTetsOptions {
@@ -22,7 +22,7 @@ struct BrickTetsOptions {
 
 /// What every picture of the tetrahedra of a refined mesh in bricks depends on.
 ///
-/// bounds:    of the refined points
+/// bounds:    of the refined points, on the limit
 /// of_bricks: the same of each brick
 /// overhang:  how far a refined cell reaches out of the box of its control cell at most, as a part of that box's diagonal
 struct BrickTets {
@@ -37,13 +37,13 @@ struct BrickTets {
 
 /// Measures the tetrahedra of some bricks, from `begin` to before `end`. Each brick is read and refined once.
 ///
-/// throws: as `read_brick` and `refine`; Error(InvalidInput) for other schemes, or if the bricks have fewer than three layers
-/// of
-///         halo; Error(Cancelled)
+/// throws: as `read_brick` and `refine`; Error(InvalidInput) if the bricks have fewer than three layers of halo;
+///         Error(Cancelled)
 [[nodiscard]] BrickTets measure_tets(const Bricks& bricks, const BrickTetsOptions& options, std::size_t begin, std::size_t end);
 
-/// Draws a mesh in bricks: the picture has the bits of `render_tets` of the whole mesh, refined. For each part of the picture
-/// the cells that its rays may cross are gathered and refined; parts are halved until these cells fit into the memory.
+/// Draws a mesh in bricks: the picture has the bits of `render_tets` of the whole mesh, refined and moved to the limit. For
+/// each part of the picture the cells that its rays may cross are gathered and refined; parts are halved until these cells fit
+/// into the memory.
 ///
 /// fields:  leaves one field of one channel in a brick
 /// all:     `measure_tets` of all bricks in their order

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "subvol/limit_level.h"
+#include "subvol/refine.h"
 
 namespace subvol::detail {
 
@@ -32,5 +33,16 @@ struct LimitExtent {
 /// ranges: least and largest value of each attribute in the whole mesh, of all channels together
 [[nodiscard]] LimitCells find_limit_cells(const HexMesh& part, RefineOptions refinement, const LimitCellsOptions& options,
                                           std::span<const std::array<double, 2>> ranges);
+
+/// `on_limit` of a part of a mesh. Points whose cells are all in the part get the bits that they have in the whole mesh.
+[[nodiscard]] HexMesh on_limit_of_part(HexMesh part, Scheme scheme);
+
+/// Some cells refined and moved to the limit: with the bits of `on_limit` of the whole mesh, refined.
+///
+/// mesh:    perhaps a part, with `kHaloOfLimit` layers about these cells
+/// cells:   of this mesh, each once
+/// returns: the descendants of cells[0], then those of cells[1], and so on
+/// throws:  as `refine`
+[[nodiscard]] HexMesh limit_of_cells(const HexMesh& mesh, std::span<const Index> cells, const RefineOptions& options);
 
 }  // namespace subvol::detail

@@ -11,8 +11,8 @@ namespace subvol::detail {
 /// One kernel at each point of a part of a mesh, without a boundary: those at points that are far enough from where the part
 /// ends have the bits that `sample_rbf_points` gives them in the whole mesh.
 ///
-/// options:  as for `sample_rbf_points`: one interval per edge, values of the scheme, and a scheme that interpolates
-/// diagonal: of the whole mesh's bounding box
+/// options:  as for `sample_rbf_points`: one interval per edge, values of the scheme
+/// diagonal: of the bounding box of the whole mesh's control points
 /// throws:   Error(InvalidInput) as `sample_rbf_points`, and for other options
 [[nodiscard]] SampleResult sample_part(HexMesh part, const SampleOptions& options, double diagonal);
 
