@@ -38,7 +38,7 @@ void SplatArguments::add_to(CLI::App& app) {
     app.add_flag("--plain-sums", plain_sums, "splat: add kernels up without dividing by the sum of their weights");
     app.add_option("--sheet-sums", sheet_sums,
                    "splat: numbers that kernels are added up in: floats; fixed (whole numbers: the same bits in any order, and "
-                   "ranks send sums, not kernels); auto (default: fixed above 20 million kernels)")
+                   "ranks send sums, not kernels); auto (default: fixed above 20 million kernels on few --sheets)")
         ->type_name("NAME")
         ->check(offered({"auto", "floats", "fixed"}));
     app.add_option("--seconds", seconds,
@@ -92,9 +92,15 @@ SplatOptions SplatArguments::options(const std::string& method) const {
     return options;
 }
 
-bool sums_in_fixed_point(const std::string& sheet_sums, std::uint64_t kernels, bool bounded, const SplatOptions& options) {
+bool sums_in_fixed_point(const std::string& sheet_sums, std::uint64_t kernels, std::uint64_t pixels, bool bounded,
+                         const SplatOptions& options) {
     if (sheet_sums != "auto") return sheet_sums == "fixed";
     if (kernels <= kKernelsOfFixedSums || !bounded || options.shadows || options.ambient_occlusion > 0) return false;
+    // As many sheets as kernels need have more sums than there are kernels, up to some 10⁹ of these.
+    if (options.sheets == 0 || options.sheets > kMostFixedSheets) return false;
+    const double rays = static_cast<double>(pixels) * options.samples * options.samples;
+    constexpr double kBytesOfKernel = 68, kBytesOfSums = 16;
+    if (rays * options.sheets * kBytesOfSums > static_cast<double>(kernels) * kBytesOfKernel) return false;
     if (options.method != SplatMethod::Auto) return options.method == SplatMethod::Cpu;
     const auto devices = gl_devices();
     return !options.device && std::ranges::none_of(devices, [](const GlDevice& device) { return device.hardware; });

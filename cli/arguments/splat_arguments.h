@@ -43,8 +43,9 @@ struct SplatArguments {
 ///
 /// sheet_sums: of --sheet-sums: auto, floats, fixed
 /// kernels:    of the whole picture
+/// pixels:     of the picture
 /// bounded:    there is a boundary
-[[nodiscard]] bool sums_in_fixed_point(const std::string& sheet_sums, std::uint64_t kernels, bool bounded,
+[[nodiscard]] bool sums_in_fixed_point(const std::string& sheet_sums, std::uint64_t kernels, std::uint64_t pixels, bool bounded,
                                        const SplatOptions& options);
 
 /// Adds the seconds, the backend and the device of a splatted picture to the report.

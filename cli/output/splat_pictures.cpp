@@ -23,6 +23,10 @@ void report_shipped(const ShippedKernels& shipped, Ranks& ranks, Report& report)
     report["kernel_bytes_sent"] = counts[1];
 }
 
+std::uint64_t pixels_of(const View& view) {
+    return static_cast<std::uint64_t>(view.width()) * static_cast<std::uint64_t>(view.height());
+}
+
 /// One picture, of which this process draws its rows.
 SplatResult draw_rows(const RbfVolume& volume, const BoundaryValues& skin, const View& view, const Optics& optics,
                       const SplatWork& work, bool fixed, Progress* progress, Report& report) {
@@ -82,7 +86,8 @@ void write_splats(LevelOfDetail& levels, const BoundaryValues& skin, const std::
         const RbfVolume& shown = levels.of(view, report);
         if (splatter && levels.has_changed()) splatter->set_kernels(shown);
         if (!splatter && !work.rows.share) prepare(shown);
-        const bool fixed = sums_in_fixed_point(work.sheet_sums, shown.size(), !shown.boundary.triangles.empty(), work.options);
+        const bool fixed = sums_in_fixed_point(work.sheet_sums, shown.size(), pixels_of(view),
+                                               !shown.boundary.triangles.empty(), work.options);
         if (splatter) splatter->set_fixed_sums(fixed ? std::optional<FixedSums>(std::in_place) : std::nullopt);
         SplatResult drawn = splatter ? splatter->draw(view, optics, progress)
                                      : draw_rows(shown, skin, view, optics, work, fixed, progress, report);
@@ -104,7 +109,8 @@ void write_splats(BricksToSplats what, const std::vector<View>& views, const Opt
                   PictureOutput& output, Report& report) {
     what.options.rows = work.rows.of(views.front().height());
     const bool ranked = work.rows.gathered();
-    what.options.fixed = sums_in_fixed_point(work.sheet_sums, what.bricks.points, true, what.options.splat);
+    what.options.fixed =
+        sums_in_fixed_point(work.sheet_sums, what.bricks.points, pixels_of(views.front()), true, what.options.splat);
     const auto draw = [&](const View& view, Progress*) {
         Surface own = views.size() > 1 ? what.boundary : std::move(what.boundary);
         ShippedKernels shipped;

@@ -14,7 +14,7 @@ namespace subvol {
 // have the same sum in any order and in any groups. So a picture has the same bits however its kernels are divided among
 // processes, and these send each other sums, whose number depends on the picture, not on the number of kernels.
 
-/// Above this number of kernels sums of a picture take less to send than kernels do: `--sheet-sums auto` decides by it.
+/// Up to this number of kernels `--sheet-sums auto` sums floats; above it where sums take fewer bytes than kernels.
 inline constexpr std::uint64_t kKernelsOfFixedSums = 20'000'000;
 
 /// The most sheets that are summed so: a tile of 32 × 32 pixels on all of them is held at once.
