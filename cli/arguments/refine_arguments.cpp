@@ -32,7 +32,7 @@ void check_memory(int level, double cells, double bytes_per_cell) {
 Scheme scheme_named(const std::string& name) {
     if (name == "tetoct" || name == "boxspline") {
         throw Error(ErrorCode::InvalidInput, name + " refines tetrahedra, and this verb or input has hexahedra only",
-                    "--scheme", "info, subdivide, points, render, vdb, probe, surface, slice and page take it");
+                    "--scheme", "info, subdivide, points, render, view, vdb, probe, surface, slice and page take it");
     }
     check_choice("--scheme", name, {"mcq", "cc", "bsxw", "linear"});
     if (name == "cc") return Scheme::CatmullClark;

@@ -90,15 +90,19 @@ RbfVolume sample_reported(HexMesh mesh, const SampleArguments& arguments, const 
     return volume;
 }
 
-RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
-                               const std::optional<TransferFunction>& seen, Report& report) {
-    const SampleOptions options = arguments.options(bounds(mesh), {});
+void refuse_other_places(const SampleArguments& arguments, const SampleOptions& options) {
     const bool placed = options.per_edge != 1 || options.centers || options.spacing_world > 0 || options.footprint ||
                         options.tolerance > 0 || arguments.reduce_rmse > 0 || options.values != ValueRule::Scheme;
     if (placed) {
         throw Error(ErrorCode::InvalidInput, "the schemes of tetrahedra have one kernel at each point of a level", "--scheme",
                     "--levels makes more of them");
     }
+}
+
+RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
+                               const std::optional<TransferFunction>& seen, Report& report) {
+    const SampleOptions options = arguments.options(bounds(mesh), {});
+    refuse_other_places(arguments, options);
     SampleResult sampled = report.timed("sample", [&] {
         return sample_rbf_points(join_split_cells(mesh),
                                  {.correction = options.correction, .kernel = options.kernel, .progress = report.progress()});

@@ -25,6 +25,9 @@ namespace subvol::cli {
 [[nodiscard]] RbfVolume sample_tets_reported(const HexMesh& mesh, const SampleArguments& arguments,
                                              const std::optional<TransferFunction>& seen, Report& report);
 
+/// throws: Error(InvalidInput) for options that place kernels elsewhere than at the points of a level of tetrahedra
+void refuse_other_places(const SampleArguments& arguments, const SampleOptions& options);
+
 /// The same of a grid's voxels.
 ///
 /// app: the verb's; its options that apply to meshes only are refused

@@ -16,6 +16,7 @@
 #include "outputs.h"
 #include "picture_arguments.h"
 #include "points_input.h"
+#include "render_method.h"
 #include "sample_arguments.h"
 #include "sampled_points.h"
 #include "splat_arguments.h"
@@ -25,6 +26,7 @@
 #include "subvol/mesh_series.h"
 #include "subvol/view_session.h"
 #include "subvol/view_window.h"
+#include "tet_refinement.h"
 #include "text.h"
 #include "verb.h"
 
@@ -103,6 +105,9 @@ public:
         const bool headless = !window_ && (!script_.empty() || !screenshot_.empty());
         const std::string script = script_.empty() ? "[]" : text_of(script_);
         ViewSource from = source(report);
+        if (!points) tets_ = TetRefinement(refine_);
+        if (tets_.asked())
+            from.tets = [this, &report](HexMesh mesh, int level) { return tets_.hexes(std::move(mesh), level, report); };
         if (points) from.points = voxels ? voxels_of_file(report) : points_of_file(report);
         play(std::move(from), script, splat, headless, report);
         return 0;
@@ -130,7 +135,11 @@ private:
         HexMesh mesh = points ? mesh_of_points(*from.points.volume) : load_mesh(input_, common(), report);
         std::optional<std::string> field = common().density ? std::optional<std::string>("density") : common().field;
         if (points && !field) field = from.points.volume->channels.front().name;
-        const ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
+        ViewBody body = points ? view_body(mesh, from.points, field) : view_body(mesh, field);
+        if (from.tets) {
+            const std::string name = body.field();
+            body = view_body(from.tets(std::move(body.mesh), is_of_splats(method_) ? 1 : 2), name);
+        }
         const auto methods = methods_of(body);
         if (std::ranges::find(methods, method_) == methods.end()) {
             throw Error(ErrorCode::InvalidInput, points ? "points and voxels have no cells" : "a mesh has no voxels",
@@ -142,6 +151,7 @@ private:
                               .splat = splat,
                               .painted = picture_.look != Look::Solid || picture_.paints_boundary(app(), refine_)};
         settings.sample.progress = nullptr;
+        if (from.tets) refuse_other_places(sample_, settings.sample);
         if (samples_ > 0) settings.samples = samples_;
         ViewSession session(std::move(from), std::move(mesh), start_state(body, field), settings);
         if (!saved_.empty()) session.run(Json{{"load_state", saved_}}.dump());
@@ -245,6 +255,7 @@ private:
     SampleArguments sample_;
     SplatArguments splat_;
     RefineArguments refine_;
+    TetRefinement tets_;
 };
 
 }  // namespace

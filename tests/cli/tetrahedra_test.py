@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Meshes of tetrahedra refined as tetrahedra: --scheme tetoct and boxspline."""
 
+import shlex
 import unittest
 from itertools import permutations
 
@@ -139,6 +140,32 @@ class Tetrahedra(InFolder):
         self.assertEqual(done["tets"], 64 * 6 * SIDE ** 3)  # of level 2, with four in each octahedron
         self.assertEqual((done["inverted_tets"], done["lost_rays"]), (0, 0))
 
+    # Levels are 1 for kernels and 2 for tetrahedra, also after another method was chosen.
+    def test_a_session_shows_the_pictures_of_render(self):
+        small = ("--size", "64x48", "--backend", "cpu", "--density", "sin(2*x)*y+z*z", "--quiet")
+        (self.folder / "other.json").write_text('[{"method": "tets"}, {"wait": true}, {"clip": [[1, 1, 1, 1, 0, 0]]}]')
+        (self.folder / "pick.json").write_text('[{"pick": [32, 24]}]')
+        for scheme in ("tetoct", "boxspline"):
+            for options in ([], ["--look", "volume", "--levels", "2"], ["--edges"], ["--method", "tets", "--axes"], ["--method", "dense"]):
+                asked = ("box.mesh", "--scheme", scheme, *options, *small)
+                self.run_ok("view", *asked, "--screenshot", "view.png")
+                self.run_ok("render", *asked, "-o", "render.png")
+                self.assertEqual((self.folder / "view.png").read_bytes(), (self.folder / "render.png").read_bytes(), asked)
+            asked = ("view", "box.mesh", "--scheme", scheme, *small[:-1], "--screenshot", "view.png", "--json", "--script")
+            done = self.run_ok(*asked, "other.json").json()
+            self.run_ok(*shlex.split(done["render"])[1:], "--quiet")
+            self.assertEqual((self.folder / "view.png").read_bytes(), (self.folder / "picture.png").read_bytes(), done["render"])
+            x, y, z = (picked := self.run_ok(*asked, "pick.json").json()["picked"])["at"]
+            probed = self.run_ok("probe", "box.mesh", "--at", f"{x},{y},{z}", "--scheme", scheme, "--levels", 1, *small[4:6],
+                                 "--json").json()["values"][0]
+            self.assertAlmostEqual(picked["value"], probed["value"], delta=.05)  # cells of level 1 have other diagonals
+
+    def test_a_session_does_not_edit_them(self):
+        for action in ('{"select": "all"}', '{"edit_level": 1}', '{"save_mesh": "a.vtu"}'):
+            (self.folder / "edit.json").write_text(f"[{action}]")
+            self.refused("no control points to edit", "view", "box.mesh", "--scheme", "tetoct", "--script", "edit.json")
+        self.refused("--levels", "view", "box.mesh", "--scheme", "tetoct", "--per-edge", 2, "--screenshot", "a.png")
+
     def test_hexahedra_are_refined_too(self):
         done = self.run_ok("subdivide", "cube.mesh", "-o", "fine.vtu", "--scheme", "tetoct", "--json").json()
         self.assertEqual((done["cells"], done["tets"]), (8, 0))
@@ -146,7 +173,6 @@ class Tetrahedra(InFolder):
         self.assertEqual((done["control_cells"], done["tets"], done["octahedra"]), (6, 24, 6))
 
     def test_what_cannot_be_done_is_said_in_one_sentence(self):
-        self.refused("refines tetrahedra", "view", "box.mesh", "--screenshot", "a.png", "--scheme", "tetoct")
         self.refused("--levels", "points", "box.mesh", "-o", "a.ply", "--scheme", "tetoct", "--per-edge", 2)
         self.refused(".vtu", "subdivide", "box.mesh", "-o", "a.mesh", "--scheme", "boxspline")
         self.refused("levels", "subdivide", "box.mesh", "-o", "a.vtu", "--scheme", "boxspline", "--levels", 9)

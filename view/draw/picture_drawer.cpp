@@ -17,6 +17,7 @@
 #include "subvol/render_grid.h"
 #include "subvol/render_projected.h"
 #include "subvol/render_tets.h"
+#include "subvol/sample_mixed.h"
 #include "subvol/sample_tables.h"
 #include "subvol/splat.h"
 #include "surface_preview.h"
@@ -66,8 +67,9 @@ struct PictureDrawer::State {
         if (skin) return *skin;
         const Stopwatch watch;
         const auto options = [&] {
-            return RefineOptions{
-                .scheme = settings.sample.scheme, .levels = picture_levels(body->mesh, settings.levels), .progress = progress};
+            return RefineOptions{.scheme = settings.sample.scheme,
+                                 .levels = picture_levels(body->mesh, body->tets ? std::optional(0) : settings.levels),
+                                 .progress = progress};
         };
         if (body->moved) {
             if (!tables) tables.emplace(body->mesh, options());
@@ -85,7 +87,11 @@ struct PictureDrawer::State {
         const Stopwatch watch;
         SampleOptions options = settings.sample;
         options.progress = progress;
-        if (settings.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
+        if (body->tets) {
+            volume = sample_rbf_points(join_split_cells(body->mesh),
+                                       {.correction = options.correction, .kernel = options.kernel, .progress = progress})
+                         .volume;
+        } else if (settings.levels) {  // the refined mesh with its trilinear cells takes the place of the limit
             HexMesh fine = refined(*settings.levels, progress);
             options.scheme.kind = Scheme::Linear;
             options.boundary_levels = 0;
@@ -183,9 +189,13 @@ struct PictureDrawer::State {
             throw Error(ErrorCode::InvalidInput, "points and voxels have no cells", "method " + state.method, "method splat");
         }
         if (lit) (void)skin_of(progress, picture);
+        const auto with_cells = [&](const auto& make) {
+            if (body->tets) return make(join_split_cells(body->mesh));
+            return make(refined(settings.levels.value_or(1), progress));
+        };
         if (state.method == "pt" && !projected)
-            projected.emplace(refined(settings.levels.value_or(1), progress), "", settings.splat.device, progress);
-        if (state.method == "tets" && !tets) tets.emplace(refined(settings.levels.value_or(1), progress), "", progress);
+            with_cells([&](const auto& fine) { projected.emplace(fine, "", settings.splat.device, progress); });
+        if (state.method == "tets" && !tets) with_cells([&](const auto& fine) { tets.emplace(fine, "", progress); });
         picture.seconds_build = watch.seconds();
         picture.backend = "cpu";
         if (state.method == "tets") {

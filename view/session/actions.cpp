@@ -78,7 +78,12 @@ constexpr std::array kActions{Action{"orbit", orbit},
 /// Changes the state, unless it cannot be drawn.
 void change(ViewSession::State& session, ViewState next) {
     (void)View(next.camera, next.width, next.height);
-    (void)optics_of(next, *session.body);
+    auto body = session.body_for(next.method);
+    (void)optics_of(next, *body);
+    if (body != session.body) {
+        session.body = std::move(body);
+        session.picked_field.reset();
+    }
     session.state = std::move(next);
     session.show();
 }

@@ -23,6 +23,10 @@ constexpr double kMost = 1e18;
 
 void check_cells(const Session& session) {
     if (session.body->points.volume) throw Error(ErrorCode::InvalidInput, "points have no control mesh to edit");
+    if (session.body->tets) {
+        throw Error(ErrorCode::InvalidInput, "a level of a scheme of tetrahedra has no control points to edit", {},
+                    "the schemes of hexahedra");
+    }
 }
 
 const Selection& chosen(const Session& session) {
@@ -208,6 +212,7 @@ void redo(Session& session, const Json& value) {
 }
 
 void save_mesh(Session& session, const Json& value) {
+    check_cells(session);
     (void)write_mesh(word(value), session.body->mesh);
 }
 

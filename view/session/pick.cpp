@@ -63,7 +63,8 @@ std::vector<std::optional<Picked>> PickedField::at(std::span<const Vec3> places)
     const ProbeResult probed = limit_->at(places);
     for (std::size_t k = 0; k < places.size(); ++k) {
         if (probed.inside(k))
-            found[k] = {places[k], probed.fields[0].values[k], probed.fields[0].gradients[k], probed.cells[k]};
+            found[k] = {places[k], probed.fields[0].values[k], probed.fields[0].gradients[k],
+                        body_->tets ? kNone : probed.cells[k]};
     }
     return found;
 }

@@ -33,6 +33,18 @@ std::pair<std::string, Json> split_action(std::string_view action) {
     return {json.begin().key(), json.begin().value()};
 }
 
+/// Kernels have enough of one level; straight cells need the second.
+int tet_level(const std::string& method) {
+    return method == "splat" || method == "sheets" ? 1 : 2;
+}
+
+std::shared_ptr<const ViewBody> tet_body(const ViewSource& source, HexMesh mesh, const std::string& field,
+                                         const std::string& method) {
+    auto made = std::make_shared<ViewBody>(view_body(source.tets(std::move(mesh), tet_level(method)), field));
+    made->tets = true;
+    return made;
+}
+
 }  // namespace
 
 detail::Json detail::parsed(std::string_view text, const std::string& where) {
@@ -57,10 +69,16 @@ ViewSession::State::State(ViewSource from, HexMesh read, const ViewState& start,
 
 void ViewSession::State::choose_body() {
     const auto field = state.field.empty() ? std::nullopt : std::optional(state.field);
-    auto chosen =
+    std::shared_ptr<const ViewBody> chosen =
         std::make_shared<const ViewBody>(source.points.volume ? view_body(mesh, source.points, field) : view_body(mesh, field));
+    decltype(tet_levels) levels;
+    if (source.tets) {
+        chosen = tet_body(source, chosen->mesh, chosen->field(), state.method);
+        levels[static_cast<std::size_t>(tet_level(state.method)) - 1] = chosen;
+    }
     state.field = chosen->field();
     body = std::move(chosen);
+    tet_levels = std::move(levels);
     picked_field.reset();
     coarse.reset();
     edit_level = 0;
@@ -69,6 +87,13 @@ void ViewSession::State::choose_body() {
     after.clear();
     ++shape;
     grabbed = false;
+}
+
+std::shared_ptr<const ViewBody> ViewSession::State::body_for(const std::string& method) {
+    if (!source.tets) return body;
+    auto& level = tet_levels[static_cast<std::size_t>(tet_level(method)) - 1];
+    if (!level) level = tet_body(source, view_body(mesh, state.field).mesh, state.field, method);
+    return level;
 }
 
 std::shared_ptr<const PickedField> ViewSession::State::field() {
@@ -128,7 +153,7 @@ void ViewSession::State::show() {
     if (!reference) reference = std::make_unique<DrawWorker>(settings, on_picture);
     ViewState other = state;
     other.method = state.compare;
-    reference->show(other, body);
+    reference->show(other, body_for(state.compare));
 }
 
 Image ViewSession::State::composed(const DrawnPicture& picture) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <future>
 #include <memory>
@@ -69,6 +70,8 @@ struct ViewSession::State {
 
     /// Takes the field of the state from the mesh.
     void choose_body();
+    /// What a method draws: of a scheme of tetrahedra one of two levels, of all else the body.
+    [[nodiscard]] std::shared_ptr<const ViewBody> body_for(const std::string& method);
     /// Lets the worker draw the state.
     void show();
     [[nodiscard]] std::shared_ptr<const detail::PickedField> field();
@@ -94,13 +97,14 @@ struct ViewSession::State {
     HexMesh mesh;  // all fields of the step
     ViewState state;
     std::shared_ptr<const ViewBody> body;
-    std::shared_ptr<const detail::PickedField> picked_field;  // of `body`
-    std::optional<CoarseEdit> coarse;                         // the level that is edited; none: the mesh itself
-    int edit_level = 0;                                       // how much coarser it is
-    Selection selection;                                      // of `handles`; empty: nothing
-    std::vector<HexMesh> before, after;                       // for undo and redo
-    std::uint64_t shape = 0;                                  // of the cells that are edited; 0: none yet
-    bool grabbed = false;                                     // a motion in many small edits, which are undone as one
+    std::array<std::shared_ptr<const ViewBody>, 2> tet_levels;  // of the field and step, as far as they were needed
+    std::shared_ptr<const detail::PickedField> picked_field;    // of `body`
+    std::optional<CoarseEdit> coarse;                           // the level that is edited; none: the mesh itself
+    int edit_level = 0;                                         // how much coarser it is
+    Selection selection;                                        // of `handles`; empty: nothing
+    std::vector<HexMesh> before, after;                         // for undo and redo
+    std::uint64_t shape = 0;                                    // of the cells that are edited; 0: none yet
+    bool grabbed = false;                                       // a motion in many small edits, which are undone as one
     std::optional<Picked> picked;
     std::size_t action = 0;
     std::vector<WaitReport> waits;

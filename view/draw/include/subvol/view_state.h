@@ -65,6 +65,9 @@ struct ViewPoints {
 /// moved:   it is being moved, so that tables for its cells pay
 /// points:  shown instead of cells; without a volume: there are cells
 /// channel: of the points
+/// tets:    the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra; drawn as tetrahedra and octahedra, and
+/// with
+///          one kernel at each point
 struct ViewBody {
     HexMesh mesh;
     Box box;
@@ -73,6 +76,7 @@ struct ViewBody {
     bool moved = false;
     ViewPoints points{};
     std::size_t channel = 0;
+    bool tets = false;
 
     [[nodiscard]] const std::string& field() const { return mesh.attributes.front().name; }
 };

@@ -26,6 +26,9 @@ namespace subvol {
 /// more_words:    further words of the render command: options that no action changes
 /// points:        shown instead of a mesh: kernels or voxels, which have one step and are not edited; without a volume: a
 ///                mesh is
+/// tets:          a level of a scheme of tetrahedra for a mesh with one field, on its limit, in hexahedra, which is shown
+///                instead of the mesh and not edited; the settings then have the scheme `linear` and no levels. level: 1 for
+///                kernels, 2 for other methods, unless the user chose another. Empty: the mesh is shown
 struct ViewSource {
     std::string input{};
     std::function<HexMesh(std::size_t step)> read{};
@@ -33,11 +36,12 @@ struct ViewSource {
     std::function<void(const std::filesystem::path& path, const Image& image, const Vec3& background)> write_picture{};
     std::vector<std::string> more_words{};
     ViewPoints points{};
+    std::function<HexMesh(HexMesh mesh, int level)> tets{};
 };
 
 /// What is under a pixel: where most of its light comes from, with the value of the limit, or of the kernels, there.
 ///
-/// cell: kNone of points
+/// cell: kNone of points and of schemes of tetrahedra
 struct Picked {
     Vec3 place{0.0};
     double value = 0;
