@@ -65,9 +65,8 @@ struct ViewPoints {
 /// moved:   it is being moved, so that tables for its cells pay
 /// points:  shown instead of cells; without a volume: there are cells
 /// channel: of the points
-/// tets:    the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra; drawn as tetrahedra and octahedra, and
-/// with
-///          one kernel at each point
+/// tets:    the mesh is a level of a scheme of tetrahedra on its limit, in hexahedra. It is drawn as tetrahedra and octahedra,
+///          or with one kernel at each point
 struct ViewBody {
     HexMesh mesh;
     Box box;
