@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "session_state.h"
 #include "subvol/detail/number_text.h"
 
@@ -56,7 +58,9 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     if (look.clamp) words.emplace_back("--clamp");
     if (state.background) add("--background", comma_separated({state.background->x, state.background->y, state.background->z}));
     if (state.method != "splat") add("--method", state.method);
-    add("--field", body.field());
+    const bool computed =
+        body.field() == "density" && std::ranges::find(source.more_words, "--density") != source.more_words.end();
+    if (!computed) add("--field", body.field());  // --density says which field, and excludes --field
     if (source.times.size() > 1) add("--step", std::to_string(state.step));
     const auto plane_text = [](const CutPlane& plane) {
         const Vec3 &at = plane.point, &normal = plane.normal;
