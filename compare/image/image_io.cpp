@@ -12,6 +12,7 @@
 #include <system_error>
 #include <vector>
 
+#include "openexr.h"
 #include "openimageio.h"
 #include "png_file.h"
 #include "subvol/detail/atomic_file.h"
@@ -83,7 +84,7 @@ void write_file(const fs::path& path, const std::function<std::optional<PictureF
 }
 
 void write_floats(const fs::path& path, const PictureValues& picture) {
-    write_file(path, [&](const std::string& name) { return openimageio().write(name, picture); });
+    write_file(path, [&](const std::string& name) { return openexr().write(name, picture); });
 }
 
 void write_exr(const fs::path& path, const Image& image, std::span<const float> depth) {
@@ -127,6 +128,17 @@ Image linear_image(const DecodedPicture& picture) {
 
 }  // namespace
 
+DecodedPicture detail::read_picture(const fs::path& path, bool wants_depth) {
+    DecodedPicture picture;
+    picture.wants_depth = wants_depth;
+    bool taken = false;
+    std::optional<PictureFault> fault;
+    if (extension_of(path) == ".exr") fault = openexr().read(path.string(), picture, taken);
+    if (!taken) fault = openimageio().read(path.string(), picture);
+    if (fault) throw Error(fault->code, fault->why, path.string());
+    return picture;
+}
+
 std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background) {
     static const EncodedBytes encoded_byte;
     check_image(image);
@@ -162,9 +174,7 @@ void write_image(const fs::path& path, const Image& image, const Vec3& backgroun
 Image read_image(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) throw Error(ErrorCode::Io, "cannot be read: no such file", path.string());
-    DecodedPicture picture;
-    if (const auto fault = openimageio().read(path.string(), picture)) throw Error(fault->code, fault->why, path.string());
-    return linear_image(picture);
+    return linear_image(read_picture(path));
 }
 
 }  // namespace subvol

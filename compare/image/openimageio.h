@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,10 +48,14 @@ struct PictureFault {
     std::string why;
 };
 
+/// Reads a picture of any format, a usual .exr without OpenImageIO.
+///
+/// throws: Error(InvalidInput) if it is malformed
+[[nodiscard]] DecodedPicture read_picture(const std::filesystem::path& path, bool wants_depth = false);
+
 /// The functions of the module that uses OpenImageIO. They throw nothing but std::bad_alloc: the module and the program may
 /// have different copies of the type `Error`.
 struct OpenImageIo {
-    std::optional<PictureFault> (*write)(const std::string& path, const PictureValues& picture);
     std::optional<PictureFault> (*read)(const std::string& path, DecodedPicture& picture);
     OiioMetrics (*compare)(const Image& a, const Image& b, const OiioOptions& options);
     std::size_t (*compare_yee)(const Image& a, const Image& b, float luminance, float field_of_view_deg);

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The module subvol_openimageio.so. OpenImageIO brings 250 libraries, which take a third of a second to load.
-#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
-#include <system_error>
 
 #include "openimageio.h"
 #include "subvol/version.h"
@@ -24,60 +19,6 @@ constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 4 GB as float RGB
 constexpr const char* kNote = "subvolPart";
 
 using Outcome = std::optional<PictureFault>;
-
-PictureFault io_fault(const std::string& why) {
-    return {ErrorCode::Io, "cannot be written: " + why};
-}
-
-std::string first_line(const std::string& text) {
-    return text.substr(0, text.find('\n'));
-}
-
-/// When memory is short, OpenImageIO may leave a picture unfinished without reporting an error.
-bool is_whole(const std::string& path, const OIIO::ImageSpec& spec) {
-    const auto input = OIIO::ImageInput::open(path);
-    std::vector<float> row(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.nchannels));
-    return input && input->read_scanline(spec.y + spec.height - 1, 0, OIIO::TypeDesc::FLOAT, row.data());
-}
-
-OIIO::ImageSpec spec_of(const PictureValues& picture) {
-    OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, OIIO::TypeDesc::FLOAT);
-    spec.attribute("DateTime", "");  // otherwise the time of writing: the same picture must give the same file
-    if (picture.channels == 5) {
-        spec.channelnames = {"R", "G", "B", "A", "Z"};
-        spec.z_channel = 4;
-    }
-    if (picture.whole_height > 0) {
-        spec.y = picture.first_row;
-        spec.full_width = picture.width;
-        spec.full_height = picture.whole_height;
-    }
-    if (picture.note != nullptr) spec.attribute(kNote, picture.note);
-    return spec;
-}
-
-Outcome write(const std::string& path, const PictureValues& picture) {
-    const OIIO::ImageSpec spec = spec_of(picture);
-    // OpenImageIO does not report a full disk in every format; the stream does.
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(path.c_str(), "wb"), &std::fclose);
-    if (!stream) return io_fault(std::generic_category().message(errno));
-    OIIO::Filesystem::IOFile proxy(stream.get(), OIIO::Filesystem::IOProxy::Write);
-    const auto output = OIIO::ImageOutput::create(path, &proxy);
-    if (!output) {
-        const std::string said = OIIO::geterror();
-        return PictureFault{ErrorCode::MissingCapability, said.empty() ? "cannot be written; memory may be short" : said};
-    }
-    const bool written = output->open(path, spec) && output->write_image(spec.format, picture.values) && output->close();
-    const bool failed = std::ferror(stream.get()) != 0;
-    if (!written && failed) return io_fault(first_line(output->geterror()));
-    if (!written) return PictureFault{ErrorCode::MissingCapability, "cannot be written: " + first_line(output->geterror())};
-    if (std::fclose(stream.release()) != 0) return io_fault(std::generic_category().message(errno));
-    if (failed) return io_fault("the disk is full, or the file is too large");
-    if (!is_whole(path, spec)) {
-        return PictureFault{ErrorCode::MissingCapability, "was not written completely; memory may be short"};
-    }
-    return {};
-}
 
 Outcome read(const std::string& path, DecodedPicture& picture) {
     // Otherwise OpenImageIO premultiplies encoded values; alpha applies to linear light, after decoding.
@@ -144,7 +85,7 @@ const char subvol_module_version[] = SUBVOL_VERSION;
 
 const subvol::detail::OpenImageIo* subvol_openimageio() {
     using namespace subvol::detail;
-    static constexpr OpenImageIo kFunctions{&write, &read, &compare, &compare_yee};
+    static constexpr OpenImageIo kFunctions{&read, &compare, &compare_yee};
     return &kFunctions;
 }
 }

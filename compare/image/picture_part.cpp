@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/detail/picture_part.h"
 
-#include "openimageio.h"
+#include "openexr.h"
 #include "subvol/detail/atomic_file.h"
 
 namespace subvol::detail {
@@ -28,16 +28,14 @@ void write_picture_part(const std::filesystem::path& path, const PicturePart& pa
                                 .first_row = part.first_row,
                                 .whole_height = part.whole_height,
                                 .note = part.note.c_str()};
-    if (const auto fault = openimageio().write(file.path().string(), picture)) {
+    if (const auto fault = openexr().write(file.path().string(), picture)) {
         throw Error(fault->code, fault->why, path.string());
     }
     file.commit();
 }
 
 PicturePart read_picture_part(const std::filesystem::path& path) {
-    DecodedPicture picture;
-    picture.wants_depth = true;
-    if (const auto fault = openimageio().read(path.string(), picture)) throw Error(fault->code, fault->why, path.string());
+    DecodedPicture picture = read_picture(path, /*wants_depth=*/true);
     PicturePart part{.rows = {},
                      .depth = std::move(picture.depth),
                      .first_row = picture.first_row,

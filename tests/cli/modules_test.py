@@ -54,11 +54,11 @@ class Installation(InFolder):
 
     def test_says_which_module_is_missing(self):
         (self.folder / "cube.mesh").write_text(CUBE.format(last=8))
-        for name in ("openimageio", "openvdb"):
+        for name in ("openexr", "openvdb"):
             self.module(name).unlink()
         for words, sentence in [
                 (("render", "cube.mesh", "-o", "a.exr", "--size", "16"),
-                 "subvol: reading, writing or comparing pictures needs the module subvol_openimageio.so, which is not installed"),
+                 "subvol: reading or writing .exr pictures needs the module subvol_openexr.so, which is not installed"),
                 (("vdb", "cube.mesh", "-o", "a.vdb"),
                  "subvol: reading, writing or computing grids needs the module subvol_openvdb.so, which is not installed")]:
             done = self.run_installed(*words)
