@@ -39,7 +39,9 @@ TEST(MixedTets, TetrahedraAsTheyAreGiveThePictureOfTheirHexahedra) {
 }
 
 TEST(MixedTets, AMixedMeshNeedsAFieldOfOneChannel) {
-    MixedMesh mesh{.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .tets = {{0, 1, 2, 3}}};
+    MixedMesh mesh;
+    mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.tets = {{0, 1, 2, 3}};
     EXPECT_THROW(TetsRenderer{mesh}, Error);
     mesh.attributes = {{"v", 3, std::vector<double>(12)}};
     EXPECT_THROW(TetsRenderer{mesh}, Error);
