@@ -29,12 +29,12 @@ class Parts(Shared):
     def test_creases_go_through_shares(self):
         crease = ["--crease-angle", "30"]
         grids, picture = ["--resolution", "64", "--quiet", *crease], [*PICTURE, *crease]
-        self.run_ok("points", "model:pawn", "-o", "one.ply", "--per-edge", "2", *crease)
-        self.run_ok("vdb", "model:pawn", "-o", "one.vdb", *grids)
-        self.run_ok("render", "model:pawn", "-o", "one.exr", *picture)
+        self.run_ok("points", "model:twist:6", "-o", "one.ply", "--per-edge", "2", *crease)
+        self.run_ok("vdb", "model:twist:6", "-o", "one.vdb", *grids)
+        self.run_ok("render", "model:twist:6", "-o", "one.exr", *picture)
         for verb, extension, options in (("points", ".ply", ["--per-edge", "2", *crease]), ("vdb", ".vdb", grids),
                                          ("render", ".exr", picture)):
-            names = self.parts(verb, "model:pawn", extension, 3, *options)
+            names = self.parts(verb, "model:twist:6", extension, 3, *options)
             self.run_ok("join", *names, "-o", "joined" + extension)
         self.assertEqual(self.bytes_of("joined.ply"), self.bytes_of("one.ply"))
         self.assertEqual(self.grids("joined.vdb"), self.grids("one.vdb"))
@@ -175,7 +175,7 @@ class Ranks(WithRanks):
         for options in ([], ["--look", "volume", "--samples", "2"], ["--look", "isosurface"], ["--clip", "0,0,0,1,1,0"]):
             options = [*options, "--sheet-sums", "fixed"]
             self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
-            for count in COUNTS[1:] if len(options) == 2 else (3,):
+            for count in (2, 7) if len(options) == 2 else (3,):
                 self.ranks(count, "render", "model:ball:4", "-o", "ranks.exr", *PICTURE, *options)
                 self.assertEqual(self.bytes_of("ranks.exr"), self.bytes_of("one.exr"), (options, count))
             names = self.parts("render", "model:ball:4", ".exr", 3, *PICTURE, *options)
