@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "subvol/detail/kernel_bytes.h"
-#include "subvol/detail/ply_rows.h"
+#include "subvol/detail/kernel_rows.h"
 #include "subvol/detail/points_range.h"
 #include "subvol/splat_shares.h"
 
@@ -99,13 +99,13 @@ BrickPointsReport write_points_ranked(const std::filesystem::path& path, const B
     Surface boundary;
     if (ranks.first()) boundary = sample_bricks_boundary(bricks, options);
     report.triangles = boundary.triangles.size();
-    std::optional<detail::PlyRows> rows;
+    std::optional<detail::KernelRows> rows;
     sample_in_rounds(bricks, options, fields, ranks, [&](const BrickPoints& points) {
         report.flat_frames += points.flat_frames;
         for (const std::string& bytes : ranks.gather(packed(points.volume, points.numbers))) {
             const auto [volume, numbers] = unpacked(bytes);
             if (numbers.empty()) continue;
-            if (!rows) rows.emplace(path, volume, bricks.points, boundary);
+            if (!rows) rows.emplace(path, volume, bricks.points, boundary, std::string(), options.progress);
             rows->write(numbers, volume);
             report.points += numbers.size();
             for (const float value : volume.channels.front().values) {
@@ -114,7 +114,7 @@ BrickPointsReport write_points_ranked(const std::filesystem::path& path, const B
             }
         }
     });
-    if (rows) rows->finish(boundary);
+    if (rows) rows->finish();
     return report;
 }
 

@@ -195,12 +195,12 @@ private:
 
     /// One part at a time: the whole may not fit into memory.
     void join_points_of_bricks(const std::vector<std::size_t>& order, Report& report) {
-        check_output(output_, {".ply"});
+        check_output(output_, {".ply", ".svk"});
         const auto points = how("points", std::uint64_t{0});
         std::vector<std::filesystem::path> files;
         for (const std::size_t p : order) files.emplace_back(parts_[p]);
         const BrickPointsReport written =
-            report.timed("write", [&] { return subvol::join_points_of_bricks(output_, files, points); });
+            report.timed("write", [&] { return subvol::join_points_of_bricks(output_, files, points, report.progress()); });
         report["output"] = output_;
         report["points"] = written.points;
     }

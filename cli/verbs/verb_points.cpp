@@ -227,8 +227,11 @@ private:
 
     /// Brick by brick into one file; the memory is that of a brick.
     void write_bricks(const Share& share, Report& report) {
-        if (!output_.ends_with(".ply") || ascii_ || splats_) {
-            throw Error(ErrorCode::InvalidInput, "points of bricks are written as binary .ply only", output_,
+        const bool blocks = output_.ends_with(".svk") && !share_.given();
+        if ((!output_.ends_with(".ply") && !blocks) || ascii_ || splats_) {
+            const std::string form = share_.given() ? "shares of points of bricks are" : "points of bricks are";
+            throw Error(ErrorCode::InvalidInput,
+                        form + " written as binary .ply" + (share_.given() ? "" : " or .svk") + " only", output_,
                         "-o NAME.ply without --ascii and --splats");
         }
         refuse_options(app(), {"--levels", "--threshold", "--tf", "--reduce", "--clamp", "--error", "--merge"},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "subvol/detail/kernel_rows.h"
 #include "subvol/detail/part_of_progress.h"
 #include "subvol/detail/ply_rows.h"
 #include "subvol/detail/points_range.h"
@@ -59,9 +60,9 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
     std::uint64_t points_of_share = 0;
     for (std::size_t b = begin; b < end; ++b) points_of_share += bricks.bricks[b].points;
     BrickPointsReport report{.min = HUGE_VAL, .max = -HUGE_VAL, .triangles = boundary.triangles.size()};
-    std::optional<detail::PlyRows> rows;
+    std::optional<detail::KernelRows> rows;
     const auto start = [&](const RbfVolume& like) {
-        rows.emplace(path, like, points_of_share, boundary, share ? share->note : std::string());
+        rows.emplace(path, like, points_of_share, boundary, share ? share->note : std::string(), options.progress);
     };
     for (std::size_t b = begin; b < end; ++b) {
         detail::PartOfProgress progress(options.progress, "sample", b - begin, end - begin);
@@ -87,12 +88,12 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
         none.channels.push_back({.name = "value"});
         start(none);
     }
-    rows->finish(boundary);
+    rows->finish();
     return report;
 }
 
 BrickPointsReport join_points_of_bricks(const std::filesystem::path& path, std::span<const std::filesystem::path> parts,
-                                        std::uint64_t points) {
+                                        std::uint64_t points, Progress* progress) {
     std::uint64_t bytes = 0;
     for (const std::filesystem::path& part : parts) {
         std::error_code error;
@@ -105,7 +106,7 @@ BrickPointsReport join_points_of_bricks(const std::filesystem::path& path, std::
     }
     std::vector<bool> found(points);
     Surface boundary;
-    std::optional<detail::PlyRows> rows;
+    std::optional<detail::KernelRows> rows;
     BrickPointsReport report;
     for (const std::filesystem::path& part : parts) {
         detail::NumberedPoints read = detail::read_numbered_points(part);
@@ -120,12 +121,12 @@ BrickPointsReport join_points_of_bricks(const std::filesystem::path& path, std::
                         part.string(), "all parts of one mesh, each once");
         }
         if (read.numbers.empty()) continue;
-        if (!rows) rows.emplace(path, read.volume, points, boundary);
+        if (!rows) rows.emplace(path, read.volume, points, boundary, std::string(), progress);
         rows->write(read.numbers, read.volume);
         report.points += read.numbers.size();
     }
     if (!rows) throw Error(ErrorCode::InvalidInput, "has no points, and neither have the other parts", parts.front().string());
-    rows->finish(boundary);
+    rows->finish();
     report.triangles = boundary.triangles.size();
     return report;
 }

@@ -53,7 +53,7 @@ std::unique_ptr<CellCenters> centers_of(PieceTables& tables, const std::filesyst
         parallel_each(cells.size(), [&](std::size_t c) {
             std::array<Vec3, 8> x;
             for (std::size_t k = 0; k < 8; ++k) x[k] = points[corners.place(cells[c][k])];
-            if (cell_volume(x) < 0) {
+            if (!tables.turned && cell_volume(x) < 0) {
                 std::swap_ranges(x.begin(), x.begin() + 4, x.begin() + 4);
                 ++turned;
             }

@@ -10,7 +10,6 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kWaiting = 1024;               // records of a bucket
 constexpr std::size_t kRoom = std::size_t{1} << 20;  // numbers before the first search for equal ones; words of flags
 constexpr double kLargestWhole = 9007199254740992;   // 2⁵³
 
@@ -97,44 +96,22 @@ Index RanksOfNumbers::rank(double number) const {
     return before_[w] + static_cast<Index>(std::popcount(words_[w] & lower));
 }
 
-RanksOfPlaces::RanksOfPlaces(const std::filesystem::path& folder)
-    : records_(folder, sizeof(Record)), waiting_(kBuckets), parts_(kBuckets) {
+RanksOfPlaces::RanksOfPlaces(const std::filesystem::path& folder) : records_(folder, kBuckets) {
 }
 
 void RanksOfPlaces::add_piece(std::span<const Vec3> points) {
     std::uint64_t number = ends_.empty() ? 0 : ends_.back();
     for (const Vec3& point : points) {
         const Vec3 place = point + 0.0;  // -0 is 0
-        const std::size_t bucket = hash_of(place) % kBuckets;
         const bool finite = std::isfinite(place.x) && std::isfinite(place.y) && std::isfinite(place.z);
-        if (finite) waiting_[bucket].push_back({place, number});
-        if (waiting_[bucket].size() == kWaiting) flush(bucket);
+        if (finite) records_.add(hash_of(place) % kBuckets, {place, number});
         ++number;
     }
     ends_.push_back(number);
 }
 
-void RanksOfPlaces::flush(std::size_t bucket) {
-    if (waiting_[bucket].empty()) return;
-    records_.write(written_, records_of(waiting_[bucket]));
-    parts_[bucket].emplace_back(written_, waiting_[bucket].size());
-    written_ += waiting_[bucket].size();
-    waiting_[bucket].clear();
-}
-
 void RanksOfPlaces::finish() {
-    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
-        flush(bucket);
-        std::vector<Record> records;
-        for (const auto& [first, count] : parts_[bucket]) {
-            const std::size_t before = records.size();
-            records.resize(before + count);
-            records_.read(first, records_of(records).subspan(before * sizeof(Record)));
-        }
-        find_joined(std::move(records));
-    }
-    waiting_.clear();
-    parts_.clear();
+    for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) find_joined(records_.take(bucket));
     std::ranges::sort(joined_);
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "spill_file.h"
+#include "spill_buckets.h"
 #include "subvol/vec.h"
 
 namespace subvol::detail {
@@ -58,15 +58,11 @@ private:
     };
     static constexpr std::size_t kBuckets = 256;
 
-    void flush(std::size_t bucket);
     void find_joined(std::vector<Record> records);
 
-    SpillFile records_;
-    std::uint64_t written_ = 0;
-    std::vector<std::vector<Record>> waiting_;
-    std::vector<std::vector<std::pair<std::uint64_t, std::size_t>>> parts_;  // of each bucket: first record and count
-    std::vector<std::uint64_t> ends_;                                        // of the pieces
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> joined_;            // a point, and the first at its place
+    SpillBuckets<Record> records_;
+    std::vector<std::uint64_t> ends_;                              // of the pieces
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> joined_;  // a point, and the first at its place
     std::uint64_t taken_ = 0;
     std::size_t next_joined_ = 0;
 };

@@ -40,6 +40,10 @@ public:
                 throw Error(ErrorCode::InvalidInput, "too many points or cells", list_);
             }
             for (const Vec3& x : piece->points) survey_.box.add(x);
+            const bool others =
+                !piece->tets.corners.empty() || !piece->prisms.corners.empty() || !piece->pyramids.corners.empty();
+            survey_.others = survey_.others || others;
+            survey_.cut = survey_.cut || piece->cut;
             look_at_arrays(*piece);
             for (PieceSurvey::Numbers& numbers : survey_.point_numbers)
                 look_at_numbers(*piece, false, survey_.hashes.size() - 1, numbers);
@@ -61,9 +65,6 @@ public:
 
 private:
     [[nodiscard]] static std::string why_whole(const MeshFile& piece) {
-        if (!piece.tets.corners.empty()) return "it has tetrahedra";
-        if (!piece.prisms.corners.empty()) return "it has prisms";
-        if (!piece.pyramids.corners.empty()) return "it has pyramids";
         if (piece.curved.size() > 0) return "it has curved cells";
         const FileArray* ghosts = find_array(piece, kGhostArray, false, 1);
         if (ghosts && std::ranges::any_of(ghosts->values, hides_point)) return "it has hidden points";
@@ -96,7 +97,7 @@ private:
             return;
         }
         std::vector<double> values;
-        each_cell(piece, [&](std::size_t, std::size_t number, bool is_ghost) {
+        each_cell(piece, [&](const auto&, std::size_t number, bool is_ghost) {
             numbers.whole = numbers.whole && is_whole(array->values[number]);
             if (!is_ghost) values.push_back(array->values[number]);
         });
@@ -144,7 +145,7 @@ std::optional<MeshFile> PieceStream::next() {
 std::uint64_t hash_of(const MeshFile& piece) {
     ByteHash hash;
     hash.add(bytes_of(piece.points));
-    hash.add(bytes_of(piece.hexes.corners));
+    each_kind(piece, [&](const auto& cells) { hash.add(bytes_of(cells.corners)); });
     for (const FileArray& array : piece.arrays) {
         hash.add_text(array.name);
         hash.add(bytes_of(array.values));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -39,14 +41,19 @@ private:
     double part_ = 0;
 };
 
-/// Calls call(place in the list, number in the file, whether it is a ghost) for each hexahedron of a piece.
+/// Calls call(corners, number in the file, whether it is a ghost) for each cell of a piece. The corners of other cells than
+/// hexahedra end in kNone.
 template <class Call>
 void each_cell(const MeshFile& piece, const Call& call) {
     const FileArray* ghosts = find_array(piece, kGhostArray, true, 1);
-    for (std::size_t c = 0; c < piece.hexes.corners.size(); ++c) {
-        const std::size_t number = piece.hexes.numbers.empty() ? c : piece.hexes.numbers[c];
-        call(c, number, ghosts && leaves_out_cell(ghosts->values[number]));
-    }
+    each_kind(piece, [&](const auto& cells) {
+        for (std::size_t c = 0; c < cells.corners.size(); ++c) {
+            std::array<Index, 8> corners;
+            std::ranges::fill(std::ranges::copy(cells.corners[c], corners.begin()).out, corners.end(), kNone);
+            const std::size_t number = cells.numbers.empty() ? c : cells.numbers[c];
+            call(corners, number, ghosts && leaves_out_cell(ghosts->values[number]));
+        }
+    });
 }
 
 /// Of all that was read of a piece.
@@ -56,6 +63,7 @@ void each_cell(const MeshFile& piece, const Call& call) {
 ///
 /// hashes:     of the pieces that are not empty; first_cells: how many cells the pieces before have
 /// with_cells: how many pieces have any
+/// others:     there are other cells than hexahedra; cut: as in MeshFile
 /// arrays:     each with the number of pieces that have it
 struct PieceSurvey {
     /// An array that may number points or cells. parts: how many pieces have it; whole: whether its numbers are
@@ -69,6 +77,7 @@ struct PieceSurvey {
     std::vector<std::uint64_t> hashes;
     std::vector<std::size_t> first_cells;
     std::size_t cells = 0, with_cells = 0;
+    bool others = false, cut = false;
     Box box;
     std::vector<std::pair<FileArray, std::size_t>> arrays;
     std::vector<Numbers> point_numbers, cell_numbers;
@@ -83,8 +92,8 @@ struct PieceSurvey {
 /// Reads all pieces once.
 ///
 /// list:    the name of the list of pieces, for messages
-/// returns: nothing if the pieces cannot be joined one by one; `why` is then a reason such as "it has tetrahedra"
-/// throws:  Error(InvalidInput) if there are no hexahedra, or too many
+/// returns: nothing if the pieces cannot be joined one by one; `why` is then a reason such as "it has curved cells"
+/// throws:  Error(InvalidInput) if there are no cells, or too many
 [[nodiscard]] std::optional<PieceSurvey> survey_pieces(PieceStream& stream, const std::string& list, std::string& why);
 
 }  // namespace subvol::detail

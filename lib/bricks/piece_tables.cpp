@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "assemble.h"
+#include "piece_split.h"
 #include "piece_survey.h"
 #include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
@@ -19,17 +20,30 @@ namespace {
 
 constexpr std::size_t kPointsOfChunk = std::size_t{1} << 16;  // points that are checked together
 
+std::size_t& count_of(CellCounts& counts, std::size_t corners) {
+    return corners == 8 ? counts.hexes : corners == 4 ? counts.tets : corners == 6 ? counts.prisms : counts.pyramids;
+}
+
 // Reads the pieces, and puts them into the tables.
 class Maker {
 public:
     Maker(const PartFiles& files, std::string list, std::filesystem::path folder, const ReadOptions& options,
           Progress* progress, std::string& why)
-        : files_(files), list_(std::move(list)), folder_(std::move(folder)), stream_(files, options, progress), why_(why) {}
+        : files_(files),
+          list_(std::move(list)),
+          folder_(std::move(folder)),
+          stream_(files, options, progress),
+          refuses_others_(options.other_cells == OtherCells::Refuse),
+          why_(why) {}
 
     std::unique_ptr<PieceTables> run() {
         std::optional<PieceSurvey> survey = survey_pieces(stream_, list_, why_);
         if (!survey) return {};
         survey_ = std::move(*survey);
+        if (survey_.others && refuses_others_) {
+            why_ = "it has other cells than hexahedra";
+            return {};
+        }
         const auto everywhere = [&](const PieceSurvey::Numbers& n) { return n.parts == survey_.pieces(); };
         const auto numbers = std::ranges::find_if(survey_.point_numbers, everywhere);
         if (numbers != survey_.point_numbers.end() && !numbers->whole) {
@@ -165,18 +179,23 @@ private:
 
     bool add_cells(const MeshFile& piece, std::size_t k) {
         const FileArray* numbers = survey_.order ? find_array(piece, survey_.order->name, true, 1) : nullptr;
-        std::vector<Index> ranks, places, in_file;
+        std::vector<Index> ranks, in_file;
+        std::vector<std::array<Index, 8>> cells;
         bool collapsed = false;
-        each_cell(piece, [&](std::size_t c, std::size_t number, bool is_ghost) {
-            if (is_ghost) return;
-            std::array<Index, 8> corners;
-            for (std::size_t i = 0; i < 8; ++i) {
-                corners[i] = ranks_[piece.hexes.corners[c][i]];
-                for (std::size_t j = 0; j < i; ++j) collapsed = collapsed || corners[i] == corners[j];
-                tables_->used.set(corners[i]);
+        each_cell(piece, [&](std::array<Index, 8> corners, std::size_t number, bool is_ghost) {
+            if (is_ghost) {
+                ++ghosts_;
+                return;
             }
+            std::size_t count = 0;
+            for (; count < 8 && corners[count] != kNone; ++count) {
+                corners[count] = ranks_[corners[count]];
+                for (std::size_t j = 0; j < count; ++j) collapsed = collapsed || corners[count] == corners[j];
+                tables_->used.set(corners[count]);
+            }
+            ++count_of(tables_->counts, count);
+            cells.push_back(corners);
             ranks.push_back(numbers ? survey_.order->ranks.rank(numbers->values[number]) : static_cast<Index>(tables_->cells));
-            places.push_back(static_cast<Index>(c));
             in_file.push_back(static_cast<Index>(number));
             ++tables_->cells;
         });
@@ -184,7 +203,6 @@ private:
             why_ = "it has cells that repeat points";
             return false;
         }
-        ghosts_ += piece.hexes.corners.size() - ranks.size();
         std::vector<Index> order(ranks.size());
         std::iota(order.begin(), order.end(), Index{0});
         const auto rank = [&](Index i) { return ranks[i]; };
@@ -194,8 +212,7 @@ private:
         for (const Index i : order) {
             sorted.push_back(ranks[i]);
             sorted_in_file.push_back(in_file[i]);
-            corners.push_back(piece.hexes.corners[places[i]]);
-            for (Index& p : corners.back()) p = ranks_[p];
+            corners.push_back(cells[i]);
         }
         tables_->corners.write_some(sorted, records_of(corners));
         if (!tables_->cell_values) return true;
@@ -284,6 +301,7 @@ private:
         PieceTables& tables = *tables_;
         if (tables.cells == 0) throw Error(ErrorCode::InvalidInput, "the mesh has no hexahedra", list_);
         tables.points = points_;
+        tables.cut = survey_.cut;
         check_point_values();
         tables.used.count();
         ByteHash hash;
@@ -311,6 +329,7 @@ private:
     std::string list_;
     std::filesystem::path folder_;
     PieceStream stream_;
+    bool refuses_others_;
     std::string& why_;
 
     PieceSurvey survey_;
@@ -339,7 +358,9 @@ std::unique_ptr<PieceTables> tables_of_pieces(const PartFiles& files, const std:
                                               const std::filesystem::path& folder, const ReadOptions& options,
                                               Progress* progress, std::string& why) {
     why.clear();
-    return Maker(files, list, folder, options, progress, why).run();
+    std::unique_ptr<PieceTables> tables = Maker(files, list, folder, options, progress, why).run();
+    const bool hexes_alone = !tables || (tables->counts.hexes == tables->cells && !tables->cut);
+    return hexes_alone ? std::move(tables) : split_tables(std::move(tables), list, folder, progress);
 }
 
 }  // namespace subvol::detail

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "assemble.h"
 #include "collection.h"
 #include "point_flags.h"
 #include "spill_file.h"
@@ -21,13 +22,17 @@ namespace subvol::detail {
 /// points, cells: their counts; used: the points of cells
 /// arrays:        of the file, without their values; those of points make a record of point_values, in their order, those of
 ///                cells one of cell_values
-/// corners:       of the cells, as the file has them: left-handed ones are not turned yet
+/// corners:       of the cells, as the file has them; those of other cells than hexahedra end in kNone
+/// counts:        of each kind of cells; cut: as in MeshFile
+/// turned:        left-handed cells were turned, and what is negative stays so
 /// hash:          of all that is in the tables
 /// by, order_by:  as in `joining_report`
 struct PieceTables {
     explicit PieceTables(const std::filesystem::path& folder);
 
     std::uint64_t points = 0, cells = 0;
+    CellCounts counts;
+    bool cut = false, turned = false;
     PointFlags used;
     std::vector<FileArray> arrays;
     SpillFile coordinates, corners;
@@ -39,10 +44,11 @@ struct PieceTables {
     [[nodiscard]] std::size_t components(bool at_cells) const;
 };
 
-/// Reads the pieces one at a time, two or three times each.
+/// Reads the pieces one at a time, two or three times each. Tetrahedra, prisms and pyramids are split into hexahedra as in the
+/// whole mesh.
 ///
 /// folder:  for the tables
-/// returns: nothing if the mesh cannot be joined piece by piece; `why` is then a reason such as "it has tetrahedra"
+/// returns: nothing if the mesh cannot be joined piece by piece; `why` is then a reason such as "it has curved cells"
 /// throws:  Error(InvalidInput) as `read_mesh` of the whole; or if a piece changes meanwhile
 /// cost:    memory: a piece; for points and cells with numbers that of RanksOfNumbers, for points without that of RanksOfPlaces
 [[nodiscard]] std::unique_ptr<PieceTables> tables_of_pieces(const PartFiles& files, const std::string& list,

@@ -25,19 +25,18 @@ std::uint64_t PointFlags::count_before(Index p) const {
     return before_[p / 64] + static_cast<std::uint64_t>(std::popcount(words_[p / 64] & lower));
 }
 
-CornersOfCells::CornersOfCells(std::span<const std::array<Index, 8>> cells) {
-    if (cells.empty()) return;
+CornersOfCells::CornersOfCells(std::span<const Index> corners) {
+    if (corners.empty()) return;
     Index last = 0;
     first_ = kNone;
-    for (const auto& cell : cells) {
-        for (const Index p : cell) {
-            first_ = std::min(first_, p);
-            last = std::max(last, p);
-        }
+    for (const Index p : corners) {
+        if (p == kNone) continue;
+        first_ = std::min(first_, p);
+        last = std::max(last, p);
     }
     words_.resize((last - first_) / 64 + 1);
-    for (const auto& cell : cells) {
-        for (const Index p : cell) words_[(p - first_) / 64] |= std::uint64_t{1} << (p - first_) % 64;
+    for (const Index p : corners) {
+        if (p != kNone) words_[(p - first_) / 64] |= std::uint64_t{1} << (p - first_) % 64;
     }
     for (std::size_t w = 0; w < words_.size(); ++w) {
         before_.push_back(static_cast<Index>(points_.size()));

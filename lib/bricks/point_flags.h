@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,10 +27,14 @@ private:
     std::vector<std::uint64_t> before_;  // of each word
 };
 
-/// The different corners of some cells, ascending, and the place of each among them.
+/// The different corners of some cells, ascending, and the place of each among them. What is kNone is left out.
 class CornersOfCells {
 public:
-    explicit CornersOfCells(std::span<const std::array<Index, 8>> cells);
+    /// corners: of one cell after the other
+    explicit CornersOfCells(std::span<const Index> corners);
+    template <std::size_t N>
+    explicit CornersOfCells(const std::vector<std::array<Index, N>>& cells)
+        : CornersOfCells(std::span(cells.empty() ? nullptr : cells.front().data(), N * cells.size())) {}
     [[nodiscard]] const std::vector<Index>& points() const { return points_; }
     [[nodiscard]] Index place(Index p) const;
 

@@ -50,6 +50,7 @@ public:
 private:
     [[nodiscard]] HexMesh mesh_of(const std::vector<Index>& stored, BrickMesh& brick, std::size_t b) const {
         MeshFile part;
+        part.turned = tables_.turned;
         part.hexes.corners.resize(stored.size());
         tables_.corners.read_some(stored, records_of(part.hexes.corners));
         {

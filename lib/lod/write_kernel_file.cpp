@@ -7,8 +7,10 @@
 #include <string>
 
 #include "kernel_file_contents.h"
+#include "kernel_source.h"
 #include "node_merger.h"
 #include "subvol/detail/median_tree.h"
+#include "subvol/detail/points_range.h"
 #include "subvol/error.h"
 #include "svk_file.h"
 
@@ -45,21 +47,25 @@ struct Block {
 
 class FileWriter {
 public:
-    FileWriter(const std::filesystem::path& path, const RbfVolume& volume, Progress* progress)
-        : volume_(volume), progress_(progress), out_(path, detail::svk_contents(volume)), merger_(volume) {}
+    FileWriter(const std::filesystem::path& path, const detail::KernelSource& source, Progress* progress)
+        : source_(source), progress_(progress), out_(path, source.contents()) {}
 
     std::uint64_t write() {
         const detail::SvkLayout& layout = out_.layout();
         report_progress(progress_, "sort kernels", 0);
-        order_ = detail::median_order(volume_.centers, std::size_t{1} << layout.levels());
-        out_.write_boundary(volume_.boundary);
+        order_ = source_.order(std::size_t{1} << layout.levels());
+        out_.write_boundary(source_.boundary());
         KernelHierarchy top;
-        merger_.allocate(top, 2 * layout.blocks() - 1);
         constexpr std::size_t kWrittenInTurn = 128;  // blocks that are in memory together
         for (std::size_t first = 0; first < layout.blocks(); first += kWrittenInTurn) {
             report_progress(progress_, "merge kernels", static_cast<double>(first) / static_cast<double>(layout.blocks()));
             std::vector<Block> blocks(std::min(kWrittenInTurn, layout.blocks() - first));
-            tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) { blocks[b] = make_block(first + b); });
+            const std::uint64_t first_slot = layout.first_slot(first), end = layout.first_slot(first + blocks.size());
+            const RbfVolume kernels = source_.kernels(slots(first_slot, end));
+            const detail::NodeMerger merger(kernels);
+            if (first == 0) merger.allocate(top, 2 * layout.blocks() - 1);
+            tbb::parallel_for(std::size_t{0}, blocks.size(),
+                              [&](std::size_t b) { blocks[b] = make_block(first + b, kernels, first_slot, merger); });
             for (std::size_t b = 0; b < blocks.size(); ++b) {
                 detail::copy_node(blocks[b].tree, 0, top, layout.blocks() - 1 + first + b);
             }
@@ -67,7 +73,9 @@ public:
                 for (std::size_t b = 0; b < blocks.size(); ++b) out_.write_part(first + b, p, blocks[b].parts[p]);
             }
         }
-        for (std::size_t node = layout.blocks() - 1; node-- > 0;) merger_.merge_nodes(top, node);
+        const RbfVolume none = source_.kernels({});
+        const detail::NodeMerger merger(none);
+        for (std::size_t node = layout.blocks() - 1; node-- > 0;) merger.merge_nodes(top, node);
         out_.write_top(node_bytes(top, 0, top.nodes.size()));
         out_.finish();
         report_progress(progress_, "merge kernels", 1);
@@ -75,24 +83,26 @@ public:
     }
 
 private:
-    [[nodiscard]] Block make_block(std::size_t number) const {
+    /// kernels: those from `first_slot` on
+    [[nodiscard]] Block make_block(std::size_t number, const RbfVolume& kernels, std::uint64_t first_slot,
+                                   const detail::NodeMerger& merger) const {
         const detail::SvkLayout& layout = out_.layout();
         const std::size_t leaves = std::size_t{1} << layout.below(), first_leaf = number * leaves;
         Block block;
-        merger_.allocate(block.tree, 2 * leaves - 1);
+        merger.allocate(block.tree, 2 * leaves - 1);
         for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
-            merger_.merge_kernels(
-                block.tree, leaves - 1 + leaf,
-                slots(layout.first_slot_of_leaf(first_leaf + leaf), layout.first_slot_of_leaf(first_leaf + leaf + 1)));
+            const std::uint64_t begin = layout.first_slot_of_leaf(first_leaf + leaf);
+            const std::uint64_t end = layout.first_slot_of_leaf(first_leaf + leaf + 1);
+            merger.merge_kernels(block.tree, leaves - 1 + leaf, numbers_from(begin - first_slot, end - begin));
         }
-        for (std::size_t node = leaves - 1; node-- > 0;) merger_.merge_nodes(block.tree, node);
+        for (std::size_t node = leaves - 1; node-- > 0;) merger.merge_nodes(block.tree, node);
         for (std::size_t p = 0; p < layout.node_parts(); ++p) {
             const std::size_t first = (std::size_t{1} << layout.first_level(p)) - 1;
             block.parts.push_back(node_bytes(block.tree, first, layout.part(number, p).count));
         }
-        const auto kernels = slots(layout.first_slot(number), layout.first_slot(number + 1));
-        block.parts.push_back(number_bytes(kernels));
-        block.parts.push_back(detail::svk_bytes(volume_, kernels));
+        const std::uint64_t begin = layout.first_slot(number), end = layout.first_slot(number + 1);
+        block.parts.push_back(number_bytes(slots(begin, end)));
+        block.parts.push_back(detail::svk_bytes(kernels, numbers_from(begin - first_slot, end - begin)));
         return block;
     }
 
@@ -100,28 +110,50 @@ private:
         return std::span(order_).subspan(first, end - first);
     }
 
-    const RbfVolume& volume_;
+    const detail::KernelSource& source_;
     Progress* progress_;
     detail::SvkWriter out_;
-    detail::NodeMerger merger_;
     std::vector<Index> order_{};
+};
+
+/// A volume in memory.
+class VolumeKernels : public detail::KernelSource {
+public:
+    explicit VolumeKernels(const RbfVolume& volume) : volume_(volume) {}
+    [[nodiscard]] detail::SvkContents contents() const override { return detail::svk_contents(volume_); }
+    [[nodiscard]] const Surface& boundary() const override { return volume_.boundary; }
+    [[nodiscard]] std::vector<Index> order(std::size_t leaves) const override {
+        return detail::median_order(volume_.centers, leaves);
+    }
+    [[nodiscard]] RbfVolume kernels(std::span<const Index> numbers) const override {
+        const std::vector<std::size_t> places(numbers.begin(), numbers.end());
+        return detail::chosen_kernels(volume_, places);
+    }
+
+private:
+    const RbfVolume& volume_;
 };
 
 }  // namespace
 
-KernelFileContents write_kernel_file(const std::filesystem::path& path, const RbfVolume& volume, Progress* progress) {
-    validate(volume);
-    if (volume.size() == 0) throw Error(ErrorCode::InvalidInput, "there are no kernels to be written", path.string());
+KernelFileContents detail::write_kernel_file(const std::filesystem::path& path, const KernelSource& source,
+                                             Progress* progress) {
+    const SvkContents contents = source.contents();
     constexpr std::uint64_t kMost = std::uint64_t{1} << 32;
-    const std::uint64_t most = std::max({volume.size(), volume.boundary.points.size(), volume.boundary.triangles.size()});
+    const std::uint64_t most = std::max({contents.kernels, contents.boundary_points, contents.boundary_triangles});
     if (most >= kMost) {
         throw Error(ErrorCode::InvalidInput, std::to_string(most) + " kernels, points or triangles are too many", path.string(),
                     "fewer than 2³²");
     }
-    FileWriter writer(path, volume, progress);
+    FileWriter writer(path, source, progress);
     const std::uint64_t bytes = writer.write();
-    const detail::SvkContents contents = detail::svk_contents(volume);
-    return detail::kernel_file_contents(contents, detail::SvkLayout(contents, 0), bytes);
+    return kernel_file_contents(contents, SvkLayout(contents, 0), bytes);
+}
+
+KernelFileContents write_kernel_file(const std::filesystem::path& path, const RbfVolume& volume, Progress* progress) {
+    validate(volume);
+    if (volume.size() == 0) throw Error(ErrorCode::InvalidInput, "there are no kernels to be written", path.string());
+    return detail::write_kernel_file(path, VolumeKernels(volume), progress);
 }
 
 }  // namespace subvol

@@ -8,6 +8,7 @@
 
 #include "cell_shapes.h"
 #include "cut_cells.h"
+#include "split_keys.h"
 #include "subvol/detail/bucket_sort.h"
 #include "subvol/error.h"
 
@@ -15,9 +16,8 @@ namespace subvol::detail {
 
 namespace {
 
-// The sorted corners of an edge, a face or a cell, which identify it; the rest of the array is kNone.
 template <std::size_t N>
-using Key = std::array<Index, N>;
+using Key = SplitKey<N>;
 
 // of_slot: for each slot of a list of keys, the place of its key in `keys`
 template <std::size_t N>
@@ -48,13 +48,6 @@ UniqueKeys<N> unique_keys(const std::vector<Key<N>>& slots, std::size_t point_co
     return result;
 }
 
-template <std::size_t N>
-std::string list(const Key<N>& key) {
-    std::string text;
-    for (const Index p : key) text += p == kNone ? "" : " " + std::to_string(p);
-    return text;
-}
-
 class Splitter {
 public:
     Splitter(std::size_t point_count, std::vector<std::array<Index, 8>>&& hexes, MixedCells&& others)
@@ -69,9 +62,9 @@ public:
         cells_ = unique_keys(cell_slots_, point_count_);
         refuse_twins();
         number_points();
-        add_children(kHexShape, hexes_);
-        add_children(kTetShape, others_.tets);
-        add_children(kPrismShape, others_.prisms);
+        add_children_of(kHexShape, hexes_);
+        add_children_of(kTetShape, others_.tets);
+        add_children_of(kPrismShape, others_.prisms);
         return std::move(result_);
     }
 
@@ -79,18 +72,9 @@ private:
     template <class Shape, class Cells>
     void collect(const Shape& shape, const Cells& cells) {
         for (const auto& cell : cells) {
-            for (const auto& [a, b] : shape.edges)
-                edge_slots_.push_back({std::min(cell[a], cell[b]), std::max(cell[a], cell[b])});
-            for (const auto& face : shape.faces) {
-                Key<4> key{cell[face[0]], cell[face[1]], cell[face[2]], face[2] == face[3] ? kNone : cell[face[3]]};
-                std::sort(key.begin(), key.end());
-                face_slots_.push_back(key);
-            }
-            Key<8> key;
-            key.fill(kNone);
-            std::copy(cell.begin(), cell.end(), key.begin());
-            std::sort(key.begin(), key.end());
-            cell_slots_.push_back(key);
+            each_key(
+                shape, cell, [&](const Key<2>& key) { edge_slots_.push_back(key); },
+                [&](const Key<4>& key) { face_slots_.push_back(key); }, [&](const Key<8>& key) { cell_slots_.push_back(key); });
         }
     }
 
@@ -98,9 +82,7 @@ private:
         if (cells_.keys.size() == cell_slots_.size()) return;
         std::vector<std::uint8_t> seen(cells_.keys.size());
         for (const Index cell : cells_.of_slot) {
-            if (seen[cell]++ == 0) continue;
-            throw Error(ErrorCode::InvalidInput, "two cells have the same corners: points" + list(cells_.keys[cell]),
-                        "splitting into hexahedra", "points are counted from 0");
+            if (seen[cell]++ > 0) refuse_twin(cells_.keys[cell]);
         }
     }
 
@@ -122,7 +104,7 @@ private:
     template <std::size_t N>
     Index add_points(const std::vector<Key<N>>& keys) {
         const std::size_t first = result_.sources.size();
-        if (first + keys.size() >= kNone) throw Error(ErrorCode::InvalidInput, "too many cells to be split into hexahedra");
+        if (first + keys.size() >= kNone) throw Error(ErrorCode::InvalidInput, kTooManyToSplit);
         for (const auto& key : keys) add_point(key);
         return static_cast<Index>(first);
     }
@@ -137,23 +119,15 @@ private:
 
     // The slots are visited in the order in which `collect` filled them.
     template <class Shape, class Cells>
-    void add_children(const Shape& shape, const Cells& cells) {
+    void add_children_of(const Shape& shape, const Cells& cells) {
+        std::vector<Index> edges(shape.edges.size()), faces(shape.faces.size());
         for (const auto& cell : cells) {
-            for (std::size_t v = 0; v < Shape::kCorners; ++v) {
-                const auto [a, b, c] = shape.corner_edges[v];
-                const auto edge = [&](std::size_t end) {
-                    return first_edge_ + edges_.of_slot[edge_slot_ + shape.edge_between(v, end)];
-                };
-                const auto face = [&](std::size_t end, std::size_t other) {
-                    return first_face_ + faces_.of_slot[face_slot_ + shape.face_through(v, end, other)];
-                };
-                result_.cells.push_back({new_points_[cell[v]], edge(a), face(a, b), edge(b), edge(c), face(a, c),
-                                         first_cell_ + cells_.of_slot[cell_slot_], face(b, c)});
-            }
-            result_.parents.insert(result_.parents.end(), Shape::kCorners, static_cast<Index>(cell_slot_));
-            edge_slot_ += shape.edges.size();
-            face_slot_ += shape.faces.size();
-            ++cell_slot_;
+            for (Index& edge : edges) edge = first_edge_ + edges_.of_slot[edge_slot_++];
+            for (Index& face : faces) face = first_face_ + faces_.of_slot[face_slot_++];
+            SplitPoints<Shape::kCorners> points{{}, edges, faces, first_cell_ + cells_.of_slot[cell_slot_]};
+            for (std::size_t v = 0; v < Shape::kCorners; ++v) points.corners[v] = new_points_[cell[v]];
+            add_children(shape, points, result_.cells);
+            result_.parents.insert(result_.parents.end(), Shape::kCorners, static_cast<Index>(cell_slot_++));
         }
     }
 
@@ -190,6 +164,13 @@ void check(std::size_t point_count, const std::vector<std::array<Index, N>>& cel
 
 }  // namespace
 
+void refuse_twin(const SplitKey<8>& key) {
+    std::string corners;
+    for (const Index p : key) corners += p == kNone ? "" : " " + std::to_string(p);
+    throw Error(ErrorCode::InvalidInput, "two cells have the same corners: points" + corners, "splitting into hexahedra",
+                "points are counted from 0");
+}
+
 HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 8>> hexes, MixedCells others, bool cut_all) {
     check(points.size(), hexes, "hexahedron");
     check(points.size(), others.tets, "tetrahedron");
@@ -198,7 +179,7 @@ HexSplit plan_split(std::span<const Vec3> points, std::vector<std::array<Index, 
     const std::size_t count = hexes.size() + others.tets.size() + others.prisms.size() + others.pyramids.size();
     if (count == 0) throw Error(ErrorCode::InvalidInput, "there is no cell to be split into hexahedra");
     if (points.size() >= kNone || count >= kNone / 8) {
-        throw Error(ErrorCode::InvalidInput, "too many cells to be split into hexahedra");
+        throw Error(ErrorCode::InvalidInput, kTooManyToSplit);
     }
     orient_mixed(points, hexes, others);
     if (others.pyramids.empty() && !cut_all) return Splitter(points.size(), std::move(hexes), std::move(others)).split();

@@ -194,23 +194,26 @@ std::vector<Index> take_numbers(MeshFile& found) {
     return numbers;
 }
 
-std::string list_of(std::size_t hexes, const MixedCells& others) {
+std::string list_of(const CellCounts& counts) {
     std::string list;
     const auto add = [&](std::size_t count, std::string_view one, std::string_view many) {
         if (count > 0) list += (list.empty() ? "" : ", ") + counted(count, one, many);
     };
-    add(hexes, "hexahedron", "hexahedra");
-    add(others.tets.size(), "tetrahedron", "tetrahedra");
-    add(others.prisms.size(), "prism", "prisms");
-    add(others.pyramids.size(), "pyramid", "pyramids");
+    add(counts.hexes, "hexahedron", "hexahedra");
+    add(counts.tets, "tetrahedron", "tetrahedra");
+    add(counts.prisms, "prism", "prisms");
+    add(counts.pyramids, "pyramid", "pyramids");
     const std::size_t last = list.rfind(", ");
     return last == std::string::npos ? list : list.replace(last, 2, " and ");
 }
 
+CellCounts counts_of(std::size_t hexes, const MixedCells& others) {
+    return {hexes, others.tets.size(), others.prisms.size(), others.pyramids.size()};
+}
+
 void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin) {
     HexMesh& mesh = result.mesh;
-    const bool hexes_too = !mesh.cells.empty();
-    std::string warning = list_of(mesh.cells.size(), others);
+    const CellCounts counts = counts_of(mesh.cells.size(), others);
     HexSplit split = plan_split(mesh.points, std::move(mesh.cells), std::move(others), cut);
     mesh.points = means(split.sources, mesh.points);
     mesh.cells = std::move(split.cells);
@@ -221,9 +224,7 @@ void split_all(ReadResult& result, MixedCells&& others, bool cut, Origin& origin
         origin.cell_numbers = std::move(numbers);
     }
     origin.sources = std::move(split.sources);
-    if (split.tets_cut > 0) warning += " cut into " + counted(split.tets_cut, "tetrahedron", "tetrahedra") + " and";
-    warning += " split into " + counted(mesh.cells.size(), "hexahedron", "hexahedra");
-    result.warnings.push_back(warning + (hexes_too ? ", the hexahedra too so that all fit together" : ""));
+    result.warnings.push_back(split_report(counts, split.tets_cut, mesh.cells.size()));
 }
 
 /// Leaves out the quads or lines that repeat a point, or have one whose place or values are not finite.
@@ -313,6 +314,12 @@ std::string cells_turned(std::size_t turned, std::size_t cells) {
            " left-handed (negative Jacobian) and turned round";
 }
 
+std::string split_report(const CellCounts& counts, std::size_t tets_cut, std::size_t children) {
+    return list_of(counts) + (tets_cut > 0 ? " cut into " + counted(tets_cut, "tetrahedron", "tetrahedra") + " and" : "") +
+           " split into " + counted(children, "hexahedron", "hexahedra") +
+           (counts.hexes > 0 ? ", the hexahedra too so that all fit together" : "");
+}
+
 std::string cells_folded(std::size_t folded, std::size_t cells) {
     return std::to_string(folded) + " of " + counted(cells, "hexahedron", "hexahedra") + (folded == 1 ? " has" : " have") +
            " a negative Jacobian at a corner";
@@ -344,6 +351,7 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     const bool moved = options.curved_tolerance && split_curved(found, *options.curved_tolerance, file, names);
     if (moved) names.point_numbers = {};
     found.curved = {};
+    const bool turned = found.turned;
     const bool cut = take_collapsed(found, options.other_cells, file, names) || found.cut;
     Origin origin{used_points(found), {}, {}};
     ReadResult result;
@@ -353,11 +361,11 @@ ReadResult assemble(MeshFile&& found, std::string_view file, const EntityNames& 
     result.blocks = std::move(found.blocks);
     MixedCells others = take_others(found);
     if (!others.empty() && options.other_cells == OtherCells::Refuse) {
-        throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(result.mesh.cells.size(), others), std::string(file),
-                    "only hexahedra are allowed");
+        throw Error(ErrorCode::InvalidInput, "the mesh has " + list_of(counts_of(result.mesh.cells.size(), others)),
+                    std::string(file), "only hexahedra are allowed");
     }
     origin.cell_numbers = take_numbers(found);
-    turn_hexes(result);
+    if (!turned) turn_hexes(result);
     try {
         if (!others.empty()) split_all(result, std::move(others), cut, origin);
         warn_of_folded(result);

@@ -36,6 +36,14 @@ inline constexpr unsigned kHiddenPoint = 2;
 [[nodiscard]] std::string cells_turned(std::size_t turned, std::size_t cells);
 [[nodiscard]] std::string cells_folded(std::size_t folded, std::size_t cells);
 
+/// How many cells of each kind there are.
+struct CellCounts {
+    std::size_t hexes = 0, tets = 0, prisms = 0, pyramids = 0;
+};
+
+/// What is said of a mesh that was split into hexahedra. tets_cut: as in HexSplit; children: the hexahedra
+[[nodiscard]] std::string split_report(const CellCounts& counts, std::size_t tets_cut, std::size_t children);
+
 /// Whether the Jacobian is negative at a corner of a hexahedron.
 [[nodiscard]] bool is_folded(const std::array<Vec3, 8>& corners);
 

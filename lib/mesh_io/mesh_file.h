@@ -67,6 +67,7 @@ struct FileTags {
 /// prisms:     of either handedness, since formats differ; otherwise as in MixedCells
 /// quads, lines: of sheets and curves; they need numbers
 /// cut:        the cells fit together only if all are cut into tetrahedra
+/// turned:     the hexahedra stay as they are, also where their volume is negative
 /// not_finite: points with a coordinate that is not finite, and their position in the text: an error if a cell uses the point
 struct MeshFile {
     struct NotFinite {
@@ -86,7 +87,7 @@ struct MeshFile {
     std::vector<NotFinite> not_finite;
     std::vector<std::string> warnings;
     std::vector<MeshBlock> blocks;
-    bool cut = false;
+    bool cut = false, turned = false;
 };
 
 /// Calls call(cells) for the FileCells of each kind of cells with a volume.

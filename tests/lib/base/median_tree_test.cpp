@@ -55,6 +55,38 @@ TEST(MedianTree, FindsTheBoxesThatHoldAPoint) {
     }
 }
 
+class CentersInChunks : public ItemCenters {
+public:
+    explicit CentersInChunks(std::vector<Vec3> centers) : centers_(std::move(centers)) {}
+    std::size_t size() const override { return centers_.size(); }
+    void read(std::span<const Index> items, std::span<Vec3> centers) const override {
+        EXPECT_TRUE(std::ranges::is_sorted(items));
+        for (std::size_t i = 0; i < items.size(); ++i) centers[i] = centers_[items[i]];
+    }
+    const std::vector<Vec3>& all() const { return centers_; }
+
+private:
+    std::vector<Vec3> centers_;
+};
+
+TEST(MedianTree, TheOrderIsTheSameWithoutAllCentersInMemory) {
+    std::mt19937 random(3);
+    for (const int steps : {4, 1000000}) {  // many equal coordinates, and hardly any
+        std::vector<Vec3> places;
+        for (int i = 0; i < 70001; ++i) {
+            const auto next = [&] { return static_cast<double>(random() % static_cast<unsigned>(steps)); };
+            places.emplace_back(next(), 1.1 * next(), 0.9 * next());
+        }
+        const CentersInChunks centers(std::move(places));
+        for (const std::size_t leaves : {1u, 2u, 64u, 16384u}) {
+            const std::vector<Index> order = median_order(centers.all(), leaves);
+            for (const std::size_t at_once : {1u, 1000u, 20000u, 100000u}) {
+                EXPECT_TRUE(median_order(centers, leaves, at_once) == order) << leaves << " leaves, " << at_once;
+            }
+        }
+    }
+}
+
 TEST(MedianTree, EverySlotBelongsToOneLeaf) {
     const MedianTree<Box> tree = tree_of(random_boxes(1001));
     std::vector<Index> items;

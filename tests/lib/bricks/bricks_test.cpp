@@ -9,7 +9,7 @@
 #include <set>
 
 #include "../temp_folder.h"
-#include "../test_meshes.h"
+#include "cut_meshes.h"
 #include "subvol/brick_points.h"
 #include "subvol/detail/bricks_share.h"
 #include "subvol/mesh_io.h"
@@ -21,33 +21,13 @@ namespace subvol {
 namespace bricks_test {
 
 using test::error_of;
+using test::irregular_ball;
+using test::kCounts;
+using test::kShapes;
 using test::read_bytes;
+using test::tagged;
 
 class BricksTest : public test::TempFolder {};
-
-constexpr std::array<std::size_t, 5> kCounts{1, 2, 3, 4, 7};
-constexpr std::array kShapes{BrickShape::Blocks, BrickShape::Slabs, BrickShape::Random};
-
-HexMesh irregular_ball() {
-    HexMesh mesh = make_model("ball", 8);
-    test::jitter(mesh, 0.1 / 8, 3);
-    return mesh;
-}
-
-/// Creases on the boundary and a sharp face inside, in bricks of every kind.
-HexMesh tagged() {
-    HexMesh mesh = test::make_box(9, 5, 4);
-    test::jitter(mesh, 0.1, 5);
-    test::add_field(mesh, "heat", [](const Vec3& x) { return std::sin(x.x) + x.y * x.z; });
-    for (Index x = 0; x < 9; ++x) mesh.creases.push_back({x + 2 * 10, x + 1 + 2 * 10});  // along the bottom's middle
-    for (Index y = 0; y < 5; ++y) {
-        for (Index z = 0; z < 4; ++z) {
-            const Index p = 4 + 10 * y + 60 * z;
-            mesh.sharp_faces.push_back({p, p + 10, p + 70, p + 60});
-        }
-    }
-    return mesh;
-}
 
 TEST_F(BricksTest, TogetherTheyAreTheMesh) {
     const HexMesh mesh = irregular_ball();
@@ -81,117 +61,6 @@ TEST_F(BricksTest, TogetherTheyAreTheMesh) {
         EXPECT_EQ(split.bricks.bounds.lower, bounds(mesh).lower);
         EXPECT_EQ(split.bricks.bounds.upper, bounds(mesh).upper);
     }
-}
-
-TEST_F(BricksTest, PointsHaveTheSameBytes) {
-    for (const HexMesh& mesh : {irregular_ball(), tagged()}) {
-        for (const Correction correction : {Correction::Second, Correction::Full}) {
-            const SampleOptions options{.correction = correction};
-            write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
-            const std::string whole = read_bytes(path("whole.ply"));
-            for (const BrickShape shape : kShapes) {
-                for (const std::size_t count : kCounts) {
-                    const SplitOptions split{
-                        .bricks = count, .shape = shape, .halo_layers = correction == Correction::Full ? 4 : 3};
-                    const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
-                    const auto report =
-                        write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
-                    EXPECT_EQ(report.points, mesh.points.size());
-                    EXPECT_TRUE(read_bytes(path("bricks.ply")) == whole) << count << " bricks of shape " << int(shape);
-                }
-            }
-        }
-    }
-}
-
-constexpr std::array kSplines{Scheme::CatmullClark, Scheme::Bsxw};
-
-TEST_F(BricksTest, PointsOnTheLimitHaveTheSameBytes) {
-    for (const HexMesh& mesh : {irregular_ball(), tagged()}) {
-        for (const Scheme scheme : kSplines) {
-            for (const Correction correction : {Correction::Second, Correction::Full}) {
-                const SampleOptions options{.scheme = {scheme}, .correction = correction};
-                write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
-                const std::string whole = read_bytes(path("whole.ply"));
-                for (const BrickShape shape : kShapes) {
-                    const SplitOptions split{
-                        .bricks = 5, .shape = shape, .halo_layers = correction == Correction::Full ? 5 : 4};
-                    const Bricks bricks = split_mesh(path("m.bricks"), mesh, split).bricks;
-                    (void)write_points_of_bricks(path("bricks.ply"), bricks, options, [](HexMesh same) { return same; });
-                    EXPECT_TRUE(read_bytes(path("bricks.ply")) == whole) << int(scheme) << " shape " << int(shape);
-                }
-            }
-        }
-    }
-}
-
-TEST_F(BricksTest, PointsOnTheLimitNeedOneLayerMore) {
-    const Bricks bricks = split_mesh(path("m.bricks"), irregular_ball(), {.bricks = 2}).bricks;
-    for (const Scheme scheme : kSplines) {
-        for (const auto& [correction, said] :
-             {std::pair{Correction::Second, "split with --halo 4"}, {Correction::Full, "split with --halo 5"}}) {
-            const SampleOptions options{.scheme = {scheme}, .correction = correction};
-            EXPECT_NE(error_of([&] { (void)sample_brick(bricks, read_brick(bricks, 0), options); }).find(said),
-                      std::string::npos);
-        }
-    }
-}
-
-/// Writes the parts of some shares; returns their names.
-std::vector<std::filesystem::path> write_shares(const std::filesystem::path& folder, const Bricks& bricks, std::size_t count,
-                                                const SampleOptions& options) {
-    std::vector<std::filesystem::path> parts;
-    const std::size_t all = bricks.bricks.size();
-    for (std::size_t k = 0; k < count; ++k) {
-        const BrickShare share{all * k / count, all * (k + 1) / count, "part " + std::to_string(k)};
-        parts.push_back(folder / ("part" + std::to_string(k) + ".ply"));
-        (void)write_points_of_bricks(
-            parts.back(), bricks, options, [](HexMesh same) { return same; }, &share);
-        EXPECT_EQ(read_points_note(parts.back()), share.note);
-    }
-    return parts;
-}
-
-TEST_F(BricksTest, PartsOfThePointsMakeTheSameBytes) {
-    const HexMesh mesh = tagged();
-    for (const Correction correction : {Correction::Second, Correction::Full}) {
-        const SampleOptions options{.correction = correction};
-        write_points(path("whole.ply"), sample_rbf_points(mesh, options).volume);
-        const Bricks bricks =
-            split_mesh(path("m.bricks"), mesh, {.bricks = 5, .shape = BrickShape::Random, .halo_layers = 4}).bricks;
-        for (const std::size_t count : kCounts) {  // seven shares of five bricks: some are empty
-            const auto parts = write_shares(path("."), bricks, count, options);
-            std::size_t points = 0;
-            for (const auto& part : parts) points += read_points(part).size();
-            EXPECT_EQ(points, mesh.points.size());
-            EXPECT_EQ(join_points_of_bricks(path("joined.ply"), parts, bricks.points).points, mesh.points.size());
-            EXPECT_TRUE(read_bytes(path("joined.ply")) == read_bytes(path("whole.ply"))) << count << " shares";
-        }
-    }
-}
-
-TEST_F(BricksTest, PartsThatAreNotAllOfAMeshAreRefused) {
-    const Bricks bricks = split_mesh(path("m.bricks"), make_model("twist", 5), {.bricks = 3}).bricks;
-    auto parts = write_shares(path("."), bricks, 3, {});
-    const auto said = [&](std::uint64_t points = 216) {
-        return error_of([&] { (void)join_points_of_bricks(path("joined.ply"), parts, points); });
-    };
-    EXPECT_EQ(said(), "no error");
-    std::filesystem::remove(path("joined.ply"));
-    EXPECT_NE(said(std::uint64_t{1} << 50).find("cannot be one of parts"), std::string::npos);
-    EXPECT_NE(said(100).find("does not exist"), std::string::npos);
-    EXPECT_NE(said(300).find("216 of 300 points were found"), std::string::npos);
-    std::swap(parts[1], parts[2]);
-    EXPECT_EQ(said(), "no error") << "all but the first may have any order";
-    parts[1] = parts[2];
-    std::filesystem::remove(path("joined.ply"));
-    EXPECT_NE(said().find("is in another part, too"), std::string::npos);
-    write_points(parts[1], read_points(parts[0]));
-    EXPECT_NE(said().find("no property \"number\""), std::string::npos);
-    parts[1] = path("nothing.ply");
-    const auto join_all = [&] { (void)join_points_of_bricks(path("joined.ply"), parts, 216); };
-    EXPECT_NE(error_of(join_all, ErrorCode::Io).find("nothing.ply"), std::string::npos);
-    EXPECT_FALSE(std::filesystem::exists(path("joined.ply")));
 }
 
 TEST_F(BricksTest, FiguresOfSharesAreThoseOfAll) {

@@ -53,11 +53,12 @@ struct BrickShare {
     std::string note;
 };
 
-/// Samples brick after brick and writes one binary `.ply`: the bytes are those that `write_points` writes for the whole mesh.
+/// Samples brick after brick and writes one binary `.ply`, or a `.svk` if the path ends so: the bytes are those that
+/// `write_points` and `write_kernel_file` write for the whole mesh.
 ///
-/// share:  null, or what is written: a part, whose points have their numbers in the whole
-/// throws: as `sample_brick` and `write_points`
-/// cost:   memory: that of one brick, and of the boundary
+/// share:  null, or what is written: a part, whose points have their numbers in the whole; as `.ply` only
+/// throws: as `sample_brick`, `write_points` and `write_kernel_file`
+/// cost:   memory: that of one brick, and of the boundary; of a `.svk` also 16 bytes a point, and 90 on disk until it is done
 BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, const Bricks& bricks, const SampleOptions& options,
                                          const BrickFields& fields, const BrickShare* share = nullptr);
 
@@ -68,6 +69,6 @@ BrickPointsReport write_points_of_bricks(const std::filesystem::path& path, cons
 /// returns: points and triangles
 /// throws:  Error(InvalidInput) if a part is malformed, or a point occurs twice or is missing; Error(Io)
 BrickPointsReport join_points_of_bricks(const std::filesystem::path& path, std::span<const std::filesystem::path> parts,
-                                        std::uint64_t points);
+                                        std::uint64_t points, Progress* progress = nullptr);
 
 }  // namespace subvol

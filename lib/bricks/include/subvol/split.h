@@ -73,7 +73,7 @@ struct PiecesOptions {
 };
 
 /// result:     nothing if the mesh must be held whole: then nothing has been written
-/// held_whole: why, such as "it has tetrahedra"; empty if the file is no list of pieces
+/// held_whole: why, such as "it has curved cells"; empty if the file is no list of pieces
 /// warnings:   those of `read_mesh`
 struct PiecesSplit {
     std::optional<SplitResult> result;

@@ -14,10 +14,26 @@
 namespace subvol::detail {
 
 /// The items in the order of a complete tree: each node is halved at the median of its centres, along the longest side of
-/// their box. Of n items, leaf k gets those from k·n/leaves on.
+/// their box. Of n items, leaf k gets those from k·n/leaves on, ascending.
 ///
 /// leaves: a power of two
 [[nodiscard]] std::vector<Index> median_order(std::span<const Vec3> centers, std::size_t leaves);
+
+/// Centres of items that may lie in files.
+class ItemCenters {
+public:
+    virtual ~ItemCenters() = default;
+    [[nodiscard]] virtual std::size_t size() const = 0;
+
+    /// The centres of some items, whose numbers ascend.
+    virtual void read(std::span<const Index> items, std::span<Vec3> centers) const = 0;
+};
+
+/// The same order, without all centres in memory.
+///
+/// at_once: so many items are sorted in memory; at least 1
+/// cost:    memory: 16 bytes an item while the first half is found, 24 for each of `at_once`
+[[nodiscard]] std::vector<Index> median_order(const ItemCenters& centers, std::size_t leaves, std::size_t at_once);
 
 /// Calls body(leaf) for every leaf, in parallel.
 void each_leaf(std::size_t leaves, const std::function<void(std::size_t)>& body);
