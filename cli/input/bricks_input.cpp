@@ -25,11 +25,6 @@ bool is_bricks_input(const std::string& input) {
     return is_bricks(input);
 }
 
-void refuse_bricks(const std::string& input, const std::string& verb, const std::string& instead) {
-    if (!is_bricks(input)) return;
-    throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which `subvol " + verb + "` does not take", input, instead);
-}
-
 Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& report) {
     refuse_options(app, kOfFiles, "is settled when a mesh is split; this is a folder of bricks");
     Bricks bricks = open_bricks(input);

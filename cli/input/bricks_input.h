@@ -18,9 +18,6 @@ namespace subvol::cli {
 /// Whether an input is a folder of bricks.
 [[nodiscard]] bool is_bricks_input(const std::string& input);
 
-/// throws: Error(InvalidInput) if the input is a folder of bricks. verb: "surface"; instead: what can be done
-void refuse_bricks(const std::string& input, const std::string& verb, const std::string& instead);
-
 /// Opens bricks; puts input, cells and bricks into the report. Refuses the common options that bricks cannot have.
 [[nodiscard]] Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& report);
 

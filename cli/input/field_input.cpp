@@ -7,6 +7,7 @@
 #include "grid_input.h"
 #include "input.h"
 #include "points_input.h"
+#include "subvol/bricks.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_field.h"
@@ -65,7 +66,8 @@ FieldInput grid_field(const std::string& input, const CommonOptions& options, Re
 InputKind kind_of(const std::string& input) {
     const std::string extension = extension_of(input);
     const std::vector<std::string> meshes = readable_mesh_extensions();
-    if (input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end()) return InputKind::Mesh;
+    const bool is_mesh = input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end() || is_bricks(input);
+    if (is_mesh) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
     return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;
 }

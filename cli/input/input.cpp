@@ -65,6 +65,20 @@ std::optional<double> curved_tolerance(const CommonOptions& options) {
     return tolerance;
 }
 
+/// For what is not done brick by brick.
+HexMesh mesh_of_bricks(const std::string& input, const CommonOptions& options, Report& report) {
+    const bool of_files = options.weld || options.weld_distance_world || !options.sharp.empty() || options.step ||
+                          options.time || !options.blocks.empty();
+    if (of_files) {
+        throw Error(ErrorCode::InvalidInput, "is a folder of bricks: how a file is read is settled when it is split", input,
+                    "no --weld, --sharp, --step, --time and --blocks");
+    }
+    const Bricks bricks = open_bricks(input);
+    report.warn(text("all ", counted(bricks.bricks.size(), "brick"), " (", counted(bricks.cells, "cell"),
+                     ") are held in memory together: this is not done brick by brick"));
+    return report.timed("read", [&] { return whole_mesh(bricks, report.progress()); });
+}
+
 }  // namespace
 
 std::string input_help() {
@@ -88,8 +102,9 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report, SheetsAlone alone) {
     report["input"] = input;
     if (is_bricks(input)) {
-        throw Error(ErrorCode::InvalidInput, "is a folder of bricks, which this command does not take yet", input,
-                    "info, points, vdb, render, surface, slice and probe do; each .vtu file in it is a mesh");
+        ReadResult read;
+        read.mesh = mesh_of_bricks(input, options, report);
+        return read;
     }
     const bool model = is_model(input);
     if (model && !options.sharp.empty()) throw Error(ErrorCode::InvalidInput, "a model has no groups", "--sharp");

@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <iomanip>
 
-#include "bricks_input.h"
 #include "field_comparison.h"
 #include "field_input.h"
 #include "picture_comparison.h"
 #include "quantities.h"
+#include "subvol/bricks.h"
 #include "subvol/error.h"
 #include "text.h"
 #include "verb.h"
@@ -46,7 +46,6 @@ public:
     }
 
     int run(Report& report) override {
-        for (const std::string& input : {a_, b_}) refuse_bricks(input, "compare", "grids of `subvol vdb` can be compared");
         const InputKind a = kind_of(a_), b = kind_of(b_);
         const bool pictures = b == InputKind::Picture;
         if ((a == InputKind::Picture) != pictures) {
@@ -102,7 +101,8 @@ private:
     /// Checks both inputs before a long time is spent on one of them.
     static void check_there(const std::string& input) {
         std::error_code ignored;
-        if (input.starts_with("model:") || std::filesystem::is_regular_file(input, ignored)) return;
+        const bool there = input.starts_with("model:") || std::filesystem::is_regular_file(input, ignored) || is_bricks(input);
+        if (there) return;
         throw Error(ErrorCode::Io, "cannot be read: no such file", input);
     }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "bricks_input.h"
 #include "choices.h"
 #include "grid_fields.h"
 #include "input.h"
@@ -64,7 +63,6 @@ public:
     }
 
     int run(Report& report) override {
-        refuse_bricks(input_, "page", "`subvol render` draws it, and each .vtu file in it is a mesh");
         check_output(output_, {".html"});
         picture_.settle_look(true);
         if (picture_.look == Look::Isosurface) {

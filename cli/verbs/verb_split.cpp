@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 
-#include "bricks_input.h"
 #include "choices.h"
 #include "input.h"
 #include "quantities.h"
@@ -53,7 +52,6 @@ public:
 
     int run(Report& report) override {
         check_choice("--by", by_, {"blocks", "slabs", "random"});
-        refuse_bricks(input_, "split", "they can be used as they are");
         options_.shape = by_ == "slabs" ? BrickShape::Slabs : by_ == "random" ? BrickShape::Random : BrickShape::Blocks;
         options_.seed = common().seed;
         options_.progress = report.progress();

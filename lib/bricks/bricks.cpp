@@ -9,6 +9,7 @@
 #include "brick_index.h"
 #include "brick_layers.h"
 #include "subvol/detail/bricks_share.h"
+#include "subvol/detail/gather_cells.h"
 #include "subvol/detail/inspect_part.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
@@ -123,6 +124,14 @@ BoundaryValues boundary_values(const BrickHull& hull, const SchemeOptions& schem
     };
     const int sensible = picture_levels(2 * hull_quads(hull.mesh, at_hull).size(), levels);
     return boundary_values_of_hull(hull.mesh, hull.on_hull, {.scheme = scheme, .levels = sensible});
+}
+
+HexMesh whole_mesh(const Bricks& bricks, Progress* progress) {
+    const detail::GatherOptions all{.reads = [](std::size_t) { return true; },
+                                    .chooses = [](const BrickMesh& brick) { return brick.owned_cells; },
+                                    .layers = 0,
+                                    .progress = progress};
+    return std::move(detail::gather_cells(bricks, all)->mesh);
 }
 
 }  // namespace subvol

@@ -176,6 +176,24 @@ class SameAsTheWhole(InFolder):
                     self.assertEqual(parts[key], whole[key], f"{cut} {key}")
                 self.assertEqual(self.bytes_of("parts.ply"), self.bytes_of("whole.ply"), cut)
 
+    def test_what_holds_the_mesh_says_so(self):
+        for cut in self.cuts([(3, "random")]):
+            for name, verb, *options in (("a.vtu", "subdivide"), ("a.html", "page", "--title", "t"),
+                                         ("a.png", "view", "--size", "64x48", "--screenshot"), ("a.bricks", "split", "--halo", 4)):
+                output = [] if verb == "view" else ["-o"]
+                self.run_ok(verb, BALL, *options, *output, "whole_" + name, "--quiet")
+                done = self.run_ok(verb, "b.bricks", *options, *output, name)
+                self.assertIn("held in memory together", done.err, verb)
+                if verb != "split":
+                    named = self.bytes_of(name).replace(b"b.bricks", BALL.encode())  # a page says what it shows
+                    self.assertEqual(named, self.bytes_of("whole_" + name), verb)
+            bricks = sorted(path.name for path in (self.folder / "a.bricks").glob("*.vtu"))
+            self.assertEqual(bricks, sorted(path.name for path in (self.folder / "whole_a.bricks").glob("*.vtu")))
+            for brick in bricks:
+                self.assertEqual(self.bytes_of("a.bricks/" + brick), self.bytes_of("whole_a.bricks/" + brick))
+            found = self.run_ok("compare", "b.bricks", BALL, "--levels", 1, "--samples", 1000, "--json").json()
+            self.assertEqual((found["linf"], found["uncovered"]), (0, 0), cut)
+
     def test_the_twist_is_written_brick_by_brick(self):
         self.run_ok("points", "model:twist:10", "-o", "whole.ply", "--quiet")
         split = self.run_ok("split", "model:twist:10", "-o", "t.bricks", "--bricks", 8, "--json").json()
@@ -240,10 +258,7 @@ class WhatGoesWrong(InFolder):
         self.assert_said("x.vdb: cannot be read", "join", "list.json", "-o", "a.vdb")
 
     def test_what_cannot_be_done_by_bricks(self):
-        said = "is a folder of bricks, which this command does not take yet"
-        for verb, *more in (("view", "--screenshot", "a.png"), ("page", "-o", "a.html"), ("compare", "t.bricks")):
-            self.assert_said(f"which `subvol {verb}` does not take", verb, "t.bricks", *more)
-        self.assert_said(said, "subdivide", "t.bricks", "-o", "a.vtu")
+        self.assert_said("settled when it is split", "subdivide", "t.bricks", "-o", "a.vtu", "--weld")
         self.assert_said("misses the volume", "slice", "t.bricks", "-o", "a.png", "--plane", "0,0,9,0,0,1")
         self.assert_said("which is not refined by", "slice", "t.bricks", "-o", "a.png", "--scheme", "tetoct")
         self.assert_said("whole mesh in memory", "vdb", "t.bricks", "-o", "a.vdb", "--sdf")
@@ -262,7 +277,6 @@ class WhatGoesWrong(InFolder):
         self.assert_said("settled when a mesh is split", "points", "t.bricks", "-o", "a.ply", "--weld")
         self.assert_said("is not refined by", "surface", "t.bricks", "-o", "a.ply", "--scheme", "tetoct")
         self.assert_said("the limit does not take this value", "surface", "t.bricks", "-o", "a.ply", "--iso", 99)
-        self.assert_said("does not take", "split", "t.bricks", "-o", "u.bricks")
         for scheme in ("tetoct", "boxspline"):
             for verb, name in (("points", "a.ply"), ("vdb", "a.vdb"), ("render", "a.png")):
                 self.assert_said("has hexahedra only", verb, "t.bricks", "-o", name, "--scheme", scheme)

@@ -85,6 +85,13 @@ using BrickFields = std::function<HexMesh(HexMesh)>;
 /// cost:   memory: about twice the file while it is read
 [[nodiscard]] BrickMesh read_brick(const Bricks& bricks, std::size_t brick);
 
+/// The mesh of all bricks, for what cannot be done brick by brick: points, cells, fields and tags as they were when it was split,
+/// without unused points.
+///
+/// throws: as `read_brick`; Error(Cancelled)
+/// cost:   memory: the result twice, and one brick
+[[nodiscard]] HexMesh whole_mesh(const Bricks& bricks, Progress* progress = nullptr);
+
 /// All cells whose limit may touch a box, as owned cells, with their halo. Bricks that are far from the box are not read.
 ///
 /// throws: as `read_brick`
