@@ -173,7 +173,7 @@ class Ranks(WithRanks):
 
     def test_pictures_by_sums_in_fixed_point(self):
         for options in ([], ["--look", "volume", "--samples", "2"], ["--look", "isosurface"], ["--clip", "0,0,0,1,1,0"],
-                        ["--lod", "30"]):
+                        ["--lod", "100"]):
             options = [*options, "--sheet-sums", "fixed"]
             self.run_ok("render", "model:ball:4", "-o", "one.exr", *PICTURE, *options)
             for count in (2, 7) if len(options) == 2 else (3,):
