@@ -66,7 +66,8 @@ FieldInput grid_field(const std::string& input, const CommonOptions& options, Re
 InputKind kind_of(const std::string& input) {
     const std::string extension = extension_of(input);
     const std::vector<std::string> meshes = readable_mesh_extensions();
-    const bool is_mesh = input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end() || is_bricks(input);
+    const bool is_mesh =
+        input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end() || is_bricks(input);
     if (is_mesh) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
     return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;

@@ -85,8 +85,8 @@ using BrickFields = std::function<HexMesh(HexMesh)>;
 /// cost:   memory: about twice the file while it is read
 [[nodiscard]] BrickMesh read_brick(const Bricks& bricks, std::size_t brick);
 
-/// The mesh of all bricks, for what cannot be done brick by brick: points, cells, fields and tags as they were when it was split,
-/// without unused points.
+/// The mesh of all bricks, for what cannot be done brick by brick: points, cells, fields and tags as they were when it was
+/// split, without unused points.
 ///
 /// throws: as `read_brick`; Error(Cancelled)
 /// cost:   memory: the result twice, and one brick
