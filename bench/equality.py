@@ -25,7 +25,7 @@ SHAPES = ("slabs", "blocks", "random")
 PICTURE = ["--size", "160x128", "--backend", "cpu"]
 COLUMNS = {"points": ("points", ".ply", []), "vdb": ("vdb", ".vdb", ["--resolution", "48"]),
            "render": ("render", ".exr", PICTURE), "tets": ("render", ".exr", ["--method", "tets", *PICTURE]),
-           "fixed": ("render", ".exr", [*PICTURE, "--sheet-sums", "fixed"]),
+           "fixed": ("render", ".exr", [*PICTURE, "--look", "volume", "--sheet-sums", "fixed"]),
            "surface": ("surface", ".obj", ["--iso", "0.3", "--cap", "--boundary", "--color-field", "density", "--tolerance", "3e-3"])}
 OF_SHARES = {"surface": ".svshare"}  # where a share is another file
 RANKS = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
