@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """What importing the package costs and loads."""
-import os
 import subprocess
 import sys
 
@@ -24,10 +23,11 @@ def test_import_loads_no_optional_package():
         assert late not in loaded, late
 
 
-def test_import_takes_little_processor_time():
-    # Processor time, not the clock's: numpy takes .1 s of it. The least of some runs, as others share the machine.
-    times = [float(python("import time; t = time.process_time(); import subvol; print(time.process_time() - t)")) for _ in range(5)]
-    assert min(times) < 0.3 or "-fsanitize" in os.environ.get("SUBVOL_FLAGS", ""), times
+def test_import_loads_few_libraries():
+    # What an import costs is finding libraries and their symbols: OpenImageIO alone would bring 250.
+    mapped = "{line.split()[-1] for line in open('/proc/self/maps') if '.so' in line}"
+    more = python(f"import numpy; before = {mapped}; import subvol; print(*({mapped} - before))").split()
+    assert 1 <= len(more) <= 45, more
 
 
 def test_openvdb_is_loaded_by_the_first_grid():
@@ -36,6 +36,6 @@ def test_openvdb_is_loaded_by_the_first_grid():
 
 
 def test_modules_are_found(tmp_path):
-    # OpenImageIO is a module of the library: the extension finds it by its own RUNPATH, whatever the folder is.
+    # OpenEXR is in a module of the library: the extension finds it by its own RUNPATH, whatever the folder is.
     python(f"import os, subvol; os.chdir('/'); subvol.render(subvol.model('ball', 2), size=(8, 8)).write('{tmp_path}/a.exr')")
     assert (tmp_path / "a.exr").stat().st_size > 100
