@@ -83,21 +83,6 @@ void write_file(const fs::path& path, const std::function<std::optional<PictureF
     file.commit();
 }
 
-void write_floats(const fs::path& path, const PictureValues& picture) {
-    write_file(path, [&](const std::string& name) { return openexr().write(name, picture); });
-}
-
-void write_exr(const fs::path& path, const Image& image, std::span<const float> depth) {
-    if (depth.empty()) return write_floats(path, {image.width, image.height, 4, image.rgba.data()});
-    std::vector<float> pixels;
-    pixels.reserve(5 * depth.size());
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-        for (std::size_t c = 0; c < 4; ++c) pixels.push_back(image.rgba[4 * i + c]);
-        pixels.push_back(depth[i]);
-    }
-    write_floats(path, {image.width, image.height, 5, pixels.data()});
-}
-
 // Which of the channels are red, green, blue and alpha (-1: opaque); a file with one or two colours is grey.
 std::array<int, 4> channels_of(const DecodedPicture& picture) {
     const int alpha = picture.alpha;
@@ -161,7 +146,11 @@ void write_image(const fs::path& path, const Image& image, const Vec3& backgroun
     }
     const std::string extension = extension_of(path);
     if (extension == ".exr") {
-        write_exr(path, image, depth);
+        const PictureValues picture{.width = image.width,
+                                    .height = image.height,
+                                    .rgba = image.rgba.data(),
+                                    .depth = depth.empty() ? nullptr : depth.data()};
+        write_file(path, [&](const std::string& name) { return openexr().write(name, picture); });
     } else if (extension == ".png") {
         const std::vector<std::uint8_t> rgb = srgb_bytes(image, background);
         write_file(path, [&](const std::string& name) { return write_png(name, image.width, image.height, rgb); });

@@ -12,7 +12,7 @@ using namespace detail;
 const OpenImageIo& detail::openimageio() {
     using Entry = const OpenImageIo* (*)();
     static const OpenImageIo& functions =
-        *reinterpret_cast<Entry>(load_module("openimageio", "reading, writing or comparing pictures"))();
+        *reinterpret_cast<Entry>(load_module("openimageio", "reading or comparing pictures"))();
     return functions;
 }
 

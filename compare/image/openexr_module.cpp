@@ -90,12 +90,13 @@ std::optional<PictureFault> write(const std::string& path, const PictureValues& 
     header.compression() = Imf::ZIP_COMPRESSION;
     if (picture.note != nullptr) header.insert(kNoteName, Imf::StringAttribute(picture.note));
     Imf::FrameBuffer frame;
-    const std::size_t step = sizeof(float) * static_cast<std::size_t>(picture.channels);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(picture.channels); ++c) {
-        header.channels().insert(kNames[c], Imf::Channel(Imf::FLOAT));
-        frame.insert(kNames[c], Imf::Slice::Make(Imf::FLOAT, picture.values + c, data, step,
-                                                 step * static_cast<std::size_t>(picture.width)));
-    }
+    const auto in_row = static_cast<std::size_t>(picture.width);
+    const auto add = [&](const char* name, const float* values, std::size_t step) {
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values, data, step, step * in_row));
+    };
+    for (std::size_t c = 0; c < 4; ++c) add(kNames[c], picture.rgba + c, 4 * sizeof(float));
+    if (picture.depth != nullptr) add("Z", picture.depth, sizeof(float));
     try {
         Imf::OutputFile file(stream, header, threads_for(std::int64_t{picture.width} * picture.height));
         file.setFrameBuffer(frame);

@@ -33,12 +33,13 @@ struct DecodedPicture {
     std::string note{};
 };
 
-/// Pixels for a file: linear floats whose channels are R, G, B, A and, if there are five, Z.
+/// Pixels for a file: linear floats R, G, B, A, and a depth for each, if there are any.
 ///
 /// whole_height: > 0: these are rows, from `first_row` on, of a picture of this height; `note` is a text beside them
 struct PictureValues {
-    int width = 0, height = 0, channels = 0;
-    const float* values = nullptr;
+    int width = 0, height = 0;
+    const float* rgba = nullptr;
+    const float* depth = nullptr;
     int first_row = 0, whole_height = 0;
     const char* note = nullptr;
 };

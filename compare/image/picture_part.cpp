@@ -13,18 +13,11 @@ void write_picture_part(const std::filesystem::path& path, const PicturePart& pa
     if (!within || (!part.depth.empty() && part.depth.size() != pixels)) {
         throw Error(ErrorCode::InvalidInput, "the rows are not within the picture", path.string());
     }
-    const std::size_t channels = part.depth.empty() ? 4 : 5;
-    std::vector<float> values;
-    values.reserve(channels * pixels);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        for (std::size_t c = 0; c < 4; ++c) values.push_back(rows.rgba[4 * i + c]);
-        if (channels == 5) values.push_back(part.depth[i]);
-    }
     AtomicFile file(path);
     const PictureValues picture{.width = rows.width,
                                 .height = rows.height,
-                                .channels = static_cast<int>(channels),
-                                .values = values.data(),
+                                .rgba = rows.rgba.data(),
+                                .depth = part.depth.empty() ? nullptr : part.depth.data(),
                                 .first_row = part.first_row,
                                 .whole_height = part.whole_height,
                                 .note = part.note.c_str()};

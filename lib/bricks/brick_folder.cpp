@@ -64,7 +64,7 @@ BricksWriter::BricksWriter(fs::path folder, std::uint64_t id, int halo_layers)
     check_target(folder_);
     std::error_code error;
     const fs::path progress = work_ / kProgress;
-    if (fs::exists(work_, error)) {
+    if (fs::exists(work_, error) && !fs::is_empty(work_, error)) {  // empty: ended before it had written anything
         if (!fs::is_regular_file(progress, error)) {
             throw Error(ErrorCode::InvalidInput, "exists and is no unfinished folder of bricks", work_.string(),
                         "remove it, or use another name");
@@ -83,7 +83,12 @@ BricksWriter::BricksWriter(fs::path folder, std::uint64_t id, int halo_layers)
     if (error) fail(work_, error);
     done_.id = id;
     done_.halo_layers = halo_layers;
-    save_progress();
+    try {
+        save_progress();
+    } catch (...) {
+        fs::remove(work_, error);  // if it is empty
+        throw;
+    }
 }
 
 void BricksWriter::save_progress() {

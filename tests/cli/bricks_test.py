@@ -316,6 +316,11 @@ class WhatGoesWrong(InFolder):
         self.assertEqual([name for name in self.files() if name != "f.bricks.unfinished"], ["t.bricks"])
         self.assertEqual(self.run_ok("split", "model:twist:20", "-o", "f.bricks", "--bricks", 2, "--json").json()["cells"], 8000)
 
+    def test_an_empty_unfinished_folder_is_no_obstacle(self):
+        (self.folder / "e.bricks.unfinished").mkdir()  # of a run that ended before its first byte
+        self.run_ok("split", BALL, "-o", "e.bricks", "--quiet")
+        self.assertFalse((self.folder / "e.bricks.unfinished").exists())
+
     def test_a_killed_split_goes_on(self):
         running = subprocess.Popen([COMMAND, "split", "model:twist:40", "-o", "k.bricks", "--bricks", "64", "--quiet"],
                                    cwd=self.folder)

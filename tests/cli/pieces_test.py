@@ -59,16 +59,23 @@ class FromPieces(InFolder):
         if not SANITIZED:
             self.assertLess(split["peak_bytes"], whole["peak_bytes"])
 
-    def test_tetrahedra_in_pieces_are_split_piece_by_piece(self):
+    def a_cell_beside_hexahedra(self, points, corners, vtk_type):
+        """all.pvtu: eight hexahedra, and far from them a cell of another kind."""
+        def array(name, kind, numbers, components=1):
+            return (f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{components}" format="ascii">'
+                    f'{" ".join(map(str, numbers))}</DataArray>')
+
         self.run_ok("model", "twist", "--resolution", 2, "-o", "a.vtu", "--quiet")
-        tets = ('<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1"><Points>'
-                '<DataArray type="Float64" NumberOfComponents="3" format="ascii">9 0 0 10 0 0 9 1 0 9 0 1</DataArray></Points>'
-                '<Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray><DataArray type="Int64" '
-                'Name="offsets" format="ascii">4</DataArray><DataArray type="UInt8" Name="types" format="ascii">10</DataArray>'
-                '</Cells></Piece></UnstructuredGrid></VTKFile>')
-        (self.folder / "b.vtu").write_text(tets)
+        (self.folder / "b.vtu").write_text(
+            f'<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="{len(points)}" NumberOfCells="1"><Points>'
+            f'{array("Points", "Float64", (x for point in points for x in point), 3)}</Points><Cells>'
+            f'{array("connectivity", "Int64", corners)}{array("offsets", "Int64", [len(corners)])}'
+            f'{array("types", "UInt8", [vtk_type])}</Cells></Piece></UnstructuredGrid></VTKFile>')
         (self.folder / "all.pvtu").write_text('<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid><Piece Source="a.vtu"/>'
                                               '<Piece Source="b.vtu"/></PUnstructuredGrid></VTKFile>')
+
+    def test_tetrahedra_in_pieces_are_split_piece_by_piece(self):
+        self.a_cell_beside_hexahedra([(9, 0, 0), (10, 0, 0), (9, 1, 0), (9, 0, 1)], range(4), 10)
         done = self.run_ok("split", "all.pvtu", "-o", "b.bricks", "--bricks", 2)
         self.assertNotIn("held in memory", done.err)
         self.assertIn("8 hexahedra and 1 tetrahedron split into 68 hexahedra", done.err)
@@ -78,15 +85,8 @@ class FromPieces(InFolder):
         self.assertEqual((self.folder / "b.bricks.ply").read_bytes(), (self.folder / "all.pvtu.ply").read_bytes())
 
     def test_cells_that_repeat_points_are_held_whole(self):
-        self.run_ok("model", "twist", "--resolution", 2, "-o", "a.vtu", "--quiet")
-        prism = ('<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="6" NumberOfCells="1"><Points>'
-                 '<DataArray type="Float64" NumberOfComponents="3" format="ascii">9 0 0 10 0 0 9 1 0 9 0 1 10 0 1 9 1 1</DataArray>'
-                 '</Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 2 3 4 5 5</DataArray>'
-                 '<DataArray type="Int64" Name="offsets" format="ascii">8</DataArray><DataArray type="UInt8" Name="types" '
-                 'format="ascii">12</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>')
-        (self.folder / "b.vtu").write_text(prism)
-        (self.folder / "all.pvtu").write_text('<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid><Piece Source="a.vtu"/>'
-                                              '<Piece Source="b.vtu"/></PUnstructuredGrid></VTKFile>')
+        prism = [(9, 0, 0), (10, 0, 0), (9, 1, 0), (9, 0, 1), (10, 0, 1), (9, 1, 1)]
+        self.a_cell_beside_hexahedra(prism, (0, 1, 2, 2, 3, 4, 5, 5), 12)
         done = self.run_ok("split", "all.pvtu", "-o", "b.bricks", "--bricks", 2)
         self.assertIn("all pieces are held in memory: it has cells that repeat points", done.err)
         self.assertEqual(self.run_ok("info", "b.bricks", "--json").json()["cells"],
@@ -119,9 +119,14 @@ class FromPieces(InFolder):
         self.run_ok("split", "all.pvtu", "-o", "b.bricks", "--bricks", 3, "--quiet")
 
     def test_a_full_disk(self):
+        for room in (0, 20000):
+            with self.subTest(room):
+                self.a_disk_with(room)
+
+    def a_disk_with(self, room):
         def small_files():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
 
         self.pieces(3, "slabs")
         before = self.files()
