@@ -5,9 +5,9 @@
     bench/growth.py [build/release/bin/subvol] [--sizes 100,159,215] [--csv docs/scale/growth.csv] [--plot docs/scale/growth.png]
                     [--folder FOLDER]
 
-For each size N the model `twist:N` (N³ cells) is written as bricks of a million cells, and `info`, `points` and `render` (512²,
-the look `solid`, by the CPU) go through them. CPU seconds (user and system) and the largest memory of each command replace
-its row in the .csv file; the plot is of all rows there. 464, which has 10⁸ cells, needs 30 GB of disk and half an hour. FOLDER is for what
+For each size N the model `twist:N` (N³ cells) is written as bricks of a million cells, and `info`, `points`, `render` (512²,
+the look `solid`, by the CPU) and `vdb` (800 voxels for 464 cells along an axis) go through them. CPU seconds (user and system) and the largest memory of each command replace
+its row in the .csv file; the plot is of all rows there. 464, which has 10⁸ cells, needs 30 GB of disk and three quarters of an hour. FOLDER is for what
 is written meanwhile.
 """
 import argparse
@@ -18,14 +18,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-COMMANDS = ("split", "info", "points", "render")
+COMMANDS = ("split", "info", "points", "render", "vdb")
 FIELDS = ("command", "cells", "cpu_seconds", "peak_bytes", "bytes_written")
 
 
-def size_of(path):
-    if path.is_dir():
-        return sum(file.stat().st_size for file in path.iterdir())
-    return path.stat().st_size if path.exists() else 0
+def size_of(folder, pattern):
+    files = [file for path in folder.glob(pattern) for file in (path.iterdir() if path.is_dir() else [path])]
+    return sum(file.stat().st_size for file in files)
 
 
 def measured(program, folder, words, output):
@@ -36,7 +35,7 @@ def measured(program, folder, words, output):
     if status != 0:
         sys.exit(f"{' '.join(map(str, words))}: ended with {os.waitstatus_to_exitcode(status)}")
     return {"cpu_seconds": round(used.ru_utime + used.ru_stime, 2), "peak_bytes": used.ru_maxrss * 1024,
-            "bytes_written": size_of(folder / output) if output else 0}
+            "bytes_written": size_of(folder, output) if output else 0}
 
 
 def rows_of(program, size, folder):
@@ -46,7 +45,8 @@ def rows_of(program, size, folder):
                 "info": (["info", "t.bricks"], None),
                 "points": (["points", "t.bricks", "-o", "t.ply"], "t.ply"),
                 "render": (["render", "t.bricks", "-o", "t.png", "--size", "512x512", "--look", "solid", "--backend", "cpu"],
-                           "t.png")}
+                           "t.png"),
+                "vdb": (["vdb", "t.bricks", "-o", "t.vdb", "--resolution", round(size * 800 / 464)], "t*.vdb")}
     for command in COMMANDS:
         words, output = commands[command]
         yield {"command": command, "cells": cells, **measured(program, folder, [*words, "--quiet"], output)}

@@ -12,6 +12,12 @@ bool is_of_splats(const std::string& method) {
     return method == "splat" || method == "sheets" || method == "footprints";
 }
 
+void check_edges(const std::string& method, const PictureArguments& picture) {
+    if (!picture.edges || is_of_splats(method)) return;
+    throw Error(ErrorCode::InvalidInput, "method " + method + " has no depths to hide lines by", "--edges",
+                "use --method splat or sheets");
+}
+
 void check_method(const std::string& method, const PictureArguments& picture, const SplatArguments& splat,
                   const ReferenceArguments& reference) {
     if (reference.lod && !std::isfinite(*reference.lod))
@@ -35,10 +41,7 @@ void check_method(const std::string& method, const PictureArguments& picture, co
         throw Error(ErrorCode::InvalidInput, "method " + method + " draws one field without light", "--shade, --color-field",
                     "use --method splat or sheets");
     }
-    if (picture.edges) {
-        throw Error(ErrorCode::InvalidInput, "method " + method + " has no depths to hide lines by", "--edges",
-                    "use --method splat or sheets");
-    }
+    check_edges(method, picture);
     const bool on_gpu = method == "pt";
     if (splat.seconds && !on_gpu) {
         throw Error(ErrorCode::InvalidInput, "method " + method + " has no time limit", "--seconds",

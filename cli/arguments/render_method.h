@@ -12,6 +12,11 @@ namespace subvol::cli {
 /// Whether a method of `subvol render` draws kernels: splat, sheets or footprints.
 [[nodiscard]] bool is_of_splats(const std::string& method);
 
+/// Refuses `--edges` for a method that knows no depths.
+///
+/// throws: Error(InvalidInput)
+void check_edges(const std::string& method, const PictureArguments& picture);
+
 /// Refuses options that a method does not have.
 ///
 /// throws: Error(InvalidInput)

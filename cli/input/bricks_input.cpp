@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 
 #include "subvol/detail/near_name.h"
 #include "subvol/error.h"
@@ -22,7 +23,7 @@ const BrickField* find(const Bricks& bricks, const std::string& name) {
 }  // namespace
 
 bool is_bricks_input(const std::string& input) {
-    return is_bricks(input);
+    return is_bricks(input) || std::filesystem::path(input).extension() == ".bricks";
 }
 
 Bricks open_bricks_input(const std::string& input, const CLI::App& app, Report& report) {

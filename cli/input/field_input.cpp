@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "bricks_input.h"
 #include "grid_input.h"
 #include "input.h"
 #include "points_input.h"
-#include "subvol/bricks.h"
 #include "subvol/error.h"
 #include "subvol/limit_level.h"
 #include "subvol/mesh_field.h"
@@ -67,7 +67,7 @@ InputKind kind_of(const std::string& input) {
     const std::string extension = extension_of(input);
     const std::vector<std::string> meshes = readable_mesh_extensions();
     const bool is_mesh =
-        input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end() || is_bricks(input);
+        input.starts_with("model:") || std::ranges::find(meshes, extension) != meshes.end() || is_bricks_input(input);
     if (is_mesh) return InputKind::Mesh;
     if (holds_points(input)) return InputKind::Points;
     return is_vdb_file(input) ? InputKind::Grid : InputKind::Picture;

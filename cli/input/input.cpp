@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "bricks_input.h"
 #include "quantities.h"
 #include "steps.h"
 #include "subvol/bricks.h"
@@ -101,7 +102,7 @@ ReadOptions read_options(const std::string& input, const CommonOptions& options)
 
 ReadResult read_input(const std::string& input, const CommonOptions& options, Report& report, SheetsAlone alone) {
     report["input"] = input;
-    if (is_bricks(input)) {
+    if (is_bricks_input(input)) {
         ReadResult read;
         read.mesh = mesh_of_bricks(input, options, report);
         return read;

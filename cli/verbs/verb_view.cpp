@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "bricks_input.h"
 #include "choices.h"
 #include "clip_arguments.h"
 #include "grid_input.h"
@@ -20,7 +21,6 @@
 #include "sampled_points.h"
 #include "splat_arguments.h"
 #include "steps.h"
-#include "subvol/bricks.h"
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/mesh_series.h"
@@ -95,6 +95,7 @@ public:
 
     int run(Report& report) override {
         check_choice("--method", method_, {"splat", "sheets", "tets", "pt", "dense", "grid"});
+        check_edges(method_, picture_);
         const bool voxels = !holds_points(input_) && is_vdb_file(input_);
         const bool points = voxels || holds_points(input_);
         picture_.settle_look(!points);
@@ -203,7 +204,7 @@ private:
             body.points.volume ? std::vector<Vec3>{} : picture_.framed_points(body.mesh, optics);
         const View view = picture_.make_views(body.box, framed).front();
         ViewState state{.camera = view.camera(), .width = view.width(), .height = view.height(), .field = field.value_or("")};
-        const bool one_state = is_model(input_) || is_bricks(input_) || body.points.volume;
+        const bool one_state = is_model(input_) || is_bricks_input(input_) || body.points.volume;
         const auto series_step = one_state ? std::nullopt : one_step(input_, common());
         state.step = series_step.value_or(times().size() - 1);
         state.method = method_;
@@ -216,7 +217,7 @@ private:
     }
 
     [[nodiscard]] std::vector<double> times() const {
-        const bool one_state = is_model(input_) || is_bricks(input_) || holds_points(input_) || is_vdb_file(input_);
+        const bool one_state = is_model(input_) || is_bricks_input(input_) || holds_points(input_) || is_vdb_file(input_);
         return one_state ? std::vector<double>{0} : open_series(input_).times;
     }
 

@@ -222,6 +222,12 @@ class WhatGoesWrong(InFolder):
         self.assert_said(naming, "surface", "t.bricks", "-o", "a.ply")
         self.assert_said(naming, "info", "t.bricks")
 
+    def test_a_missing_folder_and_one_without_an_index(self):
+        for name in ("none.bricks", "empty.bricks"):
+            (self.folder / "empty.bricks").mkdir(exist_ok=True)
+            for verb, *options in (["info"], ["points", "-o", "a.ply"], ["subdivide", "-o", "a.vtu"], ["view", "--screenshot", "a.png"]):
+                self.assert_said(f"{name}/index.json: cannot be read: No such file or directory", verb, name, *options)
+
     def test_missing_changed_and_foreign_bricks(self):
         first = self.folder / "t.bricks" / "brick_00001.vtu"
         sound = first.read_bytes()

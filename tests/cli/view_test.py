@@ -44,7 +44,7 @@ class WithoutWindow(InSession):
             self.run_ok(*shlex.split(said["render"])[1:], "--quiet")
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
         for words in (["ball.ply", "--method", "tets"], [BALL, "--method", "grid"], ["ball.ply", "--per-edge", "2"],
-                      ["ball.ply", "--field", "T"]):
+                      ["ball.ply", "--field", "T"], [BALL, "--edges", "--method", "tets"]):
             done = subvol("view", *words, *SMALL, "--screenshot", "x.png", folder=self.folder)
             self.assertEqual(done.code, 2, done.err)
 
@@ -60,6 +60,7 @@ class WithoutWindow(InSession):
                 [{"orbit": [40, -15]}, {"zoom": 1.3}, {"pan": [0.1, 0]}],
                 [{"look": "volume"}, {"tf": "plasma"}, {"range": [-0.5, 1]}, {"opacity": [[-0.3, 0], [0.123456789, 0.3], [1, 0.9]]}],
                 [{"ortho": True}, {"view": "+x"}, {"axes": True}, {"edges": True}, {"look": "isosurface"}],
+                [{"edges": True}, {"method": "tets"}],  # which has no depths to hide lines by
                 [{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.05}, {"legend": True}, {"size": [160, 90]}],
         ):
             command = self.view(*actions)["render"]

@@ -74,7 +74,7 @@ std::string render_command(const ViewState& state, const ViewBody& body, const V
     for (const CutPlane& plane : state.clip.slices) add("--slice", plane_text(plane));
     if (state.clip.around_slices && !state.clip.slices.empty()) words.emplace_back("--around");
     if (state.axes) words.emplace_back("--axes");
-    if (state.edges) words.emplace_back("--edges");
+    if (state.edges && (state.method == "splat" || state.method == "sheets")) words.emplace_back("--edges");
     if (state.legend) words.emplace_back("--legend");
     words.insert(words.end(), source.more_words.begin(), source.more_words.end());
     std::string line;
