@@ -6,9 +6,9 @@
                     [--folder FOLDER]
 
 For each size N the model `twist:N` (N³ cells) is written as bricks of a million cells, and `info`, `points`, `render` (512²,
-the look `solid`, by the CPU) and `vdb` (800 voxels for 464 cells along an axis) go through them. CPU seconds (user and system) and the largest memory of each command replace
-its row in the .csv file; the plot is of all rows there. 464, which has 10⁸ cells, needs 30 GB of disk and three quarters of an hour. FOLDER is for what
-is written meanwhile.
+the look `solid`, by the CPU) and `vdb` (800 voxels for 464 cells along an axis) go through them. CPU seconds (user and system) and the largest memory of each command
+replace its row in the .csv file; the plot is of all rows there. 464, which has 10⁸ cells, needs 30 GB of disk and three quarters of
+an hour. FOLDER is for what is written meanwhile.
 """
 import argparse
 import csv
@@ -60,7 +60,7 @@ def plot(rows, path):
     from matplotlib import pyplot
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.6))
-    for command, marker in zip(COMMANDS, "osD^"):
+    for command, marker in zip(COMMANDS, "osD^v"):
         of_command = sorted((row for row in rows if row["command"] == command), key=lambda row: row["cells"])
         cells = [row["cells"] for row in of_command]
         left.loglog(cells, [row["cpu_seconds"] for row in of_command], marker=marker, label=command)
