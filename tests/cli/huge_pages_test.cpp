@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <cstdint>
 #include <fstream>
@@ -29,7 +30,11 @@ bool in_huge_pages(const void* place) {
 }
 
 bool system_has_huge_pages() {
-    return std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled").good();
+    constexpr std::size_t kBytes = 4 << 20;
+    void* block = mmap(nullptr, kBytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    const bool taken = block != MAP_FAILED && madvise(block, kBytes, MADV_HUGEPAGE) == 0;
+    if (block != MAP_FAILED) munmap(block, kBytes);
+    return taken;
 }
 
 TEST(HugePages, ServeLargeArraysAlone) {
