@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Precompiled headers, one for each set of libraries and not for each room. Half of the time of a build is the parsing of headers.
 #
-# subvol_precompiled(NAME HEADERS header… LIBRARIES target…) makes such a set; a set has the standard headers besides its own.
+# subvol_precompiled(NAME HEADERS header… LIBRARIES target… OPTIONS option…) makes such a set; a set has the standard headers besides
+# its own, and serves code that is compiled with optimisation, or with the -O0 of its own options.
 # subvol_use_precompiled(TARGET NAME) uses it in a target, before all else that is included. Sources include what they need all
 # the same: builds without SUBVOL_PRECOMPILED (clang's, the fuzzers') show that they do.
 option(SUBVOL_PRECOMPILED "Precompile the headers of libraries (GCC, single-configuration generators)" ON)
@@ -18,12 +19,13 @@ function(subvol_precompiled name)
   if(NOT SUBVOL_PRECOMPILED)
     return()
   endif()
-  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES;OPTIONS" ${ARGN})
   set(target subvol_precompiled_${name})
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled/${name}.cpp CONTENT "")
   add_library(${target} OBJECT ${CMAKE_BINARY_DIR}/precompiled/${name}.cpp)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} PRIVATE ${ARG_OPTIONS})
   target_link_libraries(${target} PRIVATE glm::glm TBB::tbb ${ARG_LIBRARIES})
   target_precompile_headers(${target} PRIVATE ${SUBVOL_STANDARD_HEADERS} ${ARG_HEADERS})
   set_property(GLOBAL PROPERTY SUBVOL_PRECOMPILED_${name} ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/cmake_pch.hxx)

@@ -83,10 +83,10 @@ class SameAsTheWhole(InFolder):
                 self.assertEqual(self.bytes_of(name), self.bytes_of(f"whole_{name}"), f"{scheme} {verb} {options}")
 
     def test_grids(self):
-        for options, cuts in ((["--resolution", 70], [(2, "blocks"), (7, "random")]),
-                              (["--resolution", 50, "--levels", 1], [(3, "slabs")]),
-                              (["--resolution", 50, "--scheme", "cc"], [(4, "blocks")]),
-                              (["--resolution", 50, "--scheme", "bsxw"], [(3, "random")])):
+        for options, cuts in ((["--resolution", 50], [(2, "blocks"), (7, "random")]),
+                              (["--resolution", 40, "--levels", 1], [(3, "slabs")]),
+                              (["--resolution", 40, "--scheme", "cc"], [(4, "blocks")]),
+                              (["--resolution", 40, "--scheme", "bsxw"], [(3, "random")])):
             whole = self.run_ok("vdb", BALL, "-o", "whole.vdb", *options, "--json").json()
             for cut in self.cuts(cuts):
                 parts = self.run_ok("vdb", "b.bricks", "-o", "parts.vdb", "--memory", "4M", *options, "--json").json()

@@ -14,8 +14,10 @@ COUNTS = (1, 2, 7)  # 3 and 4, too, in bench/equality.py
 BALL = "model:ball:4"
 MPIRUN = shutil.which("mpirun")
 AS_ROOT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-PICTURE = ["--size", "160x128", "--backend", "cpu", "--quiet"]
-SURFACES = ([], ["--iso", "0.3", "--color-field", "density", "--tolerance", "3e-3"], ["--iso", "0.1", "--iso", "0.4", "--cap", "--crease-angle", "40"])
+WIDTH, HEIGHT = 96, 80  # tiles have 32×32 pixels: three columns, and three rows, the last one cut
+PICTURE = ["--size", f"{WIDTH}x{HEIGHT}", "--backend", "cpu", "--quiet"]
+SURFACES = [[*options, "--tolerance", "3e-3"] for options in (
+    [], ["--iso", "0.3", "--color-field", "density"], ["--iso", "0.1", "--iso", "0.4", "--cap", "--crease-angle", "40"])]
 
 
 def without_times(report):

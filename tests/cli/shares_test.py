@@ -4,7 +4,7 @@
 import json
 import unittest
 
-from shares import COUNTS, PICTURE, SURFACES, Shared, WithRanks, without_times
+from shares import COUNTS, HEIGHT, PICTURE, SURFACES, WIDTH, Shared, WithRanks, without_times
 
 
 class Parts(Shared):
@@ -214,7 +214,7 @@ class Ranks(WithRanks):
         self.assertLess(abs(report["bytes_sent"] / sent - 1), 0.1)
         report = json.loads(self.ranks(4, "render", "model:twist:20", "-o", "r.exr", *PICTURE[:-1], "--json").stdout)
         self.assertLess(abs(report["kernel_bytes_sent"] / (72 * report["kernels_shipped"]) - 1), 0.1)
-        pixels = 20 * 160 * 128 * 3 / 4
+        pixels = 20 * WIDTH * HEIGHT * 3 / 4
         self.assertLess(abs(report["bytes_sent"] / (72 * report["kernels_shipped"] + pixels) - 1), 0.15)
 
     def test_bytes_of_sums_are_those_of_the_model(self):
@@ -225,7 +225,7 @@ class Ranks(WithRanks):
         sent = 8 * report["sums"] * (8192 * report["tile_batches_sent"] + report["ends_sent"])
         self.assertGreater(sent, 0)
         self.assertLess(abs(report["sum_bytes_sent"] / sent - 1), 0.01)
-        self.assertLess(abs(report["bytes_sent"] / (sent + 20 * 160 * 128 * 3 / 4) - 1), 0.1)
+        self.assertLess(abs(report["bytes_sent"] / (sent + 20 * WIDTH * HEIGHT * 3 / 4) - 1), 0.1)
 
     def test_one_sentence_for_all(self):
         for arguments in (["points", "nothing.vtk", "-o", "a.ply"], ["points", "model:ball:4", "-o", "nowhere/a.ply"],
