@@ -146,8 +146,7 @@ class Tetrahedra(InFolder):
         (self.folder / "other.json").write_text('[{"method": "tets"}, {"wait": true}, {"clip": [[1, 1, 1, 1, 0, 0]]}]')
         (self.folder / "pick.json").write_text('[{"pick": [32, 24]}]')
         for scheme in ("tetoct", "boxspline"):
-            for options in ([], ["--look", "volume", "--levels", "2"], ["--edges"], ["--method", "tets", "--axes"],
-                            ["--method", "dense", "--levels", "2"]):
+            for options in ([], ["--look", "volume", "--levels", "2"], ["--edges"], ["--method", "tets", "--axes"], ["--method", "dense"]):
                 asked = ("box.mesh", "--scheme", scheme, *options, *small)
                 self.run_ok("view", *asked, "--screenshot", "view.png")
                 self.run_ok("render", *asked, "-o", "render.png")

@@ -56,14 +56,15 @@ class WithoutWindow(InSession):
             self.assertEqual(self.bytes_of("view.png"), self.bytes_of("picture.png"), said["render"])
 
     def test_its_command_draws_the_same(self):
-        for actions, options in (
-                ([{"orbit": [40, -15]}, {"zoom": 1.3}, {"pan": [0.1, 0]}], []),
-                ([{"look": "volume"}, {"tf": "plasma"}, {"range": [-0.5, 1]}, {"opacity": [[-0.3, 0], [0.123456789, 0.3], [1, 0.9]]}], []),
-                ([{"ortho": True}, {"view": "+x"}, {"axes": True}, {"edges": True}, {"look": "isosurface"}], []),
-                ([{"edges": True}, {"method": "tets"}], []),  # which has no depths to hide lines by
-                ([{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.05}, {"legend": True}, {"size": [160, 90]}], ["--levels", "2"]),
+        for actions in (
+                [{"orbit": [40, -15]}, {"zoom": 1.3}, {"pan": [0.1, 0]}],
+                [{"look": "volume"}, {"tf": "plasma"}, {"range": [-0.5, 1]}, {"opacity": [[-0.3, 0], [0.123456789, 0.3], [1, 0.9]]},
+                 {"legend": True}, {"size": [160, 90]}],
+                [{"ortho": True}, {"view": "+x"}, {"axes": True}, {"edges": True}, {"look": "isosurface"}],
+                [{"edges": True}, {"method": "tets"}],  # which has no depths to hide lines by
+                [{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.05}, {"size": [48, 27]}],
         ):
-            command = self.view(*actions, options=options)["render"]
+            command = self.view(*actions)["render"]
             words = shlex.split(command)
             self.assertEqual(words[0], "subvol")
             self.run_ok(*words[1:], "--quiet")
