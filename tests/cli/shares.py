@@ -16,7 +16,7 @@ MPIRUN = shutil.which("mpirun")
 AS_ROOT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 WIDTH, HEIGHT = 96, 80  # tiles have 32×32 pixels: three columns, and three rows, the last one cut
 PICTURE = ["--size", f"{WIDTH}x{HEIGHT}", "--backend", "cpu", "--quiet"]
-SURFACES = [[*options, "--tolerance", "3e-3"] for options in (
+SURFACES = [[*options, "--tolerance", "1e-2"] for options in (
     [], ["--iso", "0.3", "--color-field", "density"], ["--iso", "0.1", "--iso", "0.4", "--cap", "--crease-angle", "40"])]
 
 

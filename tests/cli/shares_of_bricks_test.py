@@ -35,7 +35,7 @@ class PartsOfBricks(Shared):
         self.assertEqual(counts[1]["boundary_triangles"], 0)
 
     def test_grids(self):
-        for options in (["--resolution", "80", "--mask", "--half"], ["--resolution", "50", "--levels", "1"]):
+        for options in (["--resolution", "50", "--mask", "--half"], ["--resolution", "50", "--levels", "1"]):
             self.run_ok("vdb", BALL, "-o", "one.vdb", *options, "--quiet")
             for count in COUNTS:
                 names = self.parts("vdb", "b.bricks", ".vdb", count, *options, "--memory", "4M", "--quiet")
@@ -130,7 +130,7 @@ class RanksOfBricks(WithRanks):
         self.run_ok("split", BALL, "-o", "b.bricks", "--bricks", "5", "--by", "random", "--quiet")
 
     def test_points_and_grids(self):
-        grids = ["--resolution", "80", "--mask", "--half", "--quiet"]
+        grids = ["--resolution", "50", "--mask", "--half", "--quiet"]
         self.run_ok("points", BALL, "-o", "one.ply")
         self.run_ok("vdb", BALL, "-o", "one.vdb", *grids)
         for count in COUNTS[1:]:

@@ -19,7 +19,7 @@ class Parts(Shared):
                 self.assertEqual(self.bytes_of("joined.boundary.vtp"), self.bytes_of("one.boundary.vtp"))
 
     def test_grids_of_shares_have_the_leaves_of_one_process(self):
-        options = ["--resolution", "80", "--cell-ids", "--mask", "--coverage", "--sdf", "--half", "--quiet"]
+        options = ["--resolution", "50", "--cell-ids", "--mask", "--coverage", "--sdf", "--half", "--quiet"]
         self.run_ok("vdb", "model:ball:4", "-o", "one.vdb", *options)
         for count in COUNTS:
             names = self.parts("vdb", "model:ball:4", ".vdb", count, *options)
@@ -73,8 +73,8 @@ class Parts(Shared):
         self.assertIn("no colours", self.refused("join", *self.parts("surface", "model:ball:4", ".svshare", 2, *SURFACES[1]), "-o", "j.stl"))
 
     def test_wrong_surfaces_are_refused(self):
-        one, two = self.parts("surface", "model:ball:4", ".svshare", 2)
-        self.run_ok("surface", "model:ball:5", "-o", "foreign.svshare", "--part", "2/2")
+        one, two = self.parts("surface", "model:ball:4", ".svshare", 2, *SURFACES[0])
+        self.run_ok("surface", "model:ball:5", "-o", "foreign.svshare", "--part", "2/2", *SURFACES[0])
         self.run_ok("points", "model:ball:4", "-o", "points.ply", "--part", "2/2")
         self.assertIn(".svshare", self.refused("surface", "model:ball:4", "-o", "p.ply", "--part", "1/2"))
         self.assertIn(".ply", self.refused("surface", "model:ball:4", "-o", "p.svshare"))
@@ -155,7 +155,7 @@ class Parts(Shared):
 
 class Ranks(WithRanks):
     def test_points_and_grids(self):
-        grids = ["--resolution", "80", "--cell-ids", "--mask", "--sdf", "--half", "--quiet"]
+        grids = ["--resolution", "50", "--cell-ids", "--mask", "--sdf", "--half", "--quiet"]
         self.run_ok("points", "model:ball:4", "-o", "one.ply")
         self.run_ok("vdb", "model:ball:4", "-o", "one.vdb", *grids)
         for count in COUNTS[1:]:

@@ -62,7 +62,7 @@ class WithoutWindow(InSession):
                  {"legend": True}, {"size": [160, 90]}],
                 [{"ortho": True}, {"view": "+x"}, {"axes": True}, {"edges": True}, {"look": "isosurface"}],
                 [{"edges": True}, {"method": "tets"}],  # which has no depths to hide lines by
-                [{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.05}, {"size": [48, 27]}],
+                [{"method": "dense"}, {"look": "xray"}, {"opacity_unit": 0.4}, {"size": [48, 27]}],
         ):
             command = self.view(*actions)["render"]
             words = shlex.split(command)

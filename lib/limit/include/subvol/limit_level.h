@@ -89,9 +89,11 @@ struct LimitPieces {
 /// level:          the level whose trilinear cells approximate positions as well; surfaces are made of their faces
 /// cell_levels:    the level of the finest nodes in each control cell, at least 1. Empty if options.max_levels is 0: the cells
 ///                 stay as they are
-/// pieces:         null if there were more than options.max_bytes; then cells are refined to their cell_levels when they are
-/// used piece_count:    how many there are position_world: how far the pieces are from the limit, as far as the last level that
-/// was looked at shows value_of_range: the same for values converged:      both are within tolerance
+/// pieces:         null if there were more than options.max_bytes; then cells are refined to their cell_levels
+/// piece_count:    how many there are
+/// position_world: how far the pieces are from the limit, as far as the last level that was looked at shows
+/// value_of_range: the same for values
+/// converged:      both are within tolerance
 struct LimitCells {
     int level = 0;
     std::vector<std::uint8_t> cell_levels;
