@@ -34,7 +34,7 @@ private:
     using Origin = std::array<std::int32_t, 3>;
 
     void root() {
-        file_.skip(layout_.value_bytes);  // the background
+        background();
         const auto tiles = file_.take<std::uint32_t>();
         const auto children = file_.take<std::uint32_t>();
         for (std::uint32_t i = 0; i < tiles; ++i) {
@@ -46,6 +46,13 @@ private:
             origin();
             inner(kUpper);
         }
+    }
+
+    /// OpenVDB makes leaves of points with the background as their values, and aborts if that is not 0.
+    void background() {
+        if (layout_.leaves != LeafLayout::Points) return file_.skip(layout_.value_bytes);
+        const auto value = file_.take<std::uint32_t>();
+        if (value != 0) file_.fail("a grid of points has the background " + std::to_string(value), "0");
     }
 
     /// OpenVDB keeps one entry for each origin, so that a second one would change the number of leaves whose values follow.

@@ -172,6 +172,15 @@ TEST_F(VdbCheck, GridsThatShareATreeHaveTheSameVoxels) {
     EXPECT_TRUE(read[1].value({0, 0, -1.25}).has_value() || read[1].value({1, 1, -1.25}).has_value());
 }
 
+// OpenVDB asserts it when it makes a leaf.
+TEST_F(VdbCheck, PointsOverABackgroundAreRefused) {
+    const auto points = some_points(50);
+    points->tree().root().setBackground(openvdb::PointDataIndex32(5), /*updateChildNodes=*/false);
+    static_cast<void>(bytes_of({points}));
+    EXPECT_THAT(error_of([&] { static_cast<void>(checked_grids(path("whole.vdb"), {points->type()})); }),
+                HasSubstr("a grid of points has the background 5 (0)"));
+}
+
 // A block that unpacks into the 512 floats of a leaf, as blosc's header says.
 std::optional<std::size_t> find_block(const std::string& bytes) {
     for (std::size_t i = 0; i + 24 < bytes.size(); ++i) {
