@@ -177,7 +177,8 @@ TEST_F(VdbCheck, PointsOverABackgroundAreRefused) {
     const auto points = some_points(50);
     points->tree().root().setBackground(openvdb::PointDataIndex32(5), /*updateChildNodes=*/false);
     static_cast<void>(bytes_of({points}));
-    EXPECT_THAT(error_of([&] { static_cast<void>(checked_grids(path("whole.vdb"), {points->type()})); }),
+    const std::vector<std::string> types{points->type()};
+    EXPECT_THAT(error_of([&] { static_cast<void>(checked_grids(path("whole.vdb"), types)); }),
                 HasSubstr("a grid of points has the background 5 (0)"));
 }
 
