@@ -85,11 +85,12 @@ void bricks_at(const Reach& reach, const std::array<Index, 8>& cell, std::uint32
 
 std::vector<Index> BrickCells::stored(std::size_t brick) const {
     const auto b = static_cast<std::uint32_t>(brick);
-    const auto more = std::ranges::equal_range(halo, b, {}, [](const auto& pair) { return pair.first; });
+    const auto begin = std::ranges::lower_bound(halo, b, {}, &std::pair<std::uint32_t, Index>::first);
+    const auto end = std::ranges::upper_bound(begin, halo.end(), b, {}, &std::pair<std::uint32_t, Index>::first);
     const std::span<const Index> own = owned_by(brick);
     std::vector<Index> cells(own.begin(), own.end());
-    cells.reserve(cells.size() + more.size());
-    for (const auto& [of, cell] : more) cells.push_back(cell);
+    cells.reserve(cells.size() + static_cast<std::size_t>(end - begin));
+    std::transform(begin, end, std::back_inserter(cells), [](const auto& pair) { return pair.second; });
     std::ranges::inplace_merge(cells, cells.begin() + static_cast<std::ptrdiff_t>(own.size()));
     return cells;
 }

@@ -60,7 +60,7 @@ Box PieceTree::box_of(std::size_t piece) const {
     for (int c = 0; c < 3; ++c) {
         std::array<double, LimitPieces::kNodes> x;
         for (std::size_t n = 0; n < x.size(); ++n) x[n] = static_cast<double>(pieces_->node(piece, n)[c]);
-        for (const std::size_t stride : {1, 3, 9}) {
+        for (const std::size_t stride : {1u, 3u, 9u}) {
             for (std::size_t n = 0; n < x.size(); ++n) {
                 if (n / stride % 3 == 1) x[n] = 2 * x[n] - 0.5 * (x[n - stride] + x[n + stride]);
             }

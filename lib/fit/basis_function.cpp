@@ -52,7 +52,7 @@ BasisFunction next_level(const BasisFunction& coarse, const std::array<std::vect
 }
 
 BasisFunction mcq_basis(int level, double tension) {
-    BasisFunction basis{.scheme = {Scheme::Mcq}, .level = 0, .half_width = 3, .values = std::vector<double>(wedge_size(3))};
+    BasisFunction basis{.scheme = Scheme::Mcq, .level = 0, .half_width = 3, .values = std::vector<double>(wedge_size(3))};
     basis.values[0] = 1;
     const auto masks = mcq_terms(tension);
     while (basis.level < level) basis = next_level(basis, masks);
@@ -69,7 +69,7 @@ double hat(double t) {
 }
 
 BasisFunction product_basis(Scheme scheme, int level, int half_width, double (*factor)(double)) {
-    BasisFunction basis{.scheme = {scheme}, .level = level, .half_width = half_width, .values = {}};
+    BasisFunction basis{.scheme = scheme, .level = level, .half_width = half_width, .values = {}};
     std::vector<double> line;
     for (int i = 0; i <= basis.last(); ++i) line.push_back(factor(std::ldexp(i, -level)));
     each_in_wedge(line.size() - 1,

@@ -75,7 +75,7 @@ CurvedCell::CurvedCell(const CurvedLayout& layout, std::span<const double> value
         for (std::size_t c = 0; c < channels; ++c) values_[to * channels + c] += weight * values_[from * channels + c];
     };
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (const std::size_t side : {0, 2}) {
+        for (const std::size_t side : {0u, 2u}) {
             std::array<std::size_t, 3> middle{1, 1, 1};
             middle[axis] = side;
             const std::size_t to = slot(middle[0], middle[1], middle[2]);

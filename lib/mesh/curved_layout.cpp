@@ -126,7 +126,7 @@ CurvedLayout curved_layout(CurvedOrder order, const std::array<std::size_t, 3>& 
     } else if (order == CurvedOrder::Exodus) {
         in.edges({{0, 1}, {1, 2}, {3, 2}, {0, 3}, {0, 4}, {1, 5}, {2, 6}, {3, 7}, {4, 5}, {5, 6}, {7, 6}, {4, 7}});
         in.inside();
-        for (const std::size_t axis : {2, 0, 1}) {
+        for (const std::size_t axis : {2u, 0u, 1u}) {
             in.face(axis, false);
             in.face(axis, true);
         }

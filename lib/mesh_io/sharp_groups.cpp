@@ -42,7 +42,7 @@ public:
         for (std::size_t k = 0; k < polygon.size(); ++k) {
             const Index before = polygon[(k + polygon.size() - 1) % polygon.size()], corner = polygon[k],
                         after = polygon[(k + 1) % polygon.size()];
-            const auto at = middle({{corner}}), ahead = middle({{corner, after}}), behind = middle({{before, corner}});
+            const auto at = middle({corner}), ahead = middle({corner, after}), behind = middle({before, corner});
             if (!center || !at || !ahead || !behind) return std::nullopt;
             quads.push_back({*at, *ahead, *center, *behind});
         }
@@ -50,7 +50,7 @@ public:
     }
 
     [[nodiscard]] std::optional<std::array<std::array<Index, 2>, 2>> halves(const std::array<Index, 2>& edge) const {
-        const auto a = middle({{edge[0]}}), b = middle({{edge[1]}}), center = middle(edge);
+        const auto a = middle({edge[0]}), b = middle({edge[1]}), center = middle(edge);
         if (!a || !b || !center) return std::nullopt;
         return std::array{std::array{*a, *center}, std::array{*center, *b}};
     }

@@ -23,7 +23,9 @@ struct Contents {
 };
 
 void write_cells(VtkXmlWriter& out, const Contents& contents) {
-    const auto& [mesh, quads, lines] = contents;
+    const HexMesh& mesh = contents.mesh;
+    const auto& quads = contents.quads;
+    const auto& lines = contents.lines;
     const std::size_t cells = mesh.cells.size(), of_cells = 8 * cells, of_quads = of_cells + 4 * quads.size();
     const auto corner = [&](std::size_t i) {
         if (i < of_cells) return static_cast<std::int64_t>(mesh.cells[i / 8][i % 8]);

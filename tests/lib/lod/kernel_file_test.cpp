@@ -219,8 +219,8 @@ protected:
     std::string sealed(std::string bytes) const {
         const std::size_t first = 48 + head_bytes_ - 8 * layout_.hashes();
         const auto seal = [&](const detail::SvkExtent& extent, std::size_t hash) {
-            bytes =
-                with(std::move(bytes), first + 8 * hash, hash_of(std::string_view(bytes).substr(extent.offset, extent.bytes)));
+            const std::uint64_t now = hash_of(std::string_view(bytes).substr(extent.offset, extent.bytes));
+            bytes = with(std::move(bytes), first + 8 * hash, now);
         };
         seal(layout_.boundary(), 0);
         seal(layout_.top(), 1);

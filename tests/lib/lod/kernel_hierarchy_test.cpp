@@ -236,7 +236,7 @@ TEST(KernelHierarchy, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(KernelHierarchy, AnyPointsAreMerged) {
-    for (const std::size_t count : {1, 2, 7, 8, 9, 65, 500}) {
+    for (const std::size_t count : {1u, 2u, 7u, 8u, 9u, 65u, 500u}) {
         const RbfVolume volume = test::random_points(count, 3);  // frames of all shapes, derivatives of any size
         const KernelHierarchy h = build_kernel_hierarchy(volume);
         const RbfVolume few = choose_level(h, volume, distant_view(volume, 300), {.pixels = 30});
@@ -258,7 +258,7 @@ TEST(KernelHierarchy, ALevelHasEachKernelOnce) {
     const RbfVolume volume = ball();
     const KernelHierarchy h = build_kernel_hierarchy(volume);
     std::size_t before = 0;
-    for (const std::size_t most : {1, 2, 3, 100, 1000, 1'000'000}) {
+    for (const std::size_t most : {1u, 2u, 3u, 100u, 1000u, 1'000'000u}) {
         const KernelCut cut = level_cut(h, most);
         EXPECT_LE(cut.size(), most);
         EXPECT_GE(cut.size(), before);

@@ -155,7 +155,7 @@ double boundary_area(const HexMesh& mesh) {
     return area;
 }
 
-Polyhedra box(int n) {
+Polyhedra box(Index n) {
     const HexMesh mesh = make_box(n, 2, 1);
     std::vector<std::vector<std::vector<int>>> cells;
     for (const auto& cell : mesh.cells) cells.push_back(faces_of_hex(cell));

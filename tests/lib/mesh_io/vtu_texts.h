@@ -87,12 +87,15 @@ struct VtuText {
     std::string piece(const HexMesh& mesh, const std::string& data) {
         std::vector<std::int64_t> offsets;
         for (std::size_t c = 1; c <= mesh.cells.size(); ++c) offsets.push_back(static_cast<std::int64_t>(8 * c));
-        return "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
-               std::to_string(mesh.cells.size()) + "\">\n" + data + "<Points>\n" +
-               array("Float64", "Name=\"Points\" NumberOfComponents=\"3\"", coordinates_as<double>(mesh)) +
-               "</Points>\n<Cells>\n" + array("Int32", "Name=\"connectivity\"", corners_as<std::int32_t>(mesh)) +
-               array("Int64", "Name=\"offsets\"", offsets) +
-               array("UInt8", "Name=\"types\"", std::vector<std::uint8_t>(mesh.cells.size(), 12)) + "</Cells>\n</Piece>\n";
+        // One array after the other: each appends its data, and compilers choose the order within an expression.
+        std::string text = "<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfCells=\"" +
+                           std::to_string(mesh.cells.size()) + "\">\n" + data + "<Points>\n";
+        text += array("Float64", "Name=\"Points\" NumberOfComponents=\"3\"", coordinates_as<double>(mesh));
+        text += "</Points>\n<Cells>\n";
+        text += array("Int32", "Name=\"connectivity\"", corners_as<std::int32_t>(mesh));
+        text += array("Int64", "Name=\"offsets\"", offsets);
+        text += array("UInt8", "Name=\"types\"", std::vector<std::uint8_t>(mesh.cells.size(), 12));
+        return text + "</Cells>\n</Piece>\n";
     }
 
     [[nodiscard]] std::string file(const std::string& pieces) const {

@@ -290,7 +290,7 @@ TEST(Sheets, TwoThatTouchInAPointAreHeldThere) {
 }
 
 TEST(Sheets, LeaveTheTrianglesAndTubesThatArePromised) {
-    const auto& [mesh, sheets] = make_bracket();
+    const Sheets sheets = make_bracket().sheets;
     const SheetSurface plain = sheet_surface(sheets, 0), tubes = sheet_surface(sheets, .05);
     EXPECT_EQ(plain.surface.triangles.size(), 2 * sheets.quads.size());
     EXPECT_EQ(tubes.sheet_triangles, plain.surface.triangles.size());
@@ -302,7 +302,9 @@ TEST(Sheets, LeaveTheTrianglesAndTubesThatArePromised) {
 }
 
 TEST(Sheets, RefuseWhatIsMalformed) {
-    const auto& [mesh, sheets] = make_bracket();
+    const Bracket bracket = make_bracket();
+    const HexMesh& mesh = bracket.mesh;
+    const Sheets& sheets = bracket.sheets;
     const auto refuses = [&](const std::string& part, const auto& change) {
         Sheets bad = sheets;
         change(bad);

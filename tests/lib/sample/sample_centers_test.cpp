@@ -19,7 +19,7 @@ namespace sample_centers_test {
 constexpr double kFloatTol = 2e-6;  // values and derivatives are 32-bit floats
 
 /// A block of n³ cells of this size, with x² + yz.
-HexMesh block_with_squares(int n, double size) {
+HexMesh block_with_squares(Index n, double size) {
     HexMesh mesh = test::make_box(n, n, n);
     for (Vec3& p : mesh.points) p *= size;
     mesh.attributes.clear();
