@@ -77,7 +77,7 @@ TEST(SurfaceShare, SharesHaveTheBitsOfTheWhole) {
         options.tolerance = 1e-2;
         const LimitSurface whole = limit_surface(mesh, "f", options);
         ASSERT_GT(whole.surface.triangles.size(), 100U);
-        for (const std::size_t count : {1, 2, 7}) {
+        for (const std::size_t count : {1u, 2u, 7u}) {
             SCOPED_TRACE(count);
             expect_same(joined(shares_of(mesh, options, count)), whole);
         }
@@ -147,7 +147,7 @@ TEST_F(SurfaceShareFiles, AreReadAsTheyWereWritten) {
     };
     EXPECT_THAT(refused(""), HasSubstr("is no share of a surface"));
     EXPECT_THAT(refused("ply\n" + whole), HasSubstr("is no share of a surface"));
-    for (const std::size_t length : {30, 40, 1000}) EXPECT_THAT(refused(whole.substr(0, length)), HasSubstr("is cut off"));
+    for (const std::size_t length : {30u, 40u, 1000u}) EXPECT_THAT(refused(whole.substr(0, length)), HasSubstr("is cut off"));
     EXPECT_THAT(refused(whole.substr(0, whole.size() - 1)), HasSubstr("is cut off"));
     EXPECT_THAT(refused(whole + "x"), HasSubstr("is damaged"));
     std::string wrong = whole;
