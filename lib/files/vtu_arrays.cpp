@@ -222,9 +222,9 @@ void VtuArrays::each_block(const pugi::xml_node& array, const TakeBytes& take) c
 }
 
 void VtuArrays::plain_blocks(const pugi::xml_node& array, std::uint64_t size, ByteSource from, const TakeBytes& take) const {
-    constexpr std::size_t kGroups = std::size_t{3} << 16;  // whole groups of base64
+    constexpr std::size_t kBytesAtOnce = std::size_t{3} << 16;  // whole groups of base64
     for (std::uint64_t left = size; left > 0;) {
-        const auto bytes = from.take(std::min<std::uint64_t>(left, kGroups));
+        const auto bytes = from.take(std::min<std::uint64_t>(left, kBytesAtOnce));
         if (!bytes) fail_bytes(array, size, from);
         take(*bytes);
         left -= bytes->size();
