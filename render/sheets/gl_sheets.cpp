@@ -175,6 +175,7 @@ GlSheets::~GlSheets() {
 Drawn GlSheets::draw(const SplatFrame& frame, Progress* progress) {
     const SplatScene& scene = *frame.scene;
     report_progress(progress, "splat", 0);
+    check_for_gl(frame.intervals);
     const Programs& used = programs(frame);
     upload(frame);
     start_beams(frame);
@@ -248,7 +249,7 @@ void GlSheets::start_beams(const SplatFrame& frame) {
     const bool intervals = !frame.intervals.offsets.empty();
     std::vector<Last> lasts(count);
     for (std::size_t id = 0; intervals && id < count; ++id) lasts[id].interval = frame.intervals.offsets[id];
-    fill(beams_, kTableBinding + 5, std::vector<std::array<float, 4>>(count, {0, 0, 0, 1}));
+    fill(beams_, kTableBinding + 5, std::vector<std::array<float, 4>>(count));
     fill(lasts_, kTableBinding + 6, lasts);
     if (frame.scene->shading || frame.scene->color_channel) looks_.grow(count * 4 * sizeof(float));
     looks_.bind(kTableBinding + 7);
@@ -299,8 +300,7 @@ Drawn GlSheets::read(const SplatFrame& frame) const {
     lasts_.read(lasts.size() * sizeof(Last), lasts.data());
     drawn.depth.assign(lasts.size(), std::numeric_limits<float>::infinity());
     for (std::size_t id = 0; id < lasts.size(); ++id) {
-        float& opacity = rgba[4 * id + 3];
-        opacity = 1 - opacity;  // the buffer holds the transmittance
+        const float opacity = rgba[4 * id + 3];
         if (opacity > 0) drawn.depth[id] = frame.sheets.middle + lasts[id].depth / opacity;
     }
     return drawn;

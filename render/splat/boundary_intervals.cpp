@@ -21,8 +21,10 @@
 #include <atomic>
 #include <cmath>
 #include <span>
+#include <string>
 
 #include "clip_triangle.h"
+#include "subvol/error.h"
 
 namespace subvol::detail {
 
@@ -319,6 +321,15 @@ PixelIntervals boundary_intervals(const Surface& surface, const View& view, doub
         result.hits += band.hits;
     }
     return result;
+}
+
+void check_for_gl(const PixelIntervals& intervals) {
+    for (std::size_t i = 0; i + 1 < intervals.offsets.size(); ++i) {
+        const std::uint32_t count = intervals.offsets[i + 1] - intervals.offsets[i];
+        if (count <= kMostGlIntervals) continue;
+        throw Error(ErrorCode::MissingCapability, "a ray is inside the volume " + std::to_string(count) + " times", {},
+                    "at most " + std::to_string(kMostGlIntervals) + " times with OpenGL, or the CPU backend");
+    }
 }
 
 }  // namespace subvol::detail

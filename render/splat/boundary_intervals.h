@@ -29,6 +29,12 @@ struct PixelIntervals {
 /// middle: the depth that all depths of the result are relative to
 [[nodiscard]] PixelIntervals boundary_intervals(const Surface& surface, const View& view, double near, double middle);
 
+/// The most intervals of a ray that shaders go through: a dispatch must not take any time that a scene asks for.
+inline constexpr std::uint32_t kMostGlIntervals = 2048;
+
+/// throws: Error(MissingCapability) if a ray has more of them
+void check_for_gl(const PixelIntervals& intervals);
+
 /// Whether any point of the surface lies before the near depth, or so far beside the picture that triangles are clipped.
 [[nodiscard]] bool needs_clipping(const Surface& surface, const View& view, double near);
 

@@ -131,7 +131,7 @@ void Footprints::draw_tile(const SplatFrame& frame, const std::vector<Kernel>& k
     const int x0 = static_cast<int>(tile) % frame.tiles_x * kTile, y0 = static_cast<int>(tile) / frame.tiles_x * kTile;
     const int x1 = std::min(x0 + kTile, view.width()), y1 = std::min(y0 + kTile, view.height());
     std::vector<Ray> rays;
-    std::vector<float> left(kTile * kTile, 1.0F), depths(kTile * kTile, 0.0F);  // transmittance
+    std::vector<float> depths(kTile * kTile, 0.0F);
     const auto place_of = [&](int x, int y) { return static_cast<std::size_t>((y - y0) * kTile + x - x0); };
     for (int y = y0; y < y1; ++y) {
         for (int x = x0; x < x0 + kTile; ++x) rays.push_back(view.ray(x + 0.5, y + 0.5));
@@ -142,20 +142,19 @@ void Footprints::draw_tile(const SplatFrame& frame, const std::vector<Kernel>& k
         for (int y = std::max(y0, box.y0); y < std::min(y1, box.y1 + 1); ++y) {
             for (int x = std::max(x0, box.x0); x < std::min(x1, box.x1 + 1); ++x) {
                 const std::size_t at = place_of(x, y);
-                if (left[at] < kLeastTransmittance) continue;
-                const float alpha = -std::expm1(-kernel.extinction * footprint(kernel, rays[at]));
                 const auto pixel = drawn.image.pixel(x, y);
-                for (std::size_t c = 0; c < 3; ++c) pixel[c] += left[at] * alpha * kernel.color[c];
-                depths[at] += left[at] * alpha * kernel.depth;
-                left[at] *= 1 - alpha;
+                if (1 - pixel[3] < kLeastTransmittance) continue;
+                const float light = (pixel[3] - 1) * std::expm1(-kernel.extinction * footprint(kernel, rays[at]));
+                for (std::size_t c = 0; c < 3; ++c) pixel[c] += light * kernel.color[c];
+                pixel[3] += light;
+                depths[at] += light * kernel.depth;
             }
         }
     }
     for (int y = y0; y < y1; ++y) {
         for (int x = x0; x < x1; ++x) {
             const std::size_t at = place_of(x, y);
-            const float opacity = 1 - left[at];
-            drawn.image.pixel(x, y)[3] = opacity;
+            const float opacity = drawn.image.pixel(x, y)[3];
             if (!(opacity > 0)) continue;
             drawn.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x)] =
                 frame.sheets.middle + depths[at] / opacity;

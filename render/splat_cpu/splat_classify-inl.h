@@ -21,7 +21,7 @@ constexpr float kNever = std::numeric_limits<float>::infinity();
 
 /// The pixels of a block between two sheets.
 struct BlockState {
-    HWY_ALIGN float transmittance[kBlock], red[kBlock], green[kBlock], blue[kBlock], depth[kBlock];
+    HWY_ALIGN float opacity[kBlock], red[kBlock], green[kBlock], blue[kBlock], depth[kBlock];
     HWY_ALIGN float value[kBlock], known[kBlock], weight[kBlock];  // on the last sheet
     HWY_ALIGN float color[kBlock], diffuse[kBlock], specular[kBlock];
     // The interval that a ray is in or reaches next; enter = kNever: the ray is done.

@@ -44,12 +44,12 @@ inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t
     std::array<float, 3> color;
     for (std::size_t c = 0; c < 3; ++c) color[c] = std::min(here[c + 1] / here[0], 1.0f);
     if (frame.scene->color_channel) color = frame.classification->color_at(end.color);
-    const float light = state.transmittance[lane];
+    const float light = 1 - state.opacity[lane];
     state.red[lane] += light * (color[0] * end.light.diffuse + end.light.specular);
     state.green[lane] += light * (color[1] * end.light.diffuse + end.light.specular);
     state.blue[lane] += light * (color[2] * end.light.diffuse + end.light.specular);
     state.depth[lane] += light * state.enter[lane];
-    state.transmittance[lane] = 0;
+    state.opacity[lane] = 1;
     return true;
 }
 
@@ -57,12 +57,12 @@ inline bool see_boundary(const SplatFrame& frame, BlockState& state, std::size_t
 inline bool see_slice(const SplatFrame& frame, BlockState& state, std::size_t lane, const IntervalEnd& end, float depth) {
     if (!(end.x < 0.5f * kUnknownValue)) return false;
     const std::array<float, 3> color = frame.classification->color_at(frame.scene->color_channel ? end.color : end.x);
-    const float light = state.transmittance[lane];
+    const float light = 1 - state.opacity[lane];
     state.red[lane] += light * color[0];
     state.green[lane] += light * color[1];
     state.blue[lane] += light * color[2];
     state.depth[lane] += light * depth;
-    state.transmittance[lane] = 0;
+    state.opacity[lane] = 1;
     return true;
 }
 
@@ -110,7 +110,7 @@ public:
 
     HWY_ATTR void store() {
         const Lanes d;
-        hn::Store(transmittance_, d, state_.transmittance);
+        hn::Store(opacity_, d, state_.opacity);
         hn::Store(red_, d, state_.red);
         hn::Store(green_, d, state_.green);
         hn::Store(blue_, d, state_.blue);
@@ -133,7 +133,7 @@ public:
         Place place;
         for (auto active = hn::Lt(enter_, back); !hn::AllFalse(d, active); active = hn::And(active, hn::Lt(enter_, back))) {
             stretch(active, front_z, back_z, here, place, placed);
-            const auto opaque = hn::And(active, hn::Lt(transmittance_, hn::Set(d, kSplatCutoff)));
+            const auto opaque = hn::And(active, is_opaque());
             enter_ = hn::IfThenElse(opaque, hn::Set(d, kNever), enter_);
             active = hn::And(hn::AndNot(opaque, active), hn::Le(exit_, back));
             if (hn::AllFalse(d, active)) break;
@@ -154,9 +154,14 @@ public:
     }
 
 private:
+    [[nodiscard]] HWY_ATTR Mask is_opaque() const {
+        const Lanes d;
+        return hn::Lt(hn::Sub(hn::Set(d, 1.0f), opacity_), hn::Set(d, kSplatCutoff));
+    }
+
     HWY_ATTR void load() {
         const Lanes d;
-        transmittance_ = hn::Load(d, state_.transmittance);
+        opacity_ = hn::Load(d, state_.opacity);
         red_ = hn::Load(d, state_.red);
         green_ = hn::Load(d, state_.green);
         blue_ = hn::Load(d, state_.blue);
@@ -290,7 +295,7 @@ private:
                 front.within[c] = hn::IfThenElse(take, back.within[c], front.within[c]);
             }
             begin = hn::IfThenElse(take, end, begin);
-            seen = hn::And(seen, hn::And(hn::Lt(begin, one), hn::Ge(transmittance_, hn::Set(d, kSplatCutoff))));
+            seen = hn::And(seen, hn::AndNot(is_opaque(), hn::Lt(begin, one)));
         }
     }
 
@@ -303,12 +308,12 @@ private:
     /// Adds the light of stretches with the mean extinction and emission `mean`.
     HWY_ATTR void add_light(Mask seen, const End& e0, const End& e1, Floats mean[4], Floats length, Floats middle) {
         const Lanes d;
-        const auto passes = hn::Exp(d, hn::Neg(hn::Mul(length, mean[0])));
+        // exp(−x) − 1: the difference of exp(−x) to 1 would have no digits where a stretch is thin.
+        const auto change = hn::Expm1(d, hn::Neg(hn::Mul(length, mean[0])));
         // Rounding must not leave light where there is none, nor make a colour brighter than 1.
         const auto visible = hn::And(seen, hn::Gt(mean[0], hn::Zero(d)));
-        const auto opacity = hn::IfThenElseZero(visible, hn::Sub(hn::Set(d, 1.0f), passes));
         for (std::size_t c = 1; c < 4; ++c) mean[c] = hn::Min(mean[c], mean[0]);
-        const auto light = hn::Mul(transmittance_, opacity);
+        const auto light = hn::IfThenElseZero(visible, hn::Mul(hn::Sub(opacity_, hn::Set(d, 1.0f)), change));
         if constexpr (!kPlain) {
             if (frame_.scene->color_channel) take_second_color(e0, e1, mean);
         }
@@ -327,7 +332,7 @@ private:
         }
         // Rays that are done have no middle: it would be 0 times infinity.
         depth_ = hn::MulAdd(light, hn::IfThenElseZero(visible, middle), depth_);
-        transmittance_ = hn::IfThenElse(visible, hn::Mul(transmittance_, passes), transmittance_);
+        opacity_ = hn::Add(opacity_, light);
     }
 
     /// Without a boundary the volume ends where the sum of weights, linear between sheets, falls below a level.
@@ -369,7 +374,7 @@ private:
     const SplatFrame& frame_;
     const Classifier& classifier_;
     BlockState& state_;
-    Floats transmittance_, red_, green_, blue_, depth_, enter_, exit_;
+    Floats opacity_, red_, green_, blue_, depth_, enter_, exit_;
     SheetValues last_;
     Place last_place_;
     bool last_placed_ = false;

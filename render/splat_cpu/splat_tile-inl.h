@@ -107,10 +107,9 @@ private:
         scratch().wanted.assign(batches, frame_.scene->half_weight > 0);
         for (std::size_t block = 0; block < kBlocks; ++block) {
             BlockState& b = scratch().blocks[block];
-            std::fill_n(b.transmittance, kBlock, 1.0f);
             for (float* zero :
-                 {b.red, b.green, b.blue, b.depth, b.value, b.known, b.weight, b.color, b.diffuse, b.specular, b.enter_color,
-                  b.exit_color, b.enter_diffuse, b.exit_diffuse, b.enter_specular, b.exit_specular}) {
+                 {b.opacity, b.red, b.green, b.blue, b.depth, b.value, b.known, b.weight, b.color, b.diffuse, b.specular,
+                  b.enter_color, b.exit_color, b.enter_diffuse, b.exit_diffuse, b.enter_specular, b.exit_specular}) {
                 std::fill_n(zero, kBlock, 0.0f);
             }
             std::fill_n(b.enter_x, kBlock, kUnknownValue);
@@ -135,7 +134,7 @@ private:
         b.interval[lane] = static_cast<std::uint32_t>(first);
         b.intervals_end[lane] = static_cast<std::uint32_t>(end);
         take_interval(frame_, b, lane);
-        if (b.enter[lane] == kNever) return b.transmittance[lane] == 0;
+        if (b.enter[lane] == kNever) return b.opacity[lane] == 1;
         for (std::size_t i = first; i < end; ++i) {
             want_batches(sheets_, frame_.intervals.depths[2 * i], frame_.intervals.depths[2 * i + 1], scratch().wanted);
         }
@@ -337,7 +336,7 @@ private:
                 const auto [x, y] = pixel(block, lane);
                 if (x >= view_.width() || y >= view_.height()) continue;
                 const auto out = drawn.image.pixel(x, y);
-                const float opacity = 1 - b.transmittance[lane];
+                const float opacity = b.opacity[lane];
                 out[0] = b.red[lane];
                 out[1] = b.green[lane];
                 out[2] = b.blue[lane];

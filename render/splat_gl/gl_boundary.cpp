@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "shader_boundary_frame_glsl.h"
+#include "shader_boundary_plan_comp.h"
 #include "shader_boundary_points_comp.h"
 #include "shader_boundary_raster_comp.h"
 #include "shader_boundary_resolve_comp.h"
@@ -17,8 +18,7 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::uint32_t kRasterGroups = 1024;
-constexpr std::size_t kEyePoint_bytes = 32, kBox_bytes = 16, kPair_bytes = 8;
+constexpr std::size_t kEyePoint_bytes = 32, kBox_bytes = 16, kPair_bytes = 8, kPlan_bytes = 16;
 constexpr GLuint kCameraBinding = 1;
 
 GlProgram boundary_program(const char* file, const char* source, const char* defines = "") {
@@ -55,6 +55,7 @@ GlBoundary::GlBoundary(bool on_device)
     : on_device_(on_device),
       points_program_(boundary_program("boundary_points.comp", kShader_boundary_points_comp)),
       strips_program_(boundary_program("boundary_strips.comp", kShader_boundary_strips_comp)),
+      plan_program_(boundary_program("boundary_plan.comp", kShader_boundary_plan_comp)),
       count_program_(boundary_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 0\n")),
       fill_program_(boundary_program("boundary_raster.comp", kShader_boundary_raster_comp, "#define FILL 1\n")),
       resolve_program_(boundary_program("boundary_resolve.comp", kShader_boundary_resolve_comp)) {
@@ -112,6 +113,7 @@ void GlBoundary::find(const Surface& surface, const View& view, double near, dou
     count_hits();
     if (room_ == 0) {
         (void)found_all();
+        if (!on_device_) return find(surface, view, near, middle, stages);
         set_camera();
     }
     fill();
@@ -130,7 +132,13 @@ void GlBoundary::count_hits() {
     dispatch(groups_for(triangles_));
     scan_.exclusive_scan(strips_, static_cast<std::uint32_t>(triangles_));
 
-    hit_offsets_.grow((pixels_ + 1) * kWord_bytes);
+    plan_.grow(kPlan_bytes);
+    plan_program_.use();
+    strips_.bind(0);
+    plan_.bind(1);
+    dispatch(1);
+
+    hit_offsets_.grow((pixels_ + 2) * kWord_bytes);
     hit_offsets_.clear();
     count_program_.use();
     strips_.bind(0);
@@ -138,7 +146,7 @@ void GlBoundary::count_hits() {
     corners_.bind(2);
     boxes_.bind(3);
     hit_offsets_.bind(4);
-    dispatch(kRasterGroups);
+    dispatch(plan_, 0);
     scan_.exclusive_scan(hit_offsets_, static_cast<std::uint32_t>(pixels_));
 }
 
@@ -153,7 +161,7 @@ void GlBoundary::fill() {
     counts_.bind(4);
     hit_offsets_.bind(5);
     intervals_.bind(6);
-    dispatch(kRasterGroups);
+    dispatch(plan_, 0);
     resolve_program_.use();
     hit_offsets_.bind(0);
     intervals_.bind(1);
@@ -163,9 +171,13 @@ void GlBoundary::fill() {
 
 bool GlBoundary::found_all() {
     if (!on_device_now_) return true;
-    std::uint32_t total = 0;
-    hit_offsets_.read(sizeof total, &total, pixels_ * kWord_bytes);
-    hits_ = total;
+    std::array<std::uint32_t, 2> found{};  // all hits; whether a pixel has too many
+    hit_offsets_.read(sizeof found, found.data(), pixels_ * kWord_bytes);
+    hits_ = found[0];
+    if (found[1] != 0) {
+        on_device_ = false;
+        return false;
+    }
     if (hits_ <= room_ && room_ > 0) return true;
     room_ = hits_ + hits_ / 8 + 1;
     intervals_.grow(room_ * kPair_bytes);
@@ -173,6 +185,7 @@ bool GlBoundary::found_all() {
 }
 
 void GlBoundary::upload_intervals(const PixelIntervals& found) {
+    check_for_gl(found);
     std::vector<std::uint32_t> ranges(2 * pixels_);
     tbb::parallel_for(std::size_t{0}, pixels_, [&](std::size_t i) {
         ranges[2 * i] = found.offsets[i];

@@ -10,7 +10,7 @@
 namespace subvol::detail {
 
 /// boundary_intervals() on the current context. Coverage is bitwise the same, depths differ by rounding only. The CPU does
-/// surfaces that have to be clipped.
+/// surfaces that have to be clipped, and those that a ray meets more often than one thread should sort.
 class GlBoundary {
 public:
     /// on_device: false: the CPU finds all intervals
@@ -20,13 +20,14 @@ public:
     /// call only.
     void find(const Surface& surface, const View& view, double near, double middle, GlStages& stages);
 
-    /// Takes intervals that the CPU has found.
+    /// Takes intervals that the CPU has found. Throws as check_for_gl, as `find` does.
     void set(const PixelIntervals& intervals, const View& view);
 
     /// The number of intervals that there is room for.
     [[nodiscard]] std::size_t room() const;
 
-    /// Whether there was room for all hits; if not, they have to be found again. Waits for the device.
+    /// Whether there was room for all hits, and none of too many in a pixel; if not, they have to be found again. Waits for
+    /// the device.
     [[nodiscard]] bool found_all();
 
     /// The number of hits of the last call.
@@ -46,10 +47,10 @@ private:
     void fill();
 
     bool on_device_, on_device_now_ = false;
-    GlProgram points_program_, strips_program_, count_program_, fill_program_, resolve_program_;
+    GlProgram points_program_, strips_program_, plan_program_, count_program_, fill_program_, resolve_program_;
     GlScan scan_;
     std::size_t points_ = 0, triangles_ = 0, pixels_ = 0, hits_ = 0, room_ = 0;
-    GlBuffer camera_, positions_, corners_, eye_points_, boxes_, strips_, hit_offsets_, counts_, intervals_, ranges_;
+    GlBuffer camera_, positions_, corners_, eye_points_, boxes_, strips_, plan_, hit_offsets_, counts_, intervals_, ranges_;
 };
 
 }  // namespace subvol::detail

@@ -11,7 +11,9 @@
 // The sort is stable and no float is added atomically, so each sum has one order and pictures are bitwise reproducible. The
 // number of entries is not known before they are counted, and waiting for it would stall the device: the room of the last
 // picture is used, and only at the end is the count compared with it (draw_at_once). If kernels or entries exceed the room of
-// a buffer, the batches are halved until each range fits (split), and the state of the pixels is kept between the passes.
+// a buffer, the batches are halved until each range fits (split), and the state of the pixels is kept between the passes. A
+// pass draws some tiles at a time, and repeats a dispatch until all of them are done (draw_tiles): no thread goes through more
+// than a limited number of iterations in one dispatch, whatever the scene.
 #include "gl_splatter.h"
 
 #include <tbb/parallel_for.h>
@@ -43,8 +45,8 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr std::size_t kPixel_bytes = 16;  // for each pixel of the picture
-constexpr std::size_t kState_bytes = 64;  // for each pixel, between passes
+constexpr std::size_t kPixel_bytes = 20;  // for each pixel of the picture: colour, opacity, depth
+constexpr std::size_t kState_bytes = 96;  // for each pixel, between dispatches
 constexpr std::size_t kEnds_bytes = 32;   // for each interval
 
 std::string decimal(float value) {
@@ -56,8 +58,8 @@ std::string decimal(float value) {
 std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
     const auto line = [](const char* name, const std::string& value) { return "#define " + (name + (" " + value)) + "\n"; };
     return gl_scene_defines(scene) + line("kTile", std::to_string(tuning.tile_px)) +
-           line("kBatch", std::to_string(tuning.batch)) + line("kChunk", tuning.batch <= 8 ? "64" : "32") +
-           line("kCells", std::to_string(PreintegratedTable::kCells)) +
+           line("kBatch", std::to_string(tuning.batch)) + line("kDispatchSteps", std::to_string(tuning.most_steps) + "u") +
+           line("kChunk", tuning.batch <= 8 ? "64" : "32") + line("kCells", std::to_string(PreintegratedTable::kCells)) +
            line("kLeastWeight", decimal(static_cast<float>(kLeastWeight))) + line("kNearValues", decimal(kNearValues)) +
            line("kSplatCutoff", decimal(kSplatCutoff)) + line("kFarCells", decimal(kFarCells)) +
            line("kMostOfKernel", decimal(kMostOfKernel)) + line("kThickDepth", decimal(kThickDepth)) +
@@ -142,12 +144,19 @@ public:
 private:
     void prepare(const View& view, const Classification& classification);
     void find_intervals(const View& view);
-    [[nodiscard]] bool draw_at_once();
+    [[nodiscard]] bool draw_at_once(Progress* progress);
     [[nodiscard]] bool fits_bins(int first, int end) const;
     void draw_in_passes(const View& view, int first, int end, Progress* progress);
     void split(const View& view, int first, int end, Progress* progress);
     void set_pass(int first, int end);
-    void draw_pass();
+    void draw_pass(Progress* progress);
+    void draw_tiles(std::uint32_t first, std::uint32_t end, bool whole, Progress* progress);
+    [[nodiscard]] std::size_t tile_pixels() const { return static_cast<std::size_t>(tuning_.tile_px) * tuning_.tile_px; }
+    /// The bytes of a pixel's sums on the sheets of a batch.
+    [[nodiscard]] std::size_t sums_bytes() const {
+        const std::size_t sums = 2 + (scene_.color_channel ? 1 : 0) + (scene_.shading ? 3 : 0);
+        return sums * static_cast<std::size_t>(tuning_.batch) * sizeof(float);
+    }
     [[nodiscard]] const GlProgram& program();
     /// Whether rays have intervals: there is a boundary, or a clip.
     [[nodiscard]] bool has_intervals() const { return scene_.half_weight == 0 || !scene_.clip.empty(); }
@@ -165,7 +174,7 @@ private:
     GlProgram draw_;
     std::optional<GlProgram> draw_clipped_;  // a volume without a boundary; made when it is clipped for the first time
     GlStages stages_;
-    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, depths_, states_, ends_, light_;
+    GlBuffer frame_buffer_, kernel_table_, rows_, visible_, color_rows_, picture_, kept_, states_, ends_, light_;
 };
 
 void GlSplatter::State::prepare(const View& view, const Classification& classification) {
@@ -176,8 +185,7 @@ void GlSplatter::State::prepare(const View& view, const Classification& classifi
     upload(color_rows_, classification.colors.rows);
     if (scene_.light) upload(light_, scene_.light->nodes);
     const std::size_t pixels = static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height());
-    picture_.grow(pixels * 4 * sizeof(float));
-    depths_.grow(pixels * sizeof(float));
+    picture_.grow(pixels * kPixel_bytes);
     find_intervals(view);
 }
 
@@ -218,7 +226,7 @@ const GlProgram& GlSplatter::State::program() {
     return *draw_clipped_;
 }
 
-void GlSplatter::State::draw_pass() {
+void GlSplatter::State::draw_pass(Progress* progress) {
     bins_.list(frame_, stages_);
     stages_.begin("draw");
     program().use();
@@ -229,13 +237,37 @@ void GlSplatter::State::draw_pass() {
     color_rows_.bind(9);
     kernel_table_.bind(10);
     picture_.bind(11);
-    depths_.bind(12);
+    const std::uint32_t tiles = frame_.tiles(), at_once = std::min(tiles, tuning_.most_tiles);
+    const bool whole = frame_.end_batch - frame_.first_batch == frame_.batches;  // no pass needs the states of another
+    kept_.grow(sizeof(std::uint32_t) + at_once * tile_pixels() * sums_bytes());
+    kept_.bind(12);
+    states_.grow((whole ? at_once : tiles) * tile_pixels() * kState_bytes);
     states_.bind(13);
     ends_.bind(14);
     if (scene_.light) light_.bind(15);
-    dispatch(frame_.tiles());
+    for (std::uint32_t first = 0; first < tiles; first += at_once)
+        draw_tiles(first, std::min(first + at_once, tiles), whole, progress);
     stages_.begin("");
     check_gl("splat");
+}
+
+/// Draws some tiles of a pass: repeats the dispatch until none has batches left.
+void GlSplatter::State::draw_tiles(std::uint32_t first, std::uint32_t end, bool whole, Progress* progress) {
+    const GlProgram& used = program();
+    glProgramUniform2ui(used.id(), used.uniform("tile_range"), first, end);
+    glProgramUniform1ui(used.id(), used.uniform("first_state"), whole ? first : 0);
+    const double batches = frame_.end_batch - frame_.first_batch, of_pass = batches * frame_.tiles();
+    constexpr std::uint32_t kNone = 0;
+    std::uint32_t left = 0;
+    for (bool resumed = false; !resumed || left > 0; resumed = true) {
+        glProgramUniform1i(used.id(), used.uniform("resumed"), resumed);
+        kept_.upload(sizeof kNone, &kNone);
+        dispatch(end - first);
+        ++report.dispatches;
+        kept_.read(sizeof left, &left);
+        const double done = (batches * end - left) / of_pass;
+        report_progress(progress, "splat", (frame_.first_batch + batches * done) / frame_.batches);
+    }
 }
 
 Drawn GlSplatter::State::draw(const View& view, const Classification& classification, int sheets, Progress* progress) {
@@ -244,7 +276,7 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
     sheets_ = make_sheets(scene_, view, sheets);
     report.sheets = sheets_.count;
     prepare(view, classification);
-    if (!draw_at_once()) draw_in_passes(view, 0, frame_.batches, progress);
+    if (!draw_at_once(progress)) draw_in_passes(view, 0, frame_.batches, progress);
     // Likewise for the boundary's hits.
     if (has_intervals() && !boundary_.found_all()) {
         report = {.sheets = sheets_.count, .stages = {}};
@@ -260,11 +292,11 @@ Drawn GlSplatter::State::draw(const View& view, const Classification& classifica
 
 /// Draws all batches in one pass with the room that the last picture needed, and reads back the number of entries only at the
 /// end. Returns whether there was enough room.
-bool GlSplatter::State::draw_at_once() {
+bool GlSplatter::State::draw_at_once(Progress* progress) {
     if (room_ == 0 || !resident_ || !fits_bins(0, frame_.batches)) return false;
     set_pass(0, frame_.batches);
     bins_.count(stages_);
-    draw_pass();
+    draw_pass(progress);
     const std::size_t entries = bins_.entries();
     if (entries > room_) return false;
     report.bin_entries = entries;
@@ -285,12 +317,10 @@ void GlSplatter::State::draw_in_passes(const View& view, int first, int end, Pro
     const std::size_t entries = bins_.entries();
     if (entries > most_entries_) return split(view, first, end, progress);
     if (entries > room_ || room_ == 0) room_ = std::min(entries + entries / 8 + 1, most_entries_);
-    if (end - first < frame_.batches) states_.grow(picture_.bytes() / kPixel_bytes * kState_bytes);
     set_pass(first, end);
-    draw_pass();
+    draw_pass(progress);
     report.bin_entries += entries;
     ++report.passes;
-    report_progress(progress, "splat", static_cast<double>(end) / frame_.batches);
 }
 
 void GlSplatter::State::split(const View& view, int first, int end, Progress* progress) {
@@ -309,9 +339,10 @@ bool GlSplatter::State::fits_bins(int first, int end) const {
 
 Drawn GlSplatter::State::read(const View& view) {
     Drawn drawn{Image(view.width(), view.height()), {}};
-    picture_.read(drawn.image.rgba.size() * sizeof(float), drawn.image.rgba.data());
+    const std::size_t bytes = drawn.image.rgba.size() * sizeof(float);
+    picture_.read(bytes, drawn.image.rgba.data());
     drawn.depth.resize(drawn.image.rgba.size() / 4);
-    depths_.read(drawn.depth.size() * sizeof(float), drawn.depth.data());
+    picture_.read(drawn.depth.size() * sizeof(float), drawn.depth.data(), bytes);
     return drawn;
 }
 

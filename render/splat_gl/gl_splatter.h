@@ -17,12 +17,16 @@ namespace subvol::detail {
 /// batch:              sheets, 1..16
 /// most_buffer_bytes:  limit for a buffer, if the device has no lower one
 /// most_entries:       limit for the pairs of a bin and a kernel
+/// most_tiles:         limit for the tiles of a dispatch
+/// most_steps:         a thread of a dispatch ends soon after so many iterations of loops
 /// boundary_on_device: rasterize the boundary with OpenGL even if it is software, which is slower than the CPU's rasterizer
 struct GlTuning {
     int tile_px = 16;
     int batch = kBatch;
     std::size_t most_buffer_bytes = std::size_t{1} << 31;
     std::size_t most_entries = std::size_t{1} << 26;
+    std::uint32_t most_tiles = 2048;
+    std::uint32_t most_steps = 1U << 14;
     bool boundary_on_device = false;
 };
 
@@ -31,14 +35,16 @@ struct GlSplatReport {
     std::size_t bin_entries = 0;    // (tile, batch, kernel)
     std::size_t boundary_hits = 0;  // entries and exits over all pixels
     int passes = 0;
+    std::size_t dispatches = 0;     // that draw
     std::vector<StageTime> stages;  // measured by the device
 };
 
 /// The splatter on an OpenGL device: the same steps as on the CPU, with other rounding. Data that does not depend on the view
 /// is uploaded once. The scene is referred to, not copied.
 ///
-/// If a buffer is too small, the picture is drawn in passes over ranges of batches, front to back. Pictures are bitwise
-/// reproducible, whatever the tuning.
+/// If a buffer is too small, the picture is drawn in passes over ranges of batches, front to back. The work of a dispatch is
+/// limited, however many kernels a tile has: Mesa's software ends loops after 2¹⁶ iterations, and desktops reset devices that
+/// take too long. Pictures are bitwise reproducible, whatever the tuning.
 class GlSplatter {
 public:
     /// device: as for GlContext

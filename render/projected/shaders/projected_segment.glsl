@@ -16,10 +16,6 @@ const float kThin = 0.05;
 const float kGaussOffset = 0.3872983346;  // √(3/5) / 2
 const float kNothingLeft = 1e-7;
 
-float one_minus_exp(float x) {
-    return x < 0.02 ? x * (1.0 - 0.5 * x * (1.0 - x * (1.0 / 3.0) * (1.0 - 0.25 * x))) : 1.0 - exp_of(-x);
-}
-
 // The mean of −ln b for b from b0 to b1, in (0,1]: closed form, or a series where that would lose digits.
 float mean_extinction(float b0, float b1) {
     float middle = 0.5 * (b0 + b1), half_width = 0.5 * abs(b1 - b0), r = half_width / middle;
@@ -51,7 +47,7 @@ vec4 rgba_at(int above, float x) {
 
 // The opacity of the first part u of a piece.
 float opacity_before(float b0, float b1, float u, float units) {
-    return one_minus_exp(mean_extinction(b0, mix(b0, b1, u)) * u * units);
+    return opacity_of(mean_extinction(b0, mix(b0, b1, u)) * u * units);
 }
 
 // Integrates by parts: ∫ c dA = c₁·A(1) − (c₁ − c₀)·∫A du, where A(u) is the opacity of the part before u.
@@ -59,7 +55,7 @@ void add_piece(inout vec4 light, vec4 rgba0, vec4 rgba1, float units) {
     float b0 = 1.0 - rgba0.a, b1 = 1.0 - rgba1.a;
     if (b0 == 1.0 && b1 == 1.0) return;
     float depth = mean_extinction(b0, b1) * units;
-    float opacity = one_minus_exp(depth), left = 1.0 - light.a, mean_opacity = 0.0;
+    float opacity = opacity_of(depth), left = 1.0 - light.a, mean_opacity = 0.0;
     if (depth < kThin) {
         mean_opacity = (4.0 * opacity_before(b0, b1, 0.5, units) + opacity) / 6.0;
     } else {

@@ -10,7 +10,7 @@ layout(binding = 0) uniform sampler2D sums;
 layout(binding = 1) uniform sampler2D more_sums;
 layout(std430, binding = 10) readonly buffer IntervalOffsets { uint interval_offsets[]; };
 layout(std430, binding = 11) readonly buffer Intervals { vec2 intervals[]; };
-layout(std430, binding = 12) buffer Beams { vec4 beams[]; };  // colour, transmittance
+layout(std430, binding = 12) buffer Beams { vec4 beams[]; };  // colour, opacity
 layout(std430, binding = 13) buffer Lasts { Last lasts[]; };
 layout(std430, binding = 14) buffer Looks { vec4 looks[]; };  // of the last sheet: second colour's value, light
 layout(std430, binding = 15) buffer Done { uint done_pixels; };
@@ -103,10 +103,10 @@ void main() {
                 follow(beam, before, here, front_z, back_z, inside, enter, end_of_interval(2u * last.interval + 1u), ray_length,
                        skin);
             }
-            if (beam.transmittance < kSplatCutoff) last.interval = end - 1u;
+            if (is_opaque(beam)) last.interval = end - 1u;
             else if (inside.y > back_z) break;
         }
-        beams[id] = vec4(beam.color, beam.transmittance);
+        beams[id] = vec4(beam.color, beam.opacity);
         last.depth = beam.depth;
         if (last.interval >= end) atomicAdd(done_pixels, 1u);  // integers: the order of the additions does not matter
     }

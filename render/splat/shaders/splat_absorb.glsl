@@ -9,17 +9,26 @@ struct End {
     vec2 light;
 };
 
-// The state of a ray; depth is weighted by opacity.
+// The state of a ray; depth is weighted by opacity. The opacity is kept, not what passes: next to 1 that has no digits for the
+// little that a thin stretch takes away.
 struct Beam {
     vec3 color;
-    float transmittance, depth;
+    float opacity, depth;
 };
+
+bool is_opaque(Beam beam) { return 1.0 - beam.opacity < kSplatCutoff; }
+
+// Adds something opaque.
+void see_surface(inout Beam beam, vec3 color, float depth) {
+    float left = 1.0 - beam.opacity;
+    beam = Beam(beam.color + left * color, 1.0, beam.depth + left * depth);
+}
 
 // Adds the light of a stretch with the mean extinction and emission `mean`.
 void add_light(inout Beam beam, End e0, End e1, vec4 mean, float length_world, float middle) {
     // Rounding must not leave light where there is none, nor make a colour brighter than 1.
     if (!(mean.x > 0.0)) return;
-    precise float passes = exp_of(-(length_world * mean.x)), light = beam.transmittance * (1.0 - passes);
+    precise float light = (1.0 - beam.opacity) * opacity_of(length_world * mean.x);
     precise vec3 emission = min(mean.yzw, mean.xxx);
 #if COLORED
     emission = 0.5 * mean.x * (color_at(e0.color) + color_at(e1.color));
@@ -31,8 +40,8 @@ void add_light(inout Beam beam, End e0, End e1, vec4 mean, float length_world, f
 #else
     precise vec3 color = fma(vec3(per_extinction), emission, beam.color);
 #endif
-    precise float depth = fma(light, middle, beam.depth), transmittance = beam.transmittance * passes;
-    beam = Beam(color, transmittance, depth);
+    precise float depth = fma(light, middle, beam.depth), opacity = beam.opacity + light;
+    beam = Beam(color, opacity, depth);
 }
 
 End between_ends(End e0, End e1, float part) {
@@ -44,7 +53,7 @@ End between_ends(End e0, End e1, float part) {
 void go_in_steps(inout Beam beam, End e0, End e1, float length_world, float from, float to) {
     precise float slope = e1.x - e0.x, begin = 0.0, step_part = 1.0;
     Place front = place_of(e0.x);
-    for (int i = 0; i < kMostSteps && begin < 1.0 && beam.transmittance >= kSplatCutoff; ++i) {
+    for (int i = 0; i < kMostSteps && begin < 1.0 && !is_opaque(beam); ++i) {
         bool last_step = i + 1 == kMostSteps;
         precise float end = last_step ? 1.0 : min(begin + step_part, 1.0), x = end == 1.0 ? e1.x : fma(slope, end, e0.x);
         Place back = place_of(x);
@@ -75,9 +84,7 @@ bool see_boundary(inout Beam beam, End end, float enter, float exit, float ray_l
 #if SHADED || SHADOWED
     color = color * end.light.x + end.light.y;
 #endif
-    beam.color += beam.transmittance * color;
-    beam.depth += beam.transmittance * enter;
-    beam.transmittance = 0.0;
+    see_surface(beam, color, enter);
     return true;
 }
 
@@ -89,9 +96,7 @@ void see_slice(inout Beam beam, End end, float depth) {
 #else
     precise vec3 color = color_at(end.x);
 #endif
-    beam.color += beam.transmittance * color;
-    beam.depth += beam.transmittance * depth;
-    beam.transmittance = 0.0;
+    see_surface(beam, color, depth);
 }
 
 // Light at the end where a ray enters: the boundary is a surface if the volume is more than half opaque there within a pixel.

@@ -1,12 +1,13 @@
 #version 450
 // SPDX-License-Identifier: Apache-2.0
-// The pixels that the triangles cover. FILL 0 counts the hits of each pixel, FILL 1 writes them in any order.
+// The pixels that the triangles cover. FILL 0 counts the hits of each pixel, FILL 1 writes them in any order. The threads of a
+// group share a block of strips.
 layout(local_size_x = 256) in;
 layout(std430, binding = 0) readonly buffer StripOffsets { uint strip_offsets[]; };
 layout(std430, binding = 1) readonly buffer EyePoints { EyePoint eye_points[]; };
 layout(std430, binding = 2) readonly buffer Triangles { uint corners[]; };
 layout(std430, binding = 3) readonly buffer Boxes { ivec4 boxes[]; };
-layout(std430, binding = 4) buffer Counts { uint counts[]; };  // of each pixel; FILL: the hits written so far
+layout(std430, binding = 4) buffer Counts { uint counts[]; };  // of each pixel, and a mark; FILL: the hits written so far
 layout(std430, binding = 5) readonly buffer HitOffsets { uint hit_offsets[]; };
 layout(std430, binding = 6) writeonly buffer Hits { vec2 hits[]; };  // depth relative to the middle; +1 where the ray enters
 
@@ -58,14 +59,17 @@ void cover(uint id, uint strip) {
 #if FILL
         uint to = hit_offsets[pixel] + before;
         if (to < most_hits) hits[to] = vec2(float(depth_at(plane, x, y) - scale.y), enters ? 1.0 : -1.0);
+#else
+        if (before == kMostHits) counts[uint(size.x) * uint(size.y) + 1u] = 1u;  // too many: the CPU sorts them
 #endif
     }
 }
 
 void main() {
     uint total = strip_offsets[triangles];
-    uint step_size = gl_NumWorkGroups.x * gl_NumWorkGroups.y * kThreads;
-    for (uint item = group_number() * kThreads + gl_LocalInvocationIndex; item < total; item += step_size) {
+    for (uint k = 0u; k < kItems; ++k) {
+        uint item = group_number() * kBlock + k * kThreads + gl_LocalInvocationIndex;
+        if (item >= total) return;
         uint low = 0u, high = triangles - 1u;  // finds the last triangle that begins at or before the strip
         while (low < high) {
             uint middle = (low + high + 1u) / 2u;

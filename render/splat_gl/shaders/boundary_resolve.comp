@@ -9,6 +9,7 @@ layout(std430, binding = 2) writeonly buffer IntervalRanges { uvec2 interval_ran
 // Where two shells touch, the entry into one comes before the exit from the other: no gap opens.
 bool before(vec2 l, vec2 r) { return l.x != r.x ? l.x < r.x : l.y > r.y; }
 
+// Of at most kMostHits.
 void sort_hits(uint first, uint end) {
     for (uint i = first + 1u; i < end; ++i) {
         vec2 hit = hits[i];
@@ -39,6 +40,7 @@ void main() {
     uint pixel = group_number() * kThreads + gl_LocalInvocationIndex;
     if (pixel >= uint(size.x) * uint(size.y)) return;
     uint first = min(hit_offsets[pixel], most_hits), end = min(hit_offsets[pixel + 1u], most_hits);
+    if (end - first > kMostHits) end = first;
     sort_hits(first, end);
     interval_ranges[pixel] = uvec2(first, resolve(first, end));
 }

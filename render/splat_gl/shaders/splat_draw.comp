@@ -2,17 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // A work group for each tile, a thread for each pixel; batches of sheets from front to back, with sums in registers. Every
 // order is fixed, and no number depends on where tiles and batches begin: pictures are bitwise reproducible.
+//
+// A tile may need any number of steps, so a dispatch does a limited number of them, keeps the state and is repeated until no
+// tile is left: drivers end loops, or reset the device, if one takes too long. What threads do together is counted as it is
+// done (splat_sums.glsl). What a thread does for the intervals of its own ray is limited by their number.
 layout(local_size_x = kTile, local_size_y = kTile) in;
 layout(std430, binding = 2) readonly buffer Ranges { vec2 ranges[]; };
-layout(std430, binding = 11) writeonly buffer Picture { vec4 picture[]; };
-layout(std430, binding = 12) writeonly buffer Depths { float depths[]; };
+layout(std430, binding = 11) writeonly buffer Picture { float picture[]; };  // colours of all pixels, then depths
 struct State {
-    vec4 color;    // transmittance in the last component
-    vec4 going;    // depth, enter, exit; the number of the interval
-    vec4 on_last;  // x, known, weight, color
-    vec4 light;
+    vec4 color;      // opacity in the last component
+    vec4 going;      // depth, enter, exit; weight on the last sheet
+    vec4 on_last;    // x, color, light
+    vec4 range;      // of the tile's batch `ranged`
+    uvec4 at;        // interval, next end; entry of the sum; whether there is a value on the last sheet
+    ivec4 to_do;     // of the tile: next batch, job; bits: whether ends are found, whether the batch before was passed over;
+                     // the batch of `range`
 };
-layout(std430, binding = 13) buffer States { State states[]; };  // of the pixels, between passes
+layout(std430, binding = 13) buffer States { State states[]; };  // of the pixels of tiles, between dispatches
+uniform uvec2 tile_range;  // the tiles of this dispatch: first, end
+uniform uint first_state;  // the tile to which the first states belong
+uniform bool resumed;      // whether the tiles have been begun in this pass
 
 const int kNone = 0x7fffffff;
 
@@ -21,12 +30,17 @@ shared int next_batch[3];
 shared int range_low[3];
 shared int range_high[3];
 
-uint pixel_id;
+// What a tile does next with its batch.
+const int kChoose = 0, kLookBack = 1, kGoThrough = 2, kDone = 3;
+
+uint pixel_id, state_id;
 bool in_picture;
+int next_batch_id, job = kChoose;
+bool ends_found = false, passed_over = false;
 uint step_number = 0u;
 uint next_end = 0u, last_end = 0u;  // the ends of the pixel's intervals that have no values yet
 int ranged = -2;  // the batch to which `range` belongs
-vec2 range;
+vec2 range = vec2(0.0);
 float sum_depth;  // at which the first sums are
 
 int ordered(float f) {
@@ -48,7 +62,7 @@ void start_pixel(uint tile) {
     precise float square = 1.0 + slopes.x * slopes.x + slopes.y * slopes.y;
     ray_length = perspective ? sqrt(square) : 1.0;
 
-    beam = Beam(vec3(0.0), 1.0, 0.0);
+    beam = Beam(vec3(0.0), 0.0, 0.0);
     last = Sheet(0.0, false, 0.0, 0.0, vec2(0.0));
     enter_z = exit_z = kNever;
     interval = intervals_end = 0u;
@@ -61,33 +75,46 @@ void start_pixel(uint tile) {
     take_interval();
     next_end = 2u * interval;
     last_end = 2u * intervals_end;
-    if (first_batch == 0) {
+    if (first_batch == 0 && !resumed) {
         for (uint i = next_end; i < last_end; ++i) ends[i].x = 3e38;
     }
 #endif
 }
 
 void load_state() {
-    if (!in_picture || first_batch == 0) return;
-    State s = states[pixel_id];
+    next_batch_id = first_batch;
+    if (first_batch == 0 && !resumed) return;
+    State s = states[state_id];
     beam = Beam(s.color.rgb, s.color.w, s.going.x);
     enter_z = s.going.y;
     exit_z = s.going.z;
-    interval = floatBitsToUint(s.going.w);
-    last = Sheet(s.on_last.x, s.on_last.y > 0.0, s.on_last.z, s.on_last.w, s.light.xy);
+    interval = s.at.x;
+    next_end = s.at.y;
+    last = Sheet(s.on_last.x, s.at.w != 0u, s.going.w, s.on_last.y, s.on_last.zw);
+    if (!resumed) return;
+    range = s.range.xy;
+    entry = s.at.z;
+    next_batch_id = s.to_do.x;
+    job = s.to_do.y;
+    ends_found = (s.to_do.z & 1) != 0;
+    passed_over = (s.to_do.z & 2) != 0;
+    ranged = s.to_do.w;
 }
 
-void store() {
+void store_state() {
+    states[state_id] = State(vec4(beam.color, beam.opacity), vec4(beam.depth, enter_z, exit_z, last.weight),
+                             vec4(last.x, last.color, last.light), vec4(range, 0.0, 0.0),
+                             uvec4(interval, next_end, entry, last.known ? 1u : 0u),
+                             ivec4(next_batch_id, job, (ends_found ? 1 : 0) | (passed_over ? 2 : 0), ranged));
+}
+
+void write_pixel() {
     if (!in_picture) return;
-    if (end_batch < batches) {
-        states[pixel_id] = State(vec4(beam.color, beam.transmittance), vec4(beam.depth, enter_z, exit_z, uintBitsToFloat(interval)),
-                                 vec4(last.x, last.known ? 1.0 : 0.0, last.weight, last.color), vec4(last.light, 0.0, 0.0));
-        return;
-    }
-    precise float opacity = 1.0 - beam.transmittance;
-    precise float mean_depth = middle_depth + beam.depth / (opacity > 0.0 ? opacity : 1.0);
-    picture[pixel_id] = vec4(beam.color, opacity);
-    depths[pixel_id] = opacity > 0.0 ? mean_depth : uintBitsToFloat(0x7f800000u);
+    uint pixels = uint(size.x) * uint(size.y);
+    precise float mean_depth = middle_depth + beam.depth / (beam.opacity > 0.0 ? beam.opacity : 1.0);
+    for (uint k = 0u; k < 3u; ++k) picture[4u * pixel_id + k] = beam.color[k];
+    picture[4u * pixel_id + 3u] = beam.opacity;
+    picture[4u * pixels + pixel_id] = beam.opacity > 0.0 ? mean_depth : uintBitsToFloat(0x7f800000u);
 }
 
 // The first batch of which the pixel needs a sheet: with the sheet before its interval, and a little for rounding.
@@ -110,11 +137,13 @@ int vote(int from) {
     return next_batch[slot];
 }
 
-// Bounds of the values of a bin's kernels.
+// Bounds of the values of a bin's kernels. To find those of very many would take longer than to sum them.
 vec2 range_of(uint bin) {
-    uint slot = step_number % 3u;
+    uint slot = step_number % 3u, begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
+    if (end - begin > kMostRanged) return vec2(-kNever, kNever);
+    steps += (end - begin) / kPixels + 1u;
     vec2 own = vec2(kNever, -kNever);
-    for (uint i = bin_offsets[bin] + gl_LocalInvocationIndex; i < bin_offsets[bin + 1u]; i += kPixels) {
+    for (uint i = begin + gl_LocalInvocationIndex; i < end; i += kPixels) {
         vec2 r = ranges[bin_splats[i]];
         own = vec2(min(own.x, r.x), max(own.y, r.y));
     }
@@ -215,14 +244,16 @@ int next_end_sheet(inout float depth) {
 }
 
 // Finds the values where rays enter and leave the volume on or behind the sheets from `first` to `end`: all threads take their
-// next end at a time. Those of sheets that were passed over stay unknown, as nothing is seen there.
-void find_ends(uint bin, int first, int end) {
+// next end at a time. Those of sheets that were passed over stay unknown, as nothing is seen there. False if it has to be
+// continued.
+bool find_ends(uint bin, int first, int end) {
     float depth = 0.0;
     while (next_end_sheet(depth) < first) ++next_end;
-    while (true) {
+    while (steps < kDispatchSteps) {
+        steps += kRoundSteps;
         bool mine = enter_z != kNever && next_end_sheet(depth) < end;
-        if (!any_of(mine)) return;
-        sum_kernels_at(bin, depth, mine);
+        if (entry == 0u && !any_of(mine)) return true;
+        if (!sum_kernels_at(bin, depth, mine)) return false;
         if (!mine) continue;
         sum_depth = depth;
         Sheet here = first_sum();
@@ -239,19 +270,9 @@ void find_ends(uint bin, int first, int end) {
         ends[next_end] = vec4(here.known ? here.x : 3e38, here.color, light);
         ++next_end;
     }
+    return false;
 }
 #endif
-
-// Takes the values of the last sheet of a batch that was passed over.
-void look_back(uint bin, int batch) {
-#if INTERVALS
-    find_ends(bin, batch * kBatch + kBatch - 1, batch * kBatch + kBatch);
-#endif
-    sum_kernels(bin, batch * kBatch, 1u << (kBatch - 1), true);
-    for (int k = 0; k + 1 < kBatch; ++k) shift_sums();
-    sum_depth = sheet_depth(batch * kBatch + kBatch - 1);
-    skip_to(first_sum());
-}
 
 void pass_over(int batch) {
     float back = sheet_depth(min((batch + 1) * kBatch, sheets) - 1);
@@ -261,13 +282,31 @@ void pass_over(int batch) {
     }
 }
 
-void go_through(uint bin, int batch) {
+// Chooses the next batch, and what to do with it: one that is passed over needs nothing, and one behind it the values of its
+// last sheet.
+void choose(uint first_bin) {
+    int batch = vote(next_batch_id);
+    if (batch >= end_batch) {
+        job = kDone;
+        return;
+    }
+    bool follows = batch == next_batch_id, unseen = invisible(batch, first_bin + uint(batch - first_batch));
+    if (unseen) pass_over(batch);
+    else job = passed_over && follows ? kLookBack : kGoThrough;
+    passed_over = unseen;
+    ends_found = false;
+    next_batch_id = batch + 1;
+}
+
+// Takes the values of the last sheet of a batch that was passed over.
+void look_back(int batch) {
+    for (int k = 0; k + 1 < kBatch; ++k) shift_sums();
+    sum_depth = sheet_depth(batch * kBatch + kBatch - 1);
+    skip_to(first_sum());
+}
+
+void go_through(int batch, bool awake) {
     int first_sheet = batch * kBatch, end_sheet = min(first_sheet + kBatch, sheets);
-#if INTERVALS
-    find_ends(bin, first_sheet, end_sheet);
-#endif
-    bool awake = enter_z < sheet_depth(end_sheet - 1) + 1.5 * sheet_distance;
-    sum_kernels(bin, first_sheet, 0xffffffffu, awake);
     for (int sheet = first_sheet; awake && sheet < end_sheet; ++sheet) {
         sum_depth = sheet_depth(sheet);
         Sheet here = first_sum();
@@ -277,31 +316,47 @@ void go_through(uint bin, int batch) {
     }
 }
 
+// Goes on with the job. If the sums are not complete yet, it stays to be done.
+void work(uint first_bin) {
+    bool back = job == kLookBack;
+    int batch = next_batch_id - (back ? 2 : 1), first_sheet = batch * kBatch, end_sheet = min(first_sheet + kBatch, sheets);
+    uint bin = first_bin + uint(batch - first_batch);
+#if INTERVALS
+    if (!ends_found) ends_found = find_ends(bin, back ? end_sheet - 1 : first_sheet, end_sheet);
+    if (!ends_found) return;
+#endif
+    bool awake = back || enter_z < sheet_depth(end_sheet - 1) + 1.5 * sheet_distance;
+    if (!sum_kernels(bin, first_sheet, back ? 1u << (kBatch - 1) : 0xffffffffu, awake)) return;
+    if (back) look_back(batch);
+    else go_through(batch, awake);
+    job = back ? kGoThrough : kChoose;
+    ends_found = false;
+}
+
 void main() {
-    uint tile = group_number();
-    if (tile >= uint(tiles.x * tiles.y)) return;
+    uint tile = tile_range.x + group_number();
+    if (tile >= tile_range.y) return;
     if (gl_LocalInvocationIndex < 3u) {
         next_batch[gl_LocalInvocationIndex] = range_low[gl_LocalInvocationIndex] = kNone;
         range_high[gl_LocalInvocationIndex] = -kNone;
     }
     barrier();
+    state_id = (tile - first_state) * kPixels + gl_LocalInvocationIndex;
+    sums_id = group_number() * kPixels * kKeptSums + gl_LocalInvocationIndex;
     start_pixel(tile);
     load_state();
+    if (resumed && job == kDone) return;
     uint first_bin = tile * uint(end_batch - first_batch);
-    bool passed_over = false;  // whether the batch before was passed over
-    int batch = vote(first_batch), before = -2;
-    while (batch < end_batch) {
-        uint bin = first_bin + uint(batch - first_batch);
-        bool unseen = invisible(batch, bin);
-        if (unseen) {
-            pass_over(batch);
-        } else {
-            if (passed_over && before == batch - 1) look_back(bin - 1u, before);
-            go_through(bin, batch);
-        }
-        passed_over = unseen;
-        before = batch;
-        batch = vote(batch + 1);
+    while (job != kDone && steps < kDispatchSteps) {
+        steps += kBatchSteps;
+        if (job == kChoose) choose(first_bin);
+        else work(first_bin);
     }
-    store();
+    if (job == kDone && end_batch == batches) {
+        write_pixel();
+        states[state_id].to_do.y = kDone;
+    } else {
+        store_state();
+    }
+    if (job != kDone && gl_LocalInvocationIndex == 0u) atomicAdd(batches_left, uint(max(end_batch - next_batch_id, 1)));
 }

@@ -7,10 +7,24 @@ layout(std430, binding = 1) readonly buffer SplatExtras { vec4 splat_extras[]; }
 layout(std430, binding = 3) readonly buffer BinOffsets { uint bin_offsets[]; };
 layout(std430, binding = 4) readonly buffer BinSplats { uint bin_splats[]; };
 layout(std430, binding = 10) readonly buffer KernelTable { float kernel_table[]; };
+layout(std430, binding = 12) buffer Kept {
+    uint batches_left;  // of all tiles that are not done
+    float kept_sums[];  // of sums that have to be continued
+};
 
 const uint kPixels = uint(kTile) * uint(kTile);
 const uint kWords = kChunk / 32;
 const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBlocksY;
+
+// The iterations of all loops of a thread. Where they depend on the kernels, their number is the same in the whole group: it is
+// counted, and the dispatch ends soon after kDispatchSteps. A chunk has up to kChunk · kKernelSteps + kStagingSteps.
+const uint kKernelSteps = 1u + uint(kBatch) * (SEPARABLE == 1 ? 4u : 1u);
+const uint kStagingSteps =
+    (uint(kChunk * kBatch) / kPixels + 1u) * uint(kBlocks + kBlocksY + kExtras + 5) + uint(kChunk * kBlocks) / kPixels + 8u;
+const uint kBatchSteps = uint(kBatch) * uint(kBatch + 16) + 16u;  // of choosing a batch, or of compositing its sheets
+const uint kRoundSteps = 4u * uint(kBatch) + 8u;                    // of the next ends of all rays
+const uint kMostRanged = 2048u * kPixels;
+uint steps = 0u;
 
 shared vec4 cuts[kChunk * kBatch];  // of a kernel with a sheet: middle x, y; e and value there
 shared vec4 shapes[kChunk];         // root xx, xy, yy; moment
@@ -31,6 +45,8 @@ uint block;      // the block of this thread's pixel
 vec2 ray;        // slopes of the pixel's ray, which do not depend on the division into tiles
 float across[kBatch];  // world length of a unit of slope, on each sheet
 ivec2 tile_px;
+uint entry = 0u;  // of the bin, up to which it has been summed
+uint sums_id;     // where the pixel's sums are kept
 
 precise float weights[kBatch];
 precise float values[kBatch];
@@ -206,6 +222,63 @@ void add_kernel(uint j, uint met, int first_sheet) {
     }
 }
 
+void start_sums(int k) {
+    weights[k] = values[k] = 0.0;
+#if COLORED
+    colors[k] = 0.0;
+#endif
+#if SHADED
+    gradient_sums[k] = vec3(0.0);
+#endif
+}
+
+const uint kSums = 2u + (COLORED == 1 ? 1u : 0u) + (SHADED == 1 ? 3u : 0u);
+const uint kKeptSums = kSums * uint(kBatch);
+
+void keep_sums() {
+    for (int k = 0; k < kBatch; ++k) {
+        uint to = sums_id + uint(k) * kSums * kPixels;
+        kept_sums[to] = weights[k];
+        kept_sums[to + kPixels] = values[k];
+#if COLORED
+        kept_sums[to + 2u * kPixels] = colors[k];
+#endif
+#if SHADED
+        for (uint a = 0u; a < 3u; ++a) kept_sums[to + (kSums - 3u + a) * kPixels] = gradient_sums[k][a];
+#endif
+    }
+}
+
+void take_sums() {
+    for (int k = 0; k < kBatch; ++k) {
+        uint from = sums_id + uint(k) * kSums * kPixels;
+        weights[k] = kept_sums[from];
+        values[k] = kept_sums[from + kPixels];
+#if COLORED
+        colors[k] = kept_sums[from + 2u * kPixels];
+#endif
+#if SHADED
+        for (uint a = 0u; a < 3u; ++a) gradient_sums[k][a] = kept_sums[from + (kSums - 3u + a) * kPixels];
+#endif
+    }
+}
+
+// Begins the sums of a bin, or takes up those that have to be continued.
+void begin_sums() {
+    for (int k = 0; k < kBatch; ++k) start_sums(k);
+    if (entry > 0u) take_sums();
+}
+
+// Whether there are steps left for a chunk of the bin, whose `entry` it begins with; if not, the sums are kept.
+bool begin_chunk(uint size) {
+    if (steps >= kDispatchSteps) {
+        if (entry > 0u) keep_sums();
+        return false;
+    }
+    steps += size * kKernelSteps + kStagingSteps;
+    return true;
+}
+
 #if INTERVALS
 bool is_usable(float v) { return abs(v) < kMostOfKernel; }  // false for NaN
 
@@ -244,23 +317,14 @@ void stage_whole(uint first, uint end) {
     barrier();
 }
 
-void start_sums(int k) {
-    weights[k] = values[k] = 0.0;
-#if COLORED
-    colors[k] = 0.0;
-#endif
-#if SHADED
-    gradient_sums[k] = vec3(0.0);
-#endif
-}
-
-// Sums the kernels of a bin at a depth of each pixel's own into the first sums.
-void sum_kernels_at(uint bin, float depth, bool awake) {
-    start_sums(0);
+// Sums the kernels of a bin at a depth of each pixel's own into the first sums; false if it has to be continued.
+bool sum_kernels_at(uint bin, float depth, bool awake) {
+    begin_sums();
     float across_here = perspective ? middle_depth + depth : 1.0;
-    uint end = bin_offsets[bin + 1u];
-    for (uint first = bin_offsets[bin]; first < end; first += kChunk) {
-        uint chunk_end = min(first + kChunk, end);
+    uint begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
+    for (; begin + entry < end; entry += kChunk) {
+        uint first = begin + entry, chunk_end = min(first + kChunk, end);
+        if (!begin_chunk(chunk_end - first)) return false;
         stage_whole(first, chunk_end);
         for (uint j = 0u; awake && j < chunk_end - first; ++j) {
             vec4 place = places[j], slope = slopes[j];
@@ -270,24 +334,20 @@ void sum_kernels_at(uint bin, float depth, bool awake) {
             add_at(0, j, d, zs, e, fma(zs, slope.w, slope.z));
         }
     }
+    entry = 0u;
+    return true;
 }
 #endif
 
-// Sums the wanted sheets of a batch; the sums of pixels that are not awake stay 0.
-void sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
-    for (int k = 0; k < kBatch; ++k) {
-        across[k] = across_at(first_sheet + k);
-        weights[k] = values[k] = 0.0;
-#if COLORED
-        colors[k] = 0.0;
-#endif
-#if SHADED
-        gradient_sums[k] = vec3(0.0);
-#endif
-    }
-    uint end = bin_offsets[bin + 1u];
-    for (uint first = bin_offsets[bin]; first < end; first += kChunk) {
-        stage(first, min(first + kChunk, end), first_sheet, wanted_sheets);
+// Sums the wanted sheets of a batch, false if it has to be continued; the sums of pixels that are not awake stay 0.
+bool sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
+    for (int k = 0; k < kBatch; ++k) across[k] = across_at(first_sheet + k);
+    begin_sums();
+    uint begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
+    for (; begin + entry < end; entry += kChunk) {
+        uint first = begin + entry, chunk_end = min(first + kChunk, end);
+        if (!begin_chunk(chunk_end - first)) return false;
+        stage(first, chunk_end, first_sheet, wanted_sheets);
         for (uint word = 0u; word < kWords; ++word) {
             for (uint left = awake ? met_kernels[block * kWords + word] : 0u; left != 0u; left &= left - 1u) {
                 uint j = word * 32u + uint(findLSB(left));
@@ -295,4 +355,6 @@ void sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
             }
         }
     }
+    entry = 0u;
+    return true;
 }

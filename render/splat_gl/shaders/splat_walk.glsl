@@ -112,7 +112,7 @@ void go(float front, float back, Sheet here) {
     bool placed = false;
     while (enter_z < back) {
         stretch(front, back, here, place, placed);
-        if (beam.transmittance < kSplatCutoff) {
+        if (is_opaque(beam)) {
             enter_z = exit_z = kNever;
             break;
         }
