@@ -99,9 +99,11 @@ void load_state() {
     ends_found = (s.to_do.z & 1) != 0;
     passed_over = (s.to_do.z & 2) != 0;
     ranged = s.to_do.w;
+    if (entry > 0u) take_sums();
 }
 
 void store_state() {
+    if (entry > 0u) keep_sums();
     states[state_id] = State(vec4(beam.color, beam.opacity), vec4(beam.depth, enter_z, exit_z, last.weight),
                              vec4(last.x, last.color, last.light), vec4(range, 0.0, 0.0),
                              uvec4(interval, next_end, entry, last.known ? 1u : 0u),
@@ -350,7 +352,7 @@ void main() {
     while (job != kDone && steps < kDispatchSteps) {
         steps += kBatchSteps;
         if (job == kChoose) choose(first_bin);
-        else work(first_bin);
+        if (job == kLookBack || job == kGoThrough) work(first_bin);
     }
     if (job == kDone && end_batch == batches) {
         write_pixel();

@@ -263,20 +263,16 @@ void take_sums() {
     }
 }
 
-// Begins the sums of a bin, or takes up those that have to be continued.
-void begin_sums() {
-    for (int k = 0; k < kBatch; ++k) start_sums(k);
-    if (entry > 0u) take_sums();
+bool end_sums(bool complete) {
+    if (complete) entry = 0u;
+    return complete;
 }
 
-// Whether there are steps left for a chunk of the bin, whose `entry` it begins with; if not, the sums are kept.
-bool begin_chunk(uint size) {
-    if (steps >= kDispatchSteps) {
-        if (entry > 0u) keep_sums();
-        return false;
+// Begins the sums of a bin, unless they have to be continued.
+void begin_sums() {
+    for (int k = 0; k < kBatch; ++k) {
+        if (entry == 0u) start_sums(k);
     }
-    steps += size * kKernelSteps + kStagingSteps;
-    return true;
 }
 
 #if INTERVALS
@@ -322,9 +318,9 @@ bool sum_kernels_at(uint bin, float depth, bool awake) {
     begin_sums();
     float across_here = perspective ? middle_depth + depth : 1.0;
     uint begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
-    for (; begin + entry < end; entry += kChunk) {
+    for (; begin + entry < end && steps < kDispatchSteps; entry += kChunk) {
         uint first = begin + entry, chunk_end = min(first + kChunk, end);
-        if (!begin_chunk(chunk_end - first)) return false;
+        steps += (chunk_end - first) * kKernelSteps + kStagingSteps;
         stage_whole(first, chunk_end);
         for (uint j = 0u; awake && j < chunk_end - first; ++j) {
             vec4 place = places[j], slope = slopes[j];
@@ -334,8 +330,7 @@ bool sum_kernels_at(uint bin, float depth, bool awake) {
             add_at(0, j, d, zs, e, fma(zs, slope.w, slope.z));
         }
     }
-    entry = 0u;
-    return true;
+    return end_sums(begin + entry >= end);
 }
 #endif
 
@@ -344,9 +339,9 @@ bool sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
     for (int k = 0; k < kBatch; ++k) across[k] = across_at(first_sheet + k);
     begin_sums();
     uint begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
-    for (; begin + entry < end; entry += kChunk) {
+    for (; begin + entry < end && steps < kDispatchSteps; entry += kChunk) {
         uint first = begin + entry, chunk_end = min(first + kChunk, end);
-        if (!begin_chunk(chunk_end - first)) return false;
+        steps += (chunk_end - first) * kKernelSteps + kStagingSteps;
         stage(first, chunk_end, first_sheet, wanted_sheets);
         for (uint word = 0u; word < kWords; ++word) {
             for (uint left = awake ? met_kernels[block * kWords + word] : 0u; left != 0u; left &= left - 1u) {
@@ -355,6 +350,5 @@ bool sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
             }
         }
     }
-    entry = 0u;
-    return true;
+    return end_sums(begin + entry >= end);
 }
