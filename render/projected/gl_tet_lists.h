@@ -17,8 +17,8 @@ namespace subvol::detail {
 [[nodiscard]] std::vector<PixelRect> split_into_parts(std::span<const std::uint32_t> counts, int width, int height,
                                                       std::size_t most_fragments);
 
-/// Stores what GlTets draws in a list for each pixel, and makes the picture from the lists. Keeps memory from picture to
-/// picture.
+/// Stores what GlTets draws in a list for each pixel, sorts the lists, and makes the picture from them. Keeps memory from
+/// picture to picture. The work of a dispatch is limited, however long the lists are.
 class GlTetLists {
 public:
     struct Drawn {
@@ -32,6 +32,7 @@ public:
     /// Draws the segments of tetrahedra, sorted in each pixel.
     ///
     /// most_fragments: the most that lists hold at a time; the picture is drawn in parts if there are more
+    /// cost:           O(n log n) for each list of n
     /// throws:         Error(MissingCapability) if the device has no room
     [[nodiscard]] Drawn draw_tets(std::size_t most_fragments, const DrawStage& stage);
 
@@ -45,11 +46,13 @@ private:
     [[nodiscard]] std::vector<std::uint32_t> count_fragments(Items items, const DrawStage& stage);
     void draw_part(Items items, const PixelRect& part, const std::vector<std::uint32_t>& counts, Image& image,
                    const DrawStage& stage);
-    void resolve_part(Items items, const PixelRect& part, Image& image);
+    void sort_part(Items items, const PixelRect& part, const std::vector<std::uint32_t>& offsets);
+    void composite_part(Items items, const PixelRect& part, Image& image);
+    void repeat(const GlProgram& program, std::uint32_t pixels);
 
     GlTets& tets_;
     std::uint32_t kbuffer_ = 1;
-    GlBuffer counts_, offsets_, entries_, ranks_, picture_, misses_;
+    GlBuffer counts_, offsets_, entries_, ranks_, other_entries_, other_ranks_, blocks_, states_, picture_, counters_;
 };
 
 }  // namespace subvol::detail

@@ -10,15 +10,21 @@
 #include "shader_exp_log_glsl.h"
 #include "shader_projected_clip_glsl.h"
 #include "shader_projected_crossing_glsl.h"
+#include "shader_projected_entries_glsl.h"
 #include "shader_projected_face_frag.h"
 #include "shader_projected_face_vert.h"
 #include "shader_projected_frame_glsl.h"
 #include "shader_projected_hull_glsl.h"
 #include "shader_projected_kbuffer_comp.h"
+#include "shader_projected_lists_glsl.h"
+#include "shader_projected_merge_comp.h"
 #include "shader_projected_resolve_comp.h"
 #include "shader_projected_segment_glsl.h"
+#include "shader_projected_sort_comp.h"
+#include "shader_projected_state_glsl.h"
 #include "shader_projected_tet_frag.h"
 #include "shader_projected_tet_vert.h"
+#include "shader_projected_window_comp.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -36,7 +42,7 @@ void fill(GlBuffer& buffer, const std::vector<T>& values) {
     buffer.upload(bytes, values.data());
 }
 
-std::vector<ShaderText> resolver_texts() {
+std::vector<ShaderText> light_texts() {
     return {{"projected_frame.glsl", kShader_projected_frame_glsl},
             {"exp_log.glsl", kShader_exp_log_glsl},
             {"projected_segment.glsl", kShader_projected_segment_glsl},
@@ -44,7 +50,7 @@ std::vector<ShaderText> resolver_texts() {
 }
 
 std::vector<ShaderText> drawing_texts() {
-    auto texts = resolver_texts();
+    auto texts = light_texts();
     texts.push_back({"projected_crossing.glsl", kShader_projected_crossing_glsl});
     texts.push_back({"projected_hull.glsl", kShader_projected_hull_glsl});
     return texts;
@@ -136,13 +142,24 @@ const GlProgram& GlTets::program(Items items, const char* mode) {
     return programs_.emplace(text, GlProgram(vertex, fragment, text, drawing_texts())).first->second;
 }
 
-const GlProgram& GlTets::resolver(Items items) {
-    const char* const file = items == Items::Tets ? "projected_resolve.comp" : "projected_kbuffer.comp";
-    const std::string text = defines("FRAGMENT_KEEP", items == Items::Tets ? 4 : 3);
-    const std::string key = file + text;
+const GlProgram& GlTets::program(Items items, ListStep step) {
+    const bool sorting = step == ListStep::Sort || step == ListStep::Merge, faces = items == Items::Faces;
+    const ShaderText source = step == ListStep::Sort     ? ShaderText{"projected_sort.comp", kShader_projected_sort_comp}
+                              : step == ListStep::Merge  ? ShaderText{"projected_merge.comp", kShader_projected_merge_comp}
+                              : step == ListStep::Window ? ShaderText{"projected_window.comp", kShader_projected_window_comp}
+                              : faces                    ? ShaderText{"projected_kbuffer.comp", kShader_projected_kbuffer_comp}
+                                                         : ShaderText{"projected_resolve.comp", kShader_projected_resolve_comp};
+    const std::string text = defines("FRAGMENT_KEEP", faces ? 3 : 4) + "#define FACES " + (faces ? "1\n" : "0\n");
+    const std::string key = source.file + text;
     if (const auto found = programs_.find(key); found != programs_.end()) return found->second;
-    const char* const source = items == Items::Tets ? kShader_projected_resolve_comp : kShader_projected_kbuffer_comp;
-    return programs_.emplace(key, GlProgram(file, source, text, resolver_texts())).first->second;
+    std::vector<ShaderText> texts{{"projected_frame.glsl", kShader_projected_frame_glsl}};
+    if (step == ListStep::Composite) texts = light_texts();
+    texts.push_back({"projected_lists.glsl", kShader_projected_lists_glsl});
+    if (sorting)
+        texts.push_back({"projected_entries.glsl", kShader_projected_entries_glsl});
+    else if (faces)
+        texts.push_back({"projected_state.glsl", kShader_projected_state_glsl});
+    return programs_.emplace(key, GlProgram(source.file, source.text, text, texts)).first->second;
 }
 
 void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) {
@@ -165,6 +182,7 @@ void GlTets::set_uniforms(const GlProgram& program, const PixelRect& rect) {
 
 void GlTets::draw_all(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage) {
     set_uniforms(program, rect);
+    glProgramUniform1ui(program.id(), program.uniform("last_rank"), static_cast<GLuint>(frame_->order.size() - 1));
     points_.bind(kPointsBinding);
     (items == Items::Tets ? tets_ : faces_).bind(kItemsBinding);
     order_.bind(kOrderBinding);

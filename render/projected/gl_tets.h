@@ -84,7 +84,9 @@ public:
     [[nodiscard]] const GlTetFrame& frame() const { return *frame_; }
     /// mode: of the fragment shader, for example "FRAGMENT_COUNT"
     [[nodiscard]] const GlProgram& program(Items items, const char* mode);
-    [[nodiscard]] const GlProgram& resolver(Items items);
+    /// A compute shader that works on lists.
+    enum class ListStep { Sort, Merge, Window, Composite };
+    [[nodiscard]] const GlProgram& program(Items items, ListStep step);
     void set_uniforms(const GlProgram& program, const PixelRect& rect);
     /// Draws without writing to the picture.
     void draw_into_lists(Items items, const GlProgram& program, const PixelRect& rect, const DrawStage& stage);

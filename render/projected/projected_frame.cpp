@@ -12,8 +12,9 @@ namespace subvol::detail {
 
 namespace {
 
-constexpr double kMostUnits = 1e30;  // fits into a float, with room
-constexpr double kFarValue = 1e12;   // values further out are taken as this one
+constexpr double kMostUnits = 1e30;       // fits into a float, with room
+constexpr double kFarValue = 1e12;        // values further out are taken as this one
+constexpr std::size_t kMostKnots = 2048;  // that a fragment goes through
 
 /// The range of the knots, in parts of which values are counted.
 struct Values {
@@ -26,6 +27,11 @@ struct Values {
 
 Values set_knots(GlTetFrame& frame, const Optics& optics) {
     const auto knots = optics.knots();
+    if (knots.size() > kMostKnots) {
+        throw Error(ErrorCode::MissingCapability,
+                    std::to_string(knots.size()) + " values of colours and opacities are too many", {},
+                    "at most " + std::to_string(kMostKnots) + " for projected tetrahedra, or the method tets");
+    }
     const double range = knots.back() - knots.front();
     const Values values{knots.front(), range > 0 ? range : 1};
     frame.opacity_units = frame.scale / optics.opacity_unit();

@@ -58,8 +58,8 @@ std::string decimal(float value) {
 std::string common_defines(const SplatScene& scene, const GlTuning& tuning) {
     const auto line = [](const char* name, const std::string& value) { return "#define " + (name + (" " + value)) + "\n"; };
     return gl_scene_defines(scene) + line("kTile", std::to_string(tuning.tile_px)) +
-           line("kBatch", std::to_string(tuning.batch)) + line("kDispatchSteps", std::to_string(tuning.most_steps) + "u") +
-           line("kChunk", tuning.batch <= 8 ? "64" : "32") + line("kCells", std::to_string(PreintegratedTable::kCells)) +
+           line("kBatch", std::to_string(tuning.batch)) + line("kChunk", tuning.batch <= 8 ? "64" : "32") +
+           line("kCells", std::to_string(PreintegratedTable::kCells)) +
            line("kLeastWeight", decimal(static_cast<float>(kLeastWeight))) + line("kNearValues", decimal(kNearValues)) +
            line("kSplatCutoff", decimal(kSplatCutoff)) + line("kFarCells", decimal(kFarCells)) +
            line("kMostOfKernel", decimal(kMostOfKernel)) + line("kThickDepth", decimal(kThickDepth)) +
@@ -256,6 +256,7 @@ void GlSplatter::State::draw_tiles(std::uint32_t first, std::uint32_t end, bool 
     const GlProgram& used = program();
     glProgramUniform2ui(used.id(), used.uniform("tile_range"), first, end);
     glProgramUniform1ui(used.id(), used.uniform("first_state"), whole ? first : 0);
+    glProgramUniform1ui(used.id(), used.uniform("most_steps"), tuning_.most_steps);
     const double batches = frame_.end_batch - frame_.first_batch, of_pass = batches * frame_.tiles();
     constexpr std::uint32_t kNone = 0;
     std::uint32_t left = 0;
@@ -348,6 +349,7 @@ Drawn GlSplatter::State::read(const View& view) {
 
 GlSplatter::GlSplatter(const SplatScene& scene, std::optional<int> device, const GlTuning& tuning) {
     assert((tuning.tile_px == 8 || tuning.tile_px == 16) && tuning.batch >= 1 && tuning.batch <= 16);
+    assert(tuning.most_tiles > 0 && tuning.most_steps >= 64 * static_cast<std::uint32_t>(tuning.batch));
     const KeepCurrent keep;
     state_ = std::make_unique<State>(scene, device, tuning);
 }

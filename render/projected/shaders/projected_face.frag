@@ -26,7 +26,9 @@ void main() {
     uint before = atomicAdd(counts[id], 1u);
 #if FRAGMENT_MODE == FRAGMENT_KEEP
     uint behind = s01 ? 4u - cover : cover;  // to the left: the normal points towards the eye
-    crossings[offsets[id] + before] = here;
-    marks[offsets[id] + before] = 8u * rank + behind;
+    uint to = offsets[id] + before;
+    if (to >= offsets[id + 1]) return;  // was not counted
+    crossings[to] = here;
+    marks[to] = 8u * rank + behind;
 #endif
 }

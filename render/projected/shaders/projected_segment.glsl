@@ -7,6 +7,7 @@ struct Knot {
 };
 layout(std430, binding = 10) readonly buffer Knots { Knot knots[]; };
 uniform float per_unit;  // opacity units in the unit of length
+uint steps = 0u;         // iterations of loops that the integration has taken
 
 // Optical depth of a panel of Gauss's rule with three points: the error of the colour is then below 1e-5 of its change. For
 // thin pieces Simpson's rule is as accurate.
@@ -60,6 +61,7 @@ void add_piece(inout vec4 light, vec4 rgba0, vec4 rgba1, float units) {
         mean_opacity = (4.0 * opacity_before(b0, b1, 0.5, units) + opacity) / 6.0;
     } else {
         float panels = clamp(ceil(depth / kPanel), 1.0, kMostPanels);
+        steps += uint(panels);
         for (float i = 0.5; i < panels; ++i) {
             float offset = kGaussOffset / panels, u = i / panels;
             mean_opacity += 5.0 * (opacity_before(b0, b1, u - offset, units) + opacity_before(b0, b1, u + offset, units)) +
@@ -77,6 +79,7 @@ vec4 segment_light(float x0, float x1, float segment_length) {
     int above = knots_up_to(x0), last = knots_up_to(x1);
     float at = x0, units = segment_length * per_unit;
     for (;;) {
+        ++steps;
         bool done = above == last;
         float to = done ? x1 : knots[up ? above : above - 1].value.x;
         float part = x1 == x0 ? 1.0 : (to - at) / (x1 - x0);

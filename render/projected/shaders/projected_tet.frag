@@ -51,7 +51,9 @@ void main() {
     float ray_length = perspective ? sqrt(1.0 + dot(slope, slope)) : 1.0;
     color = visible_light(slope, front, back, ray_length);
 #elif FRAGMENT_MODE == FRAGMENT_KEEP
-    segments[offsets[id] + before] = vec4(front.x, back.x, front.y, back.y);
-    ranks[offsets[id] + before] = rank;
+    uint to = offsets[id] + before;
+    if (to >= offsets[id + 1]) return;  // was not counted
+    segments[to] = vec4(front.x, back.x, front.y, back.y);
+    ranks[to] = rank;
 #endif
 }

@@ -8,6 +8,9 @@ layout(std430, binding = 2) readonly buffer Order { uint order[]; };
 // By ascending number, so that tetrahedra compute the same for an edge that they share.
 flat out vec4 corner0, corner1, corner2, corner3;
 flat out uint rank;  // position in the order, from back to front
+#if FRAGMENT_MODE != FRAGMENT_COMPOSITE
+uniform uint last_rank;  // lists are drawn from front to back, as they are sorted
+#endif
 
 // The 3 or 4 corners of the silhouette in order.
 int find_silhouette(vec2 q[4], out ivec4 ring) {
@@ -41,6 +44,9 @@ vec2 place_corner(vec3 p[4], int at) {
 
 void main() {
     rank = uint(gl_VertexID / 6);
+#if FRAGMENT_MODE != FRAGMENT_COMPOSITE
+    rank = last_rank - rank;
+#endif
     uvec4 corners = tets[order[rank]];
     corner0 = points[corners.x];
     corner1 = points[corners.y];

@@ -251,7 +251,7 @@ int next_end_sheet(inout float depth) {
 bool find_ends(uint bin, int first, int end) {
     float depth = 0.0;
     while (next_end_sheet(depth) < first) ++next_end;
-    while (steps < kDispatchSteps) {
+    while (steps < most_steps) {
         steps += kRoundSteps;
         bool mine = enter_z != kNever && next_end_sheet(depth) < end;
         if (entry == 0u && !any_of(mine)) return true;
@@ -349,7 +349,7 @@ void main() {
     load_state();
     if (resumed && job == kDone) return;
     uint first_bin = tile * uint(end_batch - first_batch);
-    while (job != kDone && steps < kDispatchSteps) {
+    while (job != kDone && steps < most_steps) {
         steps += kBatchSteps;
         if (job == kChoose) choose(first_bin);
         if (job == kLookBack || job == kGoThrough) work(first_bin);

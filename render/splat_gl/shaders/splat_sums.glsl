@@ -17,13 +17,14 @@ const uint kWords = kChunk / 32;
 const int kBlocksX = kTile / 8, kBlocksY = kTile / 4, kBlocks = kBlocksX * kBlocksY;
 
 // The iterations of all loops of a thread. Where they depend on the kernels, their number is the same in the whole group: it is
-// counted, and the dispatch ends soon after kDispatchSteps. A chunk has up to kChunk · kKernelSteps + kStagingSteps.
+// counted, and the dispatch ends soon after most_steps. A chunk has up to kChunk · kKernelSteps + kStagingSteps.
 const uint kKernelSteps = 1u + uint(kBatch) * (SEPARABLE == 1 ? 4u : 1u);
 const uint kStagingSteps =
     (uint(kChunk * kBatch) / kPixels + 1u) * uint(kBlocks + kBlocksY + kExtras + 5) + uint(kChunk * kBlocks) / kPixels + 8u;
 const uint kBatchSteps = uint(kBatch) * uint(kBatch + 16) + 16u;  // of choosing a batch, or of compositing its sheets
 const uint kRoundSteps = 4u * uint(kBatch) + 8u;                    // of the next ends of all rays
 const uint kMostRanged = 2048u * kPixels;
+uniform uint most_steps;
 uint steps = 0u;
 
 shared vec4 cuts[kChunk * kBatch];  // of a kernel with a sheet: middle x, y; e and value there
@@ -318,7 +319,7 @@ bool sum_kernels_at(uint bin, float depth, bool awake) {
     begin_sums();
     float across_here = perspective ? middle_depth + depth : 1.0;
     uint begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
-    for (; begin + entry < end && steps < kDispatchSteps; entry += kChunk) {
+    for (; begin + entry < end && steps < most_steps; entry += kChunk) {
         uint first = begin + entry, chunk_end = min(first + kChunk, end);
         steps += (chunk_end - first) * kKernelSteps + kStagingSteps;
         stage_whole(first, chunk_end);
@@ -339,7 +340,7 @@ bool sum_kernels(uint bin, int first_sheet, uint wanted_sheets, bool awake) {
     for (int k = 0; k < kBatch; ++k) across[k] = across_at(first_sheet + k);
     begin_sums();
     uint begin = bin_offsets[bin], end = bin_offsets[bin + 1u];
-    for (; begin + entry < end && steps < kDispatchSteps; entry += kChunk) {
+    for (; begin + entry < end && steps < most_steps; entry += kChunk) {
         uint first = begin + entry, chunk_end = min(first + kChunk, end);
         steps += (chunk_end - first) * kKernelSteps + kStagingSteps;
         stage(first, chunk_end, first_sheet, wanted_sheets);

@@ -9,6 +9,7 @@
 
 #include "gl_context.h"
 #include "lib/test_meshes.h"
+#include "subvol/error.h"
 
 namespace subvol {
 namespace gl_boundary_test {
@@ -92,6 +93,20 @@ TEST_F(GlBoundaries, WhatHasToBeClippedComesFromTheCpu) {
     EXPECT_TRUE(detail::needs_clipping(surface, inside, kNear));
     EXPECT_FALSE(detail::needs_clipping(surface, view_of(true), kNear));
     expect_like_cpu(surface, inside);
+}
+
+TEST_F(GlBoundaries, RaysThatMeetTooManyShellsForAThreadComeFromTheCpu) {
+    Surface surface;
+    for (int i = 300; i > 0; --i) append(surface, surface_of(test::make_box(1, 1, 1), .004, {0, .01 * i, 0}));
+    for (auto& p : surface.points) p = Vec3(200 * p.x, p.y, 200 * p.z);
+    expect_like_cpu(surface, view_of(false, 16, 16));
+}
+
+TEST(IntervalsForGl, AreLimited) {
+    PixelIntervals intervals{.offsets = {0, 3, 3 + detail::kMostGlIntervals}, .depths = {}, .triangles = {}};
+    EXPECT_NO_THROW(detail::check_for_gl(intervals));
+    ++intervals.offsets.back();
+    EXPECT_THROW(detail::check_for_gl(intervals), Error);
 }
 
 TEST_F(GlBoundaries, ViewsThatNeedMoreRoomGetIt) {

@@ -168,7 +168,9 @@ TEST_F(GlSplats, TilesBatchesAndRepeatsChangeNoBit) {
         const auto scene = detail::make_scene(volume, {});
         GlSplatter reference(scene, {});
         std::vector<GlSplatter> others;
-        for (const GlTuning& tuning : {GlTuning{.tile_px = 8}, GlTuning{.batch = 4}, GlTuning{.tile_px = 8, .batch = 16}}) {
+        for (const GlTuning& tuning :
+             {GlTuning{.tile_px = 8}, GlTuning{.batch = 4}, GlTuning{.most_tiles = 3, .most_steps = 512},
+              GlTuning{.tile_px = 8, .batch = 16, .most_tiles = 5, .most_steps = 1024}}) {
             others.emplace_back(scene, std::nullopt, tuning);
         }
         for (const auto& [view, seen] :
@@ -198,8 +200,10 @@ TEST_F(GlSplats, PassesChangeNoBit) {
         GlSplatter reference(scene, {});
         const Drawn expected = reference.draw(perspective(), classification, kMany, nullptr);
         EXPECT_EQ(reference.report().passes, 1);
-        for (const GlTuning& tuning : {GlTuning{.most_entries = reference.report().bin_entries / 3},
-                                       GlTuning{.batch = 4, .most_buffer_bytes = 64 * volume.size()}}) {
+        for (const GlTuning& tuning :
+             {GlTuning{.most_entries = reference.report().bin_entries / 3},
+              GlTuning{.batch = 4, .most_buffer_bytes = 64 * volume.size()},
+              GlTuning{.most_entries = reference.report().bin_entries / 3, .most_tiles = 5, .most_steps = 512}}) {
             GlSplatter splatter(scene, {}, tuning);
             for (int repeat = 0; repeat < 2; ++repeat) {
                 const Drawn drawn = splatter.draw(perspective(), classification, kMany, nullptr);
@@ -211,6 +215,46 @@ TEST_F(GlSplats, PassesChangeNoBit) {
         GlSplatter tiny(scene, {}, {.most_entries = 100});
         EXPECT_THROW((void)tiny.draw(perspective(), classification, kMany, nullptr), Error);
     }
+}
+
+TEST_F(GlSplats, TilesWithTenThousandKernelsLookAsOnTheCpu) {
+    // Mesa's software ends all loops of a thread after 65,535 iterations; a tile needs several times as many.
+    HexMesh mesh = test::make_box(21, 21, 21);
+    test::add_field(mesh, "f", [](const Vec3& p) { return .5 + .4 * std::sin(.3 * p.x) * std::cos(.2 * p.y) + .004 * p.z; });
+    RbfVolume volume = sample_rbf_points(mesh, {.correction = Correction::Second}).volume;
+    ASSERT_GT(volume.size(), 10000u);
+    const View view({.eye = {50, -40, 35}, .target = {10.5, 10.5, 10.5}, .up = {0, 0, 1}}, 16, 16);
+    const Optics optics({.color = {{0, {0, 0, 1}}, {1, {1, .5, 0}}}, .opacity = {{0, .05}, {1, .3}}}, 3);
+    for (const bool bounded : {true, false}) {
+        if (!bounded) volume.boundary = {};
+        const auto scene = detail::make_scene(volume, {});
+        const auto classification = detail::classify(scene, optics);
+        GlSplatter gpu(scene, {});
+        for (const int sheets : {5, 60}) {  // all kernels in one batch, whose sums are interrupted; in several
+            const Drawn cpu = draw_on_cpu(scene, view, classification, sheets),
+                        gl = gpu.draw(view, classification, sheets, nullptr);
+            EXPECT_GT(gpu.report().dispatches, 1u);
+            EXPECT_LT(largest_difference(cpu.image.rgba, gl.image.rgba), kCutRounding);
+            EXPECT_GT(std::accumulate(cpu.image.rgba.begin(), cpu.image.rgba.end(), 0.0), 80) << "the box fills the picture";
+        }
+    }
+}
+
+TEST_F(GlSplats, TheWorkOfADispatchIsReported) {
+    struct Fractions : Progress {
+        void report(std::string_view stage, double fraction) override {
+            if (stage == "splat") seen.push_back(fraction);
+        }
+        std::vector<double> seen;
+    } progress;
+    const RbfVolume volume = sampled(Correction::Second);
+    const auto scene = detail::make_scene(volume, {});
+    GlSplatter splatter(scene, {}, {.most_tiles = 4, .most_steps = 512});
+    (void)splatter.draw(perspective(), detail::classify(scene, optics()), kSheets, &progress);
+    EXPECT_GT(splatter.report().dispatches, 10u);
+    EXPECT_GT(progress.seen.size(), splatter.report().dispatches);
+    EXPECT_TRUE(std::is_sorted(progress.seen.begin(), progress.seen.end()));
+    EXPECT_EQ(progress.seen.back(), 1);
 }
 
 TEST_F(GlSplats, PicturesDoNotDependOnEarlierOnes) {
