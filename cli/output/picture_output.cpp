@@ -34,8 +34,8 @@ bool is_blank(const Image& image, const Vec3& background) {
     return true;
 }
 
-void warn_if_blank(const Image& image, const Vec3& background, Report& report) {
-    if (most_opaque(image) == 0 || !is_blank(image, background)) return;
+void warn_if_blank(bool blank, float opacity, Report& report) {
+    if (opacity == 0 || !blank) return;
     report.warn("the picture is blank: what is drawn has the colour of the background (--background black, or another --tf)");
 }
 
@@ -94,11 +94,13 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictur
     const int width = views.front().width(), height = views.front().height();
     Picture sheet{Image(2 * width, 2 * height), {}};
     sheet.depth.assign(sheet.image.rgba.size() / 4, std::numeric_limits<float>::infinity());
-    float opacity = 0;
+    const bool is_png = path_.extension() == ".png";
+    bool blank = true;
     for (std::size_t i = 0; i < views.size(); ++i) {
         Picture part = draw(views[i], report.progress());
         notes_.draw_sheets(part, views[i]);
-        opacity = std::max(opacity, most_opaque(part.image));
+        opacity_ = std::max(opacity_, most_opaque(part.image));  // before anything is drawn over it
+        blank = blank && is_png && is_blank(part.image, background_);
         notes_.draw_over(part, views[i]);
         const int left = static_cast<int>(i % 2) * width, top = static_cast<int>(i / 2) * height;
         for (int y = 0; y < height; ++y) {
@@ -112,8 +114,7 @@ void PictureOutput::write_sheet(const std::vector<View>& views, const DrawPictur
         }
     }
     if (silent_) return;
-    opacity_ = most_opaque(sheet.image);
-    if (path_.extension() == ".png") warn_if_blank(sheet.image, background_, report);
+    if (is_png) warn_if_blank(blank, opacity_, report);
     const detail::Stopwatch watch;
     notes_.add_legend(sheet);
     write_frame(0, sheet);
@@ -137,8 +138,11 @@ void PictureOutput::write(const std::vector<View>& views, const DrawPicture& dra
             continue;
         }
         notes_.draw_sheets(picture, view);
-        opacity_ = std::max(opacity_, most_opaque(picture.image));
-        if (written_ == 0 && path_.extension() == ".png") warn_if_blank(picture.image, background_, report);
+        const float opacity = most_opaque(picture.image);
+        opacity_ = std::max(opacity_, opacity);
+        if (written_ == 0 && path_.extension() == ".png") {
+            warn_if_blank(is_blank(picture.image, background_), opacity, report);
+        }
         const detail::Stopwatch watch;
         notes_.draw_over(picture, view);
         notes_.add_legend(picture);

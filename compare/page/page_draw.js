@@ -77,7 +77,7 @@ class Painter {
     return { prefixes: prefix, table_means: mean, bends: bend, table_colors: colors, to_cells: toCells };
   }
 
-  // Depths of the boundary, with a near plane before the eye.
+  // Depths of the boundary, from the nearest that is seen; whether the eye, or its plane in parallel views, is that near to it.
   depths(view) {
     const { positions } = this.scene.surface;
     let low = Infinity, high = -Infinity;
@@ -86,7 +86,7 @@ class Painter {
       low = Math.min(low, z);
       high = Math.max(high, z);
     }
-    const eye = dot(view.forward, view.eye), least = view.perspective ? 1e-4 : -1e9;
+    const eye = dot(view.forward, view.eye), least = view.perspective ? 1e-4 : 0;
     const front = Math.max(low - eye, least);
     return { front, back: Math.max(high - eye, front + 1e-6), inside: low - eye < least };
   }
@@ -161,7 +161,7 @@ class Painter {
     else gl.blendFuncSeparate(...factors);
   }
 
-  // The number of shells that each pixel's ray is in before the boundary's hits, or those after the clip plane.
+  // The number of shells that each pixel's ray is in where it begins: at the eye, or at the clip plane if the eye is beyond it.
   countShells(target, camera) {
     const gl = this.gl.gl;
     this.gl.bind(target);
@@ -169,12 +169,13 @@ class Painter {
     gl.clearBufferfv(gl.COLOR, 1, [0, 0, 0, 0]);
     this.blend(gl.FUNC_REVERSE_SUBTRACT, gl.ONE, gl.ONE);
     gl.colorMask(false, false, false, true);
-    this.gl.use(this.gl.hits, { ...camera, front: -1e30, back: 1e30, from_depth: 0, per_depth: 1 });
+    this.gl.use(this.gl.hits, { ...camera, front: 0, back: 1e30, from_depth: 0, per_depth: 1 });
     this.drawAllTriangles();
     gl.colorMask(true, true, true, true);
   }
 
-  // The opaque, lit boundary, cut by the clip plane. `samples` a side for each pixel.
+  // The opaque, lit boundary, cut by the clip plane; with the eye inside, the material there, without light (Shading).
+  // `samples` a side for each pixel.
   drawSolid(whole, clip, samples) {
     const gl = this.gl.gl, view = { ...whole, width: whole.width * samples, height: whole.height * samples };
     const depths = this.depths(view), camera = this.uniforms(view, depths, clip);
@@ -189,28 +190,34 @@ class Painter {
     this.drawAllTriangles();
     gl.disable(gl.DEPTH_TEST);
     gl.disable(gl.CULL_FACE);
-    let shells = surface, sums = surface;
-    if (clip) {
+    let shells = surface, face_sums = surface, eye_sums = surface;
+    if (clip || depths.inside) {
       shells = this.gl.target('hits', view.width, view.height, [gl.RGBA32F, gl.RGBA32F]);
-      sums = this.gl.target('sums0', view.width, view.height, [gl.RG32F]);
       this.countShells(shells, camera);
-      this.drawFace(sums, camera, clip);
+    }
+    if (clip) {
+      face_sums = this.gl.target('sums0', view.width, view.height, [gl.RG32F]);
+      this.drawFace(face_sums, camera, clip);
+    }
+    if (depths.inside) {
+      eye_sums = this.gl.target('sums1', view.width, view.height, [gl.RG32F]);
+      this.drawFace(eye_sums, camera, [...view.forward, dot(view.forward, view.eye) + depths.front]);
     }
     const picture = this.gl.target('picture', view.width, view.height, [gl.RGBA32F]);
     this.gl.bind(picture);
     gl.disable(gl.BLEND);
-    this.gl.use(this.gl.shade, { ...camera, ...this.tables(), clipped: !!clip, surface: surface.textures[0], shells: shells.textures[0],
-      sums: sums.textures[0] });
+    this.gl.use(this.gl.shade, { ...camera, ...this.tables(), clipped: !!clip, inside: depths.inside,
+      surface: surface.textures[0], shells: shells.textures[0], face_sums: face_sums.textures[0], eye_sums: eye_sums.textures[0] });
     this.gl.screen();
     return { target: picture, samples, transmits: false };
   }
 
-  // Sums on the clip plane.
-  drawFace(target, camera, clip) {
-    const gl = this.gl.gl, normal = clip.slice(0, 3), { centers, roots, count } = this.scene.places, ids = new Uint32Array(count);
+  // Sums on a plane.
+  drawFace(target, camera, plane) {
+    const gl = this.gl.gl, normal = plane.slice(0, 3), { centers, roots, count } = this.scene.places, ids = new Uint32Array(count);
     let n = 0;
     for (let i = 0; i < count; ++i) {
-      const away = normal[0] * centers[3 * i] + normal[1] * centers[3 * i + 1] + normal[2] * centers[3 * i + 2] - clip[3];
+      const away = normal[0] * centers[3 * i] + normal[1] * centers[3 * i + 1] + normal[2] * centers[3 * i + 2] - plane[3];
       if (Math.abs(away) < this.reach(roots, i, normal)) ids[n++] = i;
     }
     gl.bindBuffer(gl.ARRAY_BUFFER, this.ids);
@@ -219,7 +226,7 @@ class Painter {
     this.gl.bind(target);
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     this.blend(gl.FUNC_ADD, gl.ONE, gl.ONE);
-    this.drawKernels(0, n, camera, normal, along, across, clip[3]);
+    this.drawKernels(0, n, camera, normal, along, across, plane[3]);
     gl.disable(gl.BLEND);
   }
 
@@ -300,7 +307,8 @@ class Painter {
         gl.clearBufferfv(gl.COLOR, 1, [0, 0, 0, 0]);
         const first = ofTriangles.offsets[k - 1], triangles = ofTriangles.offsets[k] - first;
         if (triangles > 0) {
-          this.gl.use(this.gl.hits, { ...unclipped, front: k === 1 ? -1e30 : at(k - 1), back: k === count - 1 ? 1e30 : at(k),
+          const nearest = depths.inside ? depths.front : -1e30;
+          this.gl.use(this.gl.hits, { ...unclipped, front: k === 1 ? nearest : at(k - 1), back: k === count - 1 ? 1e30 : at(k),
             from_depth: at(k - 1), per_depth: 1 / distance });
           this.drawTriangles(first, triangles);
         }

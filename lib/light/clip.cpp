@@ -75,7 +75,8 @@ Clip without_far_faces(const Clip& clip, const Box& box) {
 
 namespace detail {
 
-RayClip::RayClip(const Clip& clip) : slices_alone_(clip.slices_alone()) {
+RayClip::RayClip(const Clip& clip, double diagonal)
+    : slices_alone_(clip.slices_alone()), tolerance_world_(diagonal > 0 ? kSliceTolerance * diagonal : 0) {
     validate(clip);
     for (const CutPlane& plane : clip.planes) faces_.push_back(with_unit_normal(plane));
     if (clip.box) {
@@ -106,10 +107,12 @@ void RayClip::cut(const Ray& ray, RayCut& result) const {
         }
     }
     for (const CutPlane& slice : slices_) {
-        const double depth = glm::dot(slice.normal, slice.point - ray.origin) / glm::dot(slice.normal, ray.direction);
-        if (depth > 0 && depth >= result.near && depth <= result.far && std::isfinite(depth)) result.slices.push_back(depth);
+        const double speed = glm::dot(slice.normal, ray.direction);
+        if (!(std::abs(speed) > kSliceTolerance)) continue;
+        const RaySlice met{glm::dot(slice.normal, slice.point - ray.origin) / speed, tolerance_world_ / std::abs(speed)};
+        if (met.depth > met.tolerance && met.meets(result.near, result.far)) result.slices.push_back(met);
     }
-    std::sort(result.slices.begin(), result.slices.end());
+    std::ranges::sort(result.slices, {}, &RaySlice::depth);
     if (slices_alone_ && result.slices.empty()) result.far = -1;
 }
 

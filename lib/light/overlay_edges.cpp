@@ -45,12 +45,11 @@ public:
 
     void draw(const Vec3& from, const Vec3& to, bool faces_eye) {
         Vec3 a = view_.to_eye(from), b = view_.to_eye(to);
-        const double near = 1e-6 * (std::abs(a.z) + std::abs(b.z));
-        if (view_.perspective()) {  // what is behind the eye is cut off
-            if (a.z <= near && b.z <= near) return;
-            if (a.z < near) a = b + (a - b) * ((b.z - near) / (b.z - a.z));
-            if (b.z < near) b = a + (b - a) * ((a.z - near) / (a.z - b.z));
-        }
+        // What is behind the eye is cut off.
+        const double near = view_.perspective() ? 1e-6 * (std::abs(a.z) + std::abs(b.z)) : 0;
+        if (a.z <= near && b.z <= near) return;
+        if (a.z < near) a = b + (a - b) * ((b.z - near) / (b.z - a.z));
+        if (b.z < near) b = a + (b - a) * ((a.z - near) / (a.z - b.z));
         const double slack = kOnSurface * glm::length(b - a);
         const auto take = [&](int x, int y, double cover, double t) {
             const double z = view_.perspective() ? 1 / ((1 - t) / a.z + t / b.z) : (1 - t) * a.z + t * b.z;

@@ -77,7 +77,7 @@ public:
           view_(view),
           optics_(optics),
           options_(options),
-          clip_(options.clip),
+          clip_(options.clip, bounds(mesh).diagonal()),
           refine_(options.refine),
           image_(view.width(), view.height()) {
         refine_.levels = levels;

@@ -235,6 +235,7 @@ SplatResult Splatter::draw(const View& view, const Optics& optics, Progress* pro
     auto& report = result.report;
     const detail::Stopwatch watch;
     const auto classification = detail::classify(state.scene, optics);
+    state.scene.solid = detail::is_solid(state.scene, optics);
     if (state.scene.shadowed() && !state.fixed) {
         if (std::vector<double> key = light_key(view, optics, state.options.clip); key != state.light_key) {
             state.light = detail::make_light_volume(state.scene, view, classification);

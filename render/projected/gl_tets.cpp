@@ -25,6 +25,7 @@
 #include "shader_projected_tet_frag.h"
 #include "shader_projected_tet_vert.h"
 #include "shader_projected_window_comp.h"
+#include "subvol/detail/ray_clip.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -129,6 +130,7 @@ std::string GlTets::defines(const char* mode, int corners) const {
     define("kCorners", corners);
     define("kKnots", frame_->knots.size());
     define("kRayCutoff", kRayCutoff);
+    define("kSliceTolerance", kSliceTolerance);
     return text.str();
 }
 

@@ -210,8 +210,8 @@ ProjectedResult ProjectedRenderer::draw(const View& view, const Optics& optics, 
 
     Stopwatch watch;
     state.upload(faces ? GlTets::Items::Faces : GlTets::Items::Tets);
-    detail::GlTetFrame frame =
-        detail::make_tet_frame(state.tets, state.box, view, optics, RayClip(without_far_faces(options.clip, state.box)), faces);
+    detail::GlTetFrame frame = detail::make_tet_frame(
+        state.tets, state.box, view, optics, RayClip(without_far_faces(options.clip, state.box), state.box.diagonal()), faces);
     report.seconds_prepare = watch.restart();
 
     state.order(frame, view, options, report);

@@ -148,7 +148,7 @@ Segment GridTracer::trace(const Ray& ray) {
     if (!clip(line, inside)) return light;
     clip_.cut(ray, cut_);
     inside.begin = std::max(inside.begin, cut_.near);
-    if (cut_.empty() || !(inside.begin < std::min(inside.end, cut_.far))) return light;
+    if (cut_.empty() || !(inside.begin < inside.end)) return light;
     auto slice = cut_.slices.begin();
     const auto cells_before = counts_.cells;
     bool met = false;
@@ -170,7 +170,7 @@ Segment GridTracer::trace(const Ray& ray) {
         }
         end = std::max(end, t);
         const auto add = [&](double to) {
-            if (clip_.slices_alone()) return;
+            if (clip_.slices_alone() || to < t) return;
             if (passed.lower == passed.upper) {
                 if (to > t) add_cell(line, cell, {t, to}, light);
             } else if (++counts_.blocks; block.kind == VoxelBlock::Kind::Constant) {
@@ -178,11 +178,15 @@ Segment GridTracer::trace(const Ray& ray) {
                 composite(light, optics_.integrate(block.value, block.value, (to - t) * line.speed));
             }
         };
-        for (; slice != cut_.slices.end() && *slice <= end; ++slice) {
-            if (*slice < t) continue;
-            const auto value = value_at(line, cell_at(line, *slice, passed), block, *slice);
+        for (; slice != cut_.slices.end() && slice->depth <= end + slice->tolerance; ++slice) {
+            if (!slice->meets(t, end)) continue;
+            const double here = slice->within(t, end);
+            std::optional<double> value;
+            for (const double depth : {here, here + slice->tolerance, here - slice->tolerance}) {  // a voxel may end here
+                if (!value) value = value_at(line, cell_at(line, depth, passed), block, depth);
+            }
             if (!value) continue;
-            add(*slice);
+            add(here);
             met = true;
             ++counts_.rays;
             composite(light, {optics_.color(*value), 0});

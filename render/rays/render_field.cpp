@@ -53,9 +53,10 @@ public:
         clip_.cut(ray, cut_);
         Interval range = clip(ray, box_);
         range = {std::max(range.begin, cut_.near), std::min(range.end, cut_.far)};
-        for (const double t : cut_.slices) {
-            if (t < range.begin || t > range.end) continue;
-            const auto value = field_(ray.origin + t * ray.direction);
+        for (const RaySlice& slice : cut_.slices) {
+            if (!slice.meets(range.begin, range.end)) continue;
+            const double t = slice.within(range.begin, range.end);
+            const auto value = value_on(ray, slice, t);
             if (!value) continue;
             range.end = t;
             Segment total;
@@ -79,6 +80,15 @@ private:
             last = next;
         }
         return total;
+    }
+
+    // Where the field ends at a slice, its last value.
+    std::optional<double> value_on(const Ray& ray, const RaySlice& slice, double t) const {
+        std::optional<double> value;
+        for (const double depth : {t, t + slice.tolerance, t - slice.tolerance}) {
+            if (!value) value = at(ray, depth).value;
+        }
+        return value;
     }
 
     Sample at(const Ray& ray, double t) const { return {t, field_(ray.origin + t * ray.direction)}; }
@@ -119,7 +129,7 @@ Image render_field(const FieldFunction& field, const Box& box, const View& view,
         throw Error(ErrorCode::InvalidInput, "the step is " + number_text(options.step_world), {},
                     "a positive world length, at least 1e-9 of the diagonal of a finite box");
     }
-    const RayClip cuts(options.clip);
+    const RayClip cuts(options.clip, box.diagonal());
     const Marcher marcher(field, box, optics, options.step_world, cuts);
     return draw_in_tiles(view, options.samples, options.progress, [&] { return marcher; });
 }

@@ -53,7 +53,12 @@ GridResult render_grid(const Voxels& grid, const View& view, const Optics& optic
     if (lower[0] > upper[0]) return {{view.width(), view.height()}, {}};
     GridResult result;
     const Stopwatch watch;
-    const RayClip clip(options.clip);
+    Box box;
+    for (unsigned k = 0; k < 8; ++k) {
+        const auto end = [&](std::size_t axis) { return (k >> axis & 1) != 0 ? upper[axis] + 0.5 : lower[axis] - 0.5; };
+        box.add(grid.to_world() * Vec3(end(0), end(1), end(2)));
+    }
+    const RayClip clip(options.clip, box.diagonal());
     tbb::combinable<GridTraceReport> sums;
     result.image = draw_in_tiles(view, options.samples, options.progress,
                                  [&] { return CountedTracer(GridTracer(grid, optics, options.tolerance, clip), sums); });

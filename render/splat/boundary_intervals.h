@@ -22,6 +22,13 @@ struct PixelIntervals {
     [[nodiscard]] bool is_slice(std::size_t i) const { return depths[2 * i] == depths[2 * i + 1]; }
 };
 
+/// What lies before this depth, in parts of the volume's diagonal, is not seen in perspective: there a pixel has no width.
+/// Parallel rays begin at the eye's plane.
+inline constexpr double kNearest = 1e-4;
+[[nodiscard]] inline double nearest_depth(const View& view, double diagonal) {
+    return view.perspective() ? kNearest * diagonal : 0.0;
+}
+
 /// Rasterizes a closed surface without gaps: vertices are snapped to 1/4096 px, and a pixel centre on a shared edge counts
 /// once. A ray is inside while it has entered more often than it has left, so shells may be nested, overlap or enclose the eye.
 ///

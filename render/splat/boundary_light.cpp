@@ -162,21 +162,23 @@ namespace {
 /// The first hits of a picture's rays on a boundary, which are shaded as they are asked for.
 struct FirstHits {
     View fine;  // a pixel for each ray
+    RayClip cuts;
     double middle;
     PixelIntervals intervals;
     std::vector<CornerNormals> normals;
     std::optional<LitSurface> lit;
     std::optional<EntryShader> shader;
 
-    FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples, const RayClip& clip)
+    FirstHits(const Surface& boundary, const View& view, const Shading& shading, int samples, const Clip& clip)
         : fine(view.camera(), samples * view.width(), samples * view.height()) {
         Box box;
         for (const Vec3& point : boundary.points) box.add(point);
+        cuts = RayClip(clip, box.diagonal());
         middle = fine.to_eye(box.center()).z;
-        intervals = boundary_intervals(boundary, fine, fine.perspective() ? 1e-4 * box.diagonal() : 0.0, middle);
-        if (!clip.empty()) intervals = clip_intervals(intervals, fine, clip, middle);
+        intervals = boundary_intervals(boundary, fine, nearest_depth(fine, box.diagonal()), middle);
+        if (!cuts.empty()) intervals = clip_intervals(intervals, fine, cuts, middle);
         normals = corner_normals(boundary);
-        lit.emplace(LitSurface{boundary, normals, shading, middle, clip.faces()});
+        lit.emplace(LitSurface{boundary, normals, shading, middle, cuts.faces()});
         shader.emplace(*lit, fine);
     }
     FirstHits(const FirstHits&) = delete;
@@ -200,8 +202,7 @@ struct FirstHits {
 
 void light_boundary(Image& image, const Surface& boundary, const View& view, const Shading& shading, int samples,
                     const Clip& clip) {
-    const RayClip cuts(clip);
-    const FirstHits hits(boundary, view, shading, samples, cuts);
+    const FirstHits hits(boundary, view, shading, samples, clip);
     tbb::parallel_for(0, view.height(), [&](int y) {
         std::array<double, 3> shares{};
         for (int x = 0; x < view.width(); ++x) {
@@ -235,8 +236,7 @@ void color_boundary(Image& image, const Surface& boundary, std::span<const doubl
             "there are " + std::to_string(values.size()) + " values for " + std::to_string(boundary.points.size()) + " points",
             "boundary");
     }
-    const RayClip cuts(clip);
-    const FirstHits hits(boundary, view, shading, samples, cuts);
+    const FirstHits hits(boundary, view, shading, samples, clip);
     const auto color_of = [&](std::size_t interval, int x, int y) {
         const std::uint32_t triangle = hits.intervals.triangles[interval];
         std::array<double, 3> shares{};

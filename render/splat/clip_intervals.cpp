@@ -32,9 +32,11 @@ public:
             triangle = PixelIntervals::kFirstFace + static_cast<std::uint32_t>(cut.near_face);
         }
         exit = std::min(exit, relative(cut.far));
-        for (const double slice : cut.slices) {
-            const float z = relative(slice);
-            if (z < enter || z > exit) continue;
+        for (const RaySlice& slice : cut.slices) {
+            const auto from = static_cast<double>(enter), to = static_cast<double>(exit);
+            const RaySlice near{slice.depth - middle_, slice.tolerance};
+            if (!near.meets(from, to)) continue;
+            const auto z = static_cast<float>(near.within(from, to));
             if (!alone_ && z > enter) row.add(enter, z, triangle);
             row.add(z, z, PixelIntervals::kNoTriangle);
             enter = z;
@@ -60,6 +62,28 @@ PixelIntervals whole_rays(const View& view, const SheetStack& sheets) {
         whole.depths.insert(whole.depths.end(), {sheets.near, end});
     }
     return whole;
+}
+
+/// Puts a slice before the intervals in which rays begin. Those are the first ones of their pixels, and were not entered.
+PixelIntervals with_material_at_eye(const PixelIntervals& intervals) {
+    const auto begins = [&](std::size_t i) {
+        return intervals.triangles[i] == PixelIntervals::kNoTriangle && !intervals.is_slice(i);
+    };
+    PixelIntervals result;
+    result.hits = intervals.hits;
+    result.offsets.push_back(0);
+    for (std::size_t pixel = 0; pixel + 1 < intervals.offsets.size(); ++pixel) {
+        const std::size_t first = intervals.offsets[pixel], end = intervals.offsets[pixel + 1];
+        if (first < end && begins(first)) {
+            result.depths.insert(result.depths.end(), 2, intervals.depths[2 * first]);
+            result.triangles.push_back(PixelIntervals::kNoTriangle);
+        }
+        const auto at = [](const auto& values, std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
+        result.depths.insert(result.depths.end(), at(intervals.depths, 2 * first), at(intervals.depths, 2 * end));
+        result.triangles.insert(result.triangles.end(), at(intervals.triangles, first), at(intervals.triangles, end));
+        result.offsets.push_back(static_cast<std::uint32_t>(result.triangles.size()));
+    }
+    return result;
 }
 
 }  // namespace
@@ -102,7 +126,9 @@ PixelIntervals scene_intervals(const SplatScene& scene, const View& view, const 
     }
     PixelIntervals intervals =
         boundary_intervals(scene.volume->boundary, view, static_cast<double>(sheets.near) + middle, middle);
-    return scene.clip.empty() ? intervals : clip_intervals(intervals, view, scene.clip, middle);
+    if (!scene.clip.empty()) intervals = clip_intervals(intervals, view, scene.clip, middle);
+    const bool inside = std::ranges::find(intervals.triangles, PixelIntervals::kNoTriangle) != intervals.triangles.end();
+    return scene.solid && inside ? with_material_at_eye(intervals) : intervals;
 }
 
 }  // namespace subvol::detail

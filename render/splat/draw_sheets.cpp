@@ -144,7 +144,7 @@ private:
                                                      : (offset - glm::dot(flat, Vec3(slopes, 0))) / flat.z;
                 const auto at =
                     static_cast<std::size_t>(y) * static_cast<std::size_t>(fine_.width()) + static_cast<std::size_t>(x);
-                if (!(z < static_cast<double>(depth[at])) || (fine_.perspective() && z <= 0)) continue;
+                if (!(z < static_cast<double>(depth[at])) || z <= 0) continue;
                 if (!clip_.planes.empty() || clip_.box) {
                     const Ray ray = fine_.ray(x + 0.5, y + 0.5);
                     if (is_cut(clip_, ray.origin + z * ray.direction)) continue;
@@ -166,8 +166,8 @@ std::vector<float> entries(const Surface& boundary, const View& fine, const Clip
     Box box;
     for (const Vec3& point : boundary.points) box.add(point);
     const double middle = fine.to_eye(box.center()).z;
-    PixelIntervals intervals = boundary_intervals(boundary, fine, fine.perspective() ? 1e-4 * box.diagonal() : 0.0, middle);
-    const RayClip cuts(clip);
+    PixelIntervals intervals = boundary_intervals(boundary, fine, nearest_depth(fine, box.diagonal()), middle);
+    const RayClip cuts(clip, box.diagonal());
     if (!cuts.empty()) intervals = clip_intervals(intervals, fine, cuts, middle);
     for (std::size_t ray = 0; ray < depths.size(); ++ray) {
         const std::uint32_t first = intervals.offsets[ray];

@@ -251,7 +251,13 @@ void set_kernels(SplatScene& scene, const RbfVolume& volume, const Clip& clip) {
 void set_clip(SplatScene& scene, const Clip& clip) {
     validate(clip);
     if (scene.reach.empty() && !clip.empty()) scene.reach = reach_of(*scene.volume);
-    scene.clip = RayClip(without_far_faces(clip, scene.reach));
+    scene.clip = RayClip(without_far_faces(clip, scene.reach), scene.diagonal);
+}
+
+bool is_solid(const SplatScene& scene, const Optics& optics) {
+    if (!scene.shading || scene.half_weight > 0) return false;
+    const double deep = static_cast<double>(kOpaqueDepth) / (kNearest * scene.diagonal);
+    return std::ranges::all_of(optics.knots(), [&](double knot) { return optics.extinction(knot) > deep; });
 }
 
 Classification classify(const SplatScene& scene, const Optics& optics) {
@@ -264,7 +270,7 @@ Classification classify(const SplatScene& scene, const Optics& optics) {
         const auto& knots = optics.function().color;
         classification.colors = color_table(optics, knots.front().value, knots.back().value);
         check_range(scene.color_values(), classification.colors.min, classification.colors.max);
-    } else if (scene.clip.has_slices()) {
+    } else if (scene.clip.has_slices() || is_solid(scene, optics)) {
         classification.colors = color_table(optics, classification.table.min, classification.table.max);
     }
     return classification;
@@ -332,7 +338,7 @@ DepthRange depth_range_of(const SplatScene& scene, const View& view) {
             add(view.to_eye(volume.centers[i]).z, std::sqrt(std::max(0.0, glm::dot(forward, s * forward))));
         }
     }
-    const double near = view.perspective() ? 1e-4 * scene.diagonal : 0.0;
+    const double near = nearest_depth(view, scene.diagonal);
     z_min = std::max(z_min, near);
     z_max = std::max(z_max, z_min + near + std::numeric_limits<double>::min());  // all is behind the eye: the picture is empty
     return {z_min, z_max, near};

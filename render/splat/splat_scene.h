@@ -65,8 +65,9 @@ struct SplatScene {
     std::string kind{};                             // of its volumes: what kernels that replace others must have in common
     Vec3 middle{0.0};                               // of the bounds; depths are relative to its depth
     double diagonal = 0;
-    Box reach{};     // of the kernels and of the boundary
-    RayClip clip{};  // as set_clip
+    Box reach{};         // of the kernels and of the boundary
+    RayClip clip{};      // as set_clip
+    bool solid = false;  // of the picture, as is_solid
     bool shadows = false;
     double occlusion_world = 0;          // > 0: ambient occlusion over this distance
     const LightVolume* light = nullptr;  // of the picture, if there are shadows or occlusion
@@ -121,6 +122,10 @@ struct Classification {
     /// The colour of a value of the second channel, in cells of its table.
     [[nodiscard]] std::array<float, 3> color_at(float x) const;
 };
+
+/// Whether a lit volume with a boundary is opaque, whatever its values: all light ends within the depth before which nothing is
+/// seen.
+[[nodiscard]] bool is_solid(const SplatScene& scene, const Optics& optics);
 
 /// throws: Error(InvalidInput) if ranges or extinctions are beyond 32-bit floats, or the range is lost in the rounding of
 ///         values

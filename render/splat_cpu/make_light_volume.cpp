@@ -79,6 +79,7 @@ SplatScene dark_scene(const SplatScene& scene) {
     dark.occlusion_world = 0;
     dark.light = nullptr;
     dark.clip = scene.clip.without_slices();
+    dark.solid = false;
     return dark;
 }
 

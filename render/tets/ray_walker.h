@@ -93,8 +93,8 @@ public:
 private:
     /// Where a stretch ends: at its first slice, if it has one.
     [[nodiscard]] std::optional<double> first_slice(double from, double to) const {
-        for (const double slice : cut_.ray.slices) {
-            if (slice >= from && slice <= to) return slice;
+        for (const RaySlice& slice : cut_.ray.slices) {
+            if (slice.meets(from, to)) return slice.within(from, to);
         }
         return std::nullopt;
     }

@@ -169,7 +169,7 @@ public:
           view_(view),
           optics_(optics),
           options_(options),
-          clip_(without_far_faces(options.tets.clip, all.bounds)),
+          clip_(without_far_faces(options.tets.clip, all.bounds), all.bounds.diagonal()),
           progress_(options.tets.progress, picture),
           result_{Image(view.width(), view.height()), {}} {
         const double distance = glm::length(view.ray(0.5 * view.width(), 0.5 * view.height()).origin - all.bounds.center());

@@ -54,7 +54,7 @@ TetsResult TetsRenderer::draw(const View& view, const Optics& optics, const Tets
     TetsResult result{Image(view.width(), view.height()), state_->built};
     TetsReport& report = result.report;
     const Stopwatch watch;
-    const RayClip clip(without_far_faces(options.clip, state_->box));
+    const RayClip clip(without_far_faces(options.clip, state_->box), state_->box.diagonal());
     const PixelRect part = rect_of(options.rows, view.width(), view.height());
     const TraceCounts counts = state_->scene.draw(view, optics, options.samples, clip, part, options.progress, result.image);
     report.rays = counts.rays;

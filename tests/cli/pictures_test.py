@@ -186,6 +186,17 @@ class Looks(Pictures):
                 psnr = self.run_ok("compare", "splat.exr", method + ".exr", "--json").json()["psnr"]
                 self.assertGreater(psnr, 28, (cut, method))
 
+    def test_all_methods_show_the_material_at_an_eye_inside_a_solid(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        for name, inside in (("apart", ["--camera", ".5,.5,.5,1,.6,.5,0,0,1,60"]),
+                             ("parallel", ["--camera", ".4,.5,.5,1,.6,.7,0,0,1,60,.8"]),
+                             ("cut behind", ["--camera", ".5,.5,.5,1,.6,.5,0,0,1,60", "--clip", ".8,0,0,1,0,0"])):
+            for method in ["splat", "dense", "tets"]:
+                self.run_ok("render", "two.vtk", "-o", method + ".exr", "--field", "Temp", "--size", "32x24", "--method", method, *inside)
+            for method in ["dense", "tets"]:
+                psnr = self.run_ok("compare", "splat.exr", method + ".exr", "--json").json()["psnr"]
+                self.assertGreater(psnr, 45, (name, method))
+
     def test_wrong_cuts_are_refused(self):
         for wrong, naming in [(["--clip", "0,0,0,0,0"], "--clip"), (["--clip", "0,0,0,0,0,0"], "no length"),
                               (["--clip", "0,0,0,0,0,nan"], "6 numbers"), (["--clip-box", "0,0,0,1,1"], "--clip-box"),
@@ -202,6 +213,20 @@ class Looks(Pictures):
         self.assertEqual((done.code, "even" in done.err), (2, True), done.err)
         self.assertEqual(self.render("-o", "b.png", "--views", 4, "--turntable", 2).code, 2)
         self.assertEqual(self.render("-o", "b.png", "--views", 3).code, 2)
+
+    def test_what_is_drawn_over_an_empty_picture_does_not_hide_that(self):
+        nothing = ["--clip=0,0,-9,0,0,1", "--json"]
+        for over in [[], ["--axes"], ["--edges"], ["--axes", "--legend"], ["--axes", "--turntable", 2]]:
+            for views in [[], ["--views", 4]] if "--turntable" not in over else [[]]:
+                for name in "a.png", "a.exr":
+                    done = self.render("-o", name, *nothing, *over, *views, size="160x120")
+                    self.assertEqual(done.code, 0, done.err)
+                    self.assertRegex(" ".join(done.json()["warnings"]), "the picture is empty", (over, views, name))
+        white = ["--look", "volume", "--opacity", "0:1,1:1", "--background", "white", "--tf-range=-3,-2", "--tf", "grey", "--json"]
+        for over in [], ["--views", 4, "--axes"]:
+            self.assertRegex(" ".join(self.render("-o", "a.png", *white, *over).json()["warnings"]), "the picture is blank", over)
+        done = self.render("-o", "a.png", "--views", 4, "--axes", "--json")
+        self.assertEqual(done.json()["warnings"], [])
 
     def test_backgrounds(self):
         for background, color in [("#ff8000", (255, 128, 0)), ("white", (255, 255, 255)), ("1,0,0", (255, 0, 0))]:

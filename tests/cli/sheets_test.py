@@ -87,6 +87,22 @@ class Sheets(InFolder):
             self.assertLess(told["rmse"], .5, method)    # and so is the block
         self.run_ok("render", "with.vtk", "-o", "with.png", "--edges", "--look", "volume", "--scheme", "cc", *VIEW)
 
+    def test_sheets_behind_the_eye_hide_nothing(self):
+        points = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)] + [(-9, -9, 3), (9, -9, 3), (9, 9, 3), (-9, 9, 3)]
+        text = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n"
+        text += "\n".join(" ".join(map(str, p)) for p in points)
+        hexahedron, quad = "8 0 1 3 2 4 5 7 6", "4 8 9 10 11"
+        (self.folder / "both.vtk").write_text(f"{text}\nCELLS 2 14\n{hexahedron}\n{quad}\nCELL_TYPES 2\n12\n9\n")
+        (self.folder / "cube.vtk").write_text(f"{text}\nCELLS 1 9\n{hexahedron}\nCELL_TYPES 1\n12\n")
+        for rays in "0,0,1,0,40", "0,0,1,0,40,3":  # apart and parallel, from z = 2 down
+            camera = ["--size", "48x48", "--camera", ".5,.5,2,.5,.5," + rays]
+            for options in [], ["--method", "tets"], ["--edges"]:
+                for name in "both", "cube":
+                    self.run_ok("render", f"{name}.vtk", "-o", f"{name}.png", *camera, *options)
+                self.assertEqual(self.bytes_of("both.png"), self.bytes_of("cube.png"), (rays, options))
+            self.run_ok("render", "both.vtk", "-o", "above.png", "--size", "48x48", "--camera", ".5,.5,4,.5,.5," + rays)
+            self.assertNotEqual(self.bytes_of("above.png"), self.bytes_of("cube.png"))
+
     def test_sheets_alone_are_drawn_and_counted(self):
         text = (TOP / "docs/schemes/bracket.vtk").read_text().splitlines()
         at = next(i for i, line in enumerate(text) if line.startswith("CELLS"))

@@ -52,7 +52,7 @@ void fill(const Drawn& triangle, const View& view, const Clip& clip, int first, 
             const auto depth = static_cast<float>(perspective ? 1 / linear : linear);
             float& nearest = preview.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(preview.image.width) +
                                            static_cast<std::size_t>(x)];
-            if (depth >= nearest) continue;
+            if (depth >= nearest || !(depth > 0)) continue;
             if (!clip.empty()) {
                 const Ray ray = view.ray(p.x, p.y);
                 if (is_cut(clip, ray.origin + static_cast<double>(depth) * ray.direction)) continue;

@@ -157,7 +157,7 @@ std::vector<CutHandle> cut_handles(const ViewState& state, const ViewBody& body)
             const Vec3 at = handle_of(planes[k], body);
             const Vec3 tip = at + kArrow * body.box.diagonal() * glm::normalize(planes[k].normal);
             const Vec3 from = view.to_eye(at), to = view.to_eye(tip);
-            if (view.perspective() && !(from.z > 0 && to.z > 0)) continue;
+            if (!(from.z > 0) || (view.perspective() && !(to.z > 0))) continue;
             handles.push_back({slice, k, view.to_pixels(from), view.to_pixels(to)});
         }
     };

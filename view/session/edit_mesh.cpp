@@ -81,7 +81,7 @@ Selection select_pixels(const HexMesh& mesh, const View& view, const Vec2& first
     for (const Vec3& p : mesh.points) {
         const Vec3 eye = view.to_eye(p);
         const Vec2 at = view.to_pixels(eye);
-        const bool seen = !view.perspective() || eye.z > 0;
+        const bool seen = eye.z > 0;
         selection.push_back(seen && at.x >= low.x && at.x <= high.x && at.y >= low.y && at.y <= high.y ? 1 : 0);
     }
     return selection;

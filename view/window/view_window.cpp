@@ -128,7 +128,7 @@ public:
         for (std::size_t p = 0; p < selection.size(); ++p) {
             if (selection[p] == 0 || found++ % step != 0) continue;
             const Vec3 eye = view.to_eye(session_.handles().points[p]);
-            if (view.perspective() && !(eye.z > 0)) continue;
+            if (!(eye.z > 0)) continue;
             pixels.emplace_back(view.to_pixels(eye), selection[p]);
         }
         return pixels;

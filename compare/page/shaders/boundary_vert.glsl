@@ -8,7 +8,7 @@ uniform bool perspective;
 uniform vec4 clip;  // what is on the normal's side goes
 out vec3 place;   // in eye space
 out vec3 facing;  // the normal in eye space
-out float field, beyond;
+out float field, beyond, start;  // start: the height of the ray's origin above the clip plane
 
 void main() {
   vec3 seen = position - eye;
@@ -16,6 +16,7 @@ void main() {
   facing = vec3(dot(right, normal), dot(up, normal), dot(forward, normal));
   field = value;
   beyond = dot(clip.xyz, position) - clip.w;
+  start = dot(clip.xyz, perspective ? eye : eye + place.x * right + place.y * up) - clip.w;
   // Depths of the clip space are only for the depth test of solid bodies: 1/z is linear in the picture, as they have to be.
   float w = perspective ? place.z : 1.0;
   gl_Position = vec4(place.xy / half_size, perspective ? w - 2.0 * near_far.x

@@ -13,10 +13,11 @@ vec2 height_along(vec4 plane, vec2 slope) {
 }
 
 vec2 cut_at(float depth, vec2 front, vec2 back) {
-    return vec2(depth, mix(front.y, back.y, clamp((depth - front.x) / (back.x - front.x), 0.0, 1.0)));
+    float part = front.x < back.x ? clamp((depth - front.x) / (back.x - front.x), 0.0, 1.0) : 0.0;
+    return vec2(depth, mix(front.y, back.y, part));
 }
 
-// Shortens a segment between two depths with values; false if nothing is left.
+// Shortens a segment between two depths with values, which change places if nothing is left; false if the whole ray is removed.
 bool clip_segment(vec2 slope, inout vec2 front, inout vec2 back) {
     for (int i = 0; i < plane_counts.x; ++i) {
         vec2 height = height_along(planes[i], slope);
@@ -25,22 +26,23 @@ bool clip_segment(vec2 slope, inout vec2 front, inout vec2 back) {
             continue;
         }
         float depth = -height.y / height.x;
-        if (height.x > 0.0 ? depth <= front.x : depth >= back.x) return false;
         if (height.x > 0.0 && depth < back.x) back = cut_at(depth, front, back);
         if (height.x < 0.0 && depth > front.x) front = cut_at(depth, front, back);
     }
-    return front.x < back.x;
+    return true;
 }
 
-// The light of what is left of a segment, with the first slice in it.
+// The light of what is left of a segment, with the first slice that belongs to it by the rule of RaySlice (ray_clip.h).
 vec4 visible_light(vec2 slope, vec2 front, vec2 back, float ray_length) {
     if (!clip_segment(slope, front, back)) return vec4(0.0);
     bool sliced = false;
     for (int i = 0; i < plane_counts.y; ++i) {
         vec2 height = height_along(planes[plane_counts.x + i], slope);
-        float depth = -height.y / height.x;
-        if (!(depth >= front.x && depth <= back.x)) continue;
-        back = cut_at(depth, front, back);
+        if (!(abs(height.x) > kSliceTolerance)) continue;
+        float depth = -height.y / height.x, tolerance = kSliceTolerance / abs(height.x);
+        if (!(middle_depth + depth > tolerance)) continue;
+        if (!(depth >= front.x - tolerance && depth <= back.x + tolerance)) continue;
+        back = cut_at(min(max(depth, front.x), back.x), front, back);
         sliced = true;
     }
     vec4 light = vec4(0.0);

@@ -95,6 +95,22 @@ TEST(Overlay, HiddenEdgesAreHidden) {
     EXPECT_EQ(none, 0) << "behind an opaque surface";
 }
 
+TEST(Overlay, EdgesBehindTheEyeAreNotSeenInParallelViewsEither) {
+    const HexMesh mesh = test::make_box(1, 1, 1);
+    const auto ink = [&](double along) {
+        const Vec3 eye = Vec3(0.5) + along * Vec3(0.3, 1, 0.2);
+        const View view({.eye = eye, .target = eye + Vec3(0.3, 1, 0.2), .up = {0, 0, 1}, .ortho_height = 2}, 64, 64);
+        Image image(64, 64);
+        const std::vector<float> depth(64 * 64, std::numeric_limits<float>::infinity());
+        draw_edges(image, depth, view, mesh, {.width_px = 1, .color = {0, 0, 0}});
+        return ink_of(image);
+    };
+    const double all = ink(-4);
+    EXPECT_GT(all, 8 * 32) << "two faces and what joins them";
+    EXPECT_NEAR(ink(0), 0.5 * all, 0.05 * all) << "the far half of the box";
+    EXPECT_EQ(ink(1.1), 0);
+}
+
 TEST(Overlay, EdgesNeedAPictureOfTheViewsSize) {
     Image image(8, 8);
     const View view({}, 8, 9);

@@ -57,8 +57,8 @@ HexMesh block_mesh() {
     return mesh;
 }
 
-Image draw(Method method, const View& view, const Optics& optics, const Clip& clip) {
-    const HexMesh mesh = block_mesh();
+/// A mesh whose field is `linear`; of voxels those of its box.
+Image draw(Method method, const HexMesh& mesh, const View& view, const Optics& optics, const Clip& clip) {
     const auto pt = [&](ProjectedOrder order) {
         return render_projected(mesh, {}, view, optics, {.order = order, .kbuffer = 64, .clip = clip}).image;
     };
@@ -72,7 +72,8 @@ Image draw(Method method, const View& view, const Optics& optics, const Clip& cl
         case Method::Dense:
             return render_dense(mesh, {}, view, optics, {.levels = 1, .clip = clip}).image;
         case Method::Grid:
-            return render_grid(test::VoxelBox(kBlock, kVoxels, linear), view, optics, {.clip = clip, .tolerance = 1e-6}).image;
+            return render_grid(test::VoxelBox(bounds(mesh), kVoxels, linear), view, optics, {.clip = clip, .tolerance = 1e-6})
+                .image;
         case Method::Pt:
             return pt(ProjectedOrder::Topological);
         case Method::Lists:
@@ -87,6 +88,10 @@ Image draw(Method method, const View& view, const Optics& optics, const Clip& cl
             return splat(SplatMethod::Sheets);
     }
     return {};
+}
+
+Image draw(Method method, const View& view, const Optics& optics, const Clip& clip) {
+    return draw(method, block_mesh(), view, optics, clip);
 }
 
 struct Cut {
@@ -183,6 +188,119 @@ TEST_P(Clips, SlicesHaveTheColorsOfValuesThatAreTransparent) {
     }
 }
 
+/// A block whose faces are at places that no float has, between 3 cells along each axis.
+HexMesh shifted_block() {
+    HexMesh mesh = test::make_box(3, 3, 3);
+    for (Vec3& p : mesh.points) p = Vec3(.1, .2, .3) + p / 3.0;
+    test::add_field(mesh, "f", linear);
+    return mesh;
+}
+
+/// How far the ray of a pixel is from the outline of a slice of the box, in world units: more than 0 where it meets the slice.
+double within(const Box& box, const CutPlane& slice, const Ray& ray) {
+    const double t = glm::dot(slice.normal, slice.point - ray.origin) / glm::dot(slice.normal, ray.direction);
+    const Vec3 place = ray.origin + t * ray.direction, inside = glm::min(place - box.lower, box.upper - place);
+    double least = t > 0 ? 1e9 : -1e9;
+    for (int k = 0; k < 3; ++k) {
+        if (slice.normal[k] == 0) least = std::min(least, inside[k]);
+    }
+    return least;
+}
+
+/// Expects that the slices, and nothing else, are seen in a block of transparent values.
+void expect_whole(const Image& drawn, const View& view, const std::vector<CutPlane>& slices, const std::string& name) {
+    const Box box = bounds(shifted_block());
+    int seen = 0, holes = 0, beside = 0;
+    for (int y = 0; y < view.height(); ++y) {
+        for (int x = 0; x < view.width(); ++x) {
+            double most = -1e9;
+            for (const CutPlane& slice : slices) most = std::max(most, within(box, slice, view.ray(x + 0.5, y + 0.5)));
+            if (std::abs(most) < 1e-4) continue;  // outlines are rasterised to 1/4096 of a pixel
+            seen += most > 0;
+            holes += most > 0 && drawn.pixel(x, y)[3] != 1.0f;
+            beside += most < 0 && drawn.pixel(x, y)[3] != 0.0f;
+        }
+    }
+    EXPECT_GT(seen, 20) << name;
+    EXPECT_EQ(holes, 0) << name << ", of " << seen;
+    EXPECT_EQ(beside, 0) << name;
+}
+
+/// From above, and from below in parallel.
+std::vector<View> views_of_shifted_block() {
+    return {{{.eye = {2.6, -2.1, 3.4}, .target = {.6, .7, .8}, .up = {0, 0, 1}, .fovy_deg = 30}, 24, 24},
+            {{.eye = {-1.1, 2.9, -1.7}, .target = {.6, .7, .8}, .up = {0, 0, 1}, .ortho_height = 2}, 24, 24}};
+}
+
+Optics transparent() {
+    return Optics({.color = smooth_optics().function().color, .opacity = {{0, 0}, {1, 0}}}, 1);
+}
+
+TEST_P(Clips, SlicesOnFacesAreWhole) {
+    const HexMesh mesh = shifted_block();
+    const Box box = bounds(mesh);
+    for (const View& view : views_of_shifted_block()) {
+        for (int axis = 0; axis < 3; ++axis) {
+            for (const double place :
+                 {box.lower[axis], box.upper[axis], box.lower[axis] + 1.0 / 3}) {  // the last between cells
+                CutPlane slice{box.center(), Vec3(0.0)};
+                slice.point[axis] = place;
+                slice.normal[axis] = place < 0.7 ? -2 : 1;
+                const Image drawn = draw(GetParam(), mesh, view, transparent(), {.slices = {slice}});
+                expect_whole(drawn, view, {slice}, "axis " + std::to_string(axis) + " at " + std::to_string(place));
+            }
+        }
+    }
+}
+
+TEST_P(Clips, SlicesAtOnePlaceWithEachOtherOrWithACutAreWhole) {
+    const HexMesh mesh = shifted_block();
+    const View view = views_of_shifted_block()[0];
+    const CutPlane bottom{{.6, .7, .3}, {0, 0, 1}}, again{{-.3, 1.9, .3}, {0, 0, -.7}}, inner{{.1, 4, .77}, {0, 0, 3}};
+    const CutPlane side{{.1, .7, .8}, {1, 0, 0}};
+    const auto below = [](const CutPlane& plane) { return CutPlane{plane.point + Vec3(.37, .11, 0), {0, 0, -1}}; };
+    const auto above = [](const CutPlane& plane) { return CutPlane{plane.point + Vec3(.53, .07, 0), {0, 0, 1}}; };
+    const auto expect = [&](const Clip& clip, const char* name) {
+        for (const bool around : {false, true}) {
+            Clip one = clip;
+            one.around_slices = around;
+            expect_whole(draw(GetParam(), mesh, view, transparent(), one), view, clip.slices, name);
+        }
+    };
+    expect({.slices = {bottom, again}}, "two on a face");
+    expect({.slices = {inner, inner}}, "two inside");
+    expect({.slices = {bottom, side}}, "two faces");
+    expect({.planes = {below(bottom)}, .slices = {bottom}}, "a cut on the face");
+    expect({.planes = {below(inner)}, .slices = {inner}}, "a cut that leaves what is above");
+    expect({.planes = {above(inner)}, .slices = {inner}}, "a cut that leaves what is below");
+    expect({.planes = {above(inner), below(inner)}, .slices = {inner}}, "two cuts that leave the slice alone");
+    expect({.planes = {above(bottom)}, .slices = {bottom}}, "a cut that leaves only the face");
+}
+
+TEST(FieldClips, SlicesOnFacesAreWhole) {
+    const Box box = bounds(shifted_block());
+    const auto field = [&](const Vec3& p) {
+        return glm::clamp(p, box.lower, box.upper) == p ? std::optional(linear(p)) : std::nullopt;
+    };
+    for (const View& view : views_of_shifted_block()) {
+        for (const double z : {box.lower.z, box.upper.z}) {
+            const CutPlane slice{{.6, .7, z}, {0, 0, 1}};
+            const Image drawn = render_field(field, box, view, transparent(), {.step_world = .1, .clip = {.slices = {slice}}});
+            expect_whole(drawn, view, {slice}, std::to_string(z));
+        }
+    }
+}
+
+TEST_P(Clips, SlicesOutsideOrBehindTheEyeAreNotSeen) {
+    const HexMesh mesh = shifted_block();
+    const View view({.eye = {.6, .7, .8}, .target = {.6, .7, 0}, .up = {0, 1, 0}, .ortho_height = 2}, 24, 24);
+    for (const double z : {.29999, .9, 1.3, .8}) {  // the last goes through the eye
+        const CutPlane slice{{.6, .7, z}, {0, 0, 1}};
+        const Image drawn = draw(GetParam(), mesh, view, transparent(), {.slices = {slice}});
+        EXPECT_EQ(std::ranges::max(drawn.rgba), 0) << z;
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(, Clips, testing::ValuesIn(kMethods),
                          [](const auto& one) { return kNames[static_cast<std::size_t>(one.param)]; });
 
@@ -226,6 +344,46 @@ TEST(ClippedSolid, CapsAreLitByTheirPlane) {
     Image traced = render_tets(mesh, {}, view, solid, {.clip = clip}).image;
     light_boundary(traced, boundary_surface(mesh), view, shading, 1, clip);
     expect_cap(traced, "tetrahedra");
+}
+
+/// The eye inside an opaque, lit body with a steep field: there is no surface to light.
+TEST(SolidFromInside, EveryMethodShowsTheMaterialAtTheEyeWithoutLight) {
+    HexMesh mesh = box_about_origin();
+    test::add_field(mesh, "f", linear);
+    const Optics solid({.color = smooth_optics().function().color, .opacity = {{0, 1}}}, 1e-6 * bounds(mesh).diagonal());
+    const RbfVolume volume = sample_rbf_points(mesh, {.per_edge = 2}).volume;
+    const Clip behind{.planes = {{{0.6, 0, 0}, {1, 0, 0}}}};
+    for (const double ortho_height : {0.0, 0.5}) {
+        const Camera camera{.eye = {.1, .2, -.1}, .target = {1, .4, .3}, .up = {0, 0, 1}, .ortho_height = ortho_height};
+        const View view(camera, 20, 16);
+        for (const Clip& clip : {Clip{}, behind}) {
+            const auto expect = [&](const Image& image, const char* what) {
+                double worst = 0;
+                for (int y = 0; y < view.height(); ++y) {
+                    for (int x = 0; x < view.width(); ++x) {
+                        const Vec3 color = solid.color(linear(view.ray(x + 0.5, y + 0.5).origin));
+                        for (int c = 0; c < 3; ++c)
+                            worst = std::max(
+                                worst,
+                                std::abs(static_cast<double>(image.pixel(x, y)[static_cast<std::size_t>(c)]) - color[c]));
+                    }
+                }
+                EXPECT_LT(worst, 2e-3) << what << ", " << ortho_height;  // values of kernels; the nearest depth
+            };
+            std::vector<SplatMethod> methods{SplatMethod::Cpu};
+            if (!gl_devices().empty()) methods.insert(methods.end(), {SplatMethod::Gl, SplatMethod::Sheets});
+            for (const SplatMethod method : methods) {
+                expect(render_splats(volume, view, solid, {.method = method, .shading = Shading{}, .clip = clip}).image,
+                       "splats");
+            }
+            for (const Method method : {Method::Tets, Method::Dense, Method::Pt}) {
+                if (method == Method::Pt && gl_devices().empty()) continue;
+                Image image = draw(method, mesh, view, solid, clip);
+                light_boundary(image, boundary_surface(mesh), view, Shading{}, 1, clip);
+                expect(image, kNames[static_cast<std::size_t>(method)].c_str());
+            }
+        }
+    }
 }
 
 TEST(ClippedKernels, AVolumeWithoutABoundaryIsCutToo) {

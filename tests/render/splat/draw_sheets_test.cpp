@@ -77,6 +77,25 @@ TEST(DrawSheets, ABoxOfSheetsLooksAsTheBoundaryOfASolidDoes) {
     }
 }
 
+TEST(DrawSheets, WhatIsBehindTheEyeHidesNothing) {
+    for (const double ortho_height : {0.0, 2.0}) {
+        const auto covered = [&](double x) {
+            const View view({.eye = Vec3(2, 0, 0), .target = Vec3(0), .up = Vec3(0, 0, 1), .ortho_height = ortho_height}, kSize,
+                            kSize);
+            Image image(kSize, kSize);
+            std::vector<float> depth(static_cast<std::size_t>(kSize * kSize), HUGE_VALF);
+            draw_sheets(image, depth, wall_at(x, 1), {}, view, grey_to_white());
+            float most = 0;
+            for (std::size_t i = 3; i < image.rgba.size(); i += 4) most = std::max(most, image.rgba[i]);
+            EXPECT_EQ(std::ranges::min(depth) == HUGE_VALF, most == 0);
+            return most;
+        };
+        EXPECT_EQ(covered(1.9), 1) << ortho_height;
+        EXPECT_EQ(covered(2.1), 0) << ortho_height;
+        EXPECT_EQ(covered(9), 0) << ortho_height;
+    }
+}
+
 TEST(DrawSheets, WhatIsInFrontHidesAndWhatIsBehindIsHiddenAsFarAsTheVolumeIsOpaque) {
     const Surface body = colored_box().surface;
     const View view = view_of({6, .5, .5});

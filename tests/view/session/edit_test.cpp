@@ -54,6 +54,15 @@ TEST(EditMesh, ABrushWorksLessTowardsItsRim) {
     EXPECT_EQ(mesh.points[3].z, 0);
 }
 
+TEST(EditMesh, PointsBehindTheEyeAreNotSelectedInThePicture) {
+    HexMesh mesh;
+    mesh.points = {{0, 0, 0}, {0, 0, 1}, {0, 0, 3}};
+    for (const double ortho_height : {0.0, 2.0}) {
+        const View view({.eye = {0, 0, 2}, .target = {0, 0, 0}, .up = {0, 1, 0}, .ortho_height = ortho_height}, 20, 20);
+        EXPECT_EQ(select_pixels(mesh, view, {5, 5}, {15, 15}), (Selection{1, 1, 0})) << ortho_height;
+    }
+}
+
 class Editing : public testing::Test {
 protected:
     HexMesh mesh = make_model("ball", 3);

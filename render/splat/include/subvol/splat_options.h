@@ -25,7 +25,8 @@ enum class SplatMethod { Auto, Cpu, Gl, Sheets, Footprints };
 /// Light on surfaces: the model of Blinn and Phong, with a light at the eye and a key light. Inside the volume surfaces are
 /// those of equal value, lit on either side; where the value hardly changes there is no surface, and colours are not changed.
 /// Where the volume is opaque already at its boundary, that is the surface: it is lit by its own normals, which are smooth
-/// except at creases.
+/// except at creases. With the eye inside such a solid one sees the material at the eye, in the colour of its value there and
+/// without light, for there is no surface before it; every method draws that.
 ///
 /// ambient, diffuse, specular: parts of the light, ≥ 0
 /// key:                        towards the key light, in eye space (right, up, away from the eye)
