@@ -11,6 +11,7 @@
 #include "subvol/error.h"
 #include "subvol/image_io.h"
 #include "subvol/image_metrics.h"
+#include "subvol/placed_image.h"
 #include "subvol/render_dense.h"
 #include "subvol/render_grid.h"
 #include "subvol/render_projected.h"
@@ -163,7 +164,9 @@ CaseResult run_picture_case(const StudyCase& of, const CasePlace& place) {
     const HexMesh mesh = study_mesh(of);
     const Image image = measured(of, mesh, result);
     const auto reference_case = reference_of(of);
-    const Image reference = read_image(place.references / (reference_case->id + ".exr"));
+    // Of a reference that is a part of another picture only that part is left, whose size is refused below.
+    const Image reference =
+        common_pixels(whole_image(image), read_placed_image(place.references / (reference_case->id + ".exr"))).b;
     for (const auto& [name, value] : picture_metrics(image, reference, of.text("metrics"))) result.metrics[name] = value;
 
     if (const auto made =

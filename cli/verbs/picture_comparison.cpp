@@ -13,6 +13,7 @@
 #include "subvol/image_metrics.h"
 #include "subvol/image_regions.h"
 #include "subvol/oiio_compare.h"
+#include "subvol/placed_image.h"
 #include "subvol/ssim.h"
 #include "text.h"
 
@@ -26,20 +27,22 @@ void put_differences(const ImageMetrics& m, const std::string& prefix, Figures& 
     for (std::size_t k = 0; k < values.size(); ++k) figures.put(prefix + kDifferences[k], values[k]);
 }
 
-Image read_finite(const std::string& path) {
-    Image image = read_image(path);
+void check_finite(const Image& image, const std::string& path) {
     const std::size_t bad = count_not_finite(image);
-    if (bad > 0) {
-        throw Error(ErrorCode::InvalidInput, text(bad, " pixels are infinite or not a number: nothing can be measured"), path);
-    }
-    return image;
+    if (bad == 0) return;
+    throw Error(ErrorCode::InvalidInput, text(bad, " pixels are infinite or not a number: nothing can be measured"), path);
 }
 
-void check_sizes(const std::string& test, const Image& a, const std::string& reference, const Image& b) {
-    if (a.width == b.width && a.height == b.height) return;
-    throw Error(ErrorCode::InvalidInput,
-                text("has ", a.width, " x ", a.height, " pixels, ", reference, " has ", b.width, " x ", b.height), test,
-                "only pictures of the same size can be compared");
+/// The pixels that both show. The report says where they are, if that is not all of both.
+CommonPixels read_common(const std::string& test, const std::string& reference, Report& report) {
+    PlacedImage a = read_placed_image(test), b = read_placed_image(reference);
+    const bool whole = a.whole() && b.whole();
+    CommonPixels common = common_pixels(std::move(a), std::move(b));
+    check_finite(common.a, test);
+    check_finite(common.b, reference);
+    const PixelWindow& w = common.window;
+    if (!whole) report["window"] = {{"left", w.left}, {"top", w.top}, {"width", w.width}, {"height", w.height}};
+    return common;
 }
 
 /// 1 − similarity: 0 where the pictures agree, as in the other maps.
@@ -111,9 +114,8 @@ std::vector<std::string> PictureComparison::names() const {
 }
 
 Figures PictureComparison::measure(const std::string& test, const std::string& reference, Report& report) const {
-    const Image a = report.timed("read", [&] { return read_finite(test); });
-    const Image b = report.timed("read", [&] { return read_finite(reference); });
-    check_sizes(test, a, reference, b);
+    const CommonPixels common = report.timed("read", [&] { return read_common(test, reference, report); });
+    const Image &a = common.a, &b = common.b;
     Figures figures;
     put_differences(report.timed("differences", [&] { return compare_images(a, b); }), "", figures);
     const SsimResult similarity = report.timed("ssim", [&] { return ssim(a, b); });

@@ -17,6 +17,7 @@
 #include "png_file.h"
 #include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
+#include "subvol/placed_image.h"
 #include "subvol/srgb.h"
 
 namespace subvol {
@@ -54,14 +55,13 @@ public:
             }
             least_[byte] = high;
         }
-        least_.back() = HUGE_VAL;
         for (std::size_t i = 0; i <= kBins; ++i) start_[i] = rounded(static_cast<double>(i) / kBins);
     }
 
     [[nodiscard]] std::uint8_t operator()(double linear) const {
         if (!(linear > 0)) return 0;  // NaN too
         std::size_t byte = start_[static_cast<std::size_t>(std::min(linear, 1.0) * kBins)];
-        while (linear >= least_[byte + 1]) ++byte;
+        while (byte < 255 && linear >= least_[byte + 1]) ++byte;
         return static_cast<std::uint8_t>(byte);
     }
 
@@ -72,7 +72,7 @@ private:
         return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(linear)));
     }
 
-    std::array<double, 257> least_;  // values with each byte, and the end
+    std::array<double, 256> least_;  // values with each byte
     std::array<std::uint8_t, kBins + 1> start_;
 };
 
@@ -97,7 +97,7 @@ std::array<int, 4> channels_of(const DecodedPicture& picture) {
 
 Image linear_image(const DecodedPicture& picture) {
     const auto channels = channels_of(picture);
-    Image image(picture.width, picture.height);
+    Image image(picture.data.width, picture.data.height);
     for (std::size_t i = 0; i < image.rgba.size() / 4; ++i) {
         const float* pixel = picture.values.data() + i * static_cast<std::size_t>(picture.channels);
         float* rgba = image.rgba.data() + 4 * i;
@@ -109,6 +109,26 @@ Image linear_image(const DecodedPicture& picture) {
         }
     }
     return image;
+}
+
+void write_pixels(const fs::path& path, const Image& image, const PixelWindow& data, const PixelWindow& display,
+                  const Vec3& background, std::span<const float> depth) {
+    check_image(image);
+    if (!depth.empty() && 4 * depth.size() != image.rgba.size()) {
+        throw Error(ErrorCode::InvalidInput, "the number of depths is not the number of pixels", path.string());
+    }
+    const std::string extension = extension_of(path);
+    if (extension == ".exr") {
+        const PictureValues picture{
+            .data = data, .display = display, .rgba = image.rgba.data(), .depth = depth.empty() ? nullptr : depth.data()};
+        write_file(path, [&](const std::string& name) { return openexr().write(name, picture); });
+    } else if (extension == ".png") {
+        const std::vector<std::uint8_t> rgb = srgb_bytes(image, background);
+        write_file(path, [&](const std::string& name) { return write_png(name, image.width, image.height, rgb); });
+    } else {
+        throw Error(ErrorCode::InvalidInput, "images are not written as \"" + extension + "\" files", path.string(),
+                    ".exr or .png");
+    }
 }
 
 }  // namespace
@@ -132,38 +152,36 @@ std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background)
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         const double through = 1.0 - static_cast<double>(image.rgba[i + 3]);
         for (std::size_t c = 0; c < 3; ++c) {
-            const double over = static_cast<double>(image.rgba[i + c]) + through * background[static_cast<int>(c)];
-            bytes.push_back(encoded_byte(over));
+            const double behind = background[static_cast<int>(c)], color = image.rgba[i + c];
+            bytes.push_back(encoded_byte(behind == 0 ? color : color + through * behind));
         }
     }
     return bytes;
 }
 
 void write_image(const fs::path& path, const Image& image, const Vec3& background, std::span<const float> depth) {
-    check_image(image);
-    if (!depth.empty() && 4 * depth.size() != image.rgba.size()) {
-        throw Error(ErrorCode::InvalidInput, "the number of depths is not the number of pixels", path.string());
+    const PixelWindow whole{0, 0, image.width, image.height};
+    write_pixels(path, image, whole, whole, background, depth);
+}
+
+void write_placed_image(const fs::path& path, const PlacedImage& picture, const Vec3& background,
+                        std::span<const float> depth) {
+    const PixelWindow& data = picture.data_window;
+    if (data.width != picture.image.width || data.height != picture.image.height) {
+        throw Error(ErrorCode::InvalidInput, "the data window is not that of the image", path.string());
     }
-    const std::string extension = extension_of(path);
-    if (extension == ".exr") {
-        const PictureValues picture{.width = image.width,
-                                    .height = image.height,
-                                    .rgba = image.rgba.data(),
-                                    .depth = depth.empty() ? nullptr : depth.data()};
-        write_file(path, [&](const std::string& name) { return openexr().write(name, picture); });
-    } else if (extension == ".png") {
-        const std::vector<std::uint8_t> rgb = srgb_bytes(image, background);
-        write_file(path, [&](const std::string& name) { return write_png(name, image.width, image.height, rgb); });
-    } else {
-        throw Error(ErrorCode::InvalidInput, "images are not written as \"" + extension + "\" files", path.string(),
-                    ".exr or .png");
-    }
+    write_pixels(path, picture.image, data, picture.display_window, background, depth);
+}
+
+PlacedImage read_placed_image(const fs::path& path) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) throw Error(ErrorCode::Io, "cannot be read: no such file", path.string());
+    const DecodedPicture picture = read_picture(path);
+    return {linear_image(picture), picture.data, picture.display, path.string()};
 }
 
 Image read_image(const fs::path& path) {
-    std::error_code ignored;
-    if (!fs::is_regular_file(path, ignored)) throw Error(ErrorCode::Io, "cannot be read: no such file", path.string());
-    return linear_image(read_picture(path));
+    return read_placed_image(path).image;
 }
 
 }  // namespace subvol

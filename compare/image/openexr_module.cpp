@@ -80,17 +80,19 @@ int threads_for(std::int64_t pixels) {
     return count;
 }
 
+Imath::Box2i box_of(const PixelWindow& window) {
+    return {{window.left, window.top}, {window.left + (window.width - 1), window.top + (window.height - 1)}};
+}
+
 std::optional<PictureFault> write(const std::string& path, const PictureValues& picture) {
     FileStream stream(path);
     if (stream.error() != 0) return PictureFault{ErrorCode::Io, "cannot be written: " + said(stream.error())};
-    const Imath::V2i last(picture.width - 1, picture.first_row + picture.height - 1);
-    const Imath::Box2i data({0, picture.first_row}, last);
-    const Imath::Box2i whole({0, 0}, {last.x, picture.whole_height > 0 ? picture.whole_height - 1 : last.y});
-    Imf::Header header(whole, data);
+    const Imath::Box2i data = box_of(picture.data);
+    Imf::Header header(box_of(picture.display), data);
     header.compression() = Imf::ZIP_COMPRESSION;
     if (picture.note != nullptr) header.insert(kNoteName, Imf::StringAttribute(picture.note));
     Imf::FrameBuffer frame;
-    const auto in_row = static_cast<std::size_t>(picture.width);
+    const auto in_row = static_cast<std::size_t>(picture.data.width);
     const auto add = [&](const char* name, const float* values, std::size_t step) {
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
         frame.insert(name, Imf::Slice::Make(Imf::FLOAT, values, data, step, step * in_row));
@@ -98,9 +100,9 @@ std::optional<PictureFault> write(const std::string& path, const PictureValues& 
     for (std::size_t c = 0; c < 4; ++c) add(kNames[c], picture.rgba + c, 4 * sizeof(float));
     if (picture.depth != nullptr) add("Z", picture.depth, sizeof(float));
     try {
-        Imf::OutputFile file(stream, header, threads_for(std::int64_t{picture.width} * picture.height));
+        Imf::OutputFile file(stream, header, threads_for(std::int64_t{picture.data.width} * picture.data.height));
         file.setFrameBuffer(frame);
-        file.writePixels(picture.height);
+        file.writePixels(picture.data.height);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception&) {
@@ -162,13 +164,10 @@ std::optional<PictureFault> read(const std::string& path, DecodedPicture& pictur
     if (std::min({width, height, whole_width, whole_height}) < 1 || longest > kLongestSide) return {};
     if (std::max(width * height, std::max(width, whole_width) * whole_height) > std::int64_t{1} << 28) return {};
     taken = true;
-    picture.width = static_cast<int>(width);
-    picture.height = static_cast<int>(height);
     picture.channels = std::min(channels, 4);
     picture.alpha = channels > 3 ? 3 : -1;
-    picture.first_row = data.min.y - whole.min.y;
-    picture.whole_width = static_cast<int>(whole_width);
-    picture.whole_height = static_cast<int>(whole_height);
+    picture.data = {data.min.x, data.min.y, static_cast<int>(width), static_cast<int>(height)};
+    picture.display = {whole.min.x, whole.min.y, static_cast<int>(whole_width), static_cast<int>(whole_height)};
     if (const auto* note = header.findTypedAttribute<Imf::StringAttribute>(kNoteName)) picture.note = note->value();
     const bool depth = picture.wants_depth && channels == 5;
     const auto in_row = static_cast<std::size_t>(width), count = static_cast<std::size_t>(picture.channels);

@@ -10,6 +10,7 @@
 #include "subvol/error.h"
 #include "subvol/image.h"
 #include "subvol/oiio_compare.h"
+#include "subvol/placed_image.h"
 
 namespace subvol::detail {
 
@@ -19,15 +20,15 @@ namespace subvol::detail {
 /// alpha:        which of the channels is alpha; -1: none
 /// integers:     the file has integers
 /// unassociated: colours are not premultiplied
-/// first_row, whole_width, whole_height: where the pixels lie in a larger picture, if the file says so
+/// data, display: the windows of the file, see PlacedImage
 /// depth:        the channel Z, if it was asked for and the file has one
 /// note:         a text of `PictureValues::note`
 struct DecodedPicture {
-    int width = 0, height = 0, channels = 0;
+    int channels = 0;
     int alpha = -1;
     bool integers = false, unassociated = false;
     std::vector<float> values;
-    int first_row = 0, whole_width = 0, whole_height = 0;
+    PixelWindow data{}, display{};
     bool wants_depth = false;
     std::vector<float> depth{};
     std::string note{};
@@ -35,12 +36,12 @@ struct DecodedPicture {
 
 /// Pixels for a file: linear floats R, G, B, A, and a depth for each, if there are any.
 ///
-/// whole_height: > 0: these are rows, from `first_row` on, of a picture of this height; `note` is a text beside them
+/// data, display: as in PlacedImage
+/// note:          a text beside the pixels
 struct PictureValues {
-    int width = 0, height = 0;
+    PixelWindow data{}, display{};
     const float* rgba = nullptr;
     const float* depth = nullptr;
-    int first_row = 0, whole_height = 0;
     const char* note = nullptr;
 };
 

@@ -32,8 +32,6 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
     if (!proper) return PictureFault{ErrorCode::InvalidInput, "is not a flat picture of at most 2^28 pixels"};
     const bool small = static_cast<std::int64_t>(std::max(spec.width, spec.full_width)) * spec.full_height <= kMaxPixels;
     if (!small) return PictureFault{ErrorCode::InvalidInput, "is part of a picture of more than 2^28 pixels"};
-    picture.width = spec.width;
-    picture.height = spec.height;
     picture.channels = std::min(spec.nchannels, 4);
     picture.alpha = spec.alpha_channel < picture.channels ? spec.alpha_channel : -1;
     picture.integers = !spec.format.is_floating_point();
@@ -43,9 +41,9 @@ Outcome read(const std::string& path, DecodedPicture& picture) {
     if (!input->read_image(0, 0, 0, picture.channels, OIIO::TypeDesc::FLOAT, picture.values.data())) {
         return PictureFault{ErrorCode::InvalidInput, "is not a complete image: " + input->geterror()};
     }
-    picture.first_row = spec.y - spec.full_y;
-    picture.whole_width = spec.full_width;
-    picture.whole_height = spec.full_height;
+    picture.data = {spec.x, spec.y, spec.width, spec.height};
+    picture.display = {spec.full_x, spec.full_y, spec.full_width, spec.full_height};
+    if (spec.full_width < 1 || spec.full_height < 1) picture.display = picture.data;
     picture.note = spec.get_string_attribute(kNote);
     if (picture.wants_depth && spec.nchannels == 5) {
         picture.depth.resize(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height));

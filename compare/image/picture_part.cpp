@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/detail/picture_part.h"
 
+#include <cstdint>
+
 #include "openexr.h"
 #include "subvol/detail/atomic_file.h"
 
@@ -14,12 +16,10 @@ void write_picture_part(const std::filesystem::path& path, const PicturePart& pa
         throw Error(ErrorCode::InvalidInput, "the rows are not within the picture", path.string());
     }
     AtomicFile file(path);
-    const PictureValues picture{.width = rows.width,
-                                .height = rows.height,
+    const PictureValues picture{.data = {0, part.first_row, rows.width, rows.height},
+                                .display = {0, 0, rows.width, part.whole_height},
                                 .rgba = rows.rgba.data(),
                                 .depth = part.depth.empty() ? nullptr : part.depth.data(),
-                                .first_row = part.first_row,
-                                .whole_height = part.whole_height,
                                 .note = part.note.c_str()};
     if (const auto fault = openexr().write(file.path().string(), picture)) {
         throw Error(fault->code, fault->why, path.string());
@@ -29,13 +29,16 @@ void write_picture_part(const std::filesystem::path& path, const PicturePart& pa
 
 PicturePart read_picture_part(const std::filesystem::path& path) {
     DecodedPicture picture = read_picture(path, /*wants_depth=*/true);
-    PicturePart part{.rows = {},
+    const PixelWindow &data = picture.data, &display = picture.display;
+    const std::int64_t first_row = std::int64_t{data.top} - display.top;
+    const bool whole_rows =
+        data.left == display.left && data.width == display.width && first_row >= 0 && first_row + data.height <= display.height;
+    if (picture.note.empty() || picture.channels != 4 || picture.integers || !whole_rows) return {};
+    PicturePart part{.rows = Image(data.width, data.height),
                      .depth = std::move(picture.depth),
-                     .first_row = picture.first_row,
-                     .whole_height = picture.whole_height,
+                     .first_row = static_cast<int>(first_row),
+                     .whole_height = display.height,
                      .note = std::move(picture.note)};
-    if (part.note.empty() || picture.channels != 4 || picture.integers) return {};
-    part.rows = Image(picture.width, picture.height);
     part.rows.rgba = std::move(picture.values);
     return part;
 }

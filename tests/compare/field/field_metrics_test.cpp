@@ -64,8 +64,10 @@ TEST(CompareFields, OnlyWhereBothAre) {
     EXPECT_NEAR(static_cast<double>(errors.samples), 10000, 4 * std::sqrt(7500));  // binomial
     EXPECT_EQ(errors.l2, 2);
     const FieldDifference none = compare_fields(in_box(zero, {Vec3(2.0), Vec3(3.0)}), in_box(zero));
+    EXPECT_NEAR(errors.coverage(), .25, 4 * std::sqrt(7500) / 40000);
     EXPECT_EQ(none.samples, 0u);
-    EXPECT_EQ(none.l2, 0);
+    EXPECT_EQ(none.coverage(), 0);
+    EXPECT_TRUE(std::isnan(none.l1) && std::isnan(none.l2) && std::isnan(none.linf) && std::isnan(none.gradient_rmse));
     EXPECT_THROW(
         (void)compare_fields(in_box(zero), {.value = [](const Vec3&) { return std::nullopt; }, .box = kUnit}, {.samples = 10}),
         Error);

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -88,6 +89,22 @@ TEST_F(ImageIo, TheTimeOfWritingIsNotInTheFile) {
         ASSERT_TRUE(input);
         EXPECT_EQ(input->spec().get_string_attribute("DateTime"), "") << ending;
     }
+}
+
+TEST_F(ImageIo, InfinityIsWhiteAndNoNumberIsBlack) {
+    const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    Image image(5, 1);
+    for (int x = 0; x < 5; ++x) {
+        const auto pixel = image.pixel(x, 0);
+        const float value = std::array{infinity, nan, 3e38f, -1.0f, -infinity}[static_cast<std::size_t>(x)];
+        pixel[0] = pixel[1] = pixel[2] = value;
+        pixel[3] = 1;
+    }
+    const std::vector<std::uint8_t> expected{255, 255, 255, 0, 0, 0, 255, 255, 255, 0, 0, 0, 0, 0, 0};
+    EXPECT_EQ(srgb_bytes(image), expected);
+    EXPECT_EQ(srgb_bytes(image, Vec3(0.5)), expected);  // opaque: the background does not show
+    write_image(folder_ / "a.png", image);
+    EXPECT_EQ(bytes_of(folder_ / "a.png"), expected);
 }
 
 TEST_F(ImageIo, ExrKeepsEveryBit) {

@@ -20,13 +20,14 @@ namespace subvol {
 void write_image(const std::filesystem::path& path, const Image& image, const Vec3& background = Vec3(0.0),
                  std::span<const float> depth = {});
 
-/// 8-bit sRGB over a background of linear RGB: three bytes per pixel, rows from the top.
+/// 8-bit sRGB over a background of linear RGB: three bytes per pixel, rows from the top. Values above 1, infinity too, become
+/// 255; those below 0 and NaN become 0.
 ///
 /// throws: Error(InvalidInput) if the image has no pixels, or its number of values does not match its size
 [[nodiscard]] std::vector<std::uint8_t> srgb_bytes(const Image& image, const Vec3& background = Vec3(0.0));
 
 /// Reads an image of any format that OpenImageIO reads as linear premultiplied RGBA; integer samples are decoded from sRGB. A
-/// channel Z is ignored.
+/// channel Z is ignored. Of a part of a larger picture it has the pixels alone: `read_placed_image` knows where they are.
 ///
 /// throws: Error(Io) if there is no such file, Error(InvalidInput) if it is not a complete image or has more than 2²⁸ pixels
 [[nodiscard]] Image read_image(const std::filesystem::path& path);
