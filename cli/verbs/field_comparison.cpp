@@ -17,6 +17,12 @@ void FieldComparison::add_to(CLI::App& app) {
         ->group(group)
         ->type_name("N")
         ->check(CLI::Range(1, 100'000'000));
+    app.add_option("--coverage", least_coverage,
+                   "the least share of these places at which the first field must have a value, too, for any demand to be met "
+                   "(default 0.99)")
+        ->group(group)
+        ->type_name("SHARE")
+        ->check(CLI::Range(0.0, 1.0));
     app.add_option("--iso", iso, "also the Hausdorff distance between the isosurfaces of this value (hausdorff)")
         ->group(group)
         ->type_name("V");
@@ -57,7 +63,9 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
     if (b.mesh) {
         const auto places =
             report.timed("new_vertices", [&] { return new_vertices(*b.mesh, b.field, 0, scheme_named(refine.scheme)); });
-        figures.put("new_vertex_rmse", compare_field(a.view, places).l2);
+        const FieldDifference at_vertices = compare_field(a.view, places);
+        figures.put("new_vertex_rmse", at_vertices.l2);
+        report["new_vertices"] = {{"samples", at_vertices.samples}, {"uncovered", at_vertices.uncovered}};
     }
     if (iso) {
         const auto found =
@@ -68,6 +76,12 @@ Figures FieldComparison::measure(const std::string& test, const std::string& ref
     }
     report["samples"] = errors.samples;
     report["uncovered"] = errors.uncovered;
+    report["coverage"] = errors.coverage();
+    if (errors.coverage() < least_coverage) {
+        report.warn(text("the figures are of a part of the reference: ", test, " has values at ", errors.samples, " of ",
+                         errors.samples + errors.uncovered, " places in ", reference, ", less than --coverage ",
+                         least_coverage));
+    }
     return figures;
 }
 

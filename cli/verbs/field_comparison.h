@@ -19,6 +19,7 @@ struct FieldComparison {
     std::size_t samples = 100'000;
     int resolution = 128;
     std::optional<double> iso;
+    double least_coverage = 0.99;
     RefineArguments refine;
 
     void add_to(CLI::App& app);

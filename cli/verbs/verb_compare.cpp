@@ -30,9 +30,12 @@ public:
                "Pictures (any that OpenImageIO reads) are compared in linear light, peak 1: mse, rmse, mae, max, psnr (dB), "
                "ssim, flip; under srgb8 the same for 8-bit sRGB. Fields are meshes, points or .vdb grids: l1, l2 (root mean "
                "square), linf, gradient_rmse, mass (relative), hausdorff (with --iso); new_vertex_rmse against a mesh: at the "
-               "vertices that its first refinement adds. Exit code 1 if a --fail-under is not met.") {
+               "vertices that its first refinement adds. Parts of pictures (.exr with a data window) are compared where they "
+               "overlap. Exit code 1 if a --fail-under is not met, or one is given and the first field has values at less of "
+               "the second's "
+               "domain than --coverage.") {
         app().add_option("A", a_, "a picture or a field")->required();
-        app().add_option("B", b_, "the reference: a picture of the same size, or a field")->required();
+        app().add_option("B", b_, "the reference: a picture of the same size or a part of one, or a field")->required();
         app()
             .add_option(
                 "--fail-under", demands_,
@@ -41,8 +44,8 @@ public:
             ->allow_extra_args(false);
         pictures_.add_to(app());
         fields_.add_to(app());
-        set_essentials({"--fail-under", "--heatmap", "--heatmap-of", "--edge-band", "--samples", "--iso", "--levels", "--field",
-                        "--json"});
+        set_essentials({"--fail-under", "--heatmap", "--heatmap-of", "--edge-band", "--samples", "--coverage", "--iso",
+                        "--levels", "--field", "--json"});
     }
 
     int run(Report& report) override {
@@ -65,32 +68,50 @@ public:
         figures.into(report);
         report["input"] = a_;
         report["reference"] = b_;
-        std::vector<std::string> unmet;
-        for (std::size_t i = 0; i < demands.size(); ++i) {
-            if (!demands[i].met_by(figures)) unmet.push_back(demands_[i]);
-        }
-        report["passed"] = unmet.empty();
-        say(figures, pictures, unmet, report);
-        return unmet.empty() ? 0 : kComparisonFailed;
+        const std::vector<std::string> faults = faults_of(figures, demands, report);
+        report["passed"] = faults.empty();
+        say(figures, pictures, faults, report);
+        return judges() && !faults.empty() ? kComparisonFailed : 0;
     }
 
 private:
+    /// Whether there is a demand; else the verb measures only.
+    [[nodiscard]] bool judges() { return !demands_.empty() || app().count("--coverage") > 0; }
+
+    [[nodiscard]] std::vector<std::string> faults_of(const Figures& figures, const std::vector<Demand>& demands,
+                                                     const Report& report) const {
+        std::vector<std::string> faults;
+        for (std::size_t i = 0; i < demands.size(); ++i) {
+            if (demands[i].met_by(figures)) continue;
+            faults.push_back(text(demands_[i], " is not met by ", std::setprecision(6), figures.at(demands[i].metric)));
+        }
+        const double coverage = report.json().value("coverage", 1.0);
+        if (coverage < fields_.least_coverage) faults.push_back(text("a coverage of ", std::setprecision(3), coverage));
+        return faults;
+    }
+
     /// For people: the figure that is asked for most first, then the others, then the demands.
-    void say(const Figures& figures, bool pictures, const std::vector<std::string>& unmet, Report& report) const {
+    void say(const Figures& figures, bool pictures, const std::vector<std::string>& faults, Report& report) {
         const std::string first = pictures ? "psnr" : "l2";
         Lines lines{{first, text(std::setprecision(6), figures.at(first), pictures ? " dB" : "")}};
         for (const auto& [name, value] : figures.all()) {
             if (name != first) lines.emplace_back(name, text(std::setprecision(6), value, name.ends_with("psnr") ? " dB" : ""));
         }
-        if (report.json().contains("heatmap")) lines.emplace_back("heatmap", report.json().at("heatmap").get<std::string>());
-        if (!demands_.empty()) {
-            std::string words = unmet.empty() ? "passed: " + join(demands_) : "failed: ";
-            for (const std::string& demand : unmet) {
-                const std::string metric = demand.substr(0, demand.find('='));
-                words += text(&demand == &unmet.front() ? "" : ", ", demand, " is not met by ", std::setprecision(6),
-                              figures.at(metric));
-            }
-            lines.emplace_back("verdict", words);
+        const Json& json = report.json();
+        if (!pictures) {
+            const auto samples = json.at("samples").get<std::size_t>(), uncovered = json.at("uncovered").get<std::size_t>();
+            lines.emplace_back("covered", text(samples, " of ", samples + uncovered, " places"));
+        }
+        if (json.contains("window")) {
+            const Json& part = json.at("window");
+            lines.emplace_back("pixels", text(part.at("width"), " x ", part.at("height"), " from (", part.at("left"), ", ",
+                                              part.at("top"), "), where the two overlap"));
+        }
+        if (json.contains("heatmap")) lines.emplace_back("heatmap", json.at("heatmap").get<std::string>());
+        if (judges()) {
+            std::vector<std::string> met = demands_;
+            if (app().count("--coverage") > 0) met.push_back(text("coverage=", fields_.least_coverage));
+            lines.emplace_back("verdict", faults.empty() ? "passed: " + join(met) : "failed: " + join(faults));
         }
         std::string all = aligned(lines);
         all.pop_back();

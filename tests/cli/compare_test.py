@@ -99,6 +99,40 @@ class Pictures(InFolder):
         self.assertAlmostEqual(figures["optical_depth_error"], 1, places=4)
 
 
+class Parts(InFolder):
+    """Crops: pictures whose data window is a part of their display window, as shares of a picture are."""
+
+    def setUp(self):
+        super().setUp()
+        options = ["--size", "48x40", "--look", "volume"]
+        self.run_ok("render", "model:ball:3", "-o", "whole.exr", *options)
+        for part in (1, 2):
+            self.run_ok("render", "model:ball:3", "-o", f"part{part}.exr", *options, "--part", f"{part}/2")
+
+    def test_shares_have_no_pixel_in_common(self):
+        done = subvol("compare", "part1.exr", "part2.exr", "--heatmap", "h.png", folder=self.folder)
+        self.assertEqual(done.code, 2, done.err)
+        self.assertRegex(done.err, r"^subvol: part1\.exr: [^\n]*part2\.exr[^\n]*no pixel in common[^\n]*\n$")
+        self.assertNotIn("h.png", self.files())
+
+    def test_a_share_is_compared_with_its_part_of_the_whole(self):
+        for part in (1, 2):
+            for a, b in ((f"part{part}.exr", "whole.exr"), ("whole.exr", f"part{part}.exr")):
+                figures = self.run_ok("compare", a, b, "--json").json()
+                self.assertEqual(figures["max"], 0, (a, b))
+                self.assertEqual((figures["window"]["left"], figures["window"]["width"]), (0, 48))
+        self.assertIn("where the two overlap", self.run_ok("compare", "part1.exr", "whole.exr").out)
+        self.run_ok("compare", "part2.exr", "whole.exr", "--heatmap", "h.exr")
+        self.assertNotIn("window", self.run_ok("compare", "whole.exr", "whole.exr", "--json").json())
+
+    def test_parts_of_other_pictures_are_refused(self):
+        self.run_ok("render", "model:ball:3", "-o", "other.exr", "--size", "48x44", "--look", "volume", "--part", "1/2")
+        for a, b in (("part1.exr", "other.exr"), ("whole.exr", "other.exr")):
+            done = subvol("compare", a, b, folder=self.folder)
+            self.assertEqual(done.code, 2, done.err)
+            self.assertRegex(done.err, r"^subvol: [^\n]*48 x 40[^\n]*48 x 44[^\n]*\n$")
+
+
 class Fields(InFolder):
     def compared(self, *arguments):
         return self.run_ok("compare", *arguments, "--json").json()
@@ -117,6 +151,37 @@ class Fields(InFolder):
         self.assertEqual(figures["samples"] + figures["uncovered"], 40000)
         self.assertAlmostEqual(figures["samples"] / 40000, 0.975**3, delta=4 * 0.26 / 200)
         self.assertEqual((figures["a"]["input"], figures["b"]["input"]), ("cube.mesh", "one.vdb"))
+
+    def test_a_part_of_the_reference_is_not_the_reference(self):
+        # The first mesh covers a quarter of the second, and is equal to it there.
+        (self.folder / "cube.mesh").write_text(CUBE.format(last=8))
+        points, cells = CUBE.format(last=8).split("Hexahedra")
+        (self.folder / "slab.mesh").write_text(points.replace("\n1 ", "\n.25 ") + "Hexahedra" + cells)
+        self.assertNotIn("\n1 ", points.replace("\n1 ", "\n.25 "))
+        options = ["--density", "x", "--levels", 0, "--samples", 2000, "--resolution", 8]
+        for demands in (["--fail-under", "linf=10"], ["--coverage", 0.9], ["--coverage", 0.9, "--fail-under", "linf=10"]):
+            done = subvol("compare", "slab.mesh", "cube.mesh", *options, *demands, "--json", folder=self.folder)
+            self.assertEqual(done.code, 1, done.err)
+            figures = done.json()
+            self.assertIs(figures["passed"], False)
+            self.assertLess(figures["linf"], 1e-12)
+            self.assertAlmostEqual(figures["coverage"], 0.25, delta=0.05)
+            self.assertEqual(figures["coverage"], figures["samples"] / 2000)
+            self.assertIn(f"{figures['samples']} of 2000 places", figures["warnings"][0])
+            done = subvol("compare", "slab.mesh", "cube.mesh", *options, *demands, folder=self.folder)
+            self.assertEqual(done.code, 1, done.err)
+            self.assertIn(f"{figures['samples']} of 2000 places", done.err)
+            self.assertRegex(done.out, rf"covered +{figures['samples']} of 2000 places")
+            self.assertRegex(done.out, r"verdict +failed: [^\n]*coverage")
+        # Without a demand it measures only, and says the same.
+        done = self.run_ok("compare", "slab.mesh", "cube.mesh", *options, "--json")
+        self.assertIs(done.json()["passed"], False)
+        self.assertIn("of 2000 places", done.err)
+        figures = self.compared("slab.mesh", "cube.mesh", *options, "--coverage", 0.2, "--fail-under", "linf=1e-9")
+        self.assertIs(figures["passed"], True)
+        self.assertIn("passed", self.run_ok("compare", "slab.mesh", "cube.mesh", *options, "--coverage", 0, "--fail-under", "linf=1").out)
+        # The other way round the whole domain of the reference is covered.
+        self.assertEqual(self.compared("cube.mesh", "slab.mesh", *options, "--coverage", 1)["coverage"], 1)
 
     def test_a_mesh_equals_itself(self):
         figures = self.compared("model:ball:2", "model:ball:2", "--levels", 1, "--iso", 0.5, "--samples", 2000, "--resolution",
@@ -213,6 +278,8 @@ class Mistakes(InFolder):
         self.assert_refused("a.pfm", "a.pfm", "--fail-under", "interior.rmse=1", naming=["interior.rmse"])
         self.assert_refused("a.pfm", "a.pfm", "--iso", "1", naming=["--iso", "fields"])
         self.assert_refused("a.pfm", "a.pfm", "--levels", "1", naming=["--levels", "fields"])
+        self.assert_refused("a.pfm", "a.pfm", "--coverage", "0", naming=["--coverage", "fields"])
+        self.assert_refused("model:ball:2", "model:ball:2", "--coverage", "1.5", naming=["--coverage"])
         self.assert_refused("a.pfm", "a.pfm", "--heatmap", "h.jpg", naming=[".jpg"])
         self.assert_refused("a.pfm", "a.pfm", "--heatmap", "h.png", "--heatmap-of", "psnr", naming=["abs, flip, ssim"])
         self.assert_refused("a.pfm", "a.pfm", "--edge-band", "2", naming=["--edge-band", "interior"])

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "subvol/field.h"
@@ -20,12 +21,20 @@ namespace subvol {
 /// gradient_rmse: root mean square of the length of the gradients' difference (world⁻¹), over `gradients` places
 /// samples:       places where both fields have a value
 /// uncovered:     places where only the reference has a value; they do not enter the other numbers
+///
+/// Numbers over no place at all are NaN: l1, l2 and linf of fields that have no place in common, gradient_rmse where no
+/// gradients were compared.
 struct FieldDifference {
-    double l1 = 0, l2 = 0, linf = 0;
-    double gradient_rmse = 0;
+    double l1 = std::numeric_limits<double>::quiet_NaN(), l2 = l1, linf = l1;
+    double gradient_rmse = l1;
     std::size_t samples = 0;
     std::size_t uncovered = 0;
     std::size_t gradients = 0;
+
+    /// The share of the reference's places at which both fields have a value: what the other numbers are about.
+    [[nodiscard]] double coverage() const {
+        return samples == 0 ? 0.0 : static_cast<double>(samples) / static_cast<double>(samples + uncovered);
+    }
 };
 
 struct FieldDifferenceOptions {
