@@ -21,8 +21,7 @@ const subvol::cli::VdbFunctions& vdb() {
 }  // namespace
 
 // Only the module knows what is freed.
-template <>
-void std::default_delete<subvol::detail::VdbData>::operator()(subvol::detail::VdbData* data) const {
+void subvol::detail::FreeVdbData::operator()(VdbData* data) const noexcept {
     vdb().free(data);
 }
 

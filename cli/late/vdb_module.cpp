@@ -43,7 +43,7 @@ const subvol::cli::VdbFunctions* subvol_openvdb() {
         .report = [](const VdbGrid& grid) -> const GridReport& { return grid.report(); },
         .value = [](const VdbGrid& grid, const Vec3& x) { return grid.value(x); },
         .voxels = [](const VdbGrid& grid) { return grid.voxels(); },
-        .free = &detail::free_vdb_data,
+        .free = [](detail::VdbData* data) { detail::FreeVdbData()(data); },
         .remove_unfinished_files = &detail::remove_unfinished_files,
     };
     return &functions;

@@ -52,10 +52,10 @@ void set_kind_and_range(const openvdb::GridBase& grid, GridReport& report) {
 }  // namespace
 
 VdbGrid detail::VdbData::wrap(VdbData data) {
-    return VdbGrid(std::make_unique<VdbData>(std::move(data)));
+    return VdbGrid(VdbDataPointer(new VdbData(std::move(data))));
 }
 
-void detail::free_vdb_data(VdbData* data) {
+void detail::FreeVdbData::operator()(VdbData* data) const noexcept {
     delete data;
 }
 
@@ -75,7 +75,7 @@ VdbGrid detail::make_vdb_grid(const openvdb::GridBase::Ptr& grid) {
     return VdbData::wrap({grid, std::move(floats), std::move(report)});
 }
 
-VdbGrid::VdbGrid(std::unique_ptr<VdbData> data) : data_(std::move(data)) {
+VdbGrid::VdbGrid(VdbDataPointer data) : data_(std::move(data)) {
 }
 VdbGrid::~VdbGrid() = default;
 VdbGrid::VdbGrid(VdbGrid&&) noexcept = default;

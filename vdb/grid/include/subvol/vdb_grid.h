@@ -15,7 +15,13 @@ namespace subvol {
 
 namespace detail {
 struct VdbData;
-}
+
+/// Frees what a VdbGrid holds. A program that loads this component only when it needs it has a definition of its own.
+struct FreeVdbData {
+    void operator()(VdbData* data) const noexcept;
+};
+using VdbDataPointer = std::unique_ptr<VdbData, FreeVdbData>;
+}  // namespace detail
 
 /// kind:     float, vector, integer, mask, or the name of another type
 /// min, max: of the active values; of a vector its length
@@ -50,9 +56,9 @@ public:
 
 private:
     friend struct detail::VdbData;
-    explicit VdbGrid(std::unique_ptr<detail::VdbData> data);
+    explicit VdbGrid(detail::VdbDataPointer data);
 
-    std::unique_ptr<detail::VdbData> data_;
+    detail::VdbDataPointer data_;
 };
 
 /// The differences of two grids of floats at the voxels that are active in both.

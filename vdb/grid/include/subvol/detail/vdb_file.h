@@ -13,7 +13,4 @@ namespace subvol::detail {
 void write_vdb(const AtomicFile& file, const std::filesystem::path& path, std::span<const VdbGrid> grids,
                VdbCompression compression);
 
-/// Frees what a VdbGrid holds; for programs that load this component only when they need it.
-void free_vdb_data(VdbData* data);
-
 }  // namespace subvol::detail
