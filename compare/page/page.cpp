@@ -9,6 +9,7 @@
 #include "page_data.h"
 #include "page_kernels.h"
 #include "page_texts.h"
+#include "subvol/detail/html_policy.h"
 #include "subvol/detail/number_text.h"
 #include "subvol/detail/text_codes.h"
 #include "subvol/error.h"
@@ -123,10 +124,27 @@ PageJson head_json(std::span<const PageStep> steps, const PageOptions& options) 
     return json;
 }
 
-/// Text between <script> and </script>.
-std::string inside_script(std::string text) {
-    for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
+/// JSON between <script> and </script>: no text of it may end the element, or begin a comment in it, so there is no `<`.
+std::string inside_script(const PageJson& json) {
+    std::string text;
+    for (const char c : json.dump(-1, ' ', false, PageJson::error_handler_t::replace)) {
+        if (c == '<') {
+            text += "\\u003c";
+        } else {
+            text += c;
+        }
+    }
     return text;
+}
+
+/// All that runs on the page.
+std::string page_script() {
+    std::string script = "\n'use strict';\n";
+    for (const char* name :
+         {"page_data", "page_transfer", "page_camera", "page_gl", "page_draw", "page_pick", "page_editor", "page_main"}) {
+        script += embedded(name);
+    }
+    return script;
 }
 
 std::string facts_html(const PageOptions& options, const PageData& data, const PageRounding& rounding) {
@@ -155,16 +173,18 @@ std::string facts_html(const PageOptions& options, const PageData& data, const P
 
 std::string page_html(const PageOptions& options, PageJson json, const PageData& data, const PageRounding& rounding) {
     json.update(data.json);
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+    const std::string script = page_script(), style = "\n" + std::string(embedded("page_style"));
+    std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n" + html_policy(script, style);
+    html +=
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"generator\" content=\"OpenSubVol " SUBVOL_VERSION "\">\n<title>";
-    html += xml_escaped(options.title) + "</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>\n";
-    html += std::string(embedded("page_style")) + "</style>\n</head>\n<body>\n";
-    std::string body(embedded("page_body"));
+    html += xml_escaped(options.title) + "</title>\n<link rel=\"icon\" href=\"data:,\">\n<style>" + style +
+            "</style>\n</head>\n<body>\n";
+    std::string_view body = embedded("page_body");
     const auto fill = [&](std::string_view mark, const std::string& text) {
         const std::size_t at = body.find(mark);
-        if (at != std::string::npos) body.replace(at, mark.size(), text);
+        html += std::string(body.substr(0, at)) + text;
+        body.remove_prefix(at + mark.size());
     };
     fill("{title}", xml_escaped(options.title));
     fill("{facts}", facts_html(options, data, rounding));
@@ -173,12 +193,8 @@ std::string page_html(const PageOptions& options, PageJson json, const PageData&
         if (!text.name.ends_with("_vert") && !text.name.ends_with("_frag") && !text.name.ends_with("_glsl")) continue;
         html += "<script type=\"x-shader\" id=\"" + std::string(text.name) + "\">" + std::string(text.text) + "</script>\n";
     }
-    html += "<script type=\"application/json\" id=\"head\">" + inside_script(json.dump()) + "</script>\n";
-    html += "<script type=\"text/plain\" id=\"bytes\">" + base64(data.compressed) + "</script>\n<script>\n'use strict';\n";
-    for (const char* name :
-         {"page_data", "page_transfer", "page_camera", "page_gl", "page_draw", "page_pick", "page_editor", "page_main"}) {
-        html += embedded(name);
-    }
+    html += "<script type=\"application/json\" id=\"head\">" + inside_script(json) + "</script>\n";
+    html += "<script type=\"text/plain\" id=\"bytes\">" + base64(data.compressed) + "</script>\n<script>" + script;
     return html + "</script>\n</body>\n</html>\n";
 }
 

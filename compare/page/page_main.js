@@ -22,6 +22,7 @@ class Page {
     this.clip = { on: false, normal: [1, 0, 0], at: 0 };
     this.transfers = head.fields.map((field) => this.given(field));
     this.token = 0;
+    this.comparison = 0;
     this.coarseness = 8;
     this.editor = new Editor($('editor'), (opacities) => this.transferChanged(opacities));
     this.fillControls();
@@ -106,7 +107,7 @@ class Page {
       this.leaveComparison();
       this.refresh();
     }));
-    on('compare', 'change', (e) => (e.checked ? this.enterComparison() : this.leaveComparison()));
+    on('compare', 'change', (e) => (e.checked ? this.enterComparison().catch(fail) : this.leaveComparison()));
     on('wipe', 'input', (e) => $('view').style.setProperty('--at', e.value + '%'));
     new ResizeObserver(() => this.resize()).observe($('view'));
     window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => { this.editor.draw(); this.drawLegend(); this.refresh(); });
@@ -322,6 +323,7 @@ class Page {
 
   // The reference beside our picture: the same camera, field, step and colours.
   async enterComparison() {
+    const comparison = ++this.comparison, left = () => comparison !== this.comparison;
     this.camera.reset();
     this.field = 0;
     this.step = this.head.steps.length - 1;
@@ -337,13 +339,17 @@ class Page {
     const image = $('reference'), { png, width, height } = this.head.reference;
     image.src = 'data:image/png;base64,' + png;
     await image.decode();
+    if (left()) return;
     $('view').classList.add('comparing');
     $('wipe-row').hidden = false;
-    const psnr = this.psnr(image, await this.picture(width, height));
-    $('compare-state').textContent = $('compare').checked ? 'PSNR ' + psnr.toFixed(1) + ' dB at ' + width + ' × ' + height + ', 8 bits' : '';
+    const ours = await this.picture(width, height);
+    if (left()) return;
+    $('compare-state').textContent = 'PSNR ' + this.psnr(image, ours).toFixed(1) + ' dB at ' + width + ' × ' + height + ', 8 bits';
   }
 
+  // A comparison that waits for its pictures ends, too.
   leaveComparison() {
+    ++this.comparison;
     $('compare').checked = false;
     $('view').classList.remove('comparing');
     $('wipe-row').hidden = true;

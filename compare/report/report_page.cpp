@@ -5,6 +5,7 @@
 #include "html_text.h"
 #include "report_parts.h"
 #include "report_texts.h"
+#include "subvol/detail/html_policy.h"
 #include "subvol/study_report.h"
 
 namespace subvol {
@@ -194,12 +195,12 @@ std::vector<Judgement> judge(const StudyResults& results) {
 
 std::string report_html(std::span<const StudyResults> studies, const std::filesystem::path& folder,
                         const ReportOptions& options) {
-    std::string html =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<link rel=\"icon\" href=\"data:,\">\n<title>Error studies of subdivision volumes</title>\n<style>\n";
+    const std::string script = "\n" + std::string(embedded("slider")), style = "\n" + std::string(embedded("style"));
+    std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n" + html_policy(script, style);
     html +=
-        std::string(embedded("style")) + "</style>\n</head>\n<body>\n<header>\n<h1>Error studies of subdivision volumes</h1>\n";
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<link rel=\"icon\" href=\"data:,\">\n<title>Error studies of subdivision volumes</title>\n<style>";
+    html += style + "</style>\n</head>\n<body>\n<header>\n<h1>Error studies of subdivision volumes</h1>\n";
     html += summary_html(studies) + "</header>\n<main>\n";
     for (const StudyResults& results : studies) html += study_html(results, folder, options);
     html += pages_html(options.pages);
@@ -208,7 +209,7 @@ std::string report_html(std::span<const StudyResults> studies, const std::filesy
     html += "<h3>Command</h3>\n<pre>" + escaped(options.command) +
             "</pre>\n<p class=\"soft\">In the same folder, only unfinished cases are run; <code>--fresh</code> runs all "
             "cases.</p>\n";
-    return html + "</section>\n</main>\n<script>\n" + std::string(embedded("slider")) + "</script>\n</body>\n</html>\n";
+    return html + "</section>\n</main>\n<script>" + script + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace subvol

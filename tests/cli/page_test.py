@@ -12,7 +12,7 @@ import time
 import unittest
 from pathlib import Path
 
-from browser import Browser, find_chromium
+from browser import Browser, find_chromium, policy_faults
 from command import TWO_FIELDS, InFolder, subvol
 
 
@@ -32,6 +32,10 @@ def write_tiff(path, width, height, pixels):
             content = struct.pack("<I" if kind == 4 else "<HH", *values, *([0] if kind == 3 else []))
         rows += struct.pack("<HHI", tag, kind, len(values)) + content
     path.write_bytes(b"II*\0" + struct.pack("<IH", 8, len(tags)) + rows + b"\0\0\0\0" + extra + pixels)
+
+
+HOSTILE_NAME = "<!--<script>"
+HOSTILE_TITLE = "<!-- <script> </script> ]]> <b>&\u2028 {facts}"
 
 
 class Page(InFolder):
@@ -70,6 +74,21 @@ class Page(InFolder):
         text = (self.folder / "a.html").read_text()
         self.assertIn("&lt;/script&gt;&lt;b&gt;&amp;", text)
         self.assertNotIn("</script><b>", text)
+
+    def test_names_of_a_file_that_someone_sent_stay_names(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS.replace("Temp", HOSTILE_NAME))
+        self.run_ok("page", "two.vtk", "-o", "a.html", "--fields", "all", "--title", HOSTILE_TITLE)
+        text = (self.folder / "a.html").read_text()
+        data = re.search(r'<script type="application/json" id="head">(.*?)</script>', text, re.S)[1]
+        self.assertNotIn("<", data)
+        head = json.loads(data)
+        self.assertEqual(head["title"], HOSTILE_TITLE)
+        self.assertIn(HOSTILE_NAME, [field["name"] for field in head["fields"]])
+        self.assertNotIn("<!--", text)
+        self.assertEqual(policy_faults(text), [])
+        # A title like one of the places that the page fills.
+        self.run_ok("page", "model:ball:3", "-o", "b.html", "--title", "{facts}")
+        self.assertRegex((self.folder / "b.html").read_text(), r"<h1>\{facts\}</h1>(.|\n)*<dl><dt>File</dt>")
 
     def test_kernels_are_merged_until_they_fit(self):
         whole = self.run_ok("page", "model:pawn", "-o", "a.html", "--no-reference", "--json").json()
@@ -211,6 +230,60 @@ class InTheBrowser(unittest.TestCase):
         self.assertGreater(opacity, 0.5)
         self.assertNotEqual(self.shot("page_opacity.png"), cut)
         self.assertEqual(self.browser.requests(), [])
+        self.assertEqual(self.browser.complaints(), [])
+
+    def test_hostile_names_are_shown_and_nothing_else_runs(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS.replace("Temp", HOSTILE_NAME))
+        self.command("page", "two.vtk", "-o", "d.html", "--fields", "all", "--title", HOSTILE_TITLE)
+        self.open("d.html", 300)
+        self.assertIn(HOSTILE_NAME, self.browser.evaluate("[...document.getElementById('field').options].map(o => o.text)"))
+        self.assertEqual(self.browser.evaluate("document.title"), " ".join(HOSTILE_TITLE.split(" ")))
+        self.assertEqual(self.browser.complaints(), [])
+        # What would get into the page as a tag after all does nothing, and nothing is loaded.
+        self.browser.evaluate("""(() => {
+            const script = Object.assign(document.createElement('script'), { textContent: 'window.foreign = 1' });
+            document.body.append(script);
+            document.body.insertAdjacentHTML('beforeend', '<img src="http://127.0.0.1:9/a.png" onerror="window.foreign = 2">');
+        })()""")
+        self.assertEqual(self.browser.evaluate("fetch('http://127.0.0.1:9/').then(() => 'loaded', () => 'refused')"), "refused")
+        self.assertEqual(self.browser.evaluate("String(window.foreign)"), "undefined")
+        self.assertIn("Content Security Policy", json.dumps(self.browser.complaints()))
+
+    def test_a_comparison_that_is_left_at_once_stays_left(self):
+        self.command("page", "model:ball:4", "-o", "e.html")
+        self.open("e.html", 300)
+        state = "[document.getElementById('view').classList.contains('comparing'), document.getElementById('compare').checked]"
+        click = "document.getElementById('compare').click()"
+        # While the reference is decoded, and while the page's own picture is drawn.
+        for held, kind in (("HTMLImageElement.prototype", "decode"), ("subvolPage.constructor.prototype", "picture")):
+            self.browser.evaluate(f"""{{
+                const whole = {held}.{kind};
+                window.release = () => 0;
+                window.entered = 0;
+                {held}.{kind} = function (...of) {{
+                    ++window.entered;
+                    {held}.{kind} = whole;
+                    return new Promise((go) => {{ window.release = () => go(whole.apply(this, of)); }});
+                }};
+            }}""")
+            self.browser.evaluate(click)
+            deadline = time.monotonic() + 1500
+            while not self.browser.evaluate("window.entered"):
+                self.assertLess(time.monotonic(), deadline)
+                time.sleep(0.02)
+            self.browser.evaluate(click)
+            self.browser.evaluate("window.release()")
+            self.wait()
+            self.browser.evaluate("new Promise((go) => setTimeout(go, 200))")
+            self.wait()
+            self.assertEqual(self.browser.evaluate(state), [False, False], kind)
+            self.assertEqual(self.browser.evaluate("document.getElementById('compare-state').textContent"), "")
+        # And one that is not left is shown.
+        self.browser.evaluate(click)
+        while not self.browser.evaluate("document.getElementById('compare-state').textContent"):
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+        self.assertEqual(self.browser.evaluate(state), [True, True])
         self.assertEqual(self.browser.complaints(), [])
 
     def test_steps_are_chosen(self):

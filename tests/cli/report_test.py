@@ -9,7 +9,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from browser import Browser, find_chromium
+from browser import Browser, find_chromium, policy_faults
 from command import subvol
 
 STUDY = {
@@ -68,6 +68,7 @@ class ReportInBrowser(unittest.TestCase):
         self.browser.open(self.page.as_uri())
         self.assertEqual(self.browser.requests(), [])
         self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual(policy_faults(self.page.read_text()), [])
         text = self.browser.evaluate("document.body.innerText")
         for said in ("A <small> study", "<b>splat</b>", "1 case failed", "of 2 demands met", "subvol study s.json figure4", "processor"):
             self.assertIn(said, text)
