@@ -33,10 +33,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     folder.put(data, size);
     const char letter = size == 0 ? 'd' : static_cast<char>(data[0]);
     return fuzz::run([&] {
-        const ReadResult result = letter == 's'   ? detail::read_series_step(folder.path("a.series"), {})
-                                  : letter == 'p' ? detail::read_pieces(folder.path("a.pvtu"), {})
-                                  : letter == 'm' ? detail::read_blocks(folder.path("a.vtm"), {})
-                                                  : detail::read_pvd_step(folder.path("a.pvd"), {});
+        const ReadResult result = letter == 's'   ? detail::read_collection(folder.path("a.series"), {})
+                                  : letter == 'p' ? detail::read_collection(folder.path("a.pvtu"), {})
+                                  : letter == 'm' ? detail::read_collection(folder.path("a.vtm"), {})
+                                                  : detail::read_collection(folder.path("a.pvd"), {});
         validate(result.mesh);
         static_cast<void>(inspect(result.mesh));
     });

@@ -238,7 +238,7 @@ WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh
 }
 
 BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id) {
-    const std::string text = read_text(path);
+    const std::string text = read_regular(path);
     ByteHash found;
     found.add(text);
     if (found.value() != hash) {

@@ -8,6 +8,7 @@
 #include "hdf5_file.h"
 #include "hdf5_functions.h"
 #include "subvol/detail/module.h"
+#include "subvol/detail/read_file.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -22,10 +23,13 @@ namespace {
 void expect_hdf5(const std::filesystem::path& path) {
     constexpr std::string_view kBegin = "\x89HDF\r\n\x1a\n";
     std::array<char, kBegin.size()> begin{};
-    std::ifstream in(path, std::ios::binary);
-    const int error = errno;
     std::error_code none;
     const bool folder = std::filesystem::is_directory(path, none);
+    if (!folder && !not_regular(path).empty()) {
+        throw Error(ErrorCode::InvalidInput, "is not a regular file", path.string(), "files of HDF5 are");
+    }
+    std::ifstream in(path, std::ios::binary);
+    const int error = errno;
     if (!in || folder) {
         throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(folder ? EISDIR : error),
                     path.string());

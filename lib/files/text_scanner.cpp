@@ -2,11 +2,8 @@
 #include "text_scanner.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <system_error>
 
 #include "subvol/detail/number_text.h"
@@ -46,26 +43,6 @@ std::string_view without_plus(std::string_view word) {
 }
 
 }  // namespace
-
-std::string read_text(const std::filesystem::path& path) {
-    const auto fail = [&](int error) -> void {
-        throw Error(ErrorCode::Io, "cannot be read: " + std::generic_category().message(error), path.string());
-    };
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    if (!file) fail(errno);
-    constexpr std::size_t kPipeChunk = 1 << 16;
-    std::error_code no_size;
-    const auto size = std::filesystem::file_size(path, no_size);
-    std::string text(no_size ? kPipeChunk : size + 1, '\0');
-    std::size_t length = 0;
-    while (const std::size_t more = std::fread(text.data() + length, 1, text.size() - length, file.get())) {
-        length += more;
-        if (length == text.size()) text.resize(2 * length);
-    }
-    if (std::ferror(file.get())) fail(errno);
-    text.resize(length);
-    return text;
-}
 
 TextScanner::TextScanner(std::string_view text, std::string_view file, Comments comments)
     : text_(text), file_(file), comments_(comments) {
@@ -163,15 +140,19 @@ void TextScanner::fail(const std::string& message, const std::string& allowed) c
     fail_at(start_, message, allowed);
 }
 
-void TextScanner::fail_at(std::size_t position, const std::string& message, const std::string& allowed) const {
+std::string TextScanner::place_of(std::size_t position) const {
     const auto lines_before = [&] {
         const auto end = static_cast<std::ptrdiff_t>(std::min(position, text_.size()));  // parsers of XML may point behind it
         return std::count(text_.begin(), text_.begin() + end, '\n');
     };
-    std::string place;
-    if (places_ == Places::Bytes) place = ", byte " + std::to_string(position);
-    if (places_ == Places::Lines) place = ", line " + std::to_string(1 + lines_before());
-    throw Error(ErrorCode::InvalidInput, printable(message), std::string(file_) + place, printable(allowed));
+    std::string place(file_);
+    if (places_ == Places::Bytes) place += ", byte " + std::to_string(position);
+    if (places_ == Places::Lines) place += ", line " + std::to_string(1 + lines_before());
+    return place;
+}
+
+void TextScanner::fail_at(std::size_t position, const std::string& message, const std::string& allowed) const {
+    throw Error(ErrorCode::InvalidInput, printable(message), place_of(position), printable(allowed));
 }
 
 void TextScanner::fail_word(const Place& place, std::string_view expected, std::string_view found) const {

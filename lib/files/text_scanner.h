@@ -2,18 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
 #include "subvol/detail/printable.h"
+#include "subvol/detail/read_file.h"
 
 namespace subvol::detail {
-
-/// The whole file, in one read.
-///
-/// throws: Error(Io) if it cannot be opened or read
-[[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
 /// The entity that a number belongs to, for error messages: "vertex 13 of 27". number: < 0 for none; of: the total, 0 for none
 struct Place {
@@ -68,6 +63,8 @@ public:
 
     /// The start of the last word or line, as an offset into the text.
     [[nodiscard]] std::size_t position() const { return start_; }
+    /// How errors name a place: the file with the line or the byte.
+    [[nodiscard]] std::string place_of(std::size_t position) const;
     [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const;
     [[noreturn]] void fail_at(std::size_t position, const std::string& message, const std::string& allowed = {}) const;
     /// Fails because a word differs from what is expected. found: empty at the end of the text

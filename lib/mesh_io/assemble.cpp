@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
+#include <utility>
 
 #include "mixed_cells_split.h"
 #include "sharp_groups.h"
@@ -115,8 +117,16 @@ public:
         result_.mesh.attributes.push_back(std::move(attribute));
     }
 
-    /// After the last array: one warning for all arrays of cells.
+    /// After the last array: one warning for all arrays of cells, and one for each name that several arrays have.
     void finish() {
+        for (const std::string& name : repeated_) {
+            const auto& others = names_taken_[name].others;
+            const std::string last = others.size() > 1 ? " to " + in_quotes(others.back()) : "";
+            result_.warnings.push_back("there is more than one array " + in_quotes(name) + ": " +
+                                       (others.size() > 1 ? std::to_string(others.size()) + " others are called "
+                                                          : "another is called ") +
+                                       in_quotes(others.front()) + last);
+        }
         if (averaged_.empty()) return;
         constexpr std::size_t kMostNamed = 6;
         const bool one = averaged_.size() == 1;
@@ -164,14 +174,20 @@ private:
         return mean_over_cells(result_.mesh, of_cells(array), static_cast<std::size_t>(array.components));
     }
 
-    std::string unused_name(const std::string& name) const {
-        std::string candidate = name;
-        for (int k = 2; result_.mesh.find_attribute(candidate) != nullptr; ++k) candidate = name + "_" + std::to_string(k);
-        if (candidate != name) {
-            result_.warnings.push_back("there is more than one array " + in_quotes(name) + ": another is called " +
-                                       in_quotes(candidate));
+    // The name itself, or with the first number that makes it a name of no other array.
+    std::string unused_name(const std::string& name) {
+        Taken& taken = names_taken_[name];
+        if (!taken.itself) {
+            taken.itself = true;
+            return name;
         }
-        return candidate;
+        std::string other;
+        do {
+            other = name + "_" + std::to_string(taken.next++);
+        } while (std::exchange(names_taken_[other].itself, true));
+        if (taken.others.empty()) repeated_.push_back(name);
+        taken.others.push_back(other);
+        return other;
     }
 
     ReadResult& result_;
@@ -179,7 +195,14 @@ private:
     std::string_view file_;
     const EntityNames& names_;
     bool fits_;
-    std::vector<std::string> averaged_;
+    // A name that is taken by an array, or that several have: those of the others, and the next number to try.
+    struct Taken {
+        bool itself = false;
+        std::size_t next = 2;
+        std::vector<std::string> others;
+    };
+    std::unordered_map<std::string, Taken> names_taken_;
+    std::vector<std::string> averaged_, repeated_;
 };
 
 MixedCells take_others(MeshFile& found) {

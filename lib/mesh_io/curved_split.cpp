@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -267,9 +268,10 @@ private:
     }
 
     static std::string short_text(double value) {
-        char text[32];
-        std::snprintf(text, sizeof text, "%.1e", value);
-        return text;
+        std::array<char, 32> text{};
+        const auto [end, error] =
+            std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::scientific, 1);
+        return {text.data(), end};
     }
 
     void report_straight() {

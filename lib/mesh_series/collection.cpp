@@ -7,8 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "subvol/detail/number_text.h"
 #include "subvol/detail/printable.h"
 #include "subvol/error.h"
+#include "trimmed.h"
 #include "vtk_xml.h"
 
 namespace subvol::detail {
@@ -16,17 +18,6 @@ namespace subvol::detail {
 namespace {
 
 constexpr int kMostNested = 32;
-
-// Adds a file that a list names, relative to the list's folder.
-ListedFile listed(const std::filesystem::path& list, const std::string& name, std::string block, std::string place) {
-    const std::filesystem::path path = list.parent_path() / name;
-    std::error_code unreadable;
-    if (name.empty() || !std::filesystem::exists(path, unreadable)) {
-        throw Error(ErrorCode::InvalidInput, name.empty() ? "no file is named" : "there is no file " + in_quotes(name), place,
-                    "names are relative to the folder of this file");
-    }
-    return {path, std::move(block), std::move(place)};
-}
 
 // Puts files with the same time into one step, and the steps in order.
 class Steps {
@@ -52,25 +43,34 @@ public:
         : path_(path), file_(path.string()), text_(read_text(path)), xml_(text_, file_, type, needed) {}
 
     [[nodiscard]] const VtkXml& xml() const { return xml_; }
-    [[nodiscard]] ListedFile file(const pugi::xml_node& node, const char* attribute, std::string block) const {
-        return listed(path_, as_utf8(node.attribute(attribute).as_string()), std::move(block), place_of(node));
+    [[nodiscard]] ListedFile file(const pugi::xml_node& node, const char* attribute, std::string block) {
+        std::string place = place_of(node);
+        auto path = named_file(path_.parent_path(), as_utf8(node.attribute(attribute).as_string()), [&] { return place; });
+        return {std::move(path), std::move(block), std::move(place)};
     }
 
 private:
-    [[nodiscard]] std::string place_of(const pugi::xml_node& node) const {
-        const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(xml_.place(node), text_.size()));
-        return file_ + ", line " + std::to_string(1 + std::count(text_.begin(), end, '\n'));
+    // Elements come in the order of the text: each line is counted once.
+    [[nodiscard]] std::string place_of(const pugi::xml_node& node) {
+        const std::size_t place = std::min(xml_.place(node), text_.size());
+        if (place < counted_) counted_ = lines_ = 0;
+        const auto at = [&](std::size_t offset) { return text_.begin() + static_cast<std::ptrdiff_t>(offset); };
+        lines_ += static_cast<std::size_t>(std::count(at(counted_), at(place), '\n'));
+        counted_ = place;
+        return file_ + ", line " + std::to_string(1 + lines_);
     }
 
     std::filesystem::path path_;
     std::string file_, text_;
     VtkXml xml_;
+    std::size_t counted_ = 0, lines_ = 0;  // bytes of the text, and the lines that end in them
 };
 
 // The blocks of a composite data set, and those of its blocks. name: of the element, with a slash; empty for the first
-void add_blocks(const XmlList& list, const pugi::xml_node& element, const std::string& name, int depth,
+void add_blocks(XmlList& list, const pugi::xml_node& element, const std::string& name, int depth,
                 std::vector<ListedFile>& files) {
     if (depth > kMostNested) list.xml().fail_at(element, "blocks are nested too deeply");
+    if (name.size() > kLongestBlock) list.xml().fail_at(element, "the name of a block is too long", kBlockLimit);
     int count = 0;
     for (const auto& child : element.children()) {
         const std::string own = printable(as_utf8(child.attribute("name").as_string()));
@@ -91,12 +91,14 @@ void add_blocks(const XmlList& list, const pugi::xml_node& element, const std::s
 }  // namespace
 
 Collection read_pvd(const std::filesystem::path& path) {
-    const XmlList list(path, "Collection", "a list of files with their times is needed");
+    XmlList list(path, "Collection", "a list of files with their times is needed");
     Steps steps;
     for (const auto& node : list.xml().data_set().children("DataSet")) {
-        const double time = node.attribute("timestep").as_double();
-        if (!std::isfinite(time)) list.xml().fail_at(node, "its timestep is not a number");
-        steps.add(time, list.file(node, "file", printable(as_utf8(node.attribute("name").as_string()))));
+        const auto time = number_from(trimmed(node.attribute("timestep").as_string("0")));
+        if (!time || !std::isfinite(*time)) list.xml().fail_at(node, "its timestep is not a number");
+        std::string name = printable(as_utf8(node.attribute("name").as_string()));
+        if (name.size() > kLongestBlock) list.xml().fail_at(node, "the name of a block is too long", kBlockLimit);
+        steps.add(*time, list.file(node, "file", std::move(name)));
     }
     Collection collection = std::move(steps).collection();
     if (collection.times.empty()) list.xml().fail_at(list.xml().data_set(), "it lists no files");
@@ -119,7 +121,8 @@ Collection read_series_list(const std::filesystem::path& path) {
                            (!entry.contains("time") || entry["time"].is_number());
         if (!sound) fail(place + " has no name, or its time is not a number");
         const double time = entry.contains("time") ? entry["time"].get<double>() : static_cast<double>(number);
-        steps.add(time, listed(path, entry["name"].get<std::string>(), {}, file + ", " + place));
+        auto named = named_file(path.parent_path(), entry["name"].get<std::string>(), [&] { return file + ", " + place; });
+        steps.add(time, {std::move(named), {}, file + ", " + place});
         ++number;
     }
     if (number == 0) fail("it lists no files");
@@ -132,7 +135,7 @@ Collection read_pieces_list(const std::filesystem::path& path) {
                              : extension == ".PVTR" ? "PRectilinearGrid"
                              : extension == ".PVTI" ? "PImageData"
                                                     : "PUnstructuredGrid";
-    const XmlList list(path, type, "the pieces of a volume mesh are needed");
+    XmlList list(path, type, "the pieces of a volume mesh are needed");
     Collection collection{{0}, {{}}};
     for (const auto& node : list.xml().data_set().children("Piece")) {
         collection.files[0].push_back(list.file(node, "Source", {}));
@@ -142,7 +145,7 @@ Collection read_pieces_list(const std::filesystem::path& path) {
 }
 
 Collection read_blocks_list(const std::filesystem::path& path) {
-    const XmlList list(path, "vtkMultiBlockDataSet", "blocks of volume meshes are needed");
+    XmlList list(path, "vtkMultiBlockDataSet", "blocks of volume meshes are needed");
     Collection collection{{0}, {{}}};
     add_blocks(list, list.xml().data_set(), {}, 0, collection.files[0]);
     if (collection.files[0].empty()) list.xml().fail_at(list.xml().data_set(), "it lists no blocks");

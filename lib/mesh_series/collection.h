@@ -22,6 +22,10 @@ struct ListedFile {
     std::string place;
 };
 
+/// The longest name of a block: each of its files has it.
+inline constexpr std::size_t kLongestBlock = 1024;
+inline constexpr const char* kBlockLimit = "at most 1024 bytes";
+
 /// The steps of a collection, in the order of their times, with their files.
 struct Collection {
     std::vector<double> times;
@@ -59,9 +63,6 @@ struct PartFiles {
 [[nodiscard]] MeshFile read_part(const ListedFile& file, const ReadOptions& options);
 
 /// Reads a step of a collection and makes one mesh of its files.
-[[nodiscard]] ReadResult read_pvd_step(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] ReadResult read_series_step(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] ReadResult read_pieces(const std::filesystem::path& path, const ReadOptions& options);
-[[nodiscard]] ReadResult read_blocks(const std::filesystem::path& path, const ReadOptions& options);
+[[nodiscard]] ReadResult read_collection(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace subvol::detail

@@ -28,7 +28,7 @@ ReadResult read_file(const std::filesystem::path& path, const ReadOptions& optio
 ReadResult read_grid_and_flow(const std::filesystem::path& path, const ReadOptions& options) {
     const std::filesystem::path flow = std::filesystem::path(path).replace_extension(".q");
     const std::string grid_text = read_text(path), flow_file = flow.string();
-    const std::string flow_text = std::filesystem::exists(flow) ? read_text(flow) : std::string();
+    const std::string flow_text = std::filesystem::exists(flow) ? read_regular(flow) : std::string();
     return read_plot3d(grid_text, path.string(), options, {flow_text, flow_file});
 }
 
@@ -58,7 +58,7 @@ constexpr std::array<MeshFormat, 22> kFormats{{
     {{".vti"}, "VTK XML", read_file<read_vti>, nullptr, false, false, nullptr, false, read_vti_piece},
     {{".pvtu", ".pvts", ".pvtr", ".pvti"},
      "VTK XML",
-     read_pieces,
+     read_collection,
      nullptr,
      false,
      false,
@@ -66,9 +66,9 @@ constexpr std::array<MeshFormat, 22> kFormats{{
      false,
      nullptr,
      read_pieces_list},
-    {{".vtm"}, "VTK XML", read_blocks, nullptr, false, true, nullptr, false, nullptr, read_blocks_list},
-    {{".pvd"}, "ParaView", read_pvd_step, nullptr, false, true, pvd_times, false, nullptr, read_pvd},
-    {{".series"}, "ParaView", read_series_step, nullptr, false, true, series_list_times, false, nullptr, read_series_list},
+    {{".vtm"}, "VTK XML", read_collection, nullptr, false, true, nullptr, false, nullptr, read_blocks_list},
+    {{".pvd"}, "ParaView", read_collection, nullptr, false, true, pvd_times, false, nullptr, read_pvd},
+    {{".series"}, "ParaView", read_collection, nullptr, false, true, series_list_times, false, nullptr, read_series_list},
     {{".msh"}, "Gmsh", read_file<read_gmsh>, nullptr, true},
     {{".xyz", ".p3d"}, "Plot3D", read_grid_and_flow, nullptr},
     {{".e", ".exo", ".ex2", ".g"}, "Exodus II", read_file<read_exodus>, nullptr, false, true, exodus_times},

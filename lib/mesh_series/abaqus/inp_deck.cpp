@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <span>
 #include <unordered_map>
 
+#include "named_files.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 #include "trimmed.h"
@@ -19,8 +22,9 @@ using namespace std::string_view_literals;
 
 namespace {
 
-constexpr int kMostIncludes = 16;
-constexpr std::size_t kMostGenerated = std::size_t{1} << 20;  // nodes and elements: a line could ask for any number
+// A line could ask for any number of nodes, elements and members of sets. What is made is in proportion to the deck's bytes.
+constexpr std::size_t kFewMade = std::size_t{1} << 20, kFewMembers = std::size_t{1} << 22;
+constexpr std::size_t kMadeOfByte = 4;
 
 std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> fields;
@@ -61,16 +65,23 @@ class DeckReader {
 public:
     explicit DeckReader(InpDeck& deck) : deck_(deck) {}
 
-    void read(const std::filesystem::path& path, int depth) {
-        const std::string text = read_text(path), file = path.string();
+    // place: where the file is named, for messages
+    void read(const std::filesystem::path& path, const NamedFiles::Place& place) {
+        named_.count(place);
+        const auto open = named_.open(path, place);
+        named_.take_file(path, place);
+        const std::string text = read_text(path);
+        bytes_ += text.size();
+        const std::string& file = *deck_.files.insert(path.string()).first;
         TextScanner in(text, file, TextScanner::Comments::None);
         const auto* const outer = std::exchange(in_, &in);
-        const std::string outer_file = std::exchange(file_, file);
+        const std::string_view outer_file = std::exchange(file_, file);
         std::size_t position = 0;
-        while (position < text.size()) {
+        for (std::size_t number = 1; position < text.size(); ++number) {
             const std::size_t end = std::min(text.find('\n', position), text.size());
             const std::string_view line = trimmed(std::string_view(text).substr(position, end - position));
             position_ = position;
+            line_ = number;
             position = end + 1;
             if (line.empty() || line.starts_with("**")) continue;
             if (line.front() != '*') {
@@ -79,17 +90,31 @@ public:
             }
             finish_element();
             if (const auto included = take_keyword(line)) {
-                if (depth == kMostIncludes)
-                    fail("files include each other, more than " + std::to_string(kMostIncludes) + " deep");
-                const std::filesystem::path next = path.parent_path() / *included;
-                std::error_code none;
-                if (!std::filesystem::is_regular_file(next, none)) fail("there is no file " + in_quotes(*included));
-                read(next, depth + 1);
+                const NamedFiles::Place here = [&in, at = position_, this] { return in.place_of(at); };
+                read(named_file(path.parent_path(), *included, here), here);
             }
         }
         finish_element();
         in_ = outer;
         file_ = outer_file;
+    }
+
+    // Each instance of a part is another copy of its nodes and elements, and of the members of its sets.
+    void count_instances() {
+        std::set<std::string_view> met;
+        std::map<std::string_view, std::size_t> members;
+        for (const auto& [name, part] : deck_.parts) {
+            for (const auto& [set, numbers] : part.sets) members[name] += 1 + numbers.size();
+        }
+        for (const InpInstance& instance : deck_.instances) {
+            const auto part = deck_.parts.find(instance.part);
+            if (part == deck_.parts.end()) continue;
+            if (!met.insert(part->first).second) deck_.made += part->second.points.size() + part->second.elements.size();
+            members_ += members[part->first];
+            if (deck_.made <= most_made() && members_ <= std::max(kFewMembers, kMadeOfByte * bytes_)) continue;
+            throw Error(ErrorCode::InvalidInput, "its instances have too many nodes, elements and members of sets",
+                        std::string(instance.place.file) + ", line " + std::to_string(instance.place.line), "at most " + std::to_string(most_made()) + " for files of this size");
+        }
     }
 
 private:
@@ -122,7 +147,9 @@ private:
             part_.clear();
         } else if (keyword == "*INSTANCE") {
             section_ = Section::Instance;
-            deck_.instances.push_back({upper_case(values_["PART"])});
+            InpInstance& instance = deck_.instances.emplace_back();
+            instance.part = upper_case(values_["PART"]);
+            instance.place = {file_, line_};
             lines_ = 0;
         } else if (keyword == "*NODE") {
             section_ = Section::Node;
@@ -200,10 +227,16 @@ private:
     }
 
     void count_generated(std::size_t more) {
-        if (more > kMostGenerated || generated_ + more > kMostGenerated) {
-            fail("too many nodes or elements are generated", "at most " + std::to_string(kMostGenerated));
+        if (more > most_made() - std::min(most_made(), deck_.made)) {
+            fail("too many nodes or elements are generated", "at most " + std::to_string(most_made()));
         }
-        generated_ += more;
+        deck_.made += more;
+    }
+
+    void count_members(std::size_t more) {
+        const std::size_t most = std::max(kFewMembers, kMadeOfByte * bytes_);
+        if (more > most - std::min(most, members_)) fail("its sets have too many members", "at most " + std::to_string(most));
+        members_ += more;
     }
 
     // Nodes on the straight line from one node to another, with numbers between theirs.
@@ -236,22 +269,27 @@ private:
         const auto number_of = [](const InpElement& element) { return element.number; };
         if (fields.size() < 2) fail("*ELGEN needs an element and how many are made of it");
         const InpElement master = part.elements[find(elements_at_, part.elements, number_of, integer(fields[0]), "element")];
-        std::array<std::array<std::int64_t, 3>, 3> along{{{1, 1, 1}, {1, 0, 0}, {1, 0, 0}}};
         constexpr std::int64_t kLargest = std::int64_t{1} << 40;
+        const auto large = [](std::int64_t number) { return number > kLargest || number < -kLargest; };
+        if (large(master.number) || std::ranges::any_of(master.nodes, large)) fail("its element has a number that is out of range");
+        std::array<std::array<std::int64_t, 3>, 3> along{{{1, 1, 1}, {1, 0, 0}, {1, 0, 0}}};
         for (std::size_t i = 1; i < std::min<std::size_t>(fields.size(), 10); ++i) {
             if (fields[i].empty()) continue;
             auto& value = along[(i - 1) / 3][(i - 1) % 3];
             value = integer(fields[i]);
-            if (std::abs(value) > kLargest || ((i - 1) % 3 == 0 && value < 1))
+            if (value > kLargest || value < -kLargest || ((i - 1) % 3 == 0 && value < 1))
                 fail("its number " + std::to_string(i) + " is out of range");
         }
+        constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
         std::size_t count = 1;
         for (const auto& of : along) {
-            if (static_cast<std::size_t>(of[0]) > kMostGenerated) count_generated(kMostGenerated + 1);
-            count *= static_cast<std::size_t>(of[0]);
-            if (count > kMostGenerated) count_generated(count);
+            const auto copies = static_cast<std::size_t>(of[0]);
+            const std::int64_t step = std::max({std::int64_t{1}, std::abs(of[1]), std::abs(of[2])});
+            if (of[0] > kLargest / step) fail("the numbers of its elements or nodes are out of range");
+            count = copies > kMost / count ? kMost : count * copies;
         }
         count_generated(count);
+        if (count > part.elements.size()) part.elements.reserve(part.elements.size() + count);
         for (std::int64_t k = 0; k < along[2][0]; ++k) {
             for (std::int64_t j = 0; j < along[1][0]; ++j) {
                 for (std::int64_t i = 0; i < along[0][0]; ++i) {
@@ -293,10 +331,11 @@ private:
             if (fields.size() < 2) fail("GENERATE needs a first and a last number");
             const std::int64_t first = integer(fields[0]), last = integer(fields[1]);
             const std::int64_t step = fields.size() > 2 ? integer(fields[2]) : 1;
-            if (step < 1 || last < first || (last - first) / step > static_cast<std::int64_t>(part.elements.size())) {
+            if (step < 1 || last < first || first < 0 || (last - first) / step > static_cast<std::int64_t>(part.elements.size())) {
                 fail("the numbers " + std::to_string(first) + " to " + std::to_string(last) + " are not those of elements");
             }
-            for (std::int64_t number = first; number <= last; number += step) set.push_back(number);
+            count_members(static_cast<std::size_t>((last - first) / step) + 1);
+            for (std::int64_t k = 0; k <= (last - first) / step; ++k) set.push_back(first + k * step);
             return;
         }
         for (const std::string_view field : fields) {
@@ -308,6 +347,7 @@ private:
             }
             const auto other = part.sets.find(std::string(field));
             if (other == part.sets.end()) continue;
+            count_members(other->second.size());
             const std::vector<std::int64_t> copy = other->second;
             set.insert(set.end(), copy.begin(), copy.end());
         }
@@ -324,10 +364,14 @@ private:
         }
     }
 
+    [[nodiscard]] std::size_t most_made() const { return std::max(kFewMade, kMadeOfByte * bytes_); }
+
     InpDeck& deck_;
+    NamedFiles named_;
+    std::size_t bytes_ = 0, members_ = 0;
     const TextScanner* in_ = nullptr;
-    std::string file_;
-    std::size_t position_ = 0;  // of the line
+    std::string_view file_;
+    std::size_t position_ = 0, line_ = 0;  // of the line, and its number
     Section section_ = Section::Other;
     std::map<std::string, std::string> values_;  // of the keyword
     std::string part_;
@@ -336,7 +380,6 @@ private:
     std::vector<std::int64_t> numbers_;  // of the element so far
     int lines_ = 0;
     std::map<std::string, Places> nodes_at_, elements_at_;  // by parts
-    std::size_t generated_ = 0;
 };
 
 }  // namespace
@@ -356,7 +399,9 @@ bool is_sheet(std::string_view type) {
 
 InpDeck read_inp_deck(const std::filesystem::path& path) {
     InpDeck deck;
-    DeckReader(deck).read(path, 0);
+    DeckReader reader(deck);
+    reader.read(path, [&] { return path.string(); });
+    reader.count_instances();
     if (deck.instances.empty()) deck.instances.emplace_back();
     return deck;
 }

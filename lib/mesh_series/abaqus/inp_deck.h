@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,7 @@ struct InpElement {
     std::int64_t number;
     std::string_view type;
     std::vector<std::int64_t> nodes;
-    std::string place;  // for messages
+    std::string_view place;  // for messages
 };
 
 /// The nodes and elements of a part. sets: the numbers of the elements of each set, by the set's name
@@ -34,6 +35,10 @@ struct InpInstance {
     Vec3 move{0.0};
     std::array<Vec3, 2> axis{Vec3(0.0), Vec3(0.0)};
     double angle_deg = 0;
+    struct Place {
+        std::string_view file;
+        std::size_t line = 0;
+    } place;  // for messages
 
     [[nodiscard]] Vec3 operator()(const Vec3& x) const;
 };
@@ -43,6 +48,8 @@ struct InpDeck {
     std::map<std::string, InpPart> parts;  // by names in capitals
     std::vector<InpInstance> instances;
     std::map<std::string, std::string> types;  // owns the names of types
+    std::set<std::string> files;               // owns the names of files
+    std::size_t made = 0;                      // nodes and elements that are not in the text, those of instances among them
 };
 
 /// Whether a type is one of shells and membranes with four nodes, or of beams and trusses with two.

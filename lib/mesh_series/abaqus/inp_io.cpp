@@ -61,7 +61,7 @@ private:
     }
 
     void add(const InpPart& part, const InpInstance& instance, const BlockChoice& choice) {
-        places_.clear();
+        places_ = {};  // not cleared, which takes as long as the largest part did
         if (found_.points.size() + part.points.size() >= kNone) fail("there are too many nodes");
         for (std::size_t p = 0; p < part.points.size(); ++p) {
             places_[part.numbers[p]] = static_cast<Index>(found_.points.size());
@@ -133,7 +133,7 @@ private:
         if (found == places_.end()) {
             throw Error(ErrorCode::InvalidInput,
                         "element " + std::to_string(element.number) + ": there is no node " + std::to_string(node),
-                        element.place);
+                        std::string(element.place));
         }
         return found->second;
     }

@@ -219,7 +219,7 @@ private:
             counts[a] = zone.grid.points[a] - (at_cells && zone.grid.points[a] > 0 ? 1 : 0);
             first[a] = size(layers[2 * a], node);
             sizes[a] = counts[a] + first[a] + size(layers[2 * a + 1], node);
-            if (sizes[a] > all.size() || total > all.size())
+            if (sizes[a] > 0 && total > all.size() / sizes[a])
                 tree_.file().fail("node " + in_quotes(node) + " has fewer values than its layers need");
             total *= sizes[a];
         }
@@ -368,7 +368,7 @@ private:
 
 Hdf5File open(const std::filesystem::path& path) {
     std::array<char, 32> begin{};
-    std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+    if (not_regular(path).empty()) std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
     if (std::string_view(begin.data(), begin.size()).find("ADF Database") != std::string_view::npos) {
         throw Error(ErrorCode::InvalidInput, "the CGNS file is of the older kind ADF", path.string(),
                     "cgnsconvert -h converts it to HDF5");

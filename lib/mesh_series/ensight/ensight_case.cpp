@@ -152,7 +152,7 @@ void EnsightCase::finish_times() {
     for (auto& [number, set] : sets_) {
         const auto& spread = spreads_[number];
         if (set.numbers.empty()) {
-            for (std::size_t k = 0; k < set.times.size(); ++k) {
+            for (std::size_t k = 0; k < std::min(set.times.size(), kMostSteps); ++k) {
                 set.numbers.push_back(spread.start + static_cast<std::int64_t>(k) * spread.increment);
             }
         }
@@ -196,10 +196,7 @@ std::filesystem::path EnsightCase::file_at(const EnsightFiles& files, double tim
         if (number.size() < end - star) number.insert(0, end - star - number.size(), '0');
         name.replace(star, end - star, number);
     }
-    const std::filesystem::path path = folder_ / name;
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(path, none)) in_.fail_at(files.position, "there is no file " + in_quotes(name));
-    return path;
+    return named_file(folder_, name, [&] { return in_.place_of(files.position); });
 }
 
 }  // namespace subvol::detail

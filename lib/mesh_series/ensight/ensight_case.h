@@ -43,6 +43,8 @@ public:
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
     /// The file at a time: of files with times the last one up to then, else the first.
     [[nodiscard]] std::filesystem::path file_at(const EnsightFiles& files, double time) const;
+    /// Where the case names files, for messages.
+    [[nodiscard]] std::string place_of(const EnsightFiles& files) const { return in_.place_of(files.position); }
 
     [[nodiscard]] const EnsightFiles& geometry() const { return geometry_; }
     [[nodiscard]] const std::vector<EnsightVariable>& variables() const { return variables_; }

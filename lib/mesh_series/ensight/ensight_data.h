@@ -29,6 +29,8 @@ public:
     std::vector<double> reals(std::size_t count, const std::string& what);
 
     [[nodiscard]] const TextScanner& in() const { return in_; }
+    /// The place of the last line or number, for messages.
+    [[nodiscard]] std::string place() const { return in_.place_of(in_.position()); }
     [[noreturn]] void fail(const std::string& message, const std::string& allowed = {}) const { in_.fail(message, allowed); }
 
 private:

@@ -5,11 +5,13 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "assemble.h"
 #include "ensight_case.h"
 #include "ensight_data.h"
 #include "join_pieces.h"
+#include "named_files.h"
 #include "steps.h"
 #include "structured_grid.h"
 #include "subvol/error.h"
@@ -31,10 +33,14 @@ struct Group {
     std::size_t first, count;
 };
 
+//
+// first_groups: of each type; arrays: where those are that are at points and at cells, by their names
 struct Part {
     MeshFile found;
     std::string name;
     std::vector<Group> groups;
+    std::map<std::string, std::size_t, std::less<>> first_groups;
+    std::map<std::pair<std::string, bool>, std::size_t> arrays;
     std::size_t elements = 0;
     bool structured = false, taken = true;
 };
@@ -82,8 +88,16 @@ private:
         return list.empty() ? list : list + " ignored";
     }
 
+    std::filesystem::path checked(const EnsightFiles& files) {
+        std::filesystem::path path = case_.file_at(files, time_);
+        const auto place = [&] { return case_.place_of(files); };
+        named_.count(place);
+        named_.take_file(path, place);
+        return path;
+    }
+
     void read_geometry() {
-        EnsightData data(case_.file_at(case_.geometry(), time_));
+        EnsightData data(checked(case_.geometry()));
         binary_ = data.binary();
         static_cast<void>(data.line());
         static_cast<void>(data.line());
@@ -194,6 +208,7 @@ private:
         const std::size_t count = data.count("elements");
         if (ids) static_cast<void>(data.integers(count, "numbers of elements"));
         const std::size_t first = part.elements;
+        part.first_groups.try_emplace(line, part.groups.size());
         part.groups.push_back({line, first, count});
         part.elements += count;
         if (part.elements >= kNone) data.fail("there are too many elements");
@@ -262,7 +277,7 @@ private:
 
     // A part that a variable lacks has not got it: the parts are joined without.
     void read_variable(const EnsightVariable& variable) {
-        EnsightData data(case_.file_at(variable.files, time_), binary_);
+        EnsightData data(checked(variable.files), binary_);
         static_cast<void>(data.line());
         Part* part = nullptr;
         while (!data.at_end()) {
@@ -282,7 +297,7 @@ private:
         }
     }
 
-    static void read_values(EnsightData& data, const EnsightVariable& variable, Part& part, const std::string& line) {
+    void read_values(EnsightData& data, const EnsightVariable& variable, Part& part, const std::string& line) {
         const std::string place = line.substr(0, line.find(' '));
         if (line.find("partial") != std::string::npos) data.fail("values at some places only (\"partial\") are not supported");
         if (line.find("undef") != std::string::npos) static_cast<void>(data.reals(1, "the mark of undefined values"));
@@ -290,24 +305,24 @@ private:
         if (variable.at_cells && place == "block") {
             count = part.elements;
         } else if (variable.at_cells) {
-            const auto group = std::ranges::find(part.groups, place, &Group::type);
-            if (group == part.groups.end())
+            const auto group = part.first_groups.find(place);
+            if (group == part.first_groups.end())
                 data.fail("part " + in_quotes(part.name) + " has no elements of type " + in_quotes(place));
-            first = group->first;
-            count = group->count;
+            first = part.groups[group->second].first;
+            count = part.groups[group->second].count;
         } else if (place != "coordinates" && place != "block") {
             data.fail("the values of a part are expected, not " + in_quotes(line));
         }
         const std::size_t all = variable.at_cells ? part.elements : count, components = variable.components;
-        auto array = std::ranges::find_if(
-            part.found.arrays, [&](const FileArray& a) { return a.name == variable.name && a.at_cells == variable.at_cells; });
         std::vector<std::vector<double>> values;
         for (std::size_t c = 0; c < components; ++c) values.push_back(data.reals(count, "values"));
-        if (array == part.found.arrays.end()) {
+        const auto [known, is_new] = part.arrays.try_emplace({variable.name, variable.at_cells}, part.found.arrays.size());
+        if (is_new) {
+            named_.take({}, 0, all * components * sizeof(double), [&] { return data.place(); });
             part.found.arrays.push_back({variable.name, static_cast<int>(components), variable.at_cells, {}});
-            array = part.found.arrays.end() - 1;
-            array->values.assign(all * components, std::numeric_limits<double>::quiet_NaN());
+            part.found.arrays.back().values.assign(all * components, std::numeric_limits<double>::quiet_NaN());
         }
+        FileArray* const array = &part.found.arrays[known->second];
         if (array->values.size() != all * components) data.fail("there is another variable of this name");
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t c = 0; c < components; ++c) array->values[(first + i) * components + c] = values[c][i];
@@ -317,6 +332,7 @@ private:
     std::string file_, text_;
     EnsightCase case_;
     ReadOptions options_;
+    NamedFiles named_;
     std::map<int, Part> parts_;
     std::map<std::string, std::size_t> left_out_;
     double time_ = 0;

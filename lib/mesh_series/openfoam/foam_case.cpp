@@ -65,7 +65,7 @@ fs::path FoamCase::mesh_file(std::size_t part, std::size_t step, const std::stri
 
 FoamCase find_foam_case(const fs::path& path) {
     std::error_code none;
-    if (!fs::is_directory(path, none)) static_cast<void>(read_text(path));  // it may be empty, but has to be there
+    if (!fs::exists(path, none)) static_cast<void>(read_text(path));  // says what is wrong; the file's contents mean nothing
     FoamCase found;
     found.root = fs::is_directory(path, none) ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
     for (const auto& [number, name] : numbered(found.root, "processor")) {

@@ -7,6 +7,7 @@
 #include "foam_cells.h"
 #include "gzip.h"
 #include "join_pieces.h"
+#include "named_files.h"
 #include "steps.h"
 #include "subvol/error.h"
 
@@ -40,8 +41,8 @@ std::set<std::string> names_in(const fs::path& folder) {
 
 class PartReader {
 public:
-    PartReader(const FoamCase& of, std::size_t part, std::size_t step, const ReadOptions& options)
-        : case_(of), part_(part), step_(step), options_(options) {}
+    PartReader(const FoamCase& of, std::size_t part, std::size_t step, const ReadOptions& options, NamedFiles& named)
+        : case_(of), part_(part), step_(step), options_(options), named_(named) {}
 
     MeshFile read() {
         read_points();
@@ -63,6 +64,7 @@ private:
         const auto values = text.reals(3);
         for (std::size_t i = 0; i + 2 < values.size(); i += 3) add_point(found_, {values[i], values[i + 1], values[i + 2]}, 0);
         points_ = found_.points.size();
+        take(path, text, 0);
         if (points_ >= kNone / 2) text.fail("there are too many points");
     }
 
@@ -70,6 +72,7 @@ private:
         FoamMesh mesh;
         FoamText faces(file("faces"));
         mesh.faces = faces.faces();
+        take(file("faces"), faces, 0);
         mesh.owner = FoamText(file("owner")).labels();
         mesh.neighbour = FoamText(file("neighbour")).labels();
         const std::string name = file("faces").string();
@@ -108,12 +111,18 @@ private:
         FoamText text(path);
         const std::size_t components = components_of_class(text.type());
         if (components == 0) return;
+        take(path, text, cells_ * components * sizeof(double));  // "uniform" is one value for all cells
         found_.arrays.push_back({name, static_cast<int>(components), true, text.internal_field(components, cells_)});
+    }
+
+    void take(const fs::path& path, const FoamText& text, std::size_t made) {
+        named_.take(path.string(), text.size(), made, [&] { return path.string(); });
     }
 
     const FoamCase& case_;
     std::size_t part_, step_;
     ReadOptions options_;
+    NamedFiles& named_;
     MeshFile found_;
     std::size_t points_ = 0, cells_ = 0;
 };
@@ -125,8 +134,11 @@ ReadResult read_foam(const fs::path& path, const ReadOptions& options) {
     const std::string file = path.string();
     std::vector<std::string> warnings;
     const std::size_t step = chosen_step(options, std::max<std::size_t>(1, of.times.size()), file, warnings);
+    NamedFiles named;
     std::vector<MeshFile> parts;
-    for (std::size_t part = 0; part < of.parts.size(); ++part) parts.push_back(PartReader(of, part, step, options).read());
+    for (std::size_t part = 0; part < of.parts.size(); ++part) {
+        parts.push_back(PartReader(of, part, step, options, named).read());
+    }
     MeshFile found = parts.size() == 1 ? std::move(parts.front()) : join_pieces(std::move(parts), "processor", file);
     if (of.decomposed) {
         std::erase_if(found.arrays, [](const FileArray& array) { return array.name == "GlobalNodeId"; });

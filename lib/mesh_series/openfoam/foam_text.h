@@ -34,6 +34,8 @@ public:
 
     /// The header's class, such as volScalarField.
     [[nodiscard]] const std::string& type() const { return type_; }
+    /// Of the text in bytes, unpacked.
+    [[nodiscard]] std::size_t size() const { return text_.size(); }
 
     [[nodiscard]] std::vector<std::int64_t> labels();
     /// Numbers, `components` for each entry. expected: entries that may be one value repeated, however short the file

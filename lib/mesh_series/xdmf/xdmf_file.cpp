@@ -8,13 +8,13 @@
 #include "subvol/error.h"
 #include "text_scanner.h"
 #include "trimmed.h"
+#include "xdmf_path.h"
 
 namespace subvol::detail {
 
 namespace {
 
 constexpr int kMostNestedItems = 16;
-constexpr std::size_t kLongestPath = 300;
 
 std::size_t product(const std::vector<std::size_t>& sizes) {
     std::size_t result = 1;
@@ -67,45 +67,51 @@ XdmfFile::XdmfFile(std::string_view text, const std::filesystem::path& path) : t
     if (!domain_) throw Error(ErrorCode::InvalidInput, "not an XDMF file: there is no Domain in an element Xdmf", name_);
 }
 
-void XdmfFile::fail_at(const pugi::xml_node& node, const std::string& message, const std::string& allowed) const {
+std::string XdmfFile::place_of(const pugi::xml_node& node) const {
     const TextScanner in(text_, name_, TextScanner::Comments::None);
-    in.fail_at(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, node.offset_debug())), message, allowed);
+    return in.place_of(static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, node.offset_debug())));
 }
 
-// XPath could take any time: only plain paths are followed.
-std::vector<pugi::xml_node> XdmfFile::included(const pugi::xml_node& node) const {
-    std::string path = node.attribute("xpointer").as_string();
-    if (path.starts_with("xpointer(") && path.ends_with(")")) path = path.substr(9, path.size() - 10);
-    const bool plain = path.size() <= kLongestPath && path.starts_with("/") && path.find("//", 1) == std::string::npos &&
-                       std::ranges::count(path, '[') <= kMostNestedItems && path.find("..") == std::string::npos;
-    if (!plain || node.attribute("href")) fail_at(node, "what it includes is not a part of this file");
-    std::vector<pugi::xml_node> nodes;
-    try {
-        for (const auto& found : document_.select_nodes(path.c_str())) {
-            if (found.node()) nodes.push_back(found.node());
-        }
-    } catch (const pugi::xpath_exception& error) {
-        fail_at(node, "its path is not valid: " + printable(error.what()));
+void XdmfFile::fail_at(const pugi::xml_node& node, const std::string& message, const std::string& allowed) const {
+    throw Error(ErrorCode::InvalidInput, printable(message), place_of(node), printable(allowed));
+}
+
+// Each path is followed once: the steps of a file name the same mesh.
+std::vector<pugi::xml_node> XdmfFile::at_path(const pugi::xml_node& node, std::string_view path) const {
+    auto known = paths_.find(path);
+    if (known == paths_.end()) {
+        auto found = follow_path(document_, path, visited_);
+        if (!found) fail_at(node, "what it refers to is not a part of this file, or no plain path", kPlainPaths);
+        known = paths_.emplace(path, std::move(*found)).first;
     }
-    return nodes;
+    visit(node, known->second.size());
+    return known->second;
+}
+
+void XdmfFile::visit(const pugi::xml_node& node, std::size_t count) const {
+    constexpr std::size_t kMostVisited = 100'000'000;
+    visited_ += count;
+    if (visited_ > kMostVisited) fail_at(node, "its elements refer to others too often");
+}
+
+std::vector<pugi::xml_node> XdmfFile::included(const pugi::xml_node& node) const {
+    std::string_view path = trimmed(node.attribute("xpointer").as_string());
+    if (path.starts_with("xpointer(") && path.ends_with(")")) path = path.substr(9, path.size() - 10);
+    if (node.attribute("href")) fail_at(node, "what it includes is not a part of this file");
+    return at_path(node, trimmed(path));
 }
 
 // An element may stand for another one, by its path.
 pugi::xml_node XdmfFile::resolved(pugi::xml_node node) const {
     for (int depth = 0; depth < kMostNestedItems; ++depth) {
-        const auto reference = node.attribute("Reference");
+        auto reference = node.attribute("Reference");
+        if (!reference) reference = node.attribute("reference");
         if (!reference) return node;
-        std::string path(trimmed(reference.as_string()));
+        std::string_view path = trimmed(reference.as_string());
         if (path == "XML") path = trimmed(node.text().get());
-        const bool plain = path.size() <= kLongestPath && path.starts_with("/") && path.find("//", 1) == std::string::npos;
-        if (!plain) fail_at(node, "what it refers to is not a part of this file");
-        try {
-            const pugi::xml_node next = document_.select_node(path.c_str()).node();
-            if (!next) fail_at(node, "there is no element " + in_quotes(path));
-            node = next;
-        } catch (const pugi::xpath_exception&) {
-            fail_at(node, "its path is not valid");
-        }
+        const auto found = at_path(node, path);
+        if (found.empty()) fail_at(node, "there is no element " + in_quotes(path));
+        node = found.front();
     }
     fail_at(node, "elements refer to each other");
 }
@@ -113,6 +119,7 @@ pugi::xml_node XdmfFile::resolved(pugi::xml_node node) const {
 std::vector<pugi::xml_node> XdmfFile::children(const pugi::xml_node& parent, const char* name) const {
     std::vector<pugi::xml_node> found;
     for (const auto& child : parent.children()) {
+        visit(child, 1);
         if (std::string_view(child.name()) == name) found.push_back(resolved(child));
         if (!std::string_view(child.name()).ends_with("include")) continue;  // of any namespace
         for (const auto& other : included(child)) {
@@ -142,7 +149,7 @@ std::vector<std::size_t> XdmfFile::sizes(const pugi::xml_node& node, const char*
     return sizes;
 }
 
-std::vector<double> XdmfFile::words(const pugi::xml_node& item) const {
+std::vector<double> XdmfFile::words(const pugi::xml_node& item) {
     const std::string text = item.text().get();
     TextScanner in(text, name_, TextScanner::Comments::None);
     std::vector<double> values;
@@ -152,44 +159,53 @@ std::vector<double> XdmfFile::words(const pugi::xml_node& item) const {
     } catch (const Error&) {
         fail_at(item, "value " + std::to_string(values.size()) + " is not a number");
     }
+    take(item, std::to_string(item.offset_debug()), values.size() * sizeof(double), values.size() * sizeof(double));
     return values;
 }
 
 std::filesystem::path XdmfFile::beside(const pugi::xml_node& item, const std::string& file) const {
-    const std::filesystem::path path = path_.parent_path() / file;
-    std::error_code none;
-    if (file.empty() || !std::filesystem::is_regular_file(path, none)) {
-        fail_at(item, file.empty() ? "no file is named" : "there is no file " + in_quotes(file),
-                "names are relative to the folder of this file");
-    }
-    return path;
+    return named_file(path_.parent_path(), file, [&] { return place_of(item); });
 }
 
-// first, count: rows; without a count all of them. lengths: of the dimensions, if wanted
-std::vector<double> XdmfFile::of_hdf5(const pugi::xml_node& item, std::size_t first, std::optional<std::size_t> count,
-                                      std::vector<std::size_t>* lengths) {
+// Values may be read many times, as those of columns are of tables: they count less than those that are kept.
+void XdmfFile::take(const pugi::xml_node& item, const std::string& source, std::size_t there, std::size_t read) {
+    constexpr std::size_t kReadAgain = 16;
+    named_.take(source, there, read / kReadAgain, [&] { return place_of(item); });
+}
+
+XdmfFile::Dataset XdmfFile::dataset_of(const pugi::xml_node& item) {
     const std::string text = as_utf8(trimmed(item.text().get()));
     const std::size_t colon = text.find(':');
     if (colon == std::string::npos || text.find('|') != std::string::npos) {
         fail_at(item, in_quotes(text) + " does not name a dataset", "FILE:/PATH is needed");
     }
     const std::filesystem::path path = beside(item, text.substr(0, colon));
-    auto& file = heavy_[path];
+    auto& file = heavy_[NamedFiles::identity(path)];
     if (!file) file = std::make_unique<Hdf5File>(open_hdf5(path), path.string());
-    const std::string dataset = text.substr(colon + 1);
-    if (lengths != nullptr) *lengths = file->dataset(dataset).lengths;
-    return file->reals(dataset, first, count ? *count : file->rows(dataset));
+    return {file.get(), std::filesystem::path(text.substr(colon + 1)).lexically_normal().string()};
 }
 
-std::vector<double> XdmfFile::of_binary(const pugi::xml_node& item, std::size_t count) const {
-    const std::string bytes = read_text(beside(item, as_utf8(trimmed(item.text().get()))));
+// first, count: rows; without a count all of them
+std::vector<double> XdmfFile::of_hdf5(const pugi::xml_node& item, std::size_t first, std::optional<std::size_t> count) {
+    const auto [file, path] = dataset_of(item);
+    auto values = file->reals(path, first, count ? *count : file->rows(path));
+    const Hdf5Dataset dataset = file->dataset(path);
+    const std::size_t there = std::min(product(dataset.lengths), std::max(values.size(), dataset.most_bytes));
+    take(item, file->name() + ":" + path, there * sizeof(double), values.size() * sizeof(double));
+    return values;
+}
+
+std::vector<double> XdmfFile::of_binary(const pugi::xml_node& item, std::size_t count) {
+    const std::filesystem::path path = beside(item, as_utf8(trimmed(item.text().get())));
     const auto seek = item.attribute("Seek").as_ullong(0);
     const NumberType type = type_of(item);
-    if (seek > bytes.size() || count > (bytes.size() - seek) / size_of(type)) {
+    const std::size_t size = std::filesystem::file_size(path);
+    if (seek > size || count > (size - seek) / size_of(type)) {
         fail_at(item, "its file is too short for " + counted(count, "value", "values"));
     }
+    take(item, NamedFiles::identity(path), size * sizeof(double), count * sizeof(double));
     const std::endian order = kind_of(item, {"Endian"}) == "BIG" ? std::endian::big : std::endian::little;
-    return reals_from(std::string_view(bytes).substr(seek, count * size_of(type)), type, order);
+    return reals_from(read_bytes(path, seek, count * size_of(type)), type, order);
 }
 
 // A part of another item: where it starts along each dimension, the distance of its places, and their number.
@@ -202,40 +218,37 @@ std::vector<double> XdmfFile::of_slab(const pugi::xml_node& item) {
                        std::ranges::all_of(place, [](double v) { return v >= 0 && v < 1e12 && v == std::floor(v); });
     if (!sound) fail_at(parts[0], "it is not the start, stride and count of a hyperslab");
     const auto at = [&](std::size_t row, std::size_t d) { return static_cast<std::size_t>(place[row * rank + d]); };
+    const bool hdf5 = kind_of(parts[1], {"Format"}) == "HDF";
     std::vector<std::size_t> lengths = sizes(parts[1], "Dimensions");
-    std::vector<double> all;
-    std::size_t first = 0;
-    if (kind_of(parts[1], {"Format"}) == "HDF") {
-        first = at(0, 0);
-        const std::size_t rows = at(2, 0) == 0 ? 0 : (at(2, 0) - 1) * std::max<std::size_t>(1, at(1, 0)) + 1;
-        all = of_hdf5(parts[1], first, rows, &lengths);
-        if (!lengths.empty()) lengths[0] = first + rows;
-    } else {
-        all = values(parts[1]);
-        if (product(lengths) != all.size()) fail_at(parts[1], "it does not have the values that its Dimensions say");
+    if (hdf5) {
+        const Dataset dataset = dataset_of(parts[1]);
+        lengths = dataset.file->dataset(dataset.path).lengths;
     }
     if (lengths.size() != rank) fail_at(parts[0], "its rank differs from that of the values");
+    std::vector<std::size_t> counts(rank), index(rank, 0);
     for (std::size_t d = 0; d < rank; ++d) {
-        const std::size_t count = at(2, d);
-        if (count > lengths[d] || (count > 0 && at(0, d) + (count - 1) * at(1, d) >= lengths[d])) {
-            fail_at(parts[0], "the hyperslab does not lie in its values");
-        }
+        const std::size_t start = at(0, d), stride = at(1, d), count = counts[d] = at(2, d);
+        const bool inside = count == 0 || (count <= lengths[d] && start < lengths[d] &&
+                                           (count == 1 || stride <= (lengths[d] - 1 - start) / (count - 1)));
+        if (!inside) fail_at(parts[0], "the hyperslab does not lie in its values");
     }
-    std::vector<double> chosen;
-    std::vector<std::size_t> index(rank, 0);
-    std::size_t total = 1;
-    for (std::size_t d = 0; d < rank; ++d) total *= at(2, d);
+    const std::size_t total = product(counts), first = hdf5 && total > 0 ? at(0, 0) : 0;
+    if (hdf5) lengths[0] = total == 0 ? 0 : (counts[0] - 1) * at(1, 0) + 1;
+    const std::vector<double> all = hdf5 ? of_hdf5(parts[1], first, lengths[0]) : values(parts[1]);
+    if (!hdf5 && product(lengths) != all.size()) {
+        fail_at(parts[1], "it does not have the values that its Dimensions say");
+    }
     if (total > all.size()) fail_at(parts[0], "the hyperslab repeats values");
+    std::vector<double> chosen;
     chosen.reserve(total);
     for (std::size_t k = 0; k < total; ++k) {
         std::size_t offset = 0;
         for (std::size_t d = 0; d < rank; ++d) {
-            const std::size_t i = at(0, d) + index[d] * at(1, d) - (d == 0 ? first : 0);
-            offset = offset * (d == 0 ? 1 : lengths[d]) + i;
+            offset = offset * lengths[d] + at(0, d) + index[d] * at(1, d) - (d == 0 ? first : 0);
         }
         chosen.push_back(all[offset]);
         for (std::size_t d = rank; d-- > 0;) {
-            if (++index[d] < at(2, d)) break;
+            if (++index[d] < counts[d]) break;
             index[d] = 0;
         }
     }
@@ -254,7 +267,7 @@ std::vector<double> XdmfFile::values(const pugi::xml_node& given) {
     } else if (!kind.empty() && kind != "UNIFORM") {
         fail_at(item, "data items of type " + in_quotes(kind) + " are not supported", "Uniform and HyperSlab are");
     } else if (format == "HDF") {
-        found = of_hdf5(item, 0, std::nullopt, nullptr);
+        found = of_hdf5(item, 0, std::nullopt);
     } else if (format == "BINARY") {
         found = of_binary(item, product(lengths));
     } else if (format.empty() || format == "XML") {
@@ -262,7 +275,7 @@ std::vector<double> XdmfFile::values(const pugi::xml_node& given) {
     } else {
         fail_at(item, "data items of the format " + in_quotes(format) + " are not supported", "XML, HDF and Binary are");
     }
-    --depth_;
+    if (--depth_ == 0) named_.take({}, 0, found.size() * sizeof(double), [&] { return place_of(item); });
     if (!lengths.empty() && product(lengths) != found.size()) {
         fail_at(item, "it has " + counted(found.size(), "value", "values") + ", but its Dimensions say " +
                           std::to_string(product(lengths)));

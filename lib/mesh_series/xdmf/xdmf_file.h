@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hdf5_file.h"
+#include "named_files.h"
 
 namespace subvol::detail {
 
@@ -40,11 +41,19 @@ public:
 private:
     [[nodiscard]] pugi::xml_node resolved(pugi::xml_node node) const;
     [[nodiscard]] std::vector<pugi::xml_node> included(const pugi::xml_node& node) const;
-    [[nodiscard]] std::vector<double> words(const pugi::xml_node& item) const;
-    [[nodiscard]] std::vector<double> of_hdf5(const pugi::xml_node& item, std::size_t first, std::optional<std::size_t> count,
-                                              std::vector<std::size_t>* lengths);
-    [[nodiscard]] std::vector<double> of_binary(const pugi::xml_node& item, std::size_t count) const;
+    [[nodiscard]] std::vector<double> words(const pugi::xml_node& item);
+    struct Dataset {
+        const Hdf5File* file;
+        std::string path;
+    };
+    [[nodiscard]] std::vector<pugi::xml_node> at_path(const pugi::xml_node& node, std::string_view path) const;
+    [[nodiscard]] std::string place_of(const pugi::xml_node& node) const;
+    void visit(const pugi::xml_node& node, std::size_t count) const;
+    [[nodiscard]] Dataset dataset_of(const pugi::xml_node& item);
+    [[nodiscard]] std::vector<double> of_hdf5(const pugi::xml_node& item, std::size_t first, std::optional<std::size_t> count);
+    [[nodiscard]] std::vector<double> of_binary(const pugi::xml_node& item, std::size_t count);
     [[nodiscard]] std::vector<double> of_slab(const pugi::xml_node& item);
+    void take(const pugi::xml_node& item, const std::string& source, std::size_t there, std::size_t taken);
     [[nodiscard]] std::filesystem::path beside(const pugi::xml_node& item, const std::string& file) const;
 
     std::string_view text_;
@@ -52,7 +61,10 @@ private:
     std::string name_;
     pugi::xml_document document_;
     pugi::xml_node domain_;
-    std::map<std::filesystem::path, std::unique_ptr<Hdf5File>> heavy_;
+    std::map<std::string, std::unique_ptr<Hdf5File>> heavy_;  // by their identities
+    NamedFiles named_;  // the sources of values
+    mutable std::map<std::string, std::vector<pugi::xml_node>, std::less<>> paths_;  // that were followed
+    mutable std::size_t visited_ = 0;                                               // elements, on the way of all paths
     int depth_ = 0;
 };
 

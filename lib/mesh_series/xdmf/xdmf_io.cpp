@@ -6,9 +6,11 @@
 #include "join_pieces.h"
 #include "steps.h"
 #include "structured_grid.h"
+#include "subvol/detail/number_text.h"
 #include "subvol/error.h"
 #include "text_readers.h"
 #include "text_scanner.h"
+#include "trimmed.h"
 #include "vtk/vtk_cells.h"
 #include "xdmf_file.h"
 #include "xdmf_steps.h"
@@ -204,7 +206,8 @@ private:
                           "Mixed, Hexahedron, Wedge, Pyramid, Tetrahedron and 3DSMesh, 3DRectMesh, 3DCoRectMesh are");
         }
         const auto numbers = file_.items(element, 1).front();
-        const double base = element.attribute("BaseOffset").as_double(0);
+        const auto base = number_from(trimmed(element.attribute("BaseOffset").as_string("0")));
+        if (!base) file_.fail_at(element, "its BaseOffset is not a number");
         VtkCellSorter sorter(in_, found, options_);
         std::size_t at = 0, cell = 0;
         const auto next = [&]() -> std::int64_t {
@@ -234,7 +237,7 @@ private:
                                   : one != nullptr         ? nodes_per_element(element)
                                                            : static_cast<int>(std::clamp<std::int64_t>(next(), 0, 1 << 30));
                 for (int k = type->nodes == kVariable ? given : type->nodes; k > 0; --k)
-                    nodes.push_back(point(next(), base, cell, found, element));
+                    nodes.push_back(point(next(), *base, cell, found, element));
             }
             in_vtk_order(*type, found, nodes);
             sorter.take(type->vtk, nodes, 0);

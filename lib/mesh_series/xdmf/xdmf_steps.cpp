@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "subvol/detail/number_text.h"
 #include "text_scanner.h"
+#include "trimmed.h"
 
 namespace subvol::detail {
 
@@ -63,9 +65,10 @@ private:
 
     double time_of(const pugi::xml_node& grid, double otherwise, int depth) {
         if (const pugi::xml_node time = file_.child(grid, "Time")) {
-            const double value = time.attribute("Value").as_double(otherwise);
-            if (!std::isfinite(value)) file_.fail_at(time, "its value is not a number");
-            return value;
+            const auto text = time.attribute("Value");
+            const auto value = text ? number_from(trimmed(text.as_string())) : otherwise;
+            if (!value || !std::isfinite(*value)) file_.fail_at(time, "its value is not a number");
+            return *value;
         }
         const pugi::xml_node first = file_.child(grid, "Grid");
         return first && depth < kMostNested ? time_of(first, otherwise, depth + 1) : otherwise;
