@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <clocale>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -232,6 +233,7 @@ void keep_standard_streams() {
 int main(int argc, char** argv) {
     std::set_terminate(end_with_a_sentence);
     keep_standard_streams();
+    std::setlocale(LC_ALL, "C");          // a library that is loaded before us may have chosen another: numbers have a point
     setenv("EGL_LOG_LEVEL", "fatal", 0);  // we report a lack of OpenGL ourselves, in one sentence
     std::signal(SIGXFSZ, SIG_IGN);        // when a file gets too long, the write fails
     CLI::App program(kDescription, "subvol");

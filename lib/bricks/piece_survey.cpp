@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "assemble.h"
 #include "subvol/detail/byte_hash.h"
@@ -77,8 +78,9 @@ private:
                 survey_.arrays.push_back({{array.name, array.components, array.at_cells, {}}, 0});
             }
         }
-        for (auto& [array, parts] : survey_.arrays)
-            parts += find_array(piece, array.name, array.at_cells, array.components) != nullptr;
+        std::set<std::tuple<std::string_view, bool, int>> there;
+        for (const FileArray& array : piece.arrays) there.emplace(array.name, array.at_cells, array.components);
+        for (auto& [array, parts] : survey_.arrays) parts += there.contains({array.name, array.at_cells, array.components});
     }
 
     // before: how many pieces there were that could have the array

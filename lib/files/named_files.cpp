@@ -36,8 +36,8 @@ NamedFiles::Open NamedFiles::open(const std::filesystem::path& path, const Place
 }
 
 void NamedFiles::count(const Place& place) {
-    if (++count_ <= kMost) return;
-    refuse_named(place, "more than " + std::to_string(kMost) + " files are named", "a file counts each time that it is named");
+    if (++count_ <= most_) return;
+    refuse_named(place, "more than " + std::to_string(most_) + " files are named", "a file counts each time that it is named");
 }
 
 void NamedFiles::take(const std::string& source, std::size_t there, std::size_t taken, const Place& place) {

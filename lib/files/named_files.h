@@ -21,10 +21,12 @@ class NamedFiles {
 public:
     using Place = std::function<std::string()>;
     static constexpr std::size_t kDeepest = 16;
-    static constexpr std::size_t kMost = 100000;
     /// What is read and made is at most so many times what is there, and so many bytes more.
     static constexpr std::size_t kMostTimes = 16;
     static constexpr std::size_t kFewBytes = std::size_t{16} << 20;
+
+    /// most: names of files
+    explicit NamedFiles(std::size_t most = 100000) : most_(most) {}
 
     /// The time for which a file is open that names others.
     class Open {
@@ -63,6 +65,7 @@ private:
         std::string identity, name;
     };
 
+    std::size_t most_;
     std::vector<Opened> open_;
     std::set<std::string> met_;
     std::size_t count_ = 0, there_ = 0, taken_ = 0;

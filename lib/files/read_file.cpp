@@ -73,7 +73,7 @@ std::string read_text(const std::filesystem::path& path) {
     return text;
 }
 
-std::string read_bytes(const std::filesystem::path& path, std::uint64_t first, std::size_t count) {
+std::string read_range(const std::filesystem::path& path, std::uint64_t first, std::size_t count) {
     const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file || ::fseeko(file.get(), static_cast<off_t>(first), SEEK_SET) != 0) fail_read(path, errno);
     std::string bytes(count, '\0');
@@ -109,7 +109,8 @@ std::filesystem::path named_file(const std::filesystem::path& folder, const std:
     std::filesystem::path path = folder / name;
     struct stat about {};
     if (::stat(path.c_str(), &about) != 0) refuse("there is no file " + in_quotes(name), kRelative);
-    if (!not_regular(path).empty()) refuse(in_quotes(name) + " is not a regular file", "pipes, devices and folders are not read");
+    if (!not_regular(path).empty())
+        refuse(in_quotes(name) + " is not a regular file", "pipes, devices and folders are not read");
     return path;
 }
 

@@ -122,10 +122,10 @@ public:
         for (const std::string& name : repeated_) {
             const auto& others = names_taken_[name].others;
             const std::string last = others.size() > 1 ? " to " + in_quotes(others.back()) : "";
-            result_.warnings.push_back("there is more than one array " + in_quotes(name) + ": " +
-                                       (others.size() > 1 ? std::to_string(others.size()) + " others are called "
-                                                          : "another is called ") +
-                                       in_quotes(others.front()) + last);
+            result_.warnings.push_back(
+                "there is more than one array " + in_quotes(name) + ": " +
+                (others.size() > 1 ? std::to_string(others.size()) + " others are called " : "another is called ") +
+                in_quotes(others.front()) + last);
         }
         if (averaged_.empty()) return;
         constexpr std::size_t kMostNamed = 6;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -271,21 +272,34 @@ private:
     }
 
     void add_arrays() {
-        std::set<std::pair<std::string, bool>> done;
-        for (const MeshFile& first : pieces_) {
-            for (const FileArray& array : first.arrays) {
-                if (!done.insert({array.name, array.at_cells}).second) continue;
-                std::vector<const FileArray*> parts;
-                for (const MeshFile& piece : pieces_) {
-                    parts.push_back(find_array(piece, array.name, array.at_cells, array.components));
-                }
-                const bool ghosts = array.name == kGhostArray;  // where it is missing there are none
-                if (!ghosts && std::ranges::find(parts, nullptr) != parts.end()) {
-                    all_.warnings.push_back(not_everywhere(array.name, word_));
-                    continue;
-                }
-                all_.arrays.push_back(joined(array, parts));
+        // The first of each name, and which arrays of all pieces have its name and components; of a piece the first one.
+        struct Named {
+            const FileArray* first;
+            std::vector<std::pair<std::size_t, const FileArray*>> of_pieces;
+        };
+        std::vector<Named> named;
+        std::map<std::pair<std::string_view, bool>, std::size_t> places;
+        for (const MeshFile& piece : pieces_) {
+            for (const FileArray& array : piece.arrays) {
+                if (places.try_emplace({array.name, array.at_cells}, named.size()).second) named.push_back({&array, {}});
             }
+        }
+        for (std::size_t k = 0; k < pieces_.size(); ++k) {
+            for (const FileArray& array : pieces_[k].arrays) {
+                Named& of_name = named[places.at({array.name, array.at_cells})];
+                const bool has_one = !of_name.of_pieces.empty() && of_name.of_pieces.back().first == k;
+                if (!has_one && array.components == of_name.first->components) of_name.of_pieces.emplace_back(k, &array);
+            }
+        }
+        for (const auto& [first, of_pieces] : named) {
+            const bool ghosts = first->name == kGhostArray;  // where it is missing there are none
+            if (!ghosts && of_pieces.size() < pieces_.size()) {
+                all_.warnings.push_back(not_everywhere(first->name, word_));
+                continue;
+            }
+            std::vector<const FileArray*> parts(pieces_.size(), nullptr);
+            for (const auto& [piece, array] : of_pieces) parts[piece] = array;
+            all_.arrays.push_back(joined(*first, parts));
         }
     }
 

@@ -130,7 +130,7 @@ RbfVolume read_vtp(std::string_view text, const std::filesystem::path& path) {
 Surface read_boundary(const std::filesystem::path& points, std::size_t triangles) {
     const std::filesystem::path path = boundary_path(points);
     if (triangles == 0 || !std::filesystem::exists(path)) return {};
-    const std::string file = path.string(), text = read_text(path);
+    const std::string file = path.string(), text = read_regular(path);
     Surface surface = VtpReader(text, file, "a surface of that type is needed").surface();
     if (surface.triangles.size() != triangles) {
         throw Error(ErrorCode::InvalidInput, "has " + counted(surface.triangles.size(), "triangle", "triangles"), file,

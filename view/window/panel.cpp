@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
+
+#include "subvol/detail/number_text.h"
 
 namespace subvol::detail {
 
@@ -52,9 +53,8 @@ void draw_what(WindowHost& host, WindowMemory& memory) {
     if (times.size() < 2) return;
     int step = static_cast<int>(state.step);
     ImGui::SetNextItemWidth(-0.34F * ImGui::GetContentRegionAvail().x);
-    char time[64];
-    (void)std::snprintf(time, sizeof time, "%d   t = %.5g", step, times[state.step]);
-    if (ImGui::SliderInt("step", &step, 0, static_cast<int>(times.size()) - 1, time))
+    const std::string time = std::to_string(step) + "   t = " + number_text(times[state.step], 5);
+    if (ImGui::SliderInt("step", &step, 0, static_cast<int>(times.size()) - 1, time.c_str()))
         run(host, memory, "step", std::to_string(step));
     ImGui::SameLine();
     if (ImGui::SmallButton(host.look().play ? "stop" : "play")) host.look().play = !host.look().play;
@@ -166,9 +166,7 @@ void run_and_tell(WindowHost& host, WindowMemory& memory, const std::string& nam
 }
 
 std::string json_text(double number) {
-    char text[40];
-    (void)std::snprintf(text, sizeof text, "%.10g", number);
-    return text;
+    return number_text(number, 10);
 }
 
 std::string json_text(double a, double b) {

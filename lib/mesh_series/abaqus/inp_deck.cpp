@@ -25,6 +25,7 @@ namespace {
 // A line could ask for any number of nodes, elements and members of sets. What is made is in proportion to the deck's bytes.
 constexpr std::size_t kFewMade = std::size_t{1} << 20, kFewMembers = std::size_t{1} << 22;
 constexpr std::size_t kMadeOfByte = 4;
+constexpr std::size_t kMostIncluded = 10000;
 
 std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> fields;
@@ -113,7 +114,8 @@ public:
             members_ += members[part->first];
             if (deck_.made <= most_made() && members_ <= std::max(kFewMembers, kMadeOfByte * bytes_)) continue;
             throw Error(ErrorCode::InvalidInput, "its instances have too many nodes, elements and members of sets",
-                        std::string(instance.place.file) + ", line " + std::to_string(instance.place.line), "at most " + std::to_string(most_made()) + " for files of this size");
+                        std::string(instance.place.file) + ", line " + std::to_string(instance.place.line),
+                        "at most " + std::to_string(most_made()) + " for files of this size");
         }
     }
 
@@ -271,7 +273,8 @@ private:
         const InpElement master = part.elements[find(elements_at_, part.elements, number_of, integer(fields[0]), "element")];
         constexpr std::int64_t kLargest = std::int64_t{1} << 40;
         const auto large = [](std::int64_t number) { return number > kLargest || number < -kLargest; };
-        if (large(master.number) || std::ranges::any_of(master.nodes, large)) fail("its element has a number that is out of range");
+        if (large(master.number) || std::ranges::any_of(master.nodes, large))
+            fail("its element has a number that is out of range");
         std::array<std::array<std::int64_t, 3>, 3> along{{{1, 1, 1}, {1, 0, 0}, {1, 0, 0}}};
         for (std::size_t i = 1; i < std::min<std::size_t>(fields.size(), 10); ++i) {
             if (fields[i].empty()) continue;
@@ -331,7 +334,8 @@ private:
             if (fields.size() < 2) fail("GENERATE needs a first and a last number");
             const std::int64_t first = integer(fields[0]), last = integer(fields[1]);
             const std::int64_t step = fields.size() > 2 ? integer(fields[2]) : 1;
-            if (step < 1 || last < first || first < 0 || (last - first) / step > static_cast<std::int64_t>(part.elements.size())) {
+            if (step < 1 || last < first || first < 0 ||
+                (last - first) / step > static_cast<std::int64_t>(part.elements.size())) {
                 fail("the numbers " + std::to_string(first) + " to " + std::to_string(last) + " are not those of elements");
             }
             count_members(static_cast<std::size_t>((last - first) / step) + 1);
@@ -367,7 +371,7 @@ private:
     [[nodiscard]] std::size_t most_made() const { return std::max(kFewMade, kMadeOfByte * bytes_); }
 
     InpDeck& deck_;
-    NamedFiles named_;
+    NamedFiles named_{kMostIncluded};
     std::size_t bytes_ = 0, members_ = 0;
     const TextScanner* in_ = nullptr;
     std::string_view file_;

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "assemble.h"
 #include "cgns_tree.h"
@@ -199,8 +200,7 @@ private:
                                              bool at_cells) const {
         std::vector<double> all = tree_.reals(node);
         const std::size_t count = at_cells ? zone.cells : zone.points;
-        const auto rind = tree_.child(parent, "Rind_t");
-        const auto layers = rind ? tree_.integers(*rind) : std::vector<std::int64_t>();
+        const std::vector<std::int64_t>& layers = layers_of(parent);
         if (zone.structured && layers.size() == 6 && std::ranges::any_of(layers, [](std::int64_t n) { return n != 0; })) {
             all = inner(all, zone, at_cells, layers, node);
         }
@@ -209,6 +209,16 @@ private:
                               std::to_string(count) + " are needed");
         }
         return all;
+    }
+
+    // Looked for once for all arrays of a node.
+    [[nodiscard]] const std::vector<std::int64_t>& layers_of(const std::string& parent) const {
+        if (layers_parent_ != parent) {
+            const auto rind = tree_.child(parent, "Rind_t");
+            layers_ = rind ? tree_.integers(*rind) : std::vector<std::int64_t>();
+            layers_parent_ = parent;
+        }
+        return layers_;
     }
 
     [[nodiscard]] std::vector<double> inner(const std::vector<double>& all, const Zone& zone, bool at_cells,
@@ -332,20 +342,20 @@ private:
                                      " is not at the elements that are read: ignored");
             return;
         }
-        std::vector<std::string> nodes = tree_.children(solution, "DataArray_t");
-        while (!nodes.empty()) {
-            const std::string node = nodes.front();
-            nodes.erase(nodes.begin());
+        const std::vector<std::string> nodes = tree_.children(solution, "DataArray_t");
+        std::set<std::string_view> left(nodes.begin(), nodes.end());
+        for (const std::string& node : nodes) {
+            if (left.erase(node) == 0) continue;  // a part of a vector
             std::string name = CgnsTree::name_of(node);
             std::vector<std::string> parts{node};
             if (name.size() > 1 && name.back() == 'X') {
                 const std::string stem = node.substr(0, node.size() - 1);
-                const auto y = std::ranges::find(nodes, stem + "Y"), z = std::ranges::find(nodes, stem + "Z");
-                if (y != nodes.end() && z != nodes.end()) {
-                    parts = {node, stem + "Y", stem + "Z"};
+                const std::string y = stem + "Y", z = stem + "Z";
+                if (left.contains(y) && left.contains(z)) {
+                    parts = {node, y, z};
                     name.pop_back();
-                    std::erase(nodes, stem + "Y");
-                    std::erase(nodes, stem + "Z");
+                    left.erase(y);
+                    left.erase(z);
                 }
             }
             FileArray array{as_utf8(name), static_cast<int>(parts.size()), at_cells, {}};
@@ -364,6 +374,8 @@ private:
     std::string base_;
     std::map<std::string_view, std::size_t> left_out_;
     std::size_t step_ = 0, curved_ = 0, cells_of_sections_ = 0;
+    mutable std::string layers_parent_;
+    mutable std::vector<std::int64_t> layers_;
 };
 
 Hdf5File open(const std::filesystem::path& path) {

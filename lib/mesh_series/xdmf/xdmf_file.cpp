@@ -205,7 +205,7 @@ std::vector<double> XdmfFile::of_binary(const pugi::xml_node& item, std::size_t 
     }
     take(item, NamedFiles::identity(path), size * sizeof(double), count * sizeof(double));
     const std::endian order = kind_of(item, {"Endian"}) == "BIG" ? std::endian::big : std::endian::little;
-    return reals_from(read_bytes(path, seek, count * size_of(type)), type, order);
+    return reals_from(read_range(path, seek, count * size_of(type)), type, order);
 }
 
 // A part of another item: where it starts along each dimension, the distance of its places, and their number.

@@ -61,10 +61,10 @@ private:
     std::string name_;
     pugi::xml_document document_;
     pugi::xml_node domain_;
-    std::map<std::string, std::unique_ptr<Hdf5File>> heavy_;  // by their identities
-    NamedFiles named_;  // the sources of values
+    std::map<std::string, std::unique_ptr<Hdf5File>> heavy_;                         // by their identities
+    NamedFiles named_;                                                               // the sources of values
     mutable std::map<std::string, std::vector<pugi::xml_node>, std::less<>> paths_;  // that were followed
-    mutable std::size_t visited_ = 0;                                               // elements, on the way of all paths
+    mutable std::size_t visited_ = 0;                                                // elements, on the way of all paths
     int depth_ = 0;
 };
 

@@ -158,6 +158,65 @@ TEST_F(Xdmf, ValuesInBinaryFilesAndPartsOfThem) {
     }
 }
 
+// A slab is checked by division: its last place may be beyond any 64-bit number.
+TEST_F(Xdmf, SlabsBeyondTheirValuesAreRefused) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const auto attribute = [&](const std::string& place, const std::string& rank, const std::string& values) {
+        return grid(topology(mesh) + geometry(mesh) +
+                    "<Attribute Name=\"T\" Center=\"Node\"><DataItem ItemType=\"HyperSlab\"><DataItem Dimensions=\"3 " + rank +
+                    "\">" + place + "</DataItem>" + values + "</DataItem></Attribute>");
+    };
+    const std::string line = item(std::vector{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}, "16");
+    EXPECT_THAT(read(attribute("1 2 8", "1", line)).mesh.attributes[0].values, ElementsAre(1, 3, 5, 7, 9, 11, 13, 15));
+    const std::string table = item(std::vector{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}, "8 2");
+    EXPECT_THAT(read(attribute("0 1 1 1 8 1", "2", table)).mesh.attributes[0].values, ElementsAre(1, 3, 5, 7, 9, 11, 13, 15));
+    const std::string outside = "the hyperslab does not lie in its values";
+    for (const std::string place :
+         {"2 2 8", "0 3 8", "9 1 8", "16 1 1", "0 549755813888 9", "0 999999999999 16", "999999999999 1 1"})
+        EXPECT_THAT(error(attribute(place, "1", line)), HasSubstr(outside)) << place;
+    EXPECT_THAT(error(attribute("0 0 1 1 9 1", "2", table)), HasSubstr(outside));
+    EXPECT_THAT(error(attribute("0 2 1 1 8 1", "2", table)), HasSubstr(outside));
+    EXPECT_THAT(error(attribute("0 0 1 549755813888 8 3", "2", table)), HasSubstr(outside));
+    EXPECT_THAT(error(attribute("1 2 8", "1", table)), HasSubstr("its rank differs from that of the values"));
+    EXPECT_THAT(error(attribute("0 0 0 1 1 1 4294967296 4294967296 4294967296", "3",
+                                "<DataItem Dimensions=\"4294967296 4294967296 4294967296\">1</DataItem>")),
+                HasSubstr("Dimensions say"));
+}
+
+// The paths of writers: ParaView's, Xdmf3's and dolfin's.
+TEST_F(Xdmf, PathsLeadToElementsOfTheFile) {
+    const HexMesh mesh = make_box(1, 1, 1);
+    const auto values = [](double value) { return item(std::vector<double>(8, value), "8"); };
+    const auto named = [&](const std::string& name, double value) {
+        return replaced(values(value), "<DataItem ", "<DataItem Name=\"" + name + "\" ");
+    };
+    const std::string common = named("a", 1) + named("b [2]", 2) + named("a", 3);
+    const auto value_at = [&](const std::string& reference) {
+        const ReadResult result = read(common + grid(topology(mesh) + geometry(mesh) +
+                                                     "<Attribute Name=\"T\" Center=\"Node\">" + reference + "</Attribute>"));
+        return result.mesh.attributes[0].values[0];
+    };
+    const auto by_attribute = [&](const std::string& path) { return value_at("<DataItem Reference='" + path + "'/>"); };
+    EXPECT_EQ(by_attribute("/Xdmf/Domain/DataItem"), 1);
+    EXPECT_EQ(by_attribute("/Xdmf/Domain/DataItem[2]"), 2);
+    EXPECT_EQ(by_attribute("/Xdmf/Domain/DataItem[@Name=\"a\"][2]"), 3);
+    EXPECT_EQ(by_attribute("/Xdmf/Domain/DataItem[ @Name = \"b [2]\" ]"), 2);
+    EXPECT_EQ(by_attribute("/Xdmf/Domain/*[3]"), 3);
+    EXPECT_EQ(by_attribute("/Xdmf/Domain/*[self::DataItem][2]"), 2);
+    EXPECT_EQ(by_attribute("//DataItem[@Name=\"b [2]\"]"), 2);
+    EXPECT_EQ(by_attribute("//Domain/DataItem[3]"), 3);
+    EXPECT_EQ(value_at("<DataItem Reference=\"XML\">/Xdmf/Domain/DataItem[3]</DataItem>"), 3);
+    EXPECT_EQ(value_at("<DataItem reference=\"XML\"> /Xdmf/Domain/DataItem[@Name=\"b [2]\"] </DataItem>"), 2);
+    const auto error_at = [&](const std::string& path) { return error_of([&] { static_cast<void>(by_attribute(path)); }); };
+    for (const std::string path : {"/Xdmf/Domain/DataItem[4]", "/Xdmf/Domain/DataItem[@Name=\"c\"]", "/Domain", "//Nothing"})
+        EXPECT_THAT(error_at(path), HasSubstr("there is no element")) << path;
+    for (const std::string path :
+         {"", "DataItem", "/", "/Xdmf//DataItem", "/Xdmf/..", "/Xdmf/Domain/DataItem[0]", "/Xdmf/Domain/DataItem[", "/Xdmf[",
+          "/Xdmf/Domain/DataItem[last()]", "/*/*/*[count(/*/*/*)=9]", "/Xdmf/Domain/DataItem[@Name=a]", "/Xdmf/Domain/[1]",
+          "/Xdmf/Domain/DataItem[99999999999999999999]", "/Xdmf/Domain/DataItem|/Xdmf/Domain/DataItem"})
+        EXPECT_THAT(error_at(path), HasSubstr("not a part of this file, or no plain path")) << path;
+}
+
 TEST_F(Xdmf, WrongFilesGetASentenceWithTheLine) {
     const HexMesh mesh = make_box(1, 1, 1);
     EXPECT_THAT(error(""), HasSubstr("a.xdmf, line 3: it has no grids"));

@@ -16,7 +16,7 @@ namespace subvol::detail {
 /// So many bytes of a regular file, from a place on; fewer if it is shorter.
 ///
 /// throws: Error(Io) if it cannot be opened or read
-[[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::uint64_t first, std::size_t count);
+[[nodiscard]] std::string read_range(const std::filesystem::path& path, std::uint64_t first, std::size_t count);
 
 /// What is wrong with a file that another file names: only regular files are read there, since pipes and devices may have no
 /// end. Empty if nothing is, or there is no such file.
