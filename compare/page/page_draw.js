@@ -206,7 +206,7 @@ class Painter {
     const picture = this.gl.target('picture', view.width, view.height, [gl.RGBA32F]);
     this.gl.bind(picture);
     gl.disable(gl.BLEND);
-    this.gl.use(this.gl.shade, { ...camera, ...this.tables(), clipped: !!clip, inside: depths.inside,
+    this.gl.use(this.gl.shade, { ...camera, ...this.tables(), clipped: !!clip, inside: depths.inside, nearest: depths.inside ? depths.front : 0,
       surface: surface.textures[0], shells: shells.textures[0], face_sums: face_sums.textures[0], eye_sums: eye_sums.textures[0] });
     this.gl.screen();
     return { target: picture, samples, transmits: false };

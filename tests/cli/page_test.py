@@ -198,6 +198,20 @@ class InTheBrowser(unittest.TestCase):
                 self.assertEqual(self.browser.requests(), [])
                 self.assertEqual(self.browser.complaints(), [])
 
+    def test_same_picture_as_render_with_the_eye_inside(self):
+        (self.folder / "two.vtk").write_text(TWO_FIELDS)
+        inside, apart = "--camera", ".4,.5,.6,1,.6,.5,0,0,1,60"
+        for name, options in (("solid", ["--look", "solid", inside, apart]), ("volume", ["--look", "volume", inside, apart]),
+                              ("open", ["--look", "solid", inside, apart + ",2"]), ("opened volume", ["--look", "volume", inside, apart + ",2"])):
+            with self.subTest(look=name):
+                self.command("page", "two.vtk", "-o", "i.html", "--fields", "Temp", *options)
+                self.command("render", "two.vtk", "-o", "i.exr", "--field", "Temp", "--size", "96", *options)
+                self.open("i.html", 300)
+                self.picture("i.tif", 96)
+                compared = self.command("compare", "i.tif", "i.exr", "--json").json()
+                self.assertGreater(compared["psnr"], 40, name)
+                self.assertEqual(self.browser.complaints(), [])
+
     def test_hands_change_the_picture(self):
         self.command("page", "model:ball:6", "-o", "b.html")
         self.open("b.html")

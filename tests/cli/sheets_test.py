@@ -88,7 +88,7 @@ class Sheets(InFolder):
         self.run_ok("render", "with.vtk", "-o", "with.png", "--edges", "--look", "volume", "--scheme", "cc", *VIEW)
 
     def test_sheets_behind_the_eye_hide_nothing(self):
-        points = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)] + [(-9, -9, 3), (9, -9, 3), (9, 9, 3), (-9, 9, 3)]
+        points = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)] + [(-2, -2, 3), (3, -2, 3), (3, 3, 3.8), (-2, 3, 3.8)]
         text = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 12 double\n"
         text += "\n".join(" ".join(map(str, p)) for p in points)
         hexahedron, quad = "8 0 1 3 2 4 5 7 6", "4 8 9 10 11"
