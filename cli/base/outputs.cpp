@@ -24,13 +24,7 @@ void check_writable(const std::filesystem::path& folder, const std::string& outp
 
 void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions) {
     check_choice(path.string(), path.extension().string(), extensions);
-    const detail::OutputPlace place = detail::output_place(path);
-    if (place.stream) return;
-    const std::filesystem::path folder = place.file.parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-        throw Error(ErrorCode::Io, "the folder " + folder.string() + " does not exist", path.string());
-    }
-    check_writable(folder.empty() ? "." : folder, path.string());
+    (void)detail::writable_place(path);
 }
 
 void make_folder(const std::filesystem::path& path) {

@@ -8,7 +8,7 @@
 namespace subvol::cli {
 
 /// Checks an output before any work is done for it: the file name ends in one of `extensions`; the folder of the file, or of
-/// the one that it links to, exists and is writable.
+/// the one that it links to, exists and is writable, and so is the file, if there is one.
 ///
 /// throws: Error(InvalidInput), Error(Io)
 void check_output(const std::filesystem::path& path, const std::vector<std::string>& extensions);

@@ -30,7 +30,7 @@ sin(3*x)+z. A mesh without fields has the density 1.)"},
 model:NAME and model:NAME:RESOLUTION generate a mesh.
 
 An output file is complete or absent: it is written under a temporary name beside its place, and takes its name when it is done. What
-was there before stays if the command fails. A row of # in a name stands for the number of a frame.)"}}};
+was there before stays if the command fails, and leaves its permissions to what replaces it. A row of # in a name stands for the number of a frame.)"}}};
 
 const std::array<Chapter, 6> kLastChapters{
     {{"OUTPUT FOR PROGRAMS",

@@ -8,6 +8,7 @@
 #include "study_input.h"
 #include "study_work.h"
 #include "subvol/cell.h"
+#include "subvol/detail/atomic_file.h"
 #include "subvol/error.h"
 #include "subvol/field_metrics.h"
 #include "subvol/field_places.h"
@@ -103,15 +104,6 @@ CaseResult volume_case(const StudyCase& of, const HexMesh& mesh) {
     return result;
 }
 
-/// A file that is removed at the end.
-struct TemporaryFile {
-    std::filesystem::path path;
-    ~TemporaryFile() {
-        std::error_code ignored;
-        std::filesystem::remove(path, ignored);
-    }
-};
-
 CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     CaseResult result;
     const VdbGrid grid = study_grid(of, mesh, result);
@@ -119,9 +111,9 @@ CaseResult voxels_case(const StudyCase& of, const HexMesh& mesh) {
     result.metrics["rmse"] = errors.l2;
     result.metrics["max"] = errors.linf;
     result.metrics["uncovered"] = static_cast<double>(errors.uncovered);
-    const TemporaryFile file{std::filesystem::temp_directory_path() / ("subvol_study_" + of.id + ".vdb")};
-    write_vdb(file.path, std::span(&grid, 1));
-    result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path));
+    const detail::TemporaryFile file("grid.vdb");
+    write_vdb(file.path(), std::span(&grid, 1));
+    result.metrics["file_bytes"] = static_cast<double>(std::filesystem::file_size(file.path()));
     return result;
 }
 

@@ -203,13 +203,13 @@ private:
                 const std::string name = plain_name(of.text("input"));
                 if (!known.insert(name).second) continue;
                 fs::create_directories(folder);
-                const fs::path mesh = folder / (name + ".vtu"), page = folder / (name + ".html");
-                (void)write_mesh(mesh, study_mesh(of));
+                const fs::path page = folder / (name + ".html");
+                const detail::TemporaryFile mesh(name + ".vtu");
+                (void)write_mesh(mesh.path(), study_mesh(of));
                 const ChildResult made = report.timed("pages", [&] {
-                    return run_self(
-                        {"page", mesh.string(), "-o", page.string(), "--title", name, "--max-bytes", kPageBytes, "--quiet"});
+                    return run_self({"page", mesh.path().string(), "-o", page.string(), "--title", name, "--max-bytes",
+                                     kPageBytes, "--quiet"});
                 });
-                fs::remove(mesh);
                 if (made.code != 0) {
                     report.warn(text("no page of ", name, ": ", made.err.substr(0, made.err.find('\n'))));
                     continue;

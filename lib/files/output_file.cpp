@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "output_file.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/types.h>
+#ifdef __linux__
+#include <sys/xattr.h>
+#endif
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <iterator>
 #include <memory>
+#include <random>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "subvol/detail/byte_hash.h"
 #include "subvol/error.h"
 
 namespace subvol::detail {
@@ -58,6 +67,81 @@ void append_bytes(const fs::path& from, const fs::path& to, const fs::path& targ
     if (std::fclose(out.release()) != 0) fail_to_write(target, {errno, std::generic_category()});
 }
 
+/// A file that is open as long as this is.
+class OpenFile {
+public:
+    OpenFile(const fs::path& path, int flags) : file_(::open(path.c_str(), flags | O_CLOEXEC)) {}
+    ~OpenFile() {
+        if (file_ >= 0) ::close(file_);
+    }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
+    [[nodiscard]] int number() const { return file_; }
+
+private:
+    int file_;
+};
+
+fs::path folder_of(const fs::path& file) {
+    return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+constexpr std::string_view kTemporary = ".subvol-";
+constexpr std::size_t kLongestExtension = 16;
+
+/// A name that nobody can foresee, and that is short, however long the name of the file is. The extension stays: it decides the
+/// format.
+std::string temporary_name(const std::string& extension) {
+    std::random_device random;
+    const std::uint64_t bits = std::uint64_t{random()} << 32 | random();
+    return std::string(kTemporary) + hex_digits(bits) + (extension.size() <= kLongestExtension ? extension : std::string());
+}
+
+/// The access control list of a file, on Linux: who else may read it. A new file may have one from its folder.
+void keep_list([[maybe_unused]] const fs::path& from, [[maybe_unused]] int to) {
+#ifdef __linux__
+    constexpr const char* kList = "system.posix_acl_access";
+    std::array<char, 4096> list{};
+    const ssize_t bytes = ::getxattr(from.c_str(), kList, list.data(), list.size());
+    if (bytes > 0) {
+        (void)::fsetxattr(to, kList, list.data(), static_cast<std::size_t>(bytes), 0);
+    } else if (bytes < 0 && errno == ENODATA) {
+        (void)::fremovexattr(to, kList);
+    }
+#endif
+}
+
+/// Gives a new file the permissions, and where that is allowed the owner and the group, of the file that it replaces.
+void keep_access(const fs::path& from, int to) {
+    struct stat before {
+    }, made{};
+    if (::stat(from.c_str(), &before) != 0 || ::fstat(to, &made) != 0) return;
+    mode_t mode = before.st_mode & 0777;
+    if (made.st_gid != before.st_gid && ::fchown(to, static_cast<uid_t>(-1), before.st_gid) != 0) {
+        mode = (mode & ~070U) | (mode & 070U & mode << 3);  // another group gets no more than everybody
+    } else {
+        keep_list(from, to);
+    }
+    if (made.st_uid != before.st_uid) (void)!::fchown(to, before.st_uid, static_cast<gid_t>(-1));
+    (void)::fchmod(to, mode);  // where it fails, the file stays one that only its owner may read
+}
+
+/// Whether this process may do something with a file, as it is now: as root, everything.
+bool may(const fs::path& path, int what) {
+    return ::faccessat(AT_FDCWD, path.c_str(), what, AT_EACCESS) == 0;
+}
+
+/// Whether a file is in a folder such as /tmp, where only its owner, the folder's and root may replace it, and this is another
+/// user.
+bool is_kept_by_its_folder(const fs::path& file) {
+    struct stat folder {
+    }, about{};
+    if (::stat(folder_of(file).c_str(), &folder) != 0 || ::stat(file.c_str(), &about) != 0) return false;
+    const uid_t user = ::geteuid();
+    return (folder.st_mode & S_ISVTX) != 0 && user != 0 && user != folder.st_uid && user != about.st_uid;
+}
+
 }  // namespace
 
 OutputPlace output_place(const fs::path& target) {
@@ -77,19 +161,71 @@ OutputPlace output_place(const fs::path& target) {
     return place;
 }
 
-AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), place_(output_place(target_)) {
+OutputPlace writable_place(const fs::path& target) {
+    OutputPlace place = output_place(target);
+    if (place.stream) return place;
     std::error_code error;
-    const fs::path beside = place_.file.has_parent_path() ? place_.file.parent_path() : fs::path(".");
-    const fs::path folder = place_.stream ? make_private_folder(target_) : beside;
+    const fs::path folder = folder_of(place.file);
     if (!fs::is_directory(folder, error)) {
-        throw Error(ErrorCode::Io, "the folder \"" + folder.string() + "\" does not exist", target_.string());
+        throw Error(ErrorCode::Io, "the folder \"" + folder.string() + "\" does not exist", target.string());
     }
-    if (fs::is_directory(place_.file, error)) {
-        throw Error(ErrorCode::Io, "is a folder; a file name is needed", target_.string());
+    const fs::file_status status = fs::status(place.file, error);
+    if (status.type() == fs::file_type::none) fail_to_write(target, error);  // its name is too long, for example
+    if (fs::is_directory(status)) throw Error(ErrorCode::Io, "is a folder; a file name is needed", target.string());
+    if (!may(folder, W_OK | X_OK)) {
+        throw Error(ErrorCode::Io,
+                    "cannot be written: no file can be made in its folder: " + std::generic_category().message(errno),
+                    target.string());
     }
-    // The extension is that of the name that the user chose: it decides the format.
-    temporary_ = folder / ("." + place_.file.stem().string() + "." + std::to_string(::getpid()) + target_.extension().string());
-    unfinished_.emplace(temporary_, place_.stream);
+    if (fs::exists(status) && !may(place.file, W_OK)) {
+        throw Error(ErrorCode::Io, "cannot be written: the file that is there is read-only", target.string(),
+                    "another name, or chmod u+w");
+    }
+    if (fs::exists(status) && is_kept_by_its_folder(place.file)) {
+        throw Error(ErrorCode::Io, "cannot be written: only its owner may replace a file of this folder", target.string(),
+                    "another name");
+    }
+    return place;
+}
+
+bool is_temporary_name(std::string_view name) {
+    constexpr std::size_t kDigits = 16;
+    if (!name.starts_with(kTemporary)) return false;
+    const std::string_view digits = name.substr(kTemporary.size()).substr(0, kDigits);
+    const std::string_view extension = name.substr(kTemporary.size() + digits.size());
+    return digits.size() == kDigits && digits.find_first_not_of("0123456789abcdef") == std::string_view::npos &&
+           (extension.empty() || extension.front() == '.') && extension.size() <= kLongestExtension;
+}
+
+void sync_files_in(const fs::path& folder) {
+    const OpenFile opened(folder, O_RDONLY | O_DIRECTORY);
+    if (opened.number() < 0) return;
+#ifdef __linux__
+    if (::syncfs(opened.number()) == 0 || errno == ENOSYS) return;
+    if (errno == EIO || errno == ENOSPC || errno == EDQUOT) fail_to_write(folder, {errno, std::generic_category()});
+#else
+    ::sync();
+#endif
+}
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), place_(writable_place(target_)) {
+    std::error_code error;
+    const fs::path folder = place_.stream ? make_private_folder(target_) : folder_of(place_.file);
+    // What replaces a file that others may not read is never readable for them. Nobody else can have made the file, and a link
+    // is not followed.
+    const mode_t mode = place_.stream || fs::exists(place_.file, error) ? 0600 : 0666;
+    int file = -1;
+    do {
+        temporary_ = folder / temporary_name(target_.extension().string());
+        unfinished_.emplace(temporary_, place_.stream);
+        file = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    } while (file < 0 && errno == EEXIST);
+    if (file < 0) {
+        const std::error_code why(errno, std::generic_category());
+        if (place_.stream) fs::remove(folder, error);
+        fail_to_write(target_, why);
+    }
+    ::close(file);
 }
 
 AtomicFile::~AtomicFile() {
@@ -99,17 +235,45 @@ AtomicFile::~AtomicFile() {
     if (place_.stream) fs::remove(temporary_.parent_path(), ignored);
 }
 
-void AtomicFile::commit() {
+std::FILE* AtomicFile::open() const {
+    const int file = ::open(temporary_.c_str(), O_WRONLY | O_TRUNC | O_NOFOLLOW | O_CLOEXEC);
+    std::FILE* const stream = file < 0 ? nullptr : ::fdopen(file, "wb");
+    if (stream == nullptr) fail_to_write(target_, {errno, std::generic_category()});
+    return stream;
+}
+
+void AtomicFile::commit(Sync sync) {
     if (place_.stream) return append_bytes(temporary_, place_.file, target_);  // the destructor removes the temporary file
+    {
+        // Opened again: whoever wrote to the path may have put another file there.
+        const OpenFile written(temporary_, O_RDONLY | O_NOFOLLOW);
+        if (written.number() < 0) fail_to_write(target_, {errno, std::generic_category()});
+        keep_access(place_.file, written.number());
+        // Some file systems have nothing to sync.
+        const bool synced = sync == Sync::Later || ::fsync(written.number()) == 0 || errno == EINVAL || errno == ENOTSUP;
+        if (!synced) fail_to_write(target_, {errno, std::generic_category()});
+    }
     std::error_code error;
     fs::rename(temporary_, place_.file, error);
     if (error) fail_to_write(target_, error);
     committed_ = true;
+    if (sync == Sync::Later) return;
+    if (const OpenFile folder(folder_of(place_.file), O_RDONLY | O_DIRECTORY); folder.number() >= 0) {
+        (void)::fsync(folder.number());  // the new name; without it the old file would be there after a loss of power
+    }
 }
 
-OutputFile::OutputFile(const std::filesystem::path& target)
-    : target_(target), file_(target), stream_(std::fopen(file_.path().c_str(), "wb")) {
-    if (!stream_) fail(errno);
+TemporaryFile::TemporaryFile(const std::string& name)
+    : path_(make_private_folder(name) / name), unfinished_(path_, /*with_folder=*/true) {
+}
+
+TemporaryFile::~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    fs::remove(path_.parent_path(), ignored);
+}
+
+OutputFile::OutputFile(const std::filesystem::path& target) : target_(target), file_(target), stream_(file_.open()) {
 }
 
 OutputFile::~OutputFile() {
@@ -146,9 +310,9 @@ void OutputFile::close() {
     if (stream_ && std::fclose(std::exchange(stream_, nullptr)) != 0) fail(errno);
 }
 
-void OutputFile::commit() {
+void OutputFile::commit(Sync sync) {
     close();
-    file_.commit();
+    file_.commit(sync);
 }
 
 void OutputFile::fail(int error) const {

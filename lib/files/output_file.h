@@ -34,7 +34,7 @@ public:
     /// Closes the file; nothing can be written afterwards.
     void close();
     /// Closes the file and gives it its final name.
-    void commit();
+    void commit(Sync sync = Sync::Now);
 
 private:
     [[noreturn]] void fail(int error) const;

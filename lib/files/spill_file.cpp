@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spill_file.h"
 
-#include <stdlib.h>  // mkstemp
+#include <fcntl.h>
+#include <stdlib.h>  // mkostemp
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ constexpr std::uint64_t kChunkBytes = 4U << 20;  // of one read with gaps
 SpillFile::SpillFile(std::filesystem::path folder, std::size_t record_bytes)
     : folder_(folder.empty() ? std::filesystem::path(".") : std::move(folder)), record_bytes_(record_bytes) {
     std::string name = (folder_ / ".subvol-split-XXXXXX").string();
-    file_ = mkstemp(name.data());
+    file_ = mkostemp(name.data(), O_CLOEXEC);
     if (file_ < 0) fail("be written", errno);
     (void)unlink(name.c_str());
 }

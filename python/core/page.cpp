@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subvol/page.h"
 
+#include <pybind11/stl/filesystem.h>
+
 #include "bind.h"
+#include "subvol/detail/atomic_file.h"
 
 namespace subvol::python {
 namespace {
@@ -47,6 +50,7 @@ void bind_page(py::module_& module) {
     module.def("page", &page, py::arg("volume"), py::arg("skin"), py::arg("function"), py::arg("unit"), py::arg("low"),
                py::arg("high"), py::arg("look"), py::arg("camera"), py::arg("opacity_unit"), py::arg("background"),
                py::arg("title"), py::arg("source"), py::arg("max_bytes"), py::arg("progress"));
+    module.def("write_text", &detail::write_text_file, py::arg("path"), py::arg("text"));
 }
 
 }  // namespace subvol::python

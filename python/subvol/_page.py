@@ -27,18 +27,11 @@ class Page:
         self.report = report
 
     def write(self, path: Path) -> None:
-        """Writes the page; the file appears whole or not at all."""
+        """Writes the page; the file appears whole or not at all. A file that is replaced leaves its permissions to it."""
         name = os.fsdecode(path)
         if not name.endswith(".html"):
             raise InvalidInput(f"{name}: a page is a .html file", name, ".html")
-        partial = f"{name}.{os.getpid()}.part"
-        try:
-            with open(partial, "w", encoding="utf-8") as out:
-                out.write(self.html)
-            os.replace(partial, name)
-        finally:
-            if os.path.exists(partial):
-                os.remove(partial)
+        _core.write_text(name, self.html)
 
     def _repr_html_(self) -> str:
         return ('<iframe style="width:100%;height:640px;border:0" sandbox="allow-scripts" title="volume" '

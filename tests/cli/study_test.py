@@ -90,6 +90,10 @@ class Study(StudyFolder):
         page = self.folder / "out/pages" / link
         self.assertIn("OpenSubVol", page.read_text())
         self.assertEqual(list(page.parent.iterdir()), [page])  # the mesh that it was made of is gone
+        mine = page.with_suffix(".vtu")
+        mine.write_text("mine")
+        self.run_ok("study", "s.json", "-o", "out", "--pages")
+        self.assertEqual(mine.read_text(), "mine")
         self.run_ok("study", "s.json", "-o", "plain")
         self.assertNotIn("pages/", (self.folder / "plain/report.html").read_text())
 

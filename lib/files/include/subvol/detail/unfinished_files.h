@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <optional>
 
 namespace subvol::detail {
 
@@ -17,8 +15,10 @@ public:
     UnfinishedFile(const UnfinishedFile&) = delete;
     UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
+    struct Place;
+
 private:
-    std::optional<std::size_t> place_;  // none: all places were taken, or the name is too long
+    Place* place_ = nullptr;  // null: there are thousands already, or the name is too long
 };
 
 /// Removes all files that are remembered. May be called by a signal's handler; the program should end after it.
