@@ -141,14 +141,15 @@ void turn_into_owned(std::vector<std::uint8_t>& ghosts) {
 }
 
 /// Whether a file is a brick of another folder.
-bool is_foreign(std::string_view text, const std::string& file, std::uint64_t id) {
+/// The id of the folder that a brick belongs to; nothing if the text is no brick.
+std::optional<std::uint64_t> id_of(std::string_view text, const std::string& file) {
     try {
         const RawReader in(text, file);
         std::vector<std::uint64_t> found;
         in.read(in.array(in.field_data(), kId), "Int64", 1, found);
-        return found[0] != id;
+        return found[0];
     } catch (const Error&) {
-        return false;
+        return {};
     }
 }
 
@@ -233,7 +234,7 @@ WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh
     arrays.write_all(write);
     write("\n</AppendedData>\n</VTKFile>\n");
     const std::uint64_t bytes = out.position();
-    out.commit();
+    out.commit(Sync::Later);
     return {bytes, hash.value()};
 }
 
@@ -242,12 +243,16 @@ BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash,
     ByteHash found;
     found.add(text);
     if (found.value() != hash) {
-        const bool foreign = is_foreign(text, path.string(), id);
+        const bool foreign = id_of(text, path.string()).value_or(id) != id;
         throw Error(ErrorCode::InvalidInput,
                     foreign ? "is a brick of another mesh" : "has changed since the index was written, or is damaged",
                     path.string(), "split the mesh again");
     }
     return parse(text, path.string());
+}
+
+bool is_brick_of(const std::filesystem::path& path, std::uint64_t id) {
+    return id_of(read_text(path), path.string()) == id;
 }
 
 std::uint64_t hash_of_file(const std::filesystem::path& path) {

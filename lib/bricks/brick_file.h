@@ -20,13 +20,16 @@ struct WrittenBrick {
 };
 
 /// Writes a brick as .vtu with raw appended data. GlobalNodeId and GlobalCellId are its numbers in the whole mesh; vtkGhostType
-/// is 1 in the halo; tags are field data.
+/// is 1 in the halo; tags are field data. The file is on the disk once `sync_files_in` has been called for the folder.
 ///
 /// id: of the folder
 WrittenBrick write_brick_file(const std::filesystem::path& path, const BrickMesh& brick, std::uint64_t id);
 
 /// throws: Error(InvalidInput) unless the file has this hash and was written by `write_brick_file` for this folder
 [[nodiscard]] BrickMesh read_brick_file(const std::filesystem::path& path, std::uint64_t hash, std::uint64_t id);
+
+/// Whether a file was written by `write_brick_file` for this folder; throws: Error(Io)
+[[nodiscard]] bool is_brick_of(const std::filesystem::path& path, std::uint64_t id);
 
 /// The hash of a file; throws: Error(Io)
 [[nodiscard]] std::uint64_t hash_of_file(const std::filesystem::path& path);

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "brick_folder.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <functional>
 
 #include "brick_file.h"
 #include "brick_index.h"
 #include "output_file.h"
+#include "subvol/detail/printable.h"
 #include "subvol/error.h"
 #include "text_scanner.h"
 
@@ -22,19 +27,81 @@ constexpr std::uint64_t kBytesOfCell = 1000;  // topology, kernels and the halo 
     throw Error(ErrorCode::Io, "cannot be written: " + error.message(), path.string());
 }
 
-fs::path with_suffix(const fs::path& folder, const char* suffix) {
+fs::path with_suffix(const fs::path& folder, const std::string& suffix) {
     fs::path name = folder;
     if (!name.has_filename()) name = name.parent_path();  // "a.bricks/"
     return name += suffix;
 }
 
-/// Gives a folder the name of another, which is removed only when that has been done.
+/// Where a folder lies or will lie: what a link points to is filled, the link stays.
+fs::path place_of(const fs::path& folder) {
+    fs::path place = output_place(with_suffix(folder, "")).file;
+    std::error_code error;
+    if (fs::exists(place, error)) place = fs::canonical(place, error);  // "." and ".." are no names
+    if (error) fail(folder, error);
+    return place;
+}
+
+/// Calls `look` for the name of everything in a folder, and whether that is a plain file: no folder, and no link.
+template <class Look>
+void for_each_entry(const fs::path& folder, const Look& look) {
+    std::error_code error;
+    auto entry = fs::directory_iterator(folder, error);
+    while (!error && entry != fs::directory_iterator()) {
+        const bool plain = entry->symlink_status(error).type() == fs::file_type::regular;
+        if (!error) look(entry->path().filename().string(), plain);
+        if (!error) entry.increment(error);
+    }
+    if (error) fail(folder, error);
+}
+
+bool is_plain_file(const fs::path& file) {
+    std::error_code error;
+    return fs::symlink_status(file, error).type() == fs::file_type::regular;
+}
+
+/// The names of the files of a folder of bricks, sorted: the index and what it lists, whether that is there or not.
+///
+/// throws: Error(InvalidInput) if it is no folder of bricks, or holds anything else
+std::vector<std::string> files_of_bricks(const fs::path& folder) {
+    const auto refuse = [&](const std::string& why, const std::string& hint) {
+        throw Error(ErrorCode::InvalidInput, "exists and " + why, folder.string(), hint);
+    };
+    if (!is_plain_file(folder / kBricksIndex)) refuse("is no folder of bricks", "another name");
+    std::vector<std::string> names{kBricksIndex};
+    try {
+        const std::string index = (folder / kBricksIndex).string();
+        for (Brick& brick : bricks_from_json(read_text(index), index).bricks) names.push_back(std::move(brick.file));
+    } catch (const Error&) {
+        refuse("is no folder of bricks: its index.json is none that this program has written", "another name");
+    }
+    std::ranges::sort(names);
+    for_each_entry(folder, [&](const std::string& name, bool plain) {
+        if (!plain || !std::ranges::binary_search(names, name)) {
+            refuse("holds " + in_quotes(name) + ", which is none of its bricks", "move that away, or use another name");
+        }
+    });
+    return names;
+}
+
+/// The permissions, and where that is allowed the group, of the folder that another one replaces.
+void keep_access(const fs::path& from, const fs::path& to) {
+    struct stat before {};
+    if (::stat(from.c_str(), &before) != 0) return;
+    (void)!::chown(to.c_str(), static_cast<uid_t>(-1), before.st_gid);
+    (void)::chmod(to.c_str(), before.st_mode & 07777);
+}
+
+/// Gives a folder the name of another, which must hold bricks only, and is removed when that has been done.
 void replace_folder(const fs::path& made, const fs::path& folder) {
     std::error_code error, ignored;
     fs::path old;
+    std::vector<std::string> names;
     if (fs::exists(folder, ignored)) {
-        for (int k = 0; old.empty() || fs::exists(old, ignored); ++k)
-            old = with_suffix(folder, (".old" + std::to_string(k)).c_str());
+        names = files_of_bricks(folder);  // once more: something may have been put there meanwhile
+        keep_access(folder, made);
+        for (int k = 0; old.empty() || fs::exists(fs::symlink_status(old, ignored)); ++k)
+            old = with_suffix(folder, ".old" + std::to_string(k));
         fs::rename(folder, old, error);
         if (error) fail(folder, error);
     }
@@ -43,52 +110,82 @@ void replace_folder(const fs::path& made, const fs::path& folder) {
         if (!old.empty()) fs::rename(old, folder, ignored);
         fail(folder, error);
     }
-    if (!old.empty()) fs::remove_all(old, ignored);
+    if (old.empty()) return;
+    for (const std::string& name : names) fs::remove(old / name, ignored);
+    if (::rmdir(old.c_str()) != 0) {
+        throw Error(ErrorCode::Io, "is written, but not all of what was there before could be removed", folder.string(),
+                    "the rest is in " + old.string());
+    }
 }
 
 }  // namespace
 
 void check_target(const fs::path& folder) {
-    const fs::path target = with_suffix(folder, ""), above = target.parent_path();
+    const fs::path target = place_of(folder), above = target.parent_path();
     std::error_code error;
-    if (fs::exists(target, error) && !is_bricks(target)) {
-        throw Error(ErrorCode::InvalidInput, "exists and is no folder of bricks", target.string(), "another name");
-    }
+    const fs::file_status status = fs::status(target, error);
+    if (status.type() == fs::file_type::none) fail(target, error);
+    if (fs::exists(status)) (void)files_of_bricks(target);
     if (!above.empty() && !fs::is_directory(above, error)) {
         throw Error(ErrorCode::Io, "the folder \"" + above.string() + "\" does not exist", target.string());
     }
 }
 
 BricksWriter::BricksWriter(fs::path folder, std::uint64_t id, int halo_layers)
-    : folder_(with_suffix(folder, "")), work_(with_suffix(folder, ".unfinished")) {
+    : folder_(with_suffix(folder, "")), place_(place_of(folder_)), work_(with_suffix(place_, ".unfinished")) {
     check_target(folder_);
     std::error_code error;
-    const fs::path progress = work_ / kProgress;
-    if (fs::exists(work_, error) && !fs::is_empty(work_, error)) {  // empty: ended before it had written anything
-        if (!fs::is_regular_file(progress, error)) {
-            throw Error(ErrorCode::InvalidInput, "exists and is no unfinished folder of bricks", work_.string(),
-                        "remove it, or use another name");
-        }
-        try {
-            done_ = bricks_from_json(read_text(progress), progress.string());
-        } catch (const Error&) {
-            done_ = {};  // the first brick had not been finished
-        }
-        if (done_.id != id || done_.halo_layers != halo_layers) {
-            done_ = {};
-            fs::remove_all(work_, error);
-        }
+    if (fs::exists(fs::symlink_status(work_, error))) {
+        take_up(id, halo_layers);
+    } else {
+        fs::create_directory(work_, error);
+        if (error) fail(work_, error);
     }
-    fs::create_directories(work_, error);
-    if (error) fail(work_, error);
     done_.id = id;
     done_.halo_layers = halo_layers;
     try {
         save_progress();
     } catch (...) {
-        fs::remove(work_, error);  // if it is empty
+        (void)::rmdir(work_.c_str());  // if it is empty
         throw;
     }
+}
+
+void BricksWriter::take_up(std::uint64_t id, int halo_layers) {
+    const auto refuse = [&](const std::string& why) {
+        throw Error(ErrorCode::InvalidInput, "exists and " + why, work_.string(), "move it away, or use another name");
+    };
+    std::error_code error;
+    if (fs::symlink_status(work_, error).type() != fs::file_type::directory) refuse("is no unfinished folder of bricks");
+    // The list of what has been done: of a run that ended while the folder got its name, the index.
+    std::vector<std::string> lists, bricks;
+    for_each_entry(work_, [&](const std::string& name, bool plain) {
+        if (plain && (name == kProgress || name == kBricksIndex)) {
+            lists.push_back(name);
+        } else if (plain && is_brick_name(name)) {
+            bricks.push_back(name);
+        } else if (!plain || !is_temporary_name(name)) {
+            refuse("is no unfinished folder of bricks: it holds " + in_quotes(name));
+        }
+    });
+    if (lists.empty() && bricks.empty()) return;  // ended before it had written anything
+    std::ranges::sort(lists, std::greater());     // the progress first
+    try {
+        const fs::path list = work_ / lists.at(0);
+        done_ = bricks_from_json(read_text(list), list.string(), /*unfinished=*/true);
+    } catch (const std::exception&) {
+        refuse("is no unfinished folder of bricks");
+    }
+    for (const std::string& name : bricks) {  // also those that were written after the list
+        const bool listed = std::ranges::find(done_.bricks, name, &Brick::file) != done_.bricks.end();
+        if (!listed && !is_brick_of(work_ / name, done_.id)) {
+            refuse("is no unfinished folder of bricks: it holds " + in_quotes(name) + " of another mesh");
+        }
+    }
+    if (done_.id == id && done_.halo_layers == halo_layers) return;
+    for (const std::string& name : bricks) fs::remove(work_ / name, error);
+    for (const std::string& name : lists) fs::remove(work_ / name, error);
+    done_ = {};
 }
 
 void BricksWriter::save_progress() {
@@ -130,15 +227,21 @@ SplitResult BricksWriter::finish() {
     const std::string index = bricks_to_json(done_);
     write_text_file(work_ / kBricksIndex, index);
     result_.bytes += index.size();
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(work_, error)) {  // what killed runs have left behind
-        const std::string name = entry.path().filename().string();
-        const bool ours = name == kBricksIndex || std::ranges::binary_search(done_.bricks, name, {}, &Brick::file);
-        std::error_code ignored;
-        if (!ours) fs::remove(entry.path(), ignored);
-    }
-    replace_folder(work_, folder_);
-    result_.bricks = open_bricks(folder_);
+    std::vector<std::string> left;  // by this run, and by those that were killed
+    for_each_entry(work_, [&](const std::string& name, bool plain) {
+        if (plain && (name == kBricksIndex || std::ranges::binary_search(done_.bricks, name, {}, &Brick::file))) return;
+        if (!plain || (name != kProgress && !is_temporary_name(name))) {
+            throw Error(ErrorCode::InvalidInput, "holds " + in_quotes(name) + ", which this split has not written",
+                        work_.string(), "move that away and split again: finished bricks are kept");
+        }
+        left.push_back(name);
+    });
+    std::error_code ignored;
+    for (const std::string& name : left) fs::remove(work_ / name, ignored);
+    sync_files_in(work_);
+    replace_folder(work_, place_);
+    result_.bricks = open_bricks(place_);
+    result_.bricks.path = folder_;
     return std::move(result_);
 }
 

@@ -14,16 +14,19 @@ inline constexpr const char* kBricksIndex = "index.json";
 
 /// The index as a text, and back.
 ///
-/// file:   for messages
-/// throws: Error(InvalidInput) if the text is malformed or of a later version
+/// file:       for messages
+/// unfinished: there may be no bricks yet, and so no bounds
+/// throws:     Error(InvalidInput) if the text is malformed or of a later version, or if its files are not different ones with
+///             the names of bricks
 [[nodiscard]] std::string bricks_to_json(const Bricks& bricks);
-[[nodiscard]] Bricks bricks_from_json(const std::string& text, const std::string& file);
+[[nodiscard]] Bricks bricks_from_json(const std::string& text, const std::string& file, bool unfinished = false);
 
 /// Puts together what the bricks have: counts, bounds, fields.
 void sum_up(Bricks& bricks);
 
 /// "brick_00012.vtu"
 [[nodiscard]] std::string brick_name(std::size_t brick);
+[[nodiscard]] bool is_brick_name(const std::string& name);
 
 /// What the index says of a brick, apart from its file.
 [[nodiscard]] Brick describe(const BrickMesh& brick);
